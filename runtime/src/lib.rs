@@ -1,0 +1,17 @@
+//! What a generated robot model needs at run time, and nothing more: the [`Model`] trait, [`Error`],
+//! a few functions of [`math`], forward kinematics in [`forward`], and the macro
+//! `#[redundant_robot("robot.toml")]`.
+//!
+//! The crate is `no_std` and allocates nothing. With the feature `std` (default) square roots and
+//! trigonometry come from the standard library, without it from `libm`.
+#![cfg_attr(not(feature = "std"), no_std)]
+
+pub mod error;
+pub mod forward;
+pub mod math;
+pub mod model;
+
+pub use error::{Error, SampleError};
+pub use model::{Body, Function, Info, Input, Model, Parameter, Sizes, Symbol};
+#[cfg(feature = "macro")]
+pub use overact_macros::redundant_robot;

@@ -1,0 +1,71 @@
+//! The few transcendental functions that generated code calls: those of the standard library with
+//! the feature `std`, those of `libm` without.
+
+/// Sine and cosine of an angle in radians.
+#[inline]
+#[must_use]
+pub fn sin_cos(angle: f64) -> (f64, f64) {
+    #[cfg(feature = "std")]
+    {
+        angle.sin_cos()
+    }
+    #[cfg(not(feature = "std"))]
+    {
+        libm::sincos(angle)
+    }
+}
+
+/// Square root; NaN of a negative number.
+#[inline]
+#[must_use]
+pub fn sqrt(square: f64) -> f64 {
+    #[cfg(feature = "std")]
+    {
+        square.sqrt()
+    }
+    #[cfg(not(feature = "std"))]
+    {
+        libm::sqrt(square)
+    }
+}
+
+/// The angle in radians of the direction (x, y), in (-π, π].
+#[inline]
+#[must_use]
+pub fn atan2(y: f64, x: f64) -> f64 {
+    #[cfg(feature = "std")]
+    {
+        y.atan2(x)
+    }
+    #[cfg(not(feature = "std"))]
+    {
+        libm::atan2(y, x)
+    }
+}
+
+/// Sign of a velocity as Coulomb friction wants it: -1, 0 or 1 (0 for NaN).
+#[inline]
+#[must_use]
+pub fn sign(velocity: f64) -> f64 {
+    if velocity > 0.0 {
+        1.0
+    } else if velocity < 0.0 {
+        -1.0
+    } else {
+        0.0
+    }
+}
+
+/// The angle nearest to zero that differs from `angle` by whole turns.
+#[inline]
+#[must_use]
+pub fn wrap_angle(angle: f64) -> f64 {
+    let turn = core::f64::consts::TAU;
+    if angle.abs() <= core::f64::consts::PI {
+        return angle;
+    }
+    let (sine, cosine) = sin_cos(angle);
+    let wrapped = atan2(sine, cosine);
+    debug_assert!(wrapped.abs() <= turn);
+    wrapped
+}
