@@ -1,1 +1,4 @@
-//! stub
+//! Robot models.
+#[rustfmt::skip]
+mod dualv;
+pub use dualv::DualV;

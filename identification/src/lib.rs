@@ -1,1 +1,52 @@
-//! stub
+//! Identification of the dynamic parameters of a parallel robot, overactuated or not, from measured
+//! motion and torque: sections 3.2, 4 and 5.3 of Briot, Krut, Gautier 2015.
+//!
+//! The stages, in the order in which data pass them:
+//!
+//! 1. [`data`]: a run is read from CSV or MATLAB and checked; a mapping names its columns and units.
+//! 2. [`kinematics`]: zero-phase filtering and differentiation ([`filters`]), forward kinematics,
+//!    platform motion.
+//! 3. [`columns`]: the columns of the model: standard parameters, payload, split friction.
+//! 4. [`base`]: base parameters in the symmetric order (42)-(43).
+//! 5. [`regression`]: the decimated system (39)-(41) of case 1, case 2 or all joints, kept as one R
+//!    [`factor`] per line of Γ.
+//! 6. [`mod@estimate`]: ordinary or weighted least squares with standard deviations (44)-(48).
+//! 7. [`mod@essential`]: backward elimination of parameters that the data do not determine.
+//! 8. [`validation`]: prediction against measurement, on any run.
+//! 9. [`mod@identify`]: all of it, and its [`report`].
+//!
+//! Robots are seen through [`overact::Model`] only, so compiled and interpreted ones are served
+//! alike.
+
+pub mod base;
+mod blocks;
+pub mod columns;
+pub mod data;
+mod elimination;
+mod error;
+pub mod essential;
+pub mod estimate;
+pub mod factor;
+pub mod filters;
+pub mod identify;
+pub mod kinematics;
+pub mod regression;
+pub mod report;
+pub mod settings;
+pub mod states;
+pub mod validation;
+
+pub use base::{BaseParameters, PayloadUse, base_parameters};
+pub use columns::{Column, ColumnSet};
+pub use data::{Gain, Log, Mapping};
+pub use error::{Error, Problem};
+pub use essential::{Essential, Removal, essential};
+pub use estimate::{Estimation, LineError, estimate};
+pub use identify::{
+    BaseParameter, CrossValidation, Estimate, Experiment, Identification, ParameterEstimate,
+    Progress, Run, Stage, identify,
+};
+pub use kinematics::{Motion, motion};
+pub use regression::{PartitionCondition, Projection, System, system};
+pub use settings::{Normalisation, Settings};
+pub use validation::{Series, Validation, validate, validate_equations};

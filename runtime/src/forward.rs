@@ -4,7 +4,10 @@
 //! the Jacobian J_p^inv converges in two or three steps when it starts from the previous sample; the
 //! redundant actuators average the noise of the others, and starting near keeps the assembly mode.
 
-use crate::{Error, math::wrap_angle};
+use crate::{
+    Error,
+    math::{sin_cos, sqrt, wrap_angle},
+};
 
 /// Largest number of Gauss-Newton steps.
 pub const STEPS: usize = 20;
@@ -96,7 +99,7 @@ pub fn solve_positive_definite(matrix: &mut [f64], vector: &mut [f64]) -> Result
     let largest = (0..n).fold(0.0_f64, |m, i| m.max(matrix[i * n + i]));
     for k in 0..n {
         let pivot = matrix[k * n + k];
-        if !(pivot > 1e-15 * largest) {
+        if pivot.is_nan() || pivot <= 1e-15 * largest {
             return Err(Error::SingularPlatform { actuators: "actuators", condition: largest / pivot.abs() });
         }
         for i in k + 1..n {
@@ -114,4 +117,36 @@ pub fn solve_positive_definite(matrix: &mut [f64], vector: &mut [f64]) -> Result
         vector[k] /= matrix[k * n + k];
     }
     Ok(())
+}
+
+/// Moves a pose whose coordinates are its twist coordinates' integrals: x + step.
+pub fn displace(pose: &mut [f64], step: &[f64]) {
+    for (coordinate, step) in pose.iter_mut().zip(step) {
+        *coordinate += step;
+    }
+}
+
+/// Moves a pose that ends with a unit quaternion (w, x, y, z): the last three numbers of `step` are a
+/// rotation vector in the base frame, by whose exponential the quaternion is multiplied from the left.
+pub fn displace_quaternion(pose: &mut [f64], step: &[f64]) {
+    let (Some(linear), Some(turn)) = (step.len().checked_sub(3), step.last_chunk::<3>()) else {
+        return;
+    };
+    for (coordinate, step) in pose.iter_mut().zip(&step[..linear]) {
+        *coordinate += step;
+    }
+    let Some([w, x, y, z]) = pose.last_chunk_mut::<4>() else { return };
+    let angle = sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]);
+    let (sine, cosine) = sin_cos(0.5 * angle);
+    // sin(a/2)/a tends to 1/2.
+    let scale = if angle > 1e-12 { sine / angle } else { 0.5 };
+    let (a, b, c, d) = (cosine, scale * turn[0], scale * turn[1], scale * turn[2]);
+    let product = [
+        a * *w - b * *x - c * *y - d * *z,
+        a * *x + b * *w + c * *z - d * *y,
+        a * *y - b * *z + c * *w + d * *x,
+        a * *z + b * *y - c * *x + d * *w,
+    ];
+    let norm = sqrt(product.iter().map(|q| q * q).sum());
+    [*w, *x, *y, *z] = product.map(|q| q / norm);
 }

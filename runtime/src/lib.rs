@@ -6,12 +6,14 @@
 //! trigonometry come from the standard library, without it from `libm`.
 #![cfg_attr(not(feature = "std"), no_std)]
 
+pub mod block;
 pub mod error;
 pub mod forward;
+pub mod guard;
 pub mod math;
 pub mod model;
 
 pub use error::{Error, SampleError};
-pub use model::{Body, Function, Info, Input, Model, Parameter, Sizes, Symbol};
+pub use model::{BaseParameter, Body, Function, Info, Input, Model, Parameter, Sizes, Symbol};
 #[cfg(feature = "macro")]
 pub use overact_macros::redundant_robot;

@@ -56,16 +56,26 @@ pub fn sign(velocity: f64) -> f64 {
     }
 }
 
+/// A value with the sign of a velocity: `value * sign(velocity)` as a selection.
+#[inline]
+#[must_use]
+pub fn signed(value: f64, velocity: f64) -> f64 {
+    if velocity > 0.0 {
+        value
+    } else if velocity < 0.0 {
+        -value
+    } else {
+        0.0
+    }
+}
+
 /// The angle nearest to zero that differs from `angle` by whole turns.
 #[inline]
 #[must_use]
 pub fn wrap_angle(angle: f64) -> f64 {
-    let turn = core::f64::consts::TAU;
     if angle.abs() <= core::f64::consts::PI {
         return angle;
     }
     let (sine, cosine) = sin_cos(angle);
-    let wrapped = atan2(sine, cosine);
-    debug_assert!(wrapped.abs() <= turn);
-    wrapped
+    atan2(sine, cosine)
 }

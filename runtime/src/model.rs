@@ -242,6 +242,56 @@ pub struct Parameter {
     pub body: Body,
 }
 
+impl Parameter {
+    /// A parameter of a leg's body or joint; see [`Body::Leg`].
+    #[must_use]
+    pub const fn of_leg(
+        name: &'static str,
+        symbol: Symbol,
+        unit: &'static str,
+        leg: u16,
+        index: u16,
+        shape: u16,
+    ) -> Self {
+        Self { name, symbol, unit, body: Body::Leg { leg, index, shape } }
+    }
+
+    /// A parameter of the platform.
+    #[must_use]
+    pub const fn of_platform(name: &'static str, symbol: Symbol, unit: &'static str) -> Self {
+        Self { name, symbol, unit, body: Body::Platform }
+    }
+
+    /// A parameter of the payload.
+    #[must_use]
+    pub const fn of_payload(name: &'static str, symbol: Symbol, unit: &'static str) -> Self {
+        Self { name, symbol, unit, body: Body::Payload }
+    }
+}
+
+/// A base parameter: an independent column, and the standard parameters that are regrouped into it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BaseParameter {
+    /// Name: the kept parameter's, with the suffix `R` where others are regrouped into it.
+    pub name: &'static str,
+    /// The standard parameter whose column is kept.
+    pub parameter: &'static str,
+    /// Other standard parameters that it stands for, with their coefficients.
+    pub regrouped: &'static [(&'static str, f64)],
+}
+
+impl BaseParameter {
+    /// A base parameter.
+    #[must_use]
+    pub const fn new(
+        name: &'static str,
+        parameter: &'static str,
+        regrouped: &'static [(&'static str, f64)],
+    ) -> Self {
+        Self { name, parameter, regrouped }
+    }
+}
+
 /// Where a body is in the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Body {
@@ -298,8 +348,8 @@ pub trait Model: Sync {
     fn info(&self) -> Info<'_>;
 
     /// Evaluates `function` at `output.len() / (rows * columns)` samples. `inputs` are those of
-    /// [`Function::inputs`], each holding one row of numbers per sample ([`Input::Parameters`]: one
-    /// vector for all samples).
+    /// [`Function::inputs`], each holding one row of numbers per sample; an input of exactly one row, as
+    /// [`Input::Parameters`] is, serves all samples.
     ///
     /// # Errors
     /// The first sample at which the model has no value, and why. The output is then undefined.
@@ -320,8 +370,6 @@ pub trait Model: Sync {
 
     /// Moves a pose by a small displacement `step` along the twist coordinates (r numbers).
     fn displace(&self, pose: &mut [f64], step: &[f64]) {
-        for (coordinate, step) in pose.iter_mut().zip(step) {
-            *coordinate += step;
-        }
+        crate::forward::displace(pose, step);
     }
 }

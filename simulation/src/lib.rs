@@ -1,1 +1,71 @@
-//! stub
+//! Virtual experiments of parallel robots, overactuated or not: what a laboratory would record when
+//! the robot with known parameters follows given trajectories.
+//!
+//! An [`Experiment`] is plain data: controller, sensors, true parameters and [`Run`]s with their
+//! [`Trajectory`]. [`simulate`] closes the loop of the paper's Fig. 4 around a robot that is known
+//! only by the trait [`overact::Model`], so compiled and interpreted robots serve alike:
+//!
+//! ```text
+//!  trajectory --x_d, v_d, v̇_d--> inverse dynamics --τ_ff--+
+//!      |                                                  v
+//!      +--q_d--> (+) --> PD, filtered derivative ------> (+) --> projection (50) --> limit --τ--+
+//!                 ^ -                                                                           |
+//!                 +---- encoder <--q-- plant  v̇ = M^-1 (Γ¹(τ) - bias) <----- held torques ------+
+//! ```
+//!
+//! The stages, each in a module of its own:
+//!
+//! - [`trajectory`]: desired displacement of the platform and its derivatives;
+//! - `reference`: the desired motion of platform and actuators, block by block;
+//! - `controller`: PD with filtered derivative, feed-forward, projection of internal torques;
+//! - `plant`: the robot's motion under torques that are held between samples;
+//! - `sensors`: encoder quantisation and torque noise;
+//! - [`run`]: the loop, over all runs; [`log`]: the record as CSV;
+//! - [`excitation`]: search of trajectories that excite the parameters well.
+//!
+//! ```
+//! use overact_simulation::{Error, Experiment, Run, Term, Trajectory, simulate, write_csv};
+//!
+//! fn log(model: &dyn overact::Model, parameters: Vec<f64>) -> Result<Vec<u8>, Error> {
+//!     let term = Term { coordinate: "x".into(), harmonic: 2, amplitude: 0.05, phase_rad: 0.0 };
+//!     let trajectory = Trajectory::Periodic { fundamental_hz: 0.5, terms: vec![term] };
+//!     let run = Run { name: "shake".into(), payload: false, duration_s: None, trajectory };
+//!     let experiment = Experiment { parameters, runs: vec![run], ..Experiment::default() };
+//!     let records = simulate(model, &experiment, &|fraction, run| {
+//!         eprintln!("{run}: {:.0} %", 100.0 * fraction);
+//!     })?;
+//!     let mut csv = Vec::new();
+//!     write_csv(&records[0], &mut csv).expect("memory takes every byte");
+//!     Ok(csv)
+//! }
+//! ```
+//!
+//! Results are the same to the last bit whenever the same model, on the same machine, is given the
+//! same experiment: every noise stream is seeded by run name and actuator, and no result depends on
+//! the order in which threads finish.
+
+mod conditioning;
+mod controller;
+pub mod error;
+
+pub mod excitation;
+pub mod experiment;
+pub mod log;
+mod plant;
+mod reference;
+pub mod run;
+mod sensors;
+pub mod trajectory;
+mod validation;
+
+#[cfg(test)]
+#[path = "../tests/support/mod.rs"]
+mod support;
+
+pub use error::{Cause, Error, Problem, RunError, Stage};
+
+pub use excitation::{Found, Search, search};
+pub use experiment::{Experiment, Run};
+pub use log::write_csv;
+pub use run::{Record, simulate};
+pub use trajectory::{Term, Trajectory};

@@ -1,1 +1,3 @@
-//! stub
+//! Tests of the workspace against numbers that were found independently.
+
+pub mod reference;

@@ -1,0 +1,64 @@
+//! A description from a file, read and compiled.
+
+use crate::failure::{Failure, Problem};
+use overact_codegen::{
+    RobotModel, compile,
+    description::{self, Description},
+    diagnostic::{Diagnostics, Source},
+};
+use std::{fs, path::Path};
+
+/// A robot with its description.
+#[derive(Debug)]
+pub struct Robot {
+    /// The path as the user gave it.
+    pub file: String,
+    /// What the file says.
+    pub description: Description,
+    /// The model.
+    pub model: RobotModel,
+}
+
+/// Reads and compiles a description.
+///
+/// # Errors
+/// A file that can't be read, or everything that is wrong with the description.
+pub fn load(path: &Path) -> Result<Robot, Failure> {
+    let source = read(path)?;
+    match compiled(&source) {
+        Ok((description, model)) => Ok(Robot {
+            file: source.name,
+            description,
+            model,
+        }),
+        Err(diagnostics) => Err(Failure::Description {
+            source,
+            diagnostics,
+        }),
+    }
+}
+
+fn compiled(source: &Source) -> Result<(Description, RobotModel), Diagnostics> {
+    let model = compile::compile(source)?;
+    Ok((description::parse(source)?, model))
+}
+
+/// Reads a description's text.
+///
+/// # Errors
+/// A file that can't be read or is not UTF-8.
+pub fn read(path: &Path) -> Result<Source, Failure> {
+    let name = path.display().to_string();
+    match fs::read_to_string(path) {
+        Ok(text) => Ok(Source::new(name, text)),
+        Err(error) => {
+            let missing = error.kind() == std::io::ErrorKind::NotFound;
+            let problem = Problem::new(format!("the file can't be read: {error}")).file(name);
+            Err(match missing {
+                true => problem.help("`overact new planar-4rrr my.toml` writes a first one"),
+                false => problem,
+            }
+            .into())
+        }
+    }
+}

@@ -1,0 +1,42 @@
+//! Progress of long work on stderr: a bar on a terminal, nothing in a pipe or with `--json`.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::{self, IsTerminal};
+
+/// Steps of a whole bar.
+const STEPS: u64 = 1000;
+
+/// A bar, or nothing where nobody looks.
+pub(crate) struct Progress(Option<ProgressBar>);
+
+impl Progress {
+    /// A bar for the work `what`.
+    pub(crate) fn new(what: &str, json: bool) -> Self {
+        if json || !io::stderr().is_terminal() {
+            return Self(None);
+        }
+        let bar = ProgressBar::with_draw_target(Some(STEPS), ProgressDrawTarget::stderr());
+        if let Ok(style) = ProgressStyle::with_template("{prefix} [{bar:30}] {percent:>3} % {msg}") {
+            bar.set_style(style.progress_chars("=> "));
+        }
+        bar.set_prefix(what.to_owned());
+        Self(Some(bar))
+    }
+
+    /// Shows which fraction of the work is done, and what is being done.
+    pub(crate) fn at(&self, fraction: f64, message: &str) {
+        if let Some(bar) = &self.0 {
+            // A cast from a float saturates.
+            bar.set_position((fraction * STEPS as f64) as u64);
+            bar.set_message(message.to_owned());
+        }
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.0 {
+            bar.finish_and_clear();
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! Which columns of an identification model are independent, and what the others are made of.
+//!
+//! The model is evaluated at random states: poses around home, joints that close every leg, random
+//! twists and accelerations. Columns are taken in the symmetric order (43), platform first, then each
+//! parameter of all legs together, and orthogonalised one after the other; a column that leaves
+//! nothing behind is a constant combination of those before it. The coefficients are constants of the
+//! robot's geometry; those that are fractions are recognised.
+
+use crate::cas::Ratio;
+use crate::derivation::BodyParameter;
+use crate::mechanism::Mechanism;
+use nalgebra::{DMatrix, DVector};
+
+/// A base parameter: an independent column and what is regrouped into it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BaseParameter {
+    /// The parameter whose column is kept.
+    pub parameter: BodyParameter,
+    /// Parameters whose columns are multiples of it in part, with their coefficients.
+    pub regrouped: Vec<(BodyParameter, f64)>,
+}
+
+/// Remainder of a column, relative to its length, below which it is dependent.
+const DEPENDENT: f64 = 1e-8;
+/// Coefficients below this are zero.
+const NEGLIGIBLE: f64 = 1e-9;
+
+/// The symmetric order (43) as indices of `parameters`.
+#[must_use]
+pub fn symmetric_order(mechanism: &Mechanism, parameters: &[BodyParameter]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..parameters.len()).collect();
+    order.sort_by_key(|&i| match parameters[i] {
+        BodyParameter::Platform(symbol) => (0, 0, 0, symbol, 0),
+        BodyParameter::Leg { leg, joint, symbol } => {
+            (1, mechanism.legs[leg].shape, joint, symbol, leg)
+        }
+        BodyParameter::Payload(symbol) => (2, 0, 0, symbol, 0),
+    });
+    order
+}
+
+/// Independent columns of `matrix` (rows of many states) in the given order.
+#[must_use]
+pub fn select(
+    matrix: &DMatrix<f64>,
+    order: &[usize],
+    parameters: &[BodyParameter],
+) -> Vec<BaseParameter> {
+    let mut basis: Vec<DVector<f64>> = Vec::new();
+    let mut kept: Vec<usize> = Vec::new();
+    let mut dependent: Vec<usize> = Vec::new();
+    for &column in order {
+        let original = matrix.column(column).into_owned();
+        let size = original.norm();
+        let mut rest = original;
+        // Twice is enough: a second pass removes what rounding left of the first.
+        for _ in 0..2 {
+            for known in &basis {
+                let along = known.dot(&rest);
+                rest.axpy(-along, known, 1.0);
+            }
+        }
+        if size > 0.0 && rest.norm() > DEPENDENT * size {
+            basis.push(rest.normalize());
+            kept.push(column);
+        } else if size > 0.0 {
+            dependent.push(column);
+        }
+    }
+    let mut result: Vec<BaseParameter> = kept
+        .iter()
+        .map(|&c| BaseParameter { parameter: parameters[c], regrouped: Vec::new() })
+        .collect();
+    let coefficients = combinations(matrix, &kept, &dependent);
+    for (k, &column) in dependent.iter().enumerate() {
+        for (row, base) in result.iter_mut().enumerate() {
+            let coefficient = recognised(coefficients[(row, k)]);
+            if coefficient != 0.0 {
+                base.regrouped.push((parameters[column], coefficient));
+            }
+        }
+    }
+    result
+}
+
+/// Coefficients of the dependent columns on the kept ones, by least squares with scaled columns.
+fn combinations(matrix: &DMatrix<f64>, kept: &[usize], dependent: &[usize]) -> DMatrix<f64> {
+    if kept.is_empty() || dependent.is_empty() {
+        return DMatrix::zeros(kept.len(), dependent.len());
+    }
+    let mut left = matrix.select_columns(kept);
+    let scales: Vec<f64> = left.column_iter().map(|c| c.norm()).collect();
+    for (mut column, scale) in left.column_iter_mut().zip(&scales) {
+        column /= *scale;
+    }
+    let right = matrix.select_columns(dependent);
+    let qr = left.qr();
+    let mut solved = qr.q().tr_mul(&right);
+    if !qr.r().solve_upper_triangular_mut(&mut solved) {
+        return DMatrix::zeros(kept.len(), dependent.len());
+    }
+    for (mut row, scale) in solved.row_iter_mut().zip(&scales) {
+        row /= *scale;
+    }
+    solved
+}
+
+/// The fraction with a denominator below a million that a coefficient is, or the coefficient.
+fn recognised(value: f64) -> f64 {
+    if value.abs() < NEGLIGIBLE {
+        return 0.0;
+    }
+    match nearby_ratio(value) {
+        Some(ratio) => ratio.value(),
+        None => value,
+    }
+}
+
+/// The simplest fraction within 1e-10 of a number, by its continued fraction.
+#[must_use]
+pub fn nearby_ratio(value: f64) -> Option<Ratio> {
+    let (mut h0, mut h1, mut k0, mut k1) = (0_i128, 1_i128, 1_i128, 0_i128);
+    let mut rest = value;
+    for _ in 0..20 {
+        let whole = rest.floor();
+        if whole.abs() > 1e9 {
+            return None;
+        }
+        let whole_part = whole as i128;
+        (h0, h1) = (h1, whole_part * h1 + h0);
+        (k0, k1) = (k1, whole_part * k1 + k0);
+        if k1 > 1_000_000 {
+            return None;
+        }
+        if (h1 as f64 / k1 as f64 - value).abs() <= 1e-10 * value.abs() {
+            return Ratio::new(h1, k1);
+        }
+        if rest == whole {
+            return None;
+        }
+        rest = 1.0 / (rest - whole);
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_geometric_constant_is_recognised() {
+        let ratio = nearby_ratio(0.11 * 0.11 / 0.28).unwrap();
+        assert_eq!((ratio.numerator(), ratio.denominator()), (121, 2800));
+        assert_eq!(nearby_ratio(std::f64::consts::PI), None);
+        assert_eq!(nearby_ratio(-0.28).unwrap().to_string(), "-7/25");
+    }
+}

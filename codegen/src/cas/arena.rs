@@ -1,0 +1,477 @@
+//! The graph: nodes, their meaning in the field, and the tables that share them.
+
+use super::direction::{Direction, SymbolId};
+use super::expr::Expr;
+use super::field::{Element, mix, mix_name};
+use super::number::Number;
+use super::ratio::Ratio;
+use std::cell::RefCell;
+use std::collections::HashMap;
+
+/// A node and a sign: twice the node's index, plus one for its negative.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Handle(u32);
+
+impl Handle {
+    pub(crate) const fn new(index: usize, negative: bool) -> Self {
+        Self((index as u32) << 1 | negative as u32)
+    }
+
+    /// Index of the node.
+    #[must_use]
+    pub const fn index(self) -> usize {
+        (self.0 >> 1) as usize
+    }
+
+    /// Whether the node's negative is meant.
+    #[must_use]
+    pub const fn is_negative(self) -> bool {
+        self.0 & 1 == 1
+    }
+
+    pub(crate) const fn negated(self) -> Self {
+        Self(self.0 ^ 1)
+    }
+
+    pub(crate) const fn with_sign_of(self, negative: bool) -> Self {
+        Self(self.0 ^ negative as u32)
+    }
+
+    pub(crate) const fn positive(self) -> Self {
+        Self(self.0 & !1)
+    }
+}
+
+/// What a node computes. Operands of products and quotients are positive: signs move outwards.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+#[expect(missing_docs, reason = "the variants say it")]
+pub enum Op {
+    Constant(u32),
+    Symbol(SymbolId),
+    Cosine(u32),
+    Sine(u32),
+    Add(Handle, Handle),
+    Sub(Handle, Handle),
+    Mul(Handle, Handle),
+    Div(Handle, Handle),
+    Sqrt(Handle),
+    Sign(Handle),
+    Atan2(Handle, Handle),
+}
+
+/// The two random points of the field and the real point at which every node is evaluated.
+const POINTS: usize = 2;
+
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Meaning {
+    pub(crate) image: [Element; POINTS],
+    pub(crate) sample: f64,
+}
+
+#[derive(Debug)]
+struct Node {
+    op: Op,
+    meaning: Meaning,
+    scope: u32,
+}
+
+#[derive(Debug)]
+struct Symbol {
+    name: String,
+    circle: [Element; POINTS],
+    sample: f64,
+}
+
+#[derive(Debug, Default)]
+struct Tables {
+    nodes: Vec<Node>,
+    constants: Vec<Number>,
+    symbols: Vec<Symbol>,
+    symbol_ids: HashMap<String, SymbolId>,
+    directions: Vec<Direction>,
+    direction_ids: HashMap<Direction, u32>,
+    by_shape: HashMap<Op, Handle>,
+    by_meaning: HashMap<[Element; POINTS], Handle>,
+    by_ratio: HashMap<Element, u32>,
+    names: HashMap<usize, String>,
+    scopes: Vec<String>,
+    scope: u32,
+}
+
+/// An expression graph.
+#[derive(Debug)]
+pub struct Arena {
+    tables: RefCell<Tables>,
+}
+
+impl Default for Arena {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Arena {
+    /// An empty graph.
+    #[must_use]
+    pub fn new() -> Self {
+        let tables = Tables { scopes: vec![String::new()], ..Tables::default() };
+        Self { tables: RefCell::new(tables) }
+    }
+
+    /// Number of nodes built so far.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.tables.borrow().nodes.len()
+    }
+
+    /// Whether no node has been built.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Sets the heading under which new nodes are listed, for instance a leg's name.
+    pub fn enter(&self, scope: &str) {
+        let mut tables = self.tables.borrow_mut();
+        let at = tables.scopes.iter().position(|s| s == scope).unwrap_or_else(|| {
+            tables.scopes.push(scope.to_owned());
+            tables.scopes.len() - 1
+        });
+        tables.scope = at as u32;
+    }
+
+    /// The heading of a node.
+    #[must_use]
+    pub fn scope(&self, index: usize) -> String {
+        let tables = self.tables.borrow();
+        tables.scopes[tables.nodes[index].scope as usize].clone()
+    }
+
+    /// Gives a node a name, if it has none and is worth one (constants and inputs are not).
+    pub fn name(&self, expr: Expr<'_>, name: &str) {
+        let mut tables = self.tables.borrow_mut();
+        let index = expr.handle().index();
+        if !matches!(tables.nodes[index].op, Op::Constant(_) | Op::Symbol(_)) {
+            tables.names.entry(index).or_insert_with(|| name.to_owned());
+        }
+    }
+
+    /// The name of a node.
+    #[must_use]
+    pub fn name_of(&self, index: usize) -> Option<String> {
+        self.tables.borrow().names.get(&index).cloned()
+    }
+
+    /// What a node computes.
+    #[must_use]
+    pub fn op(&self, index: usize) -> Op {
+        self.tables.borrow().nodes[index].op.clone()
+    }
+
+    /// A constant of the graph.
+    #[must_use]
+    pub fn constant_at(&self, id: u32) -> Number {
+        self.tables.borrow().constants[id as usize]
+    }
+
+    /// An angle of the graph.
+    #[must_use]
+    pub fn direction_at(&self, id: u32) -> Direction {
+        self.tables.borrow().directions[id as usize].clone()
+    }
+
+    /// Name of a symbol.
+    #[must_use]
+    pub fn symbol_name(&self, id: SymbolId) -> String {
+        self.tables.borrow().symbols[id.0 as usize].name.clone()
+    }
+
+    /// The symbol of that name, made if it is new. It may stand for a number and, in a
+    /// [`Direction`], for an angle.
+    pub fn symbol(&self, name: &str) -> SymbolId {
+        let mut tables = self.tables.borrow_mut();
+        if let Some(&id) = tables.symbol_ids.get(name) {
+            return id;
+        }
+        let id = SymbolId(tables.symbols.len() as u32);
+        let seed = mix_name(name);
+        let circle = std::array::from_fn(|k| Element::circle_point(mix(seed ^ (k as u64 + 11))));
+        // Samples lie in (0.2, 1.2), where sums, products and angles are all well-behaved.
+        let sample = 0.2 + (mix(seed ^ 5) >> 11) as f64 / (1_u64 << 53) as f64;
+        tables.symbols.push(Symbol { name: name.to_owned(), circle, sample });
+        tables.symbol_ids.insert(name.to_owned(), id);
+        id
+    }
+
+    /// The value of a symbol as an expression.
+    pub fn variable(&self, name: &str) -> Expr<'_> {
+        let id = self.symbol(name);
+        self.expr(self.intern(Op::Symbol(id)))
+    }
+
+    /// A constant as an expression.
+    pub fn number(&self, number: Number) -> Expr<'_> {
+        self.expr(self.constant(number))
+    }
+
+    /// An integer as an expression.
+    pub fn integer(&self, value: i64) -> Expr<'_> {
+        self.number(Number::integer(value))
+    }
+
+    /// Zero.
+    pub fn zero(&self) -> Expr<'_> {
+        self.integer(0)
+    }
+
+    /// One.
+    pub fn one(&self) -> Expr<'_> {
+        self.integer(1)
+    }
+
+    pub(crate) fn expr(&self, handle: Handle) -> Expr<'_> {
+        Expr::new(self, handle)
+    }
+
+    pub(crate) fn constant(&self, number: Number) -> Handle {
+        let negative = number.value() < 0.0;
+        let number = if negative { -number } else { number };
+        let id = {
+            let mut tables = self.tables.borrow_mut();
+            let found = tables.constants.iter().position(|c| *c == number);
+            found.unwrap_or_else(|| {
+                tables.constants.push(number);
+                tables.constants.len() - 1
+            })
+        };
+        self.intern(Op::Constant(id as u32)).with_sign_of(negative)
+    }
+
+    pub(crate) fn as_constant(&self, handle: Handle) -> Option<Number> {
+        let tables = self.tables.borrow();
+        match tables.nodes[handle.index()].op {
+            Op::Constant(id) => {
+                let number = tables.constants[id as usize];
+                Some(if handle.is_negative() { -number } else { number })
+            }
+            _ => None,
+        }
+    }
+
+    pub(crate) fn direction(&self, direction: &Direction) -> u32 {
+        let mut tables = self.tables.borrow_mut();
+        if let Some(&id) = tables.direction_ids.get(direction) {
+            return id;
+        }
+        let id = tables.directions.len() as u32;
+        tables.directions.push(direction.clone());
+        tables.direction_ids.insert(direction.clone(), id);
+        id
+    }
+
+    /// The node that computes `op`, or one that means the same.
+    pub(crate) fn intern(&self, op: Op) -> Handle {
+        if let Some(&handle) = self.tables.borrow().by_shape.get(&op) {
+            return handle;
+        }
+        let meaning = self.tables.borrow().meaning(&op);
+        let handle = match &op {
+            Op::Constant(_) | Op::Symbol(_) => self.push(op.clone(), meaning),
+            _ => self
+                .folded(&op, &meaning)
+                .or_else(|| self.same(&meaning))
+                .or_else(|| self.proportional(&op, &meaning))
+                .unwrap_or_else(|| self.push(op.clone(), meaning)),
+        };
+        self.tables.borrow_mut().by_shape.insert(op, handle);
+        handle
+    }
+
+    /// The constant that the node is, if its value is the same fraction at every point.
+    fn folded(&self, op: &Op, meaning: &Meaning) -> Option<Handle> {
+        if meaning.image[0] != meaning.image[1] {
+            return None;
+        }
+        let (n, d) = meaning.image[0].to_rational()?;
+        let value = n as f64 / d as f64;
+        let size = self.tables.borrow().operand_size(op);
+        if (value - meaning.sample).abs() > 1e-9 * (1.0 + size) {
+            return None;
+        }
+        Some(self.constant(Number::ratio(Ratio::new(n.into(), d.into())?)))
+    }
+
+    /// The node that has this value or its negative.
+    fn same(&self, meaning: &Meaning) -> Option<Handle> {
+        let (key, negative) = canonical(meaning.image);
+        let tables = self.tables.borrow();
+        let found = tables.by_meaning.get(&key)?.with_sign_of(negative);
+        agree(tables.sample(found), meaning.sample).then_some(found)
+    }
+
+    /// The node of which this one is a rational multiple.
+    fn proportional(&self, op: &Op, meaning: &Meaning) -> Option<Handle> {
+        if matches!(op, Op::Mul(a, b) if self.is_constant(*a) || self.is_constant(*b)) {
+            return None;
+        }
+        let (other, ratio) = {
+            let tables = self.tables.borrow();
+            let other = *tables.by_ratio.get(&ratio_key(meaning)?)?;
+            let theirs = tables.nodes[other as usize].meaning;
+            let ratio = meaning.image[0] * theirs.image[0].inverse();
+            if ratio * theirs.image[1] != meaning.image[1] {
+                return None;
+            }
+            let (n, d) = ratio.to_rational()?;
+            if !agree(theirs.sample * n as f64 / d as f64, meaning.sample) {
+                return None;
+            }
+            (other, Number::ratio(Ratio::new(n.into(), d.into())?))
+        };
+        let factor = self.constant(ratio);
+        let product = Op::Mul(factor.positive(), Handle::new(other as usize, false));
+        Some(self.intern(product).with_sign_of(factor.is_negative()))
+    }
+
+    pub(crate) fn is_constant(&self, handle: Handle) -> bool {
+        matches!(self.tables.borrow().nodes[handle.index()].op, Op::Constant(_))
+    }
+
+    fn push(&self, op: Op, meaning: Meaning) -> Handle {
+        let scaled = match op {
+            Op::Mul(a, b) => self.is_constant(a) || self.is_constant(b),
+            Op::Constant(_) => true,
+            _ => false,
+        };
+        let mut tables = self.tables.borrow_mut();
+        let index = tables.nodes.len();
+        let scope = tables.scope;
+        tables.nodes.push(Node { op, meaning, scope });
+        let (key, negative) = canonical(meaning.image);
+        tables.by_meaning.entry(key).or_insert(Handle::new(index, negative));
+        if let (false, Some(key)) = (scaled, ratio_key(&meaning)) {
+            tables.by_ratio.entry(key).or_insert(index as u32);
+        }
+        Handle::new(index, false)
+    }
+}
+
+impl Tables {
+    fn image(&self, handle: Handle, point: usize) -> Element {
+        let image = self.nodes[handle.index()].meaning.image[point];
+        if handle.is_negative() { -image } else { image }
+    }
+
+    fn sample(&self, handle: Handle) -> f64 {
+        let sample = self.nodes[handle.index()].meaning.sample;
+        if handle.is_negative() { -sample } else { sample }
+    }
+
+    /// The magnitude against which rounding of the node's sample is judged.
+    fn operand_size(&self, op: &Op) -> f64 {
+        match op {
+            Op::Add(a, b) | Op::Sub(a, b) => self.sample(*a).abs().max(self.sample(*b).abs()),
+            _ => 0.0,
+        }
+    }
+
+    fn meaning(&self, op: &Op) -> Meaning {
+        Meaning {
+            image: std::array::from_fn(|point| self.image_of(op, point)),
+            sample: self.sample_of(op),
+        }
+    }
+
+    fn image_of(&self, op: &Op, point: usize) -> Element {
+        let image = |handle: &Handle| self.image(*handle, point);
+        match op {
+            Op::Constant(id) => self.constants[*id as usize].image(),
+            Op::Symbol(id) => {
+                let name = &self.symbols[id.0 as usize].name;
+                Element::from_bits(mix(mix_name(name) ^ (point as u64 + 101)))
+            }
+            Op::Cosine(id) => self.circle(*id, point).cosine_and_sine().0,
+            Op::Sine(id) => self.circle(*id, point).cosine_and_sine().1,
+            Op::Add(a, b) => image(a) + image(b),
+            Op::Sub(a, b) => image(a) - image(b),
+            Op::Mul(a, b) => image(a) * image(b),
+            Op::Div(a, b) => image(a) * image(b).inverse(),
+            Op::Sqrt(a) => image(a).square_root().unwrap_or_else(|| free(1, &[image(a)])),
+            // Odd in its argument: the canonical one of ±a is hashed, the sign put back.
+            Op::Sign(a) => {
+                let (key, negative) = canonical([image(a), Element::ZERO]);
+                let value = free(2, &key);
+                if negative { -value } else { value }
+            }
+            Op::Atan2(y, x) => free(3, &[image(y), image(x)]),
+        }
+    }
+
+    fn circle(&self, direction: u32, point: usize) -> Element {
+        let direction = &self.directions[direction as usize];
+        let mut result = direction.offset().circle_point();
+        for &(symbol, factor) in direction.terms() {
+            let unit = self.symbols[symbol.0 as usize].circle[point];
+            let count = factor.numerator().rem_euclid(i128::from(super::field::CIRCLE)) as u64;
+            let turned = unit.power(count);
+            // A part of an angle is a free angle of its own.
+            result = result
+                * if factor.denominator() == 1 {
+                    turned
+                } else {
+                    Element::circle_point(mix(turned.parts().0 ^ mix(factor.denominator() as u64)))
+                };
+        }
+        result
+    }
+
+    fn sample_of(&self, op: &Op) -> f64 {
+        let sample = |handle: &Handle| self.sample(*handle);
+        match op {
+            Op::Constant(id) => self.constants[*id as usize].value(),
+            Op::Symbol(id) => self.symbols[id.0 as usize].sample,
+            Op::Cosine(id) => self.angle_sample(*id).cos(),
+            Op::Sine(id) => self.angle_sample(*id).sin(),
+            Op::Add(a, b) => sample(a) + sample(b),
+            Op::Sub(a, b) => sample(a) - sample(b),
+            Op::Mul(a, b) => sample(a) * sample(b),
+            Op::Div(a, b) => sample(a) / sample(b),
+            Op::Sqrt(a) => sample(a).sqrt(),
+            Op::Sign(a) => sample(a).signum(),
+            Op::Atan2(y, x) => sample(y).atan2(sample(x)),
+        }
+    }
+
+    fn angle_sample(&self, direction: u32) -> f64 {
+        let direction = &self.directions[direction as usize];
+        direction.terms().iter().fold(direction.offset().value(), |angle, (symbol, factor)| {
+            angle + self.symbols[symbol.0 as usize].sample * factor.value()
+        })
+    }
+}
+
+/// A value of a function about which nothing is known but its arguments.
+fn free(tag: u64, arguments: &[Element]) -> Element {
+    let bits = arguments.iter().fold(mix(tag), |bits, argument| {
+        let (re, im) = argument.parts();
+        mix(mix(bits ^ re) ^ im)
+    });
+    Element::from_bits(bits)
+}
+
+/// The smaller of a value and its negative, and whether it is the negative.
+fn canonical(image: [Element; POINTS]) -> ([Element; POINTS], bool) {
+    let negative = image.map(|e| -e);
+    if negative < image { (negative, true) } else { (image, false) }
+}
+
+/// The ratio of the values at the two points, equal for nodes that differ by a constant factor.
+fn ratio_key(meaning: &Meaning) -> Option<Element> {
+    (meaning.image[1] != Element::ZERO).then(|| meaning.image[0] * meaning.image[1].inverse())
+}
+
+/// Whether two floating-point samples of what the field calls equal agree; samples outside a
+/// function's domain (NaN) prove nothing and are not taken as agreement.
+fn agree(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-6 * (1e-6 + a.abs().max(b.abs()))
+}

@@ -1,0 +1,185 @@
+//! Bodies in their own frames: velocities, accelerations, partial velocities, and the wrench that one
+//! standard parameter produces.
+//!
+//! The recursion is Khalil's: with U = [ω̇]× + [ω]×[ω]×, the acceleration of the next origin is a + U l.
+//! Gravity enters as an acceleration -g of the base. Partial velocities ∂V/∂u_i and ∂Ω/∂u_i follow the
+//! same path; by virtual power (Kane) the generalised force of parameter p on u_i is their scalar
+//! product with the wrench that p alone produces.
+
+use super::configuration::Configuration;
+use super::leg::{joint_turn, link_vector};
+use super::platform::constant_rotation;
+use super::rates::{Rates, parallel};
+use crate::cas::{Angle, Arena, Direction, Expr, Matrix3, Ratio, Vector3};
+use crate::description::StandardParameter;
+use crate::mechanism::{JointKind, Leg};
+
+/// The motion of a body in its own frame.
+#[derive(Debug, Clone)]
+pub struct BodyMotion<'a> {
+    /// Angular velocity ω.
+    pub omega: Vector3<'a>,
+    /// Angular acceleration ω̇.
+    pub alpha: Vector3<'a>,
+    /// Acceleration of the frame's origin less gravity.
+    pub acceleration: Vector3<'a>,
+    /// U = [ω̇]× + [ω]×[ω]×.
+    pub u_matrix: Matrix3<'a>,
+    /// ∂V/∂u_i and ∂Ω/∂u_i: partial velocities of the frame.
+    pub partials: Vec<[Vector3<'a>; 2]>,
+}
+
+impl<'a> BodyMotion<'a> {
+    /// A body from its velocities and accelerations.
+    #[must_use]
+    pub fn new(
+        omega: Vector3<'a>,
+        alpha: Vector3<'a>,
+        acceleration: Vector3<'a>,
+        partials: Vec<[Vector3<'a>; 2]>,
+    ) -> Self {
+        let u_matrix = u_matrix(omega, alpha);
+        Self { omega, alpha, acceleration, u_matrix, partials }
+    }
+
+    /// The generalised forces on all u of a wrench (force, moment) in the body's frame.
+    #[must_use]
+    pub fn project(&self, [force, moment]: [Vector3<'a>; 2]) -> Vec<Expr<'a>> {
+        let one = |[v, o]: &[Vector3<'a>; 2]| v.dot(force) + o.dot(moment);
+        self.partials.iter().map(one).collect()
+    }
+
+    /// The wrench at the frame's origin, per unit of an inertial parameter.
+    #[must_use]
+    pub fn unit_wrench(&self, arena: &'a Arena, parameter: StandardParameter) -> [Vector3<'a>; 2] {
+        use StandardParameter as P;
+        let zero = Vector3::zero(arena);
+        let first = |k: usize| {
+            [self.u_matrix.column(k), Vector3::unit(arena, k).cross(self.acceleration)]
+        };
+        let second = |i: usize, j: usize| {
+            let momentum = |w: Vector3<'a>| {
+                let mut h = zero;
+                h.0[i] = w.0[j];
+                h.0[j] = w.0[i];
+                h
+            };
+            [zero, momentum(self.alpha) + self.omega.cross(momentum(self.omega))]
+        };
+        match parameter {
+            P::M => [self.acceleration, zero],
+            P::Mx => first(0),
+            P::My => first(1),
+            P::Mz => first(2),
+            P::Xx => second(0, 0),
+            P::Xy => second(0, 1),
+            P::Xz => second(0, 2),
+            P::Yy => second(1, 1),
+            P::Yz => second(1, 2),
+            P::Zz => second(2, 2),
+            P::Ia | P::Fv | P::Fs | P::Off => [zero; 2],
+        }
+    }
+}
+
+/// [ω̇]× + [ω]×[ω]×, with the products ω_i ω_j shared.
+fn u_matrix<'a>(omega: Vector3<'a>, alpha: Vector3<'a>) -> Matrix3<'a> {
+    let ([x, y, z], [ax, ay, az]) = (omega.0, alpha.0);
+    let (xx, yy, zz) = (x * x, y * y, z * z);
+    let (xy, xz, yz) = (x * y, x * z, y * z);
+    Matrix3([
+        [-(yy + zz), xy - az, xz + ay],
+        [xy + az, -(xx + zz), yz - ax],
+        [xz - ay, yz + ax, -(xx + yy)],
+    ])
+}
+
+/// Motion of all bodies of a leg for quasi-velocities u and their derivatives. `None` if a sine or
+/// cosine does not follow from the configuration.
+pub fn leg_bodies<'a>(
+    arena: &'a Arena,
+    leg: &Leg,
+    first_joint: usize,
+    configuration: &Configuration<'a>,
+    rates: &Rates,
+    (u, u_dot): (&[Expr<'a>], &[Expr<'a>]),
+    gravity: Vector3<'a>,
+) -> Option<Vec<BodyMotion<'a>>> {
+    let zero = Vector3::zero(arena);
+    let base_gravity = constant_rotation(arena, leg.base.rotation).transposed() * gravity;
+    let still = BodyMotion::new(zero, zero, -base_gravity, vec![[zero; 2]; u.len()]);
+    let mut bodies: Vec<BodyMotion<'a>> = Vec::new();
+    for (index, joint) in leg.joints.iter().enumerate() {
+        let from = joint.antecedent.map_or(&still, |a| &bodies[a]);
+        let link = link_vector(arena, leg, index, first_joint, configuration)?;
+        let turn = Turn::new(arena, leg, index, first_joint, configuration)?;
+        let form = &rates.joint[index];
+        let rate = form.value(arena, u);
+        let rate_dot = form.value(arena, u_dot);
+        let axis = Vector3::unit(arena, 2);
+        let (mut omega, mut alpha) = (turn.apply(from.omega), turn.apply(from.alpha));
+        let mut acceleration = turn.apply(from.acceleration + from.u_matrix * link);
+        match joint.kind {
+            JointKind::Revolute => {
+                alpha = alpha + omega.cross(axis.scaled(rate)) + axis.scaled(rate_dot);
+                omega = omega + axis.scaled(rate);
+            }
+            JointKind::Prismatic => {
+                let coriolis = omega.cross(axis.scaled(rate)).scaled(arena.integer(2));
+                acceleration = acceleration + coriolis + axis.scaled(rate_dot);
+            }
+            JointKind::Fixed => {}
+        }
+        let partials = (0..u.len()).map(|i| {
+            let [v, o] = from.partials[i];
+            let mut partial = [turn.apply(v + o.cross(link)), turn.apply(o)];
+            let own = axis.scaled(arena.number(form.coefficient(i)));
+            match joint.kind {
+                JointKind::Revolute => partial[1] = partial[1] + own,
+                JointKind::Prismatic => partial[0] = partial[0] + own,
+                JointKind::Fixed => {}
+            }
+            partial
+        });
+        let partials = partials.collect();
+        bodies.push(BodyMotion::new(omega, alpha, acceleration, partials));
+    }
+    Some(bodies)
+}
+
+/// The rotation from the antecedent frame into a joint's frame.
+struct Turn<'a> {
+    /// Rot(z, γ) Rot(x, α) where the axes are not parallel.
+    tilt: Option<Matrix3<'a>>,
+    /// The turn about z that follows.
+    matrix: Matrix3<'a>,
+}
+
+impl<'a> Turn<'a> {
+    fn new(
+        arena: &'a Arena,
+        leg: &Leg,
+        index: usize,
+        first_joint: usize,
+        configuration: &Configuration<'a>,
+    ) -> Option<Self> {
+        let joint = &leg.joints[index];
+        let theta = joint_turn(leg, index, first_joint, configuration)?;
+        let same_axis = parallel(joint.alpha) == Some(Ratio::ONE);
+        let (tilt, angle) = if same_axis {
+            (None, theta.plus(&Direction::constant(joint.gamma))?)
+        } else {
+            let about_z = constant_rotation(arena, [Angle::ZERO, Angle::ZERO, joint.gamma]);
+            let about_x = constant_rotation(arena, [joint.alpha, Angle::ZERO, Angle::ZERO]);
+            (Some(about_z * about_x), theta)
+        };
+        let (cosine, sine) = configuration.unit(&angle)?;
+        Some(Self { tilt, matrix: Matrix3::rotation(2, cosine, sine) })
+    }
+
+    /// A vector of the antecedent frame in the joint's frame.
+    fn apply(&self, vector: Vector3<'a>) -> Vector3<'a> {
+        let vector = self.tilt.map_or(vector, |tilt| tilt.transposed() * vector);
+        self.matrix.transposed() * vector
+    }
+}

@@ -1,0 +1,414 @@
+//! The functions that every robot has, as named inputs and output expressions.
+
+use super::configuration::From;
+use super::elimination::Rows;
+use super::family::{Columns, Family};
+use super::linear::{Factored, apply, null_space, product, pseudo_inverse, transposed};
+use super::regressor::{BodyParameter, Projection};
+use super::robot::{Guard, GuardKind, Robot, Underivable};
+use crate::cas::{Arena, Expr};
+use crate::mechanism::{JointKind, Mechanism};
+
+/// A function as expressions.
+#[derive(Debug)]
+pub struct Derived<'a> {
+    /// Names and lengths of the inputs.
+    pub inputs: Vec<(&'static str, usize)>,
+    /// Rows and columns of the output; one column for a vector.
+    pub shape: (usize, usize),
+    /// The output, row-major.
+    pub entries: Vec<Expr<'a>>,
+    /// Conditions for the output to have a value.
+    pub guards: Vec<Guard<'a>>,
+}
+
+/// What the derivation of a function needs beside the mechanism.
+#[derive(Debug, Clone, Default)]
+pub struct Selection {
+    /// The standard parameters whose columns are not identically zero.
+    pub standard: Vec<BodyParameter>,
+    /// The independent ones among them.
+    pub base: Vec<BodyParameter>,
+    /// The payload's parameters whose columns are not identically zero.
+    pub payload: Vec<BodyParameter>,
+    /// Kept actuators of case 2.
+    pub kept_actuators: Vec<usize>,
+}
+
+/// Derives a function in its own graph.
+///
+/// # Errors
+/// See [`Underivable`].
+pub fn derive<'a>(
+    arena: &'a Arena,
+    mechanism: &'a Mechanism,
+    selection: &Selection,
+    family: Family,
+    from: From,
+) -> Result<Derived<'a>, Underivable> {
+    let robot = Robot::new(arena, mechanism, from)?;
+    let mut sheet = Sheet {
+        inputs: robot.configuration_inputs(from),
+        robot,
+        selection,
+        from,
+        twist: Vec::new(),
+        guards: Vec::new(),
+    };
+    let rows = sheet.rows(family)?;
+    let shape = (rows.len(), rows.first().map_or(0, Vec::len));
+    let mut guards = sheet.robot.guards.clone();
+    guards.extend(sheet.guards);
+    Ok(Derived { inputs: sheet.inputs, shape, entries: rows.concat(), guards })
+}
+
+/// A function being derived.
+struct Sheet<'a, 's> {
+    robot: Robot<'a>,
+    selection: &'s Selection,
+    from: From,
+    twist: Vec<Expr<'a>>,
+    inputs: Vec<(&'static str, usize)>,
+    guards: Vec<Guard<'a>>,
+}
+
+impl<'a> Robot<'a> {
+    fn configuration_inputs(&self, from: From) -> Vec<(&'static str, usize)> {
+        let joints = ("joints", self.mechanism.joints().len());
+        match (&self.platform, from) {
+            (None, _) => vec![joints],
+            (Some(_), From::Pose | From::Actuators) => vec![("pose", self.mechanism.pose_len())],
+            (Some(_), From::Joints) => vec![("pose", self.mechanism.pose_len()), joints],
+        }
+    }
+}
+
+impl<'a> Sheet<'a, '_> {
+    fn input(&mut self, name: &'static str, count: usize) -> Vec<Expr<'a>> {
+        self.inputs.push((name, count));
+        self.robot.inputs(name, count)
+    }
+
+    /// Twist and acceleration under the names that the robot's kind calls for; from actuators, those
+    /// that fit the actuators' rates best.
+    fn twist(&mut self) -> Vec<Expr<'a>> {
+        let tree = self.robot.platform.is_none();
+        if self.from == From::Actuators {
+            let rates = self.input("actuator_velocities", self.robot.mechanism.actuated().len());
+            self.twist = self.least_squares(&rates);
+            return self.twist.clone();
+        }
+        self.input(if tree { "joint_velocities" } else { "twist" }, self.robot.mechanism.dof())
+    }
+
+    fn acceleration(&mut self) -> Vec<Expr<'a>> {
+        let tree = self.robot.platform.is_none();
+        if self.from == From::Actuators {
+            let twist = self.twist.clone();
+            return self.acceleration_of(&twist);
+        }
+        self.input(if tree { "joint_accelerations" } else { "acceleration" }, self.robot.mechanism.dof())
+    }
+
+    fn rows(&mut self, family: Family) -> Result<Rows<'a>, Underivable> {
+        let n = self.robot.mechanism.actuated().len();
+        Ok(match family {
+            Family::Joints => column(self.joint_positions()),
+            Family::ActuatorPositions => {
+                let all = self.joint_positions();
+                column(self.robot.mechanism.actuated().iter().map(|&i| all[i]).collect())
+            }
+            Family::InverseJacobian => self.robot.inverse_jacobian(),
+            Family::Jacobian => self.pseudo_inverse(),
+            Family::ClosurePlatformJacobian => self.closure_matrices().0,
+            Family::ClosureActuatorJacobian => self.closure_matrices().1,
+            Family::LegsJacobian => self.leg_matrices().0,
+            Family::LegsPlatformJacobian => self.leg_matrices().1,
+            Family::JointVelocities => {
+                let twist = self.twist();
+                let still = self.zeros();
+                column(self.joint_motion(&twist, &still).0)
+            }
+            Family::JointAccelerations => {
+                let (twist, acceleration) = (self.twist(), self.acceleration());
+                column(self.joint_motion(&twist, &acceleration).1)
+            }
+            Family::TwistFromActuators => {
+                let rates = self.input("actuator_velocities", n);
+                column(self.least_squares(&rates))
+            }
+            Family::AccelerationFromActuators => {
+                let twist = self.twist();
+                column(self.acceleration_of(&twist))
+            }
+            Family::IdmRedPlatform(columns) => {
+                let projection = self.robot.project_on_platform();
+                self.columns(&projection, &self.chosen(columns))
+            }
+            Family::IdmRedActuators(columns) => {
+                let projection = self.on_actuators()?;
+                self.columns(&projection, &self.chosen(columns))
+            }
+            Family::IdmRedPayload => {
+                let projection = self.robot.project_on_platform();
+                self.columns(&projection, &self.selection.payload.clone())
+            }
+            Family::IdmRedPayloadActuators => {
+                let projection = self.on_actuators()?;
+                self.columns(&projection, &self.selection.payload.clone())
+            }
+            Family::ProjectPlatform => {
+                let torques = self.input("torques", n);
+                column(self.robot.projected_torques(&torques))
+            }
+            Family::ProjectActuators => self.project_actuators(n)?,
+            Family::InverseDynamics => column(self.least_norm_torques()),
+            Family::InverseDynamicsPreloaded => self.preloaded_torques(n),
+            Family::MassMatrix => self.mass_matrix(),
+            Family::Bias => {
+                let twist = self.twist();
+                let still = self.zeros();
+                column(self.projected_dynamics(&twist, &still))
+            }
+            Family::ProjectTorques => {
+                let torques = self.input("torques", n);
+                let jacobian = self.robot.inverse_jacobian();
+                let inner = apply(&transposed(&jacobian), &torques);
+                let solved = self.factored(&jacobian).solve(&inner);
+                column(apply(&jacobian, &solved))
+            }
+            Family::NullSpace => self.null_space(),
+        })
+    }
+
+    fn zeros(&self) -> Vec<Expr<'a>> {
+        vec![self.robot.arena.zero(); self.robot.mechanism.dof()]
+    }
+
+    /// Positions of all joints, within half a turn of the home configuration.
+    fn joint_positions(&mut self) -> Vec<Expr<'a>> {
+        let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
+        let configuration = &self.robot.configuration;
+        let position = |(index, of): (usize, &crate::mechanism::JointIndex)| {
+            if mechanism.platform.is_none() || configuration.from() == From::Joints {
+                return arena.variable(&format!("joints[{index}]"));
+            }
+            if mechanism.joint(*of).kind == JointKind::Prismatic {
+                return configuration.joint_position(index).unwrap_or_else(|| arena.zero());
+            }
+            let home = crate::cas::Number::float(mechanism.home.joints[index]);
+            match configuration.unit(&configuration.joint_angle(index)) {
+                Some((cosine, sine)) => {
+                    let (ch, sh) = (
+                        crate::cas::Number::float(home.value().cos()),
+                        crate::cas::Number::float(home.value().sin()),
+                    );
+                    let turned = (sine * ch - cosine * sh).atan2(cosine * ch + sine * sh);
+                    turned + arena.number(home)
+                }
+                None => arena.zero(),
+            }
+        };
+        mechanism.joints().iter().enumerate().map(position).collect()
+    }
+
+    fn factored(&mut self, jacobian: &Rows<'a>) -> Factored<'a> {
+        let factored = Factored::normal(jacobian);
+        self.guard_platform(&factored.pivots.clone(), "actuators");
+        factored
+    }
+
+    fn pseudo_inverse(&mut self) -> Rows<'a> {
+        let (inverse, pivots) = pseudo_inverse(&self.robot.inverse_jacobian());
+        self.guard_platform(&pivots, "actuators");
+        inverse
+    }
+
+    fn guard_platform(&mut self, values: &[Expr<'a>], actuators: &'static str) {
+        for value in values {
+            let (_, base) = value.factor_and_base();
+            if base.as_number().is_none() {
+                let kind = GuardKind::Platform { home: self.robot.at_home(base).abs(), actuators };
+                self.guards.push(Guard { value: base, kind, leg: String::new() });
+            }
+        }
+    }
+
+    fn least_squares(&mut self, rates: &[Expr<'a>]) -> Vec<Expr<'a>> {
+        let jacobian = self.robot.inverse_jacobian();
+        let inner = apply(&transposed(&jacobian), rates);
+        self.factored(&jacobian).solve(&inner)
+    }
+
+    /// v̇ of least squares: J_p^inv v̇ = q̈ - J̇_p^inv v, where the last term is q̈ at v̇ = 0.
+    fn acceleration_of(&mut self, twist: &[Expr<'a>]) -> Vec<Expr<'a>> {
+        let actuated = self.robot.mechanism.actuated();
+        let measured = self.input("actuator_accelerations", actuated.len());
+        let still = self.zeros();
+        let bias = self.joint_motion(twist, &still).1;
+        let rest: Vec<Expr<'a>> =
+            measured.iter().zip(&actuated).map(|(m, &i)| *m - bias[i]).collect();
+        self.least_squares(&rest)
+    }
+
+    fn joint_motion(
+        &mut self,
+        twist: &[Expr<'a>],
+        acceleration: &[Expr<'a>],
+    ) -> (Vec<Expr<'a>>, Vec<Expr<'a>>) {
+        match self.robot.motion(twist, acceleration) {
+            Some(motion) => {
+                (self.robot.joint_values(&motion.u), self.robot.joint_values(&motion.u_dot))
+            }
+            None => (Vec::new(), Vec::new()),
+        }
+    }
+
+    fn chosen(&self, columns: Columns) -> Vec<BodyParameter> {
+        match columns {
+            Columns::Standard => self.selection.standard.clone(),
+            Columns::Base => self.selection.base.clone(),
+        }
+    }
+
+    fn on_actuators(&mut self) -> Result<Projection<'a>, Underivable> {
+        let projection = self.robot.project_on_actuators(&self.selection.kept_actuators)?;
+        self.guard_platform(&projection.determinants, "kept actuators");
+        Ok(projection)
+    }
+
+    fn columns(&mut self, projection: &Projection<'a>, of: &[BodyParameter]) -> Rows<'a> {
+        let (twist, acceleration) = (self.twist(), self.acceleration());
+        let Some(motion) = self.robot.motion(&twist, &acceleration) else { return Vec::new() };
+        let columns: Rows<'a> =
+            of.iter().map(|&p| self.robot.column(&motion, projection, p)).collect();
+        if columns.is_empty() {
+            return vec![Vec::new(); self.robot.mechanism.dof()];
+        }
+        transposed(&columns)
+    }
+
+    fn project_actuators(&mut self, n: usize) -> Result<Rows<'a>, Underivable> {
+        let torques = self.input("torques", n);
+        let projection = self.robot.project_on_actuators(&self.selection.kept_actuators)?;
+        self.guard_platform(&projection.determinants, "kept actuators");
+        let kept = &self.selection.kept_actuators;
+        let jacobian = self.robot.inverse_jacobian();
+        // Γ² = τ_a + J_a^-T J_bᵀ τ_b
+        let others: Vec<usize> = (0..n).filter(|i| !kept.contains(i)).collect();
+        let rows: Rows<'a> = others.iter().map(|&i| jacobian[i].clone()).collect();
+        let moved = product(&rows, projection.platform_rows());
+        let entry = |k: usize| {
+            others
+                .iter()
+                .zip(&moved)
+                .fold(torques[kept[k]], |sum, (&i, row)| sum + row[k] * torques[i])
+        };
+        Ok(column((0..kept.len()).map(entry).collect()))
+    }
+
+    fn parameter_values(&mut self) -> Vec<(BodyParameter, Expr<'a>)> {
+        let all: Vec<BodyParameter> =
+            self.selection.standard.iter().chain(&self.selection.payload).copied().collect();
+        let values = self.input("parameters", all.len());
+        all.into_iter().zip(values).collect()
+    }
+
+    fn projected_dynamics(
+        &mut self,
+        twist: &[Expr<'a>],
+        acceleration: &[Expr<'a>],
+    ) -> Vec<Expr<'a>> {
+        let values = self.parameter_values();
+        let projection = self.robot.project_on_platform();
+        match self.robot.motion(twist, acceleration) {
+            Some(motion) => self.robot.generalised_forces(&motion, &projection, &values),
+            None => Vec::new(),
+        }
+    }
+
+    /// τ = J (JᵀJ)⁻¹ Γ¹, the torque of least norm.
+    fn least_norm_torques(&mut self) -> Vec<Expr<'a>> {
+        let (twist, acceleration) = (self.twist(), self.acceleration());
+        let forces = self.projected_dynamics(&twist, &acceleration);
+        let jacobian = self.robot.inverse_jacobian();
+        let solved = self.factored(&jacobian).solve(&forces);
+        apply(&jacobian, &solved)
+    }
+
+    fn preloaded_torques(&mut self, n: usize) -> Rows<'a> {
+        let torques = self.least_norm_torques();
+        let preload = self.input("preload", n - self.robot.mechanism.dof());
+        let basis = self.null_space();
+        let entry = |i: usize| {
+            basis[i].iter().zip(&preload).fold(torques[i], |sum, (b, c)| sum + *b * *c)
+        };
+        column((0..n).map(entry).collect())
+    }
+
+    fn null_space(&mut self) -> Rows<'a> {
+        let jacobian = self.robot.inverse_jacobian();
+        let kept = &self.selection.kept_actuators;
+        let seeds: Vec<usize> = (0..jacobian.len()).filter(|i| !kept.contains(i)).collect();
+        let pivots = Factored::normal(&jacobian).pivots;
+        self.guard_platform(&pivots, "actuators");
+        null_space(&jacobian, &seeds)
+    }
+
+    /// M = ∂Γ¹/∂v̇ at v = 0: Γ¹ is linear in v̇.
+    fn mass_matrix(&mut self) -> Rows<'a> {
+        let (arena, dof) = (self.robot.arena, self.robot.mechanism.dof());
+        let acceleration = self.robot.inputs("acceleration", dof);
+        let twist = self.zeros();
+        let forces = self.projected_dynamics(&twist, &acceleration);
+        let derivative = |force: &Expr<'a>, i: usize| {
+            force.derivative(arena.symbol(&format!("acceleration[{i}]")))
+        };
+        forces.iter().map(|f| (0..dof).map(|i| derivative(f, i)).collect()).collect()
+    }
+
+    /// A_p (n x r) and B_p (n x n), eq. (11): the rows of the legs' adjugates.
+    fn closure_matrices(&mut self) -> (Rows<'a>, Rows<'a>) {
+        let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
+        let joints = mechanism.joints();
+        let jacobian = self.robot.inverse_jacobian();
+        let actuated = mechanism.actuated();
+        let n = actuated.len();
+        let scale = |k: usize| {
+            let index = joints[actuated[k]];
+            let state = &self.robot.legs[index.leg];
+            let at = mechanism.legs[index.leg].independent().position(|j| j == index.joint);
+            let closure = state.closure.as_ref();
+            closure.zip(at).map_or_else(|| arena.one(), |(c, at)| c.determinants[at])
+        };
+        let scales: Vec<Expr<'a>> = (0..n).map(scale).collect();
+        let platform = (0..n).map(|k| jacobian[k].iter().map(|&g| g * scales[k]).collect()).collect();
+        let diagonal = |i: usize, j: usize| if i == j { -scales[i] } else { arena.zero() };
+        let actuators = (0..n).map(|i| (0..n).map(|j| diagonal(i, j)).collect()).collect();
+        (platform, actuators)
+    }
+
+    /// J_k (n_t x n_t) and J_tk (n_t x r), eq. (9), in the base frame.
+    fn leg_matrices(&mut self) -> (Rows<'a>, Rows<'a>) {
+        let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
+        let total = mechanism.joints().len();
+        let (mut legs, mut platform) = (Vec::new(), Vec::new());
+        for (leg, state) in mechanism.legs.iter().zip(&self.robot.legs) {
+            let Some(closure) = &state.closure else { continue };
+            let columns = closure.independent_columns(leg, arena);
+            for &row in &closure.rows {
+                let mut entries = vec![arena.zero(); total];
+                for (k, column) in columns.iter().enumerate() {
+                    entries[state.first_joint + k] = column[row / 3].0[row % 3];
+                }
+                legs.push(entries);
+                platform.push(closure.platform_row(row, &self.robot.twist, arena));
+            }
+        }
+        (legs, platform)
+    }
+}
+
+fn column(values: Vec<Expr<'_>>) -> Rows<'_> {
+    values.into_iter().map(|v| vec![v]).collect()
+}

@@ -1,0 +1,173 @@
+//! Inverse kinematics by rule: what a leg's closure says of its joints, without an angle.
+//!
+//! *Two links in a plane.* When the leg's joints are revolute about parallel axes and its end depends
+//! on two of them, the end lies at A + l1 e(ψ1 + β1) + l2 e(ψ2 + β2) in the plane normal to the axes. With
+//! D from A to the end, ρ² = D², a = (ρ² + l1² - l2²)/(2ρ²) and h² = l1²/ρ² - a², the elbow is
+//! A + a D ± h D⊥: one square root per leg, whose sign is the working mode of the home
+//! configuration. The unit vectors of both links are then algebraic, and a last joint that the end's
+//! position does not depend on follows from the platform's orientation.
+//!
+//! The rule looks at the leg's geometry, never at a robot's name.
+
+use super::configuration::Configuration;
+use super::leg::joint_turn;
+use super::platform::{PlatformPose, constant_rotation};
+use super::rates::parallel;
+use crate::cas::{Angle, Arena, Direction, Expr, Matrix3, Number, Ratio, Vector3};
+use crate::mechanism::{End, JointKind, Leg};
+
+/// A condition for the pose to be within reach: the expression must not be negative.
+#[derive(Debug, Clone, Copy)]
+pub struct Reach<'a> {
+    /// The radicand.
+    pub radicand: Expr<'a>,
+}
+
+/// A link in the plane: length and the angle of its direction.
+struct Link {
+    length: Number,
+    direction: Direction,
+}
+
+/// Learns the leg's angles from the pose. `None` if no rule fits the leg.
+pub fn solve_leg<'a>(
+    arena: &'a Arena,
+    leg: &Leg,
+    first_joint: usize,
+    home: &[f64],
+    platform: &PlatformPose<'a>,
+    configuration: &mut Configuration<'a>,
+) -> Option<Vec<Reach<'a>>> {
+    let links = planar_links(leg, first_joint, configuration)?;
+    let prefix = plane(arena, leg);
+    let end = leg.end.as_ref()?;
+    let at = match end {
+        End::Rigid(placement) => placement.at,
+        End::Point(at) => *at,
+    };
+    let base = Vector3::constant(arena, leg.base.at);
+    let first = constant_rotation(arena, leg.base.rotation) * first_origin(arena, leg);
+    let distance = platform.origin + platform.arm(at) - base - first;
+    let in_plane = prefix.transposed() * distance;
+    let reach = two_links(arena, &links, in_plane, home, configuration)?;
+    let last = leg.joints.len() - 1;
+    if let (End::Rigid(placement), true) = (end, leg.joints.len() == 3) {
+        // The last frame's orientation is the platform's: its turn is known.
+        let turn = total_turn(leg, last, first_joint, configuration)?;
+        let relative = prefix.transposed() * platform.orientation(placement);
+        configuration.learn(turn, (relative.0[0][0], relative.0[1][0]));
+    }
+    Some(vec![reach])
+}
+
+/// The two links of a leg that the rule fits.
+fn planar_links(
+    leg: &Leg,
+    first_joint: usize,
+    configuration: &Configuration<'_>,
+) -> Option<[Link; 2]> {
+    let end_joints = match leg.end.as_ref()? {
+        End::Rigid(_) => 3,
+        End::Point(_) => 3,
+    };
+    let joints = &leg.joints;
+    let moves = |i: usize| joints[i].kind == JointKind::Revolute && joints[i].is_independent(i);
+    let chain = |i: usize| joints[i].antecedent == i.checked_sub(1);
+    let plain = |i: usize| i == 0 || parallel(joints[i].alpha) == Some(Ratio::ONE);
+    if joints.len() != end_joints || !(0..3).all(|i| chain(i) && plain(i)) || !moves(0) || !moves(1) {
+        return None;
+    }
+    let rigid = matches!(leg.end, Some(End::Rigid(_)));
+    let last_fits = if rigid { moves(2) } else { joints[2].kind == JointKind::Fixed || moves(2) };
+    if !last_fits {
+        return None;
+    }
+    let link = |i: usize| {
+        let turn = total_turn(leg, i - 1, first_joint, configuration)?;
+        let direction = turn.plus(&Direction::constant(joints[i].gamma))?;
+        let positive = joints[i].d.value() > 0.0;
+        positive.then_some(Link { length: joints[i].d, direction })
+    };
+    Some([link(1)?, link(2)?])
+}
+
+/// The sum of all turns about z up to joint `index`, from the plane's frame on.
+fn total_turn(
+    leg: &Leg,
+    index: usize,
+    first_joint: usize,
+    configuration: &Configuration<'_>,
+) -> Option<Direction> {
+    let mut sum = Direction::constant(Angle::ZERO);
+    for i in 0..=index {
+        if i > 0 || parallel(leg.joints[0].alpha) == Some(Ratio::ONE) {
+            sum = sum.plus(&Direction::constant(leg.joints[i].gamma))?;
+        }
+        sum = sum.plus(&joint_turn(leg, i, first_joint, configuration)?)?;
+    }
+    Some(sum)
+}
+
+/// Orientation of the plane's frame in the base frame: the first joint's tilt.
+fn plane<'a>(arena: &'a Arena, leg: &Leg) -> Matrix3<'a> {
+    let base = constant_rotation(arena, leg.base.rotation);
+    let first = &leg.joints[0];
+    if parallel(first.alpha) == Some(Ratio::ONE) {
+        return base;
+    }
+    let about_z = constant_rotation(arena, [Angle::ZERO, Angle::ZERO, first.gamma]);
+    let about_x = constant_rotation(arena, [first.alpha, Angle::ZERO, Angle::ZERO]);
+    base * about_z * about_x
+}
+
+/// Origin of the first joint in the leg's base frame.
+fn first_origin<'a>(arena: &'a Arena, leg: &Leg) -> Vector3<'a> {
+    let joint = &leg.joints[0];
+    let (cg, sg) = joint.gamma.cosine_and_sine();
+    let (ca, sa) = joint.alpha.cosine_and_sine();
+    let axis = [sg * sa, -(cg * sa), ca].map(|c| c * joint.r);
+    Vector3::constant(arena, [joint.d * cg + axis[0], joint.d * sg + axis[1], joint.b + axis[2]])
+}
+
+/// Both links' unit vectors from the end's position in the plane.
+fn two_links<'a>(
+    arena: &'a Arena,
+    [first, second]: &[Link; 2],
+    end: Vector3<'a>,
+    home: &[f64],
+    configuration: &mut Configuration<'a>,
+) -> Option<Reach<'a>> {
+    let (l1, l2) = (first.length, second.length);
+    let (x, y) = (end.x(), end.y());
+    let square = x * x + y * y;
+    let reciprocal = square.reciprocal();
+    let half = Number::ratio(Ratio::new(1, 2)?);
+    // a = 1/2 + (l1² - l2²)/(2 ρ²), which is 1/2 for links of one length.
+    let a = arena.number(half) + reciprocal * ((l1 * l1 - l2 * l2) * half);
+    let radicand = reciprocal * (l1 * l1) - a * a;
+    let root = radicand.sqrt();
+    // The bend from the first link to the second at home tells the elbow's side.
+    let bend = second.direction.plus(&first.direction.negative())?;
+    let angle = bend_angle(&bend, home, configuration);
+    let h = if angle.sin() > 0.0 { root } else { -root };
+    let (along, across) = ((x * a, y * a), (x * h, y * h));
+    // The elbow lies to the right of D when the second link bends to the left.
+    let (e1x, e1y) = (along.0 + across.1, along.1 - across.0);
+    let inverse = |l: Number| Number::ONE / l;
+    configuration.learn(first.direction.clone(), (e1x * inverse(l1), e1y * inverse(l1)));
+    let (e2x, e2y) = (x - e1x, y - e1y);
+    configuration.learn(second.direction.clone(), (e2x * inverse(l2), e2y * inverse(l2)));
+    let product = l1 * l2;
+    let cosine = (square - arena.number(l1 * l1 + l2 * l2)) * (half / product);
+    let sine = h * square * (Number::ONE / product);
+    configuration.learn(bend, (cosine, sine));
+    Some(Reach { radicand })
+}
+
+/// Value at home of a bend that is a sum of joint angles and a constant.
+fn bend_angle(bend: &Direction, home: &[f64], configuration: &Configuration<'_>) -> f64 {
+    bend.terms().iter().fold(bend.offset().value(), |sum, (symbol, factor)| {
+        let joint = (0..home.len()).find(|&i| configuration.joint_angle(i) == Direction::symbol(*symbol));
+        sum + joint.map_or(0.0, |i| home[i]) * factor.value()
+    })
+}

@@ -1,0 +1,373 @@
+//! A leg in the base frame, its closure and its reduced Jacobians, eqs. (9) to (13).
+//!
+//! The leg's end moves with Ṗ = Σ E_i u_i and turns with Σ W_i u_i, where u are the quasi-velocities of
+//! [`rates`](super::rates). As many rows of (E, W) as there are u are inverted once per leg; row i of
+//! the inverse is a wrench (f_i, n_i) at P that feels joint i alone:
+//!
+//! - u_i = f_i · Ṗ + n_i · ω, with the platform point's velocity and the platform's angular velocity;
+//! - ∂u_i/∂v = (f_i, p × f_i + n_i) D, the reduced Jacobian (p from the platform's origin to P);
+//! - u̇_i = f_i · (P̈ - b) + n_i · (ω̇ - β), with the bias accelerations b, β of the leg's end at u̇ = 0.
+//!
+//! No matrix of the size of the robot is formed, and nothing is divided but by the leg determinants.
+
+use super::configuration::Configuration;
+use super::elimination::{Inverse, Rows, inverse};
+use super::platform::{PlatformMotion, PlatformPose, constant_rotation};
+use super::rates::{Rates, parallel};
+use crate::cas::{Arena, Direction, Expr, Matrix3, Number, Ratio, Vector3};
+use crate::mechanism::{End, JointKind, Leg, TwistCoordinate};
+
+/// Position and orientation of a joint's frame in the base frame.
+#[derive(Debug, Clone)]
+pub struct Frame<'a> {
+    /// Orientation before the last turn about z.
+    prefix: Matrix3<'a>,
+    /// The last turn about z, of all joints of the parallel run.
+    turn: Direction,
+    /// The frame's orientation.
+    pub rotation: Matrix3<'a>,
+    /// From the antecedent frame's origin to this one's.
+    pub link: Vector3<'a>,
+    /// Origin relative to the leg's base frame origin.
+    pub origin: Vector3<'a>,
+}
+
+impl<'a> Frame<'a> {
+    /// The direction of the joint's axis.
+    #[must_use]
+    pub fn axis(&self) -> Vector3<'a> {
+        self.rotation.column(2)
+    }
+}
+
+/// The frames of a leg.
+#[derive(Debug, Clone)]
+pub struct LegFrames<'a> {
+    /// One per joint.
+    pub frames: Vec<Frame<'a>>,
+}
+
+impl<'a> LegFrames<'a> {
+    /// Frames of all joints; `None` if a sine or cosine does not follow from the configuration.
+    #[must_use]
+    pub fn new(
+        arena: &'a Arena,
+        leg: &Leg,
+        first_joint: usize,
+        configuration: &Configuration<'a>,
+    ) -> Option<Self> {
+        let base = constant_rotation(arena, leg.base.rotation);
+        let mut frames: Vec<Frame<'a>> = Vec::new();
+        for (index, joint) in leg.joints.iter().enumerate() {
+            let (from_prefix, from_turn, from_rotation, from_origin) = match joint.antecedent {
+                Some(a) => {
+                    let f = &frames[a];
+                    (f.prefix, f.turn.clone(), f.rotation, f.origin)
+                }
+                None => (base, Direction::constant(crate::cas::Angle::ZERO), base, Vector3::zero(arena)),
+            };
+            let turned = from_turn.plus(&Direction::constant(joint.gamma))?;
+            let theta = joint_turn(leg, index, first_joint, configuration)?;
+            // The joint's own sine and cosine come first: what turns out to be equal to them, a
+            // determinant for instance, is then written as them.
+            let _ = configuration.unit(&theta.plus(&Direction::constant(joint.gamma))?)?;
+            let (prefix, turn) = match parallel(joint.alpha) {
+                Some(sign) if sign == Ratio::ONE => (from_prefix, turned.plus(&theta)?),
+                Some(_) => {
+                    let flip = constant_rotation(arena, [joint.alpha, crate::cas::Angle::ZERO, crate::cas::Angle::ZERO]);
+                    (from_prefix * flip, turned.negative().plus(&theta)?)
+                }
+                None => {
+                    let (cosine, sine) = configuration.unit(&turned)?;
+                    let tilt = constant_rotation(arena, [joint.alpha, crate::cas::Angle::ZERO, crate::cas::Angle::ZERO]);
+                    (from_prefix * Matrix3::rotation(2, cosine, sine) * tilt, theta)
+                }
+            };
+            let (cosine, sine) = configuration.unit(&turn)?;
+            let rotation = prefix * Matrix3::rotation(2, cosine, sine);
+            let link = from_rotation * link_vector(arena, leg, index, first_joint, configuration)?;
+            let origin = from_origin + link;
+            frames.push(Frame { prefix, turn, rotation, link, origin });
+        }
+        Some(Self { frames })
+    }
+
+    /// The vector from the origin of joint `index` to that of the last joint, along the links.
+    #[must_use]
+    pub fn to_end(&self, arena: &'a Arena, leg: &Leg, index: usize) -> Vector3<'a> {
+        let mut sum = Vector3::zero(arena);
+        let mut at = leg.joints.len() - 1;
+        while at != index {
+            sum = self.frames[at].link + sum;
+            match leg.joints[at].antecedent {
+                Some(a) => at = a,
+                None => break,
+            }
+        }
+        sum
+    }
+}
+
+/// The turn θ of a joint about its z axis.
+pub(super) fn joint_turn(
+    leg: &Leg,
+    index: usize,
+    first_joint: usize,
+    configuration: &Configuration<'_>,
+) -> Option<Direction> {
+    let joint = &leg.joints[index];
+    let mut turn = Direction::constant(joint.theta);
+    if joint.kind == JointKind::Revolute {
+        for (of, factor) in &joint.variable {
+            let at = first_joint + leg.independent().position(|i| i == *of)?;
+            turn = turn.plus(&configuration.joint_angle(at).times(*factor)?)?;
+        }
+    }
+    Some(turn)
+}
+
+/// The value of a joint's position, for prismatic joints.
+fn joint_slide<'a>(
+    arena: &'a Arena,
+    leg: &Leg,
+    index: usize,
+    first_joint: usize,
+    configuration: &Configuration<'a>,
+) -> Option<Expr<'a>> {
+    let joint = &leg.joints[index];
+    let mut slide = arena.number(joint.r);
+    if joint.kind == JointKind::Prismatic {
+        for (of, factor) in &joint.variable {
+            let at = first_joint + leg.independent().position(|i| i == *of)?;
+            slide = slide + configuration.joint_position(at)? * Number::ratio(*factor);
+        }
+    }
+    Some(slide)
+}
+
+/// From the antecedent frame's origin to the joint frame's origin, in the antecedent frame:
+/// Rot(z, γ) (d, 0, b) + r z_j.
+pub(super) fn link_vector<'a>(
+    arena: &'a Arena,
+    leg: &Leg,
+    index: usize,
+    first_joint: usize,
+    configuration: &Configuration<'a>,
+) -> Option<Vector3<'a>> {
+    let joint = &leg.joints[index];
+    let (cg, sg) = joint.gamma.cosine_and_sine();
+    let along = Vector3::constant(arena, [joint.d * cg, joint.d * sg, joint.b]);
+    let axis = joint_axis(arena, leg, index);
+    let slide = joint_slide(arena, leg, index, first_joint, configuration)?;
+    Some(along + axis.scaled(slide))
+}
+
+/// The joint's z axis in the antecedent frame.
+pub(super) fn joint_axis<'a>(arena: &'a Arena, leg: &Leg, index: usize) -> Vector3<'a> {
+    let joint = &leg.joints[index];
+    let (cg, sg) = joint.gamma.cosine_and_sine();
+    let (ca, sa) = joint.alpha.cosine_and_sine();
+    Vector3::constant(arena, [sg * sa, -(cg * sa), ca])
+}
+
+/// The closure of a leg: its Jacobian's inverse as wrenches.
+#[derive(Debug, Clone)]
+pub struct LegClosure<'a> {
+    /// ∂Ṗ/∂q̇ and ∂ω/∂q̇ of every joint of the leg, in the base frame.
+    pub joint_columns: Vec<[Vector3<'a>; 2]>,
+    /// The rows of the six-vector (Ṗ, ω) that are inverted.
+    pub rows: Vec<usize>,
+    /// f_i of every u_i.
+    pub forces: Vec<Vector3<'a>>,
+    /// n_i of every u_i.
+    pub moments: Vec<Vector3<'a>>,
+    /// The determinant that each row was divided by.
+    pub determinants: Vec<Expr<'a>>,
+    /// From the platform's origin to P, in the base frame.
+    pub arm: Vector3<'a>,
+}
+
+impl<'a> LegClosure<'a> {
+    /// Derives the closure. `rows` are the independent rows of the six-vector; `home` evaluates an
+    /// expression at the home configuration. `None` for a structurally singular leg.
+    #[must_use]
+    pub fn new(
+        arena: &'a Arena,
+        leg: &Leg,
+        frames: &LegFrames<'a>,
+        rates: &Rates,
+        platform: &PlatformPose<'a>,
+        rows: &[usize],
+        home: &dyn Fn(Expr<'a>) -> f64,
+    ) -> Option<Self> {
+        let joint_columns = joint_columns(arena, leg, frames);
+        let count = leg.independent().count();
+        let column = |i: usize| {
+            let mut sum = [Vector3::zero(arena); 2];
+            for (columns, form) in joint_columns.iter().zip(&rates.joint) {
+                let factor = arena.number(form.coefficient(i));
+                sum[0] = sum[0] + columns[0].scaled(factor);
+                sum[1] = sum[1] + columns[1].scaled(factor);
+            }
+            sum
+        };
+        let columns: Vec<[Vector3<'a>; 2]> = (0..count).map(column).collect();
+        let matrix: Rows<'a> = rows
+            .iter()
+            .map(|&row| columns.iter().map(|c| c[row / 3].0[row % 3]).collect())
+            .collect();
+        let Inverse { rows: inverse, determinants } = inverse(&matrix, home)?;
+        let wrench = |part: usize, entries: &Vec<Expr<'a>>| {
+            let mut vector = Vector3::zero(arena);
+            for (&row, &entry) in rows.iter().zip(entries) {
+                if row / 3 == part {
+                    vector.0[row % 3] = entry;
+                }
+            }
+            vector
+        };
+        let arm = match leg.end.as_ref()? {
+            End::Rigid(placement) => platform.arm(placement.at),
+            End::Point(at) => platform.arm(*at),
+        };
+        Some(Self {
+            joint_columns,
+            rows: rows.to_vec(),
+            forces: inverse.iter().map(|entries| wrench(0, entries)).collect(),
+            moments: inverse.iter().map(|entries| wrench(1, entries)).collect(),
+            determinants,
+            arm,
+        })
+    }
+
+    /// ∂u_i/∂v for all u, r numbers each.
+    #[must_use]
+    pub fn reduced_jacobian(&self, twist: &[TwistCoordinate]) -> Rows<'a> {
+        let row = |(force, moment): (&Vector3<'a>, &Vector3<'a>)| {
+            let turned = self.arm.cross(*force) + *moment;
+            let entry = |c: &TwistCoordinate| match c {
+                TwistCoordinate::Linear(axis) => force.0[*axis],
+                TwistCoordinate::Angular(axis) => turned.0[*axis],
+            };
+            twist.iter().map(entry).collect()
+        };
+        self.forces.iter().zip(&self.moments).map(row).collect()
+    }
+
+    /// ∂Ṗ/∂q̇ and ∂ω/∂q̇ of the independent joints, dependent ones added to those they follow.
+    #[must_use]
+    pub fn independent_columns(&self, leg: &Leg, arena: &'a Arena) -> Vec<[Vector3<'a>; 2]> {
+        leg.independent()
+            .map(|own| {
+                let mut sum = [Vector3::zero(arena); 2];
+                for (joint, columns) in leg.joints.iter().zip(&self.joint_columns) {
+                    for (of, factor) in &joint.variable {
+                        if *of == own {
+                            let factor = arena.number(Number::ratio(*factor));
+                            sum[0] = sum[0] + columns[0].scaled(factor);
+                            sum[1] = sum[1] + columns[1].scaled(factor);
+                        }
+                    }
+                }
+                sum
+            })
+            .collect()
+    }
+
+    /// A row of the six-vector (Ṗ, ω) of the platform point per twist coordinate.
+    #[must_use]
+    pub fn platform_row(
+        &self,
+        row: usize,
+        twist: &[TwistCoordinate],
+        arena: &'a Arena,
+    ) -> Vec<Expr<'a>> {
+        let entry = |c: &TwistCoordinate| {
+            let unit = |axis: usize| Vector3::unit(arena, axis);
+            let zero = Vector3::zero(arena);
+            let (linear, angular) = match c {
+                TwistCoordinate::Linear(axis) => (unit(*axis), zero),
+                TwistCoordinate::Angular(axis) => (unit(*axis).cross(self.arm), unit(*axis)),
+            };
+            [linear, angular][row / 3].0[row % 3]
+        };
+        twist.iter().map(entry).collect()
+    }
+
+    /// The quasi-velocities u for a platform motion.
+    #[must_use]
+    pub fn velocities(&self, motion: &PlatformMotion<'a>) -> Vec<Expr<'a>> {
+        let velocity = motion.point_velocity(self.arm);
+        self.apply(velocity, motion.angular_velocity)
+    }
+
+    /// The derivatives u̇ for a platform motion and the bias accelerations of the leg's end.
+    #[must_use]
+    pub fn accelerations(
+        &self,
+        motion: &PlatformMotion<'a>,
+        bias: [Vector3<'a>; 2],
+    ) -> Vec<Expr<'a>> {
+        let acceleration = motion.point_acceleration(self.arm);
+        self.apply(acceleration - bias[0], motion.angular_acceleration - bias[1])
+    }
+
+    fn apply(&self, linear: Vector3<'a>, angular: Vector3<'a>) -> Vec<Expr<'a>> {
+        let wrenches = self.forces.iter().zip(&self.moments);
+        wrenches.map(|(force, moment)| force.dot(linear) + moment.dot(angular)).collect()
+    }
+}
+
+/// ∂Ṗ/∂q̇ and ∂ω/∂q̇ of every joint on the path to the end.
+fn joint_columns<'a>(arena: &'a Arena, leg: &Leg, frames: &LegFrames<'a>) -> Vec<[Vector3<'a>; 2]> {
+    let zero = Vector3::zero(arena);
+    let mut columns = vec![[zero; 2]; leg.joints.len()];
+    let mut at = leg.joints.len().checked_sub(1);
+    while let Some(index) = at {
+        let axis = frames.frames[index].axis();
+        columns[index] = match leg.joints[index].kind {
+            JointKind::Revolute => [axis.cross(frames.to_end(arena, leg, index)), axis],
+            JointKind::Prismatic => [axis, zero],
+            JointKind::Fixed => [zero; 2],
+        };
+        at = leg.joints[index].antecedent;
+    }
+    columns
+}
+
+/// The end's linear and angular acceleration in the base frame at u̇ = 0.
+///
+/// Along the path, with ω the angular velocity of the antecedent and q̇ the joint rate:
+/// ω' = ω + z q̇, β' = β + ω × z q̇, b' = b + β × l + ω × (ω × l) + 2 ω × z ṙ.
+#[must_use]
+pub fn end_bias<'a>(
+    arena: &'a Arena,
+    leg: &Leg,
+    frames: &LegFrames<'a>,
+    rates: &Rates,
+    u: &[Expr<'a>],
+) -> [Vector3<'a>; 2] {
+    let zero = Vector3::zero(arena);
+    // Angular velocity, angular bias and linear bias of every frame.
+    let mut states: Vec<[Vector3<'a>; 3]> = Vec::new();
+    for (index, joint) in leg.joints.iter().enumerate() {
+        let [omega, beta, bias] = joint.antecedent.map_or([zero; 3], |a| states[a]);
+        let frame = &frames.frames[index];
+        let rate = frame.axis().scaled(rates.joint[index].value(arena, u));
+        let link = frame.link;
+        let mut next_bias = bias + beta.cross(link) + omega.cross(omega.cross(link));
+        let (mut next_omega, mut next_beta) = (omega, beta);
+        match joint.kind {
+            JointKind::Revolute => {
+                next_omega = omega + rate;
+                next_beta = beta + omega.cross(rate);
+            }
+            JointKind::Prismatic => {
+                next_bias = next_bias + omega.cross(rate).scaled(arena.integer(2));
+            }
+            JointKind::Fixed => {}
+        }
+        states.push([next_omega, next_beta, next_bias]);
+    }
+    states.last().map_or([zero; 2], |s| [s[2], s[1]])
+}

@@ -1,0 +1,132 @@
+//! Symbolic least squares on the actuators: the pseudo-inverse of J_p^inv, eqs. (21) and (22).
+//!
+//! S = (J_p^inv)ᵀ J_p^inv is symmetric and positive definite outside singularities; it is factored as
+//! L D Lᵀ without square roots.
+
+use super::elimination::Rows;
+use crate::cas::{Expr, Vector3};
+
+/// S = L D Lᵀ.
+#[derive(Debug)]
+pub struct Factored<'a> {
+    /// L, unit lower triangular (entries below the diagonal).
+    lower: Rows<'a>,
+    /// The reciprocals of D.
+    reciprocals: Vec<Expr<'a>>,
+    /// D.
+    pub pivots: Vec<Expr<'a>>,
+}
+
+/// Scalar product of two rows.
+#[must_use]
+pub fn dot<'a>(a: &[Expr<'a>], b: &[Expr<'a>]) -> Expr<'a> {
+    a.iter().zip(b).map(|(x, y)| *x * *y).sum()
+}
+
+/// Transpose.
+#[must_use]
+pub fn transposed<'a>(rows: &Rows<'a>) -> Rows<'a> {
+    let width = rows.first().map_or(0, Vec::len);
+    (0..width).map(|c| rows.iter().map(|row| row[c]).collect()).collect()
+}
+
+/// Product of two matrices.
+#[must_use]
+pub fn product<'a>(a: &Rows<'a>, b: &Rows<'a>) -> Rows<'a> {
+    let columns = transposed(b);
+    a.iter().map(|row| columns.iter().map(|c| dot(row, c)).collect()).collect()
+}
+
+/// Matrix times vector.
+#[must_use]
+pub fn apply<'a>(matrix: &Rows<'a>, vector: &[Expr<'a>]) -> Vec<Expr<'a>> {
+    matrix.iter().map(|row| dot(row, vector)).collect()
+}
+
+impl<'a> Factored<'a> {
+    /// Factors S = JᵀJ.
+    #[must_use]
+    pub fn normal(jacobian: &Rows<'a>) -> Self {
+        let columns = transposed(jacobian);
+        let n = columns.len();
+        let mut s: Rows<'a> =
+            columns.iter().map(|a| columns.iter().map(|b| dot(a, b)).collect()).collect();
+        let mut reciprocals = Vec::new();
+        let mut pivots = Vec::new();
+        let mut lower = s.clone();
+        for k in 0..n {
+            let pivot = s[k][k];
+            let reciprocal = pivot.reciprocal();
+            for i in k + 1..n {
+                let factor = s[i][k] * reciprocal;
+                lower[i][k] = factor;
+                for j in k + 1..=i {
+                    s[i][j] = s[i][j] - factor * s[j][k];
+                    s[j][i] = s[i][j];
+                }
+            }
+            pivots.push(pivot);
+            reciprocals.push(reciprocal);
+        }
+        Self { lower, reciprocals, pivots }
+    }
+
+    /// Solves S x = y.
+    #[must_use]
+    pub fn solve(&self, right: &[Expr<'a>]) -> Vec<Expr<'a>> {
+        let n = right.len();
+        let mut x = right.to_vec();
+        for i in 0..n {
+            for k in 0..i {
+                x[i] = x[i] - self.lower[i][k] * x[k];
+            }
+        }
+        for i in (0..n).rev() {
+            x[i] = x[i] * self.reciprocals[i];
+            for k in i + 1..n {
+                x[i] = x[i] - self.lower[k][i] * x[k];
+            }
+        }
+        x
+    }
+}
+
+/// J⁺ = (JᵀJ)⁻¹ Jᵀ, r x n, and the pivots of the factorisation.
+#[must_use]
+pub fn pseudo_inverse<'a>(jacobian: &Rows<'a>) -> (Rows<'a>, Vec<Expr<'a>>) {
+    let factored = Factored::normal(jacobian);
+    let columns: Rows<'a> = jacobian.iter().map(|row| factored.solve(row)).collect();
+    (transposed(&columns), factored.pivots)
+}
+
+/// An orthonormal basis of the null space of Jᵀ, n x (n - r), by projecting unit vectors of the
+/// actuators `seeds` (those that case 2 projects) onto it and orthonormalising. Column k is positive
+/// on its seed.
+#[must_use]
+pub fn null_space<'a>(jacobian: &Rows<'a>, seeds: &[usize]) -> Rows<'a> {
+    let n = jacobian.len();
+    let Some(arena) = jacobian.first().and_then(|r| r.first()).map(|e| e.arena()) else {
+        return vec![Vec::new(); n];
+    };
+    let factored = Factored::normal(jacobian);
+    let mut basis: Rows<'a> = Vec::new();
+    for &seed in seeds {
+        // (I - J J⁺) e_seed, the part of the unit torque that moves nothing.
+        let inside = apply(jacobian, &factored.solve(&jacobian[seed]));
+        let mut vector: Vec<Expr<'a>> =
+            (0..n).map(|i| arena.integer(i64::from(i == seed)) - inside[i]).collect();
+        for known in &basis {
+            let along = dot(known, &vector);
+            vector = vector.iter().zip(known).map(|(v, k)| *v - along * *k).collect();
+        }
+        let scale = dot(&vector, &vector).sqrt().reciprocal();
+        basis.push(vector.iter().map(|v| *v * scale).collect());
+    }
+    (0..n).map(|i| basis.iter().map(|column| column[i]).collect()).collect()
+}
+
+/// Sum of vectors.
+#[must_use]
+pub fn sum<'a>(arena: &'a crate::cas::Arena, vectors: impl Iterator<Item = Vector3<'a>>) -> Vector3<'a> {
+    vectors.fold(Vector3::zero(arena), |a, b| a + b)
+}

@@ -1,0 +1,130 @@
+//! The platform: pose, twist t = D v and acceleration as vectors in the base frame, eq. (14).
+
+use crate::cas::{Arena, Angle, Direction, Expr, Matrix3, Number, Vector3};
+use crate::mechanism::{Motion, Placement, TwistCoordinate};
+
+/// Position and orientation of the platform frame in the base frame.
+#[derive(Debug, Clone)]
+pub struct PlatformPose<'a> {
+    arena: &'a Arena,
+    motion: Motion,
+    /// Origin, m.
+    pub origin: Vector3<'a>,
+    /// Orientation.
+    pub rotation: Matrix3<'a>,
+    /// The angle of the only rotation, where there is one.
+    pub angle: Option<(usize, Direction)>,
+}
+
+/// Velocity and acceleration of the platform.
+#[derive(Debug, Clone)]
+pub struct PlatformMotion<'a> {
+    /// Velocity of the origin, m/s.
+    pub velocity: Vector3<'a>,
+    /// Angular velocity, rad/s.
+    pub angular_velocity: Vector3<'a>,
+    /// Acceleration of the origin, m/s².
+    pub acceleration: Vector3<'a>,
+    /// Angular acceleration, rad/s².
+    pub angular_acceleration: Vector3<'a>,
+}
+
+impl<'a> PlatformPose<'a> {
+    /// The pose as inputs `pose[i]`.
+    #[must_use]
+    pub fn new(arena: &'a Arena, motion: Motion) -> Self {
+        let zero = arena.zero();
+        let count = motion.pose_coordinates().len();
+        let input = |i: usize| arena.variable(&format!("pose[{i}]"));
+        let mut origin = [zero; 3];
+        for (i, coordinate) in motion.twist().iter().enumerate() {
+            if let TwistCoordinate::Linear(axis) = coordinate {
+                origin[*axis] = input(i);
+            }
+        }
+        let mut angle = None;
+        let mut rotation = Matrix3::identity(arena);
+        if let Some(axis) = motion.rotation_axis() {
+            let phi = arena.angle(&format!("pose[{}]", count - 1));
+            let (cosine, sine) = arena.cosine_and_sine(&phi);
+            rotation = Matrix3::rotation(axis, cosine.named("c_phi"), sine.named("s_phi"));
+            angle = Some((axis, phi));
+        } else if motion.has_quaternion() {
+            rotation = quaternion_rotation(std::array::from_fn(|i| input(count - 4 + i)));
+        }
+        Self { arena, motion, origin: Vector3(origin), rotation, angle }
+    }
+
+    /// The vector from the platform's origin to a platform point, in the base frame.
+    #[must_use]
+    pub fn arm(&self, at: [Number; 3]) -> Vector3<'a> {
+        self.rotation * Vector3::constant(self.arena, at)
+    }
+
+    /// Orientation of a frame that is fixed on the platform.
+    #[must_use]
+    pub fn orientation(&self, placement: &Placement) -> Matrix3<'a> {
+        self.rotation * constant_rotation(self.arena, placement.rotation)
+    }
+
+    /// Velocities and accelerations from the twist coordinates v and their derivatives.
+    #[must_use]
+    pub fn motion(&self, twist: &[Expr<'a>], acceleration: &[Expr<'a>]) -> PlatformMotion<'a> {
+        let spread = |values: &[Expr<'a>]| {
+            let mut linear = Vector3::zero(self.arena);
+            let mut angular = linear;
+            for (coordinate, &value) in self.motion.twist().iter().zip(values) {
+                match coordinate {
+                    TwistCoordinate::Linear(axis) => linear.0[*axis] = value,
+                    TwistCoordinate::Angular(axis) => angular.0[*axis] = value,
+                }
+            }
+            (linear, angular)
+        };
+        let (velocity, angular_velocity) = spread(twist);
+        let (linear_acceleration, angular_acceleration) = spread(acceleration);
+        PlatformMotion {
+            velocity,
+            angular_velocity,
+            acceleration: linear_acceleration,
+            angular_acceleration,
+        }
+    }
+}
+
+impl<'a> PlatformMotion<'a> {
+    /// Velocity of the point at `arm` from the origin.
+    #[must_use]
+    pub fn point_velocity(&self, arm: Vector3<'a>) -> Vector3<'a> {
+        self.velocity + self.angular_velocity.cross(arm)
+    }
+
+    /// Acceleration of the point at `arm` from the origin.
+    #[must_use]
+    pub fn point_acceleration(&self, arm: Vector3<'a>) -> Vector3<'a> {
+        let omega = self.angular_velocity;
+        self.acceleration + self.angular_acceleration.cross(arm) + omega.cross(omega.cross(arm))
+    }
+}
+
+/// The rotation matrix of a unit quaternion (w, x, y, z).
+fn quaternion_rotation([w, x, y, z]: [Expr<'_>; 4]) -> Matrix3<'_> {
+    let arena = w.arena();
+    let (one, two) = (arena.one(), arena.integer(2));
+    let (x2, y2, z2) = (two * x, two * y, two * z);
+    Matrix3([
+        [one - y2 * y - z2 * z, x2 * y - z2 * w, x2 * z + y2 * w],
+        [x2 * y + z2 * w, one - x2 * x - z2 * z, y2 * z - x2 * w],
+        [x2 * z - y2 * w, y2 * z + x2 * w, one - x2 * x - y2 * y],
+    ])
+}
+
+/// Rz(rz) Ry(ry) Rx(rx) of constant angles.
+#[must_use]
+pub fn constant_rotation(arena: &Arena, rotation: [Angle; 3]) -> Matrix3<'_> {
+    let about = |axis: usize| {
+        let (cosine, sine) = rotation[axis].cosine_and_sine();
+        Matrix3::rotation(axis, arena.number(cosine), arena.number(sine))
+    };
+    about(2) * about(1) * about(0)
+}

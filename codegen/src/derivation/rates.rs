@@ -1,0 +1,114 @@
+//! Quasi-velocities of a leg: absolute rates along runs of parallel axes.
+//!
+//! Where consecutive revolute axes are parallel, the sum of their rates turns the bodies; it, and not
+//! the joint rate, is what closure and dynamics are simplest in. So joint j of a leg has the
+//! quasi-velocity u_j = q̇_j + s u_i, where i is the preceding revolute joint of its parallel run and
+//! s = ±1 tells whether the axes point the same way; a prismatic joint has u_j = q̇_j. Every joint
+//! rate, dependent ones included, is a linear form with constant coefficients of the u.
+
+use crate::cas::{Angle, Arena, Expr, Number, Ratio};
+use crate::mechanism::{JointKind, Leg};
+
+/// A linear form Σ coefficient × u_i.
+#[derive(Debug, Clone, Default)]
+pub struct Form(Vec<(usize, Number)>);
+
+impl Form {
+    fn unit(index: usize) -> Self {
+        Self(vec![(index, Number::ONE)])
+    }
+
+    fn add(&mut self, other: &Self, factor: Number) {
+        for (index, coefficient) in &other.0 {
+            let part = *coefficient * factor;
+            match self.0.iter_mut().find(|(i, _)| i == index) {
+                Some((_, own)) => *own = *own + part,
+                None => self.0.push((*index, part)),
+            }
+        }
+        self.0.retain(|(_, c)| !c.is_zero());
+        self.0.sort_by_key(|(i, _)| *i);
+    }
+
+    /// The coefficient of u_i.
+    #[must_use]
+    pub fn coefficient(&self, index: usize) -> Number {
+        self.0.iter().find(|(i, _)| *i == index).map_or(Number::ZERO, |(_, c)| *c)
+    }
+
+    /// The form's value for given u.
+    #[must_use]
+    pub fn value<'a>(&self, arena: &'a Arena, u: &[Expr<'a>]) -> Expr<'a> {
+        self.0.iter().fold(arena.zero(), |sum, (i, c)| sum + u[*i] * *c)
+    }
+
+    /// The form of rows: Σ coefficient × row_i.
+    #[must_use]
+    pub fn row<'a>(&self, arena: &'a Arena, rows: &[Vec<Expr<'a>>]) -> Vec<Expr<'a>> {
+        let width = rows.first().map_or(0, Vec::len);
+        (0..width)
+            .map(|c| self.0.iter().fold(arena.zero(), |sum, (i, k)| sum + rows[*i][c] * *k))
+            .collect()
+    }
+}
+
+/// The rates of a leg's joints as forms of its quasi-velocities.
+#[derive(Debug, Clone)]
+pub struct Rates {
+    /// q̇ of every joint of the leg (fixed joints: empty).
+    pub joint: Vec<Form>,
+}
+
+impl Rates {
+    /// The forms of a leg. With `absolute` false every u is a joint rate.
+    #[must_use]
+    pub fn new(leg: &Leg, absolute: bool) -> Self {
+        let independent: Vec<usize> = leg.independent().collect();
+        let mut joint: Vec<Form> = Vec::new();
+        let mut turning: Vec<Form> = Vec::new();
+        for (index, j) in leg.joints.iter().enumerate() {
+            let previous = previous_in_run(leg, index).filter(|_| absolute);
+            let before = previous.map(|(at, sign)| (turning[at].clone(), sign));
+            let mut rate = Form::default();
+            if j.is_independent(index) {
+                let own = independent.iter().position(|i| *i == index).unwrap_or(0);
+                rate = Form::unit(own);
+                if let (Some((before, sign)), JointKind::Revolute) = (&before, j.kind) {
+                    rate.add(before, -Number::ratio(*sign));
+                }
+            } else {
+                for (of, factor) in &j.variable {
+                    let form = joint.get(*of).cloned().unwrap_or_default();
+                    rate.add(&form, Number::ratio(*factor));
+                }
+            }
+            let mut turn = Form::default();
+            if let Some((before, sign)) = &before {
+                turn.add(before, Number::ratio(*sign));
+            }
+            if j.kind == JointKind::Revolute {
+                turn.add(&rate, Number::ONE);
+            }
+            joint.push(rate);
+            turning.push(turn);
+        }
+        Self { joint }
+    }
+}
+
+/// The antecedent joint, if its z axis is parallel to this joint's, and whether both point the same
+/// way.
+fn previous_in_run(leg: &Leg, index: usize) -> Option<(usize, Ratio)> {
+    let antecedent = leg.joints[index].antecedent?;
+    parallel(leg.joints[index].alpha).map(|sign| (antecedent, sign))
+}
+
+/// 1 or -1 if a rotation about x by this angle leaves the z axis parallel to itself.
+#[must_use]
+pub fn parallel(alpha: Angle) -> Option<Ratio> {
+    let (cosine, sine) = alpha.cosine_and_sine();
+    if !sine.is_zero() {
+        return None;
+    }
+    Some(if cosine.value() > 0.0 { Ratio::ONE } else { Ratio::integer(-1) })
+}

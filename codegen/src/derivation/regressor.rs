@@ -1,0 +1,221 @@
+//! The identification model: one column per standard parameter, eq. (30) and eq. (36).
+//!
+//! A column of case 1 is Σ_i (∂u_i/∂v)ᵀ s_i, where s_i is the generalised force on u_i that the parameter
+//! alone produces: for a body parameter its unit wrench projected on the partial velocities, for a
+//! joint parameter a scalar times the reduced Jacobian of that joint. Case 2 is the same with the rows
+//! ∂u_i/∂v J_a⁻¹, J_a being the kept rows of J_p^inv: rows are transformed once, never columns.
+
+use super::elimination::{Rows, inverse};
+use super::linear::{dot, product, transposed};
+use super::robot::{Robot, RobotMotion, Underivable};
+use crate::cas::{Expr, Vector3};
+use crate::description::StandardParameter;
+
+/// A standard parameter of the robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum BodyParameter {
+    /// Of a leg's body or joint.
+    Leg {
+        /// The leg.
+        leg: usize,
+        /// The joint in its leg.
+        joint: usize,
+        /// Which parameter.
+        symbol: StandardParameter,
+    },
+    /// Of the platform.
+    Platform(StandardParameter),
+    /// Of the payload.
+    Payload(StandardParameter),
+}
+
+/// What generalised forces are projected on.
+#[derive(Debug)]
+pub struct Projection<'a> {
+    /// ∂u/∂(projected coordinates) of every leg.
+    legs: Vec<Rows<'a>>,
+    /// The same of the platform's twist coordinates.
+    platform: Rows<'a>,
+    /// The determinants that were divided by.
+    pub determinants: Vec<Expr<'a>>,
+}
+
+impl<'a> Projection<'a> {
+    /// ∂v/∂(projected coordinates): the identity in case 1, J_a⁻¹ in case 2.
+    #[must_use]
+    pub const fn platform_rows(&self) -> &Rows<'a> {
+        &self.platform
+    }
+}
+
+impl<'a> Robot<'a> {
+    /// Case 1: on the platform's twist coordinates.
+    #[must_use]
+    pub fn project_on_platform(&self) -> Projection<'a> {
+        let r = self.mechanism.dof();
+        let entry = |i: usize, j: usize| self.arena.integer(i64::from(i == j));
+        let identity = (0..r).map(|i| (0..r).map(|j| entry(i, j)).collect()).collect();
+        let legs = self.legs.iter().map(|l| l.rows.clone()).collect();
+        Projection { legs, platform: identity, determinants: Vec::new() }
+    }
+
+    /// Case 2: on the kept actuators.
+    ///
+    /// # Errors
+    /// Kept actuators that never determine the platform's motion.
+    pub fn project_on_actuators(&self, kept: &[usize]) -> Result<Projection<'a>, Underivable> {
+        let all = self.inverse_jacobian();
+        let kept_rows: Rows<'a> = kept.iter().map(|&i| all[i].clone()).collect();
+        let home = |e: Expr<'a>| self.at_home(e);
+        let inverted = inverse(&kept_rows, &home).ok_or(Underivable::SingularPartition)?;
+        let legs = self.legs.iter().map(|l| product(&l.rows, &inverted.rows)).collect();
+        Ok(Projection { legs, platform: inverted.rows, determinants: inverted.determinants })
+    }
+
+    /// All parameters that the description does not declare absent, in column order: leg by leg, body
+    /// by body, then the platform's.
+    #[must_use]
+    pub fn parameters(&self) -> Vec<BodyParameter> {
+        let mut parameters = Vec::new();
+        for (l, leg) in self.mechanism.legs.iter().enumerate() {
+            for (j, joint) in leg.joints.iter().enumerate() {
+                let symbols = joint.parameters.iter();
+                parameters.extend(symbols.map(|&symbol| BodyParameter::Leg { leg: l, joint: j, symbol }));
+            }
+        }
+        if let Some(platform) = &self.mechanism.platform {
+            parameters.extend(platform.parameters.iter().map(|&s| BodyParameter::Platform(s)));
+        }
+        parameters
+    }
+
+    /// The payload's parameters.
+    #[must_use]
+    pub fn payload_parameters(&self) -> Vec<BodyParameter> {
+        let payload = self.mechanism.platform.as_ref().and_then(|p| p.payload.as_ref());
+        payload.map_or_else(Vec::new, |symbols| {
+            symbols.iter().map(|&s| BodyParameter::Payload(s)).collect()
+        })
+    }
+
+    /// The column of a parameter, r numbers.
+    #[must_use]
+    pub fn column(
+        &self,
+        motion: &RobotMotion<'a>,
+        projection: &Projection<'a>,
+        parameter: BodyParameter,
+    ) -> Vec<Expr<'a>> {
+        match parameter {
+            BodyParameter::Leg { leg, joint, symbol } if symbol.is_inertial() => {
+                self.arena.enter(&self.mechanism.legs[leg].name);
+                let body = &motion.bodies[leg][joint];
+                let forces = body.project(body.unit_wrench(self.arena, symbol));
+                self.combine(&projection.legs[leg], &forces)
+            }
+            BodyParameter::Leg { leg, joint, symbol } => {
+                self.arena.enter(&self.mechanism.legs[leg].name);
+                let form = &self.legs[leg].rates.joint[joint];
+                let row = form.row(self.arena, &projection.legs[leg]);
+                let force = self.joint_force(motion, leg, joint, symbol);
+                row.iter().map(|&g| g * force).collect()
+            }
+            BodyParameter::Platform(symbol) | BodyParameter::Payload(symbol) => {
+                self.arena.enter("platform");
+                let Some(body) = &motion.platform else { return Vec::new() };
+                let forces = body.project(body.unit_wrench(self.arena, symbol));
+                self.combine(&projection.platform, &forces)
+            }
+        }
+    }
+
+    /// The force on a joint that one of its own parameters produces, eq. (5).
+    fn joint_force(
+        &self,
+        motion: &RobotMotion<'a>,
+        leg: usize,
+        joint: usize,
+        symbol: StandardParameter,
+    ) -> Expr<'a> {
+        let form = &self.legs[leg].rates.joint[joint];
+        let rate = || form.value(self.arena, &motion.u[leg]);
+        match symbol {
+            StandardParameter::Ia => form.value(self.arena, &motion.u_dot[leg]),
+            StandardParameter::Fv => rate(),
+            StandardParameter::Fs => rate().sign(),
+            _ => self.arena.one(),
+        }
+    }
+
+    fn combine(&self, rows: &Rows<'a>, forces: &[Expr<'a>]) -> Vec<Expr<'a>> {
+        let width = rows.first().map_or(0, Vec::len);
+        let entry = |c: usize| {
+            let terms = rows.iter().zip(forces).map(|(row, s)| row[c] * *s);
+            terms.fold(self.arena.zero(), |sum, term| sum + term)
+        };
+        (0..width).map(entry).collect()
+    }
+
+    /// Γ of all parameters at once, r numbers: body wrenches are added before they are projected.
+    #[must_use]
+    pub fn generalised_forces(
+        &self,
+        motion: &RobotMotion<'a>,
+        projection: &Projection<'a>,
+        values: &[(BodyParameter, Expr<'a>)],
+    ) -> Vec<Expr<'a>> {
+        let zero = Vector3::zero(self.arena);
+        let mut total = vec![self.arena.zero(); self.mechanism.dof()];
+        let add = |total: &mut Vec<Expr<'a>>, part: Vec<Expr<'a>>| {
+            for (t, p) in total.iter_mut().zip(part) {
+                *t = *t + p;
+            }
+        };
+        for (l, leg) in self.mechanism.legs.iter().enumerate() {
+            let mut forces = vec![self.arena.zero(); self.legs[l].rows.len()];
+            for j in 0..leg.joints.len() {
+                let body = &motion.bodies[l][j];
+                let mut wrench = [zero; 2];
+                let mut own = self.arena.zero();
+                for (parameter, value) in values {
+                    match parameter {
+                        BodyParameter::Leg { leg, joint, symbol } if (*leg, *joint) == (l, j) => {
+                            if symbol.is_inertial() {
+                                add_wrench(&mut wrench, body.unit_wrench(self.arena, *symbol), *value);
+                            } else {
+                                own = own + self.joint_force(motion, l, j, *symbol) * *value;
+                            }
+                        }
+                        _ => {}
+                    }
+                }
+                for (i, force) in body.project(wrench).into_iter().enumerate() {
+                    let share = self.arena.number(self.legs[l].rates.joint[j].coefficient(i));
+                    forces[i] = forces[i] + force + own * share;
+                }
+            }
+            add(&mut total, self.combine(&projection.legs[l], &forces));
+        }
+        if let Some(body) = &motion.platform {
+            let mut wrench = [zero; 2];
+            for (parameter, value) in values {
+                if let BodyParameter::Platform(s) | BodyParameter::Payload(s) = parameter {
+                    add_wrench(&mut wrench, body.unit_wrench(self.arena, *s), *value);
+                }
+            }
+            add(&mut total, self.combine(&projection.platform, &body.project(wrench)));
+        }
+        total
+    }
+
+    /// Γ¹ = (J_p^inv)ᵀ τ, eq. (30).
+    #[must_use]
+    pub fn projected_torques(&self, torques: &[Expr<'a>]) -> Vec<Expr<'a>> {
+        transposed(&self.inverse_jacobian()).iter().map(|row| dot(row, torques)).collect()
+    }
+}
+
+fn add_wrench<'a>(total: &mut [Vector3<'a>; 2], part: [Vector3<'a>; 2], factor: Expr<'a>) {
+    total[0] = total[0] + part[0].scaled(factor);
+    total[1] = total[1] + part[1].scaled(factor);
+}

@@ -1,0 +1,315 @@
+//! The derivation of one robot in one graph: configuration, closures, motion, and what every
+//! function is made of.
+
+use super::body::{BodyMotion, leg_bodies};
+use super::configuration::{Configuration, From};
+use super::elimination::Rows;
+use super::inverse_kinematics::solve_leg;
+use super::leg::{LegClosure, LegFrames, end_bias};
+use super::platform::PlatformPose;
+use super::rates::Rates;
+use crate::cas::{Arena, Expr, Vector3};
+use crate::mechanism::{Mechanism, TwistCoordinate};
+
+/// A quantity that must stay away from a bound for the model to have a value.
+#[derive(Debug, Clone)]
+pub struct Guard<'a> {
+    /// The quantity.
+    pub value: Expr<'a>,
+    /// What it means.
+    pub kind: GuardKind,
+    /// Name of the leg.
+    pub leg: String,
+}
+
+/// The kinds of guards.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum GuardKind {
+    /// Negative: the pose is out of reach.
+    Reach,
+    /// Near zero compared with this magnitude at home: the leg is singular.
+    Leg(f64),
+    /// Near zero compared with this magnitude at home: the actuators do not determine the platform's
+    /// motion.
+    Platform {
+        /// The magnitude at home.
+        home: f64,
+        /// `actuators` or `kept actuators`.
+        actuators: &'static str,
+    },
+}
+
+/// A leg in a derivation.
+#[derive(Debug)]
+pub struct LegState<'a> {
+    /// Index of the leg's first joint in q_t.
+    pub first_joint: usize,
+    /// Frames in the base frame.
+    pub frames: LegFrames<'a>,
+    /// Joint rates as forms of the quasi-velocities.
+    pub rates: Rates,
+    /// The closure; `None` for a tree.
+    pub closure: Option<LegClosure<'a>>,
+    /// ∂u/∂v, r numbers per u.
+    pub rows: Rows<'a>,
+}
+
+/// Velocities and accelerations of the whole robot.
+#[derive(Debug)]
+pub struct RobotMotion<'a> {
+    /// Quasi-velocities of every leg.
+    pub u: Vec<Vec<Expr<'a>>>,
+    /// Their derivatives.
+    pub u_dot: Vec<Vec<Expr<'a>>>,
+    /// Bodies of every leg.
+    pub bodies: Vec<Vec<BodyMotion<'a>>>,
+    /// The platform.
+    pub platform: Option<BodyMotion<'a>>,
+}
+
+/// Why a model cannot be derived in the wanted form.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Underivable {
+    /// No rule gives this leg's joints from the pose in closed form.
+    InverseKinematics {
+        /// Name of the leg.
+        leg: String,
+    },
+    /// The leg's Jacobian has no structural inverse.
+    SingularLeg {
+        /// Name of the leg.
+        leg: String,
+    },
+    /// The Jacobian of the kept actuators has no structural inverse.
+    SingularPartition,
+}
+
+/// The derivation of a robot.
+#[derive(Debug)]
+pub struct Robot<'a> {
+    /// The graph.
+    pub arena: &'a Arena,
+    /// The robot.
+    pub mechanism: &'a Mechanism,
+    /// Sines and cosines.
+    pub configuration: Configuration<'a>,
+    /// The platform's pose; `None` for a tree.
+    pub platform: Option<PlatformPose<'a>>,
+    /// The independent twist coordinates.
+    pub twist: Vec<TwistCoordinate>,
+    /// The legs.
+    pub legs: Vec<LegState<'a>>,
+    /// Conditions for the model to have a value.
+    pub guards: Vec<Guard<'a>>,
+}
+
+impl<'a> Robot<'a> {
+    /// Derives configuration and closures.
+    ///
+    /// # Errors
+    /// A leg whose joints do not follow from the pose by rule, or a structurally singular leg.
+    pub fn new(
+        arena: &'a Arena,
+        mechanism: &'a Mechanism,
+        from: From,
+    ) -> Result<Self, Underivable> {
+        let motion = mechanism.platform.as_ref().map(|p| p.motion);
+        // The configuration of a tree is its joints, whatever it is called.
+        let from = if motion.is_none() { From::Joints } else { from };
+        let mut robot = Self {
+            arena,
+            mechanism,
+            configuration: Configuration::new(arena, mechanism, from),
+            platform: motion.map(|m| PlatformPose::new(arena, m)),
+            twist: motion.map(crate::mechanism::Motion::twist).unwrap_or_default(),
+            legs: Vec::new(),
+            guards: Vec::new(),
+        };
+        for leg in 0..mechanism.legs.len() {
+            robot.derive_leg(leg)?;
+        }
+        Ok(robot)
+    }
+
+    fn derive_leg(&mut self, index: usize) -> Result<(), Underivable> {
+        let (arena, leg) = (self.arena, &self.mechanism.legs[index]);
+        arena.enter(&leg.name);
+        let first_joint = self.mechanism.leg_range(index).start;
+        let name = || leg.name.clone();
+        if let (Some(platform), From::Pose | From::Actuators) = (&self.platform, self.configuration.from()) {
+            let home = &self.mechanism.home.joints;
+            let conditions = solve_leg(arena, leg, first_joint, home, platform, &mut self.configuration)
+                .ok_or_else(|| Underivable::InverseKinematics { leg: name() })?;
+            let guards = conditions.into_iter().map(|reach| Guard {
+                value: reach.radicand,
+                kind: GuardKind::Reach,
+                leg: name(),
+            });
+            self.guards.extend(guards);
+        }
+        let frames = LegFrames::new(arena, leg, first_joint, &self.configuration)
+            .ok_or_else(|| Underivable::InverseKinematics { leg: name() })?;
+        let rates = Rates::new(leg, self.platform.is_some());
+        let (closure, rows) = match &self.platform {
+            None => (None, self.identity_rows(first_joint, leg.independent().count())),
+            Some(platform) => {
+                let selected = self.mechanism.closure_rows(index);
+                let home = |e: Expr<'a>| self.at_home(e);
+                let closure =
+                    LegClosure::new(arena, leg, &frames, &rates, platform, &selected, &home)
+                        .ok_or_else(|| Underivable::SingularLeg { leg: name() })?;
+                let rows = closure.reduced_jacobian(&self.twist);
+                (Some(closure), rows)
+            }
+        };
+        if let Some(closure) = &closure {
+            self.guard_leg(closure, &leg.name);
+        }
+        name_rows(&rows, leg, &self.twist);
+        self.legs.push(LegState { first_joint, frames, rates, closure, rows });
+        arena.enter("");
+        Ok(())
+    }
+
+    fn guard_leg(&mut self, closure: &LegClosure<'a>, leg: &str) {
+        for determinant in &closure.determinants {
+            let (_, base) = determinant.factor_and_base();
+            let known = self.guards.iter().any(|g| g.value == base);
+            if !known && base.as_number().is_none() {
+                let kind = GuardKind::Leg(self.at_home(base).abs());
+                self.guards.push(Guard { value: base, kind, leg: leg.to_owned() });
+            }
+        }
+    }
+
+    fn identity_rows(&self, first: usize, count: usize) -> Rows<'a> {
+        let dof = self.mechanism.dof();
+        let entry = |i: usize, j: usize| self.arena.integer(i64::from(first + i == j));
+        (0..count).map(|i| (0..dof).map(|j| entry(i, j)).collect()).collect()
+    }
+
+    /// The value of an expression at the home configuration, with all rates set to small numbers.
+    #[must_use]
+    pub fn at_home(&self, expr: Expr<'a>) -> f64 {
+        let home = &self.mechanism.home;
+        expr.evaluate(&|symbol| {
+            let name = self.arena.symbol_name(symbol);
+            let index = |prefix: &str| -> Option<usize> {
+                name.strip_prefix(prefix)?.strip_suffix(']')?.parse().ok()
+            };
+            let value = index("joints[").and_then(|i| home.joints.get(i));
+            let value = value.or_else(|| index("pose[").and_then(|i| home.pose.get(i)));
+            value.copied().unwrap_or(0.1)
+        })
+    }
+
+    /// Inputs `name[0]`, `name[1]`, … as expressions.
+    #[must_use]
+    pub fn inputs(&self, name: &str, count: usize) -> Vec<Expr<'a>> {
+        (0..count).map(|i| self.arena.variable(&format!("{name}[{i}]"))).collect()
+    }
+
+    /// Velocities and accelerations of all legs and bodies.
+    #[must_use]
+    pub fn motion(&self, twist: &[Expr<'a>], acceleration: &[Expr<'a>]) -> Option<RobotMotion<'a>> {
+        let platform = self.platform.as_ref().map(|p| p.motion(twist, acceleration));
+        let gravity = Vector3::constant(self.arena, self.mechanism.gravity);
+        let mut motion = RobotMotion { u: vec![], u_dot: vec![], bodies: vec![], platform: None };
+        for (leg, state) in self.mechanism.legs.iter().zip(&self.legs) {
+            self.arena.enter(&leg.name);
+            let (u, u_dot) = match (&state.closure, &platform) {
+                (Some(closure), Some(platform)) => {
+                    let u = closure.velocities(platform);
+                    name_rates(leg, &u, "rate");
+                    let bias = end_bias(self.arena, leg, &state.frames, &state.rates, &u);
+                    let u_dot = closure.accelerations(platform, bias);
+                    name_rates(leg, &u_dot, "rate_dot");
+                    (u, u_dot)
+                }
+                _ => {
+                    let range = state.first_joint..state.first_joint + leg.independent().count();
+                    (twist[range.clone()].to_vec(), acceleration[range].to_vec())
+                }
+            };
+            let bodies = leg_bodies(
+                self.arena,
+                leg,
+                state.first_joint,
+                &self.configuration,
+                &state.rates,
+                (&u, &u_dot),
+                gravity,
+            )?;
+            motion.u.push(u);
+            motion.u_dot.push(u_dot);
+            motion.bodies.push(bodies);
+        }
+        self.arena.enter("platform");
+        motion.platform = self.platform.as_ref().zip(platform.as_ref()).map(|(pose, m)| {
+            let into = pose.rotation.transposed();
+            let zero = Vector3::zero(self.arena);
+            let partial = |c: &TwistCoordinate| match c {
+                TwistCoordinate::Linear(a) => [into * Vector3::unit(self.arena, *a), zero],
+                TwistCoordinate::Angular(a) => [zero, into * Vector3::unit(self.arena, *a)],
+            };
+            BodyMotion::new(
+                into * m.angular_velocity,
+                into * m.angular_acceleration,
+                into * (m.acceleration - gravity),
+                self.twist.iter().map(partial).collect(),
+            )
+        });
+        self.arena.enter("");
+        Some(motion)
+    }
+
+    /// J_p^inv, n x r: the reduced Jacobian's rows of the actuated joints.
+    #[must_use]
+    pub fn inverse_jacobian(&self) -> Rows<'a> {
+        let all = self.joint_rows();
+        self.mechanism.actuated().iter().map(|&i| all[i].clone()).collect()
+    }
+
+    /// ∂q̇_t/∂v, n_t x r.
+    #[must_use]
+    pub fn joint_rows(&self) -> Rows<'a> {
+        let mut rows = Vec::new();
+        for (leg, state) in self.mechanism.legs.iter().zip(&self.legs) {
+            self.arena.enter(&leg.name);
+            for joint in leg.independent() {
+                rows.push(state.rates.joint[joint].row(self.arena, &state.rows));
+            }
+        }
+        self.arena.enter("");
+        rows
+    }
+
+    /// Values of a form of quasi-velocities for all joints of q_t.
+    #[must_use]
+    pub fn joint_values(&self, u: &[Vec<Expr<'a>>]) -> Vec<Expr<'a>> {
+        let mut values = Vec::new();
+        for ((leg, state), u) in self.mechanism.legs.iter().zip(&self.legs).zip(u) {
+            values.extend(leg.independent().map(|j| state.rates.joint[j].value(self.arena, u)));
+        }
+        values
+    }
+}
+
+fn name_rates(leg: &crate::mechanism::Leg, values: &[Expr<'_>], prefix: &str) {
+    for (joint, value) in leg.independent().zip(values) {
+        let _ = value.named(&format!("{prefix}_{}_{}", leg.joints[joint].name, leg.name));
+    }
+}
+
+fn name_rows(rows: &Rows<'_>, leg: &crate::mechanism::Leg, twist: &[TwistCoordinate]) {
+    const AXES: [&str; 3] = ["x", "y", "z"];
+    for (joint, row) in leg.independent().zip(rows) {
+        for (entry, coordinate) in row.iter().zip(twist) {
+            let label = match coordinate {
+                TwistCoordinate::Linear(a) => format!("v{}", AXES[*a]),
+                TwistCoordinate::Angular(a) => format!("w{}", AXES[*a]),
+            };
+            let _ = entry.named(&format!("g{}_{label}_{}", leg.joints[joint].name, leg.name));
+        }
+    }
+}

@@ -1,0 +1,329 @@
+//! The table `[experiment]`: a virtual experiment.
+
+use super::dimension::Dimension;
+use super::inventory::Inventory;
+use super::joint;
+use super::model::{JointKind, Spanned};
+use super::parameter::StandardParameter;
+use super::reader::{Item, Table};
+use super::scope::Scope;
+use crate::diagnostic::{Diagnostic, Span, did_you_mean};
+
+/// A virtual experiment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Experiment {
+    /// Sampling frequency, Hz.
+    pub sampling: f64,
+    /// Duration of the runs that give none of their own, s.
+    pub duration: f64,
+    /// Natural frequency of the controlled robot, Hz.
+    pub bandwidth: f64,
+    /// Damping factor.
+    pub damping: f64,
+    /// Cutoff of the low-pass on the controller's derivative, Hz.
+    pub derivative_cutoff: f64,
+    /// Whether the controller adds the inverse dynamics of the desired motion.
+    pub feed_forward: bool,
+    /// Whether internal torques are removed from the controller's output, eq. (50).
+    pub project_internal: bool,
+    /// Encoder resolution of each actuator, rad or m; 0 is ideal.
+    pub encoder: Vec<f64>,
+    /// Standard deviation of each actuator's torque measurement, N m or N.
+    pub torque_noise: Vec<f64>,
+    /// Largest absolute torque of each actuator, N m or N.
+    pub torque_limit: Option<Vec<f64>>,
+    /// Seed of all noise.
+    pub seed: u64,
+    /// True values of the parameters; those not listed are 0.
+    pub parameters: Vec<TrueParameter>,
+    /// The runs in order.
+    pub runs: Vec<Run>,
+    /// Place of the table.
+    pub span: Span,
+}
+
+/// A body that has parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Body {
+    /// A joint and the body behind it.
+    Joint {
+        /// Index of the leg.
+        leg: usize,
+        /// Index of the joint in its leg.
+        joint: usize,
+    },
+    /// The platform.
+    Platform,
+    /// The payload.
+    Payload,
+}
+
+/// The true value of a standard parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrueParameter {
+    /// Full name, `zz_1_leg1` for instance.
+    pub name: Spanned<String>,
+    /// Whose parameter it is.
+    pub body: Body,
+    /// Which parameter of the body it is.
+    pub symbol: StandardParameter,
+    /// Value in SI units.
+    pub value: f64,
+}
+
+/// One run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// Unique name.
+    pub name: Spanned<String>,
+    /// Whether the payload is on the platform.
+    pub payload: bool,
+    /// Duration, s; that of the experiment if absent.
+    pub duration: Option<f64>,
+    /// Frequency of the first harmonic, Hz.
+    pub fundamental: f64,
+    /// The terms of the desired motion about home.
+    pub terms: Vec<Term>,
+}
+
+/// A term amplitude sin(2π harmonic fundamental t + phase) of one coordinate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Term {
+    /// Name of the coordinate: of the platform, or of a joint of a robot without platform.
+    pub coordinate: Spanned<String>,
+    /// Its index among the r coordinates.
+    pub index: usize,
+    /// Multiple of the fundamental frequency, at least 1.
+    pub harmonic: u32,
+    /// Amplitude, m or rad.
+    pub amplitude: f64,
+    /// Phase, rad.
+    pub phase: f64,
+}
+
+/// Reads the table. Its defaults are those of section 5.1 of the paper.
+pub(super) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Experiment> {
+    let table = item.table("the table `[experiment]`")?;
+    let scope = robot.scope;
+    let positive = |key: &str, dimension, default: f64| {
+        table
+            .get(key)
+            .and_then(|i| i.positive(dimension, scope))
+            .unwrap_or(default)
+    };
+    let switch = |key: &str| table.get(key).and_then(|i| i.boolean()).unwrap_or(true);
+    let kinds = robot.actuator_kinds();
+    let list = |key: &str, dimension: fn(JointKind) -> Dimension| {
+        table
+            .get(key)
+            .and_then(|item| per_actuator(&item, &kinds, dimension, scope))
+    };
+    let ideal = || vec![0.0; kinds.len()];
+    let parameters = table
+        .get("parameters")
+        .map(|item| parameters(&item, robot))
+        .unwrap_or_default();
+    let runs = table
+        .get("run")
+        .map(|item| runs(&item, robot))
+        .unwrap_or_default();
+    let experiment = Experiment {
+        sampling: positive("sampling", Dimension::FREQUENCY, 5000.0),
+        duration: positive("duration", Dimension::TIME, 10.0),
+        bandwidth: positive("bandwidth", Dimension::FREQUENCY, 70.0),
+        damping: positive("damping", Dimension::NONE, 0.7),
+        derivative_cutoff: positive("derivative_cutoff", Dimension::FREQUENCY, 70.0),
+        feed_forward: switch("feed_forward"),
+        project_internal: switch("project_internal"),
+        encoder: list("encoder", position).unwrap_or_else(ideal),
+        torque_noise: list("torque_noise", effort).unwrap_or_else(ideal),
+        torque_limit: list("torque_limit", effort),
+        seed: table.get("seed").and_then(|i| i.integer(0)).unwrap_or(1),
+        parameters,
+        runs,
+        span: table.span.clone(),
+    };
+    table.finish();
+    Some(experiment)
+}
+
+fn position(kind: JointKind) -> Dimension {
+    joint::dimension(kind).unwrap_or(Dimension::NONE)
+}
+
+fn effort(kind: JointKind) -> Dimension {
+    StandardParameter::Fs.dimension(kind)
+}
+
+/// One value for all actuators, or a list with one for each.
+fn per_actuator(
+    item: &Item<'_, '_>,
+    kinds: &[JointKind],
+    dimension: fn(JointKind) -> Dimension,
+    scope: &Scope,
+) -> Option<Vec<f64>> {
+    let items = if item.value.is_array() {
+        item.list()?
+    } else {
+        vec![item.clone(); kinds.len()]
+    };
+    if items.len() != kinds.len() {
+        let message = format!(
+            "`{}`: expected one value or {}, one for each actuator, found {}",
+            item.key.value,
+            kinds.len(),
+            items.len()
+        );
+        item.context.report(item.error(message));
+        return None;
+    }
+    let pairs = items.iter().zip(kinds);
+    let values: Vec<_> = pairs
+        .map(|(item, kind)| item.not_negative(dimension(*kind), scope))
+        .collect();
+    values.into_iter().collect()
+}
+
+fn parameters(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<TrueParameter> {
+    let Some(table) = item.table("the table `[experiment.parameters]`") else {
+        return Vec::new();
+    };
+    let known = robot.parameters();
+    let mut all = Vec::new();
+    for item in table.items() {
+        let name = item.key.clone();
+        let Some((_, body, symbol, dimension)) = known.iter().find(|(n, ..)| *n == name.value)
+        else {
+            let help = did_you_mean(&name.value, known.iter().map(|(n, ..)| n.as_str()));
+            let message = format!("the robot has no parameter `{}`", name.value);
+            let help = help.unwrap_or_else(|| pattern(robot).to_owned());
+            item.context
+                .report(Diagnostic::new(message, name.span).help(help));
+            continue;
+        };
+        let Some(value) = item.float(*dimension, robot.scope) else {
+            continue;
+        };
+        all.push(TrueParameter {
+            name,
+            body: *body,
+            symbol: *symbol,
+            value,
+        });
+    }
+    all
+}
+
+fn pattern(robot: &Inventory<'_>) -> &'static str {
+    match robot.platform {
+        None => {
+            "names are SYMBOL_JOINT, for instance `zz_1`; only parameters listed for the joint exist"
+        }
+        Some(_) => {
+            "names are SYMBOL_JOINT_LEG, SYMBOL_platform and SYMBOL_payload; only parameters listed \
+             for the body exist"
+        }
+    }
+}
+
+fn runs(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<Run> {
+    let mut runs: Vec<Run> = Vec::new();
+    for table in item.tables("a run") {
+        let run = run(&table, robot);
+        table.finish();
+        let Some(run) = run else { continue };
+        if runs.iter().any(|other| other.name.value == run.name.value) {
+            let message = format!("there are two runs \"{}\"", run.name.value);
+            table
+                .context
+                .report(Diagnostic::new(message, run.name.span.clone()));
+        }
+        runs.push(run);
+    }
+    runs
+}
+
+fn run(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Run> {
+    let scope = robot.scope;
+    let name = table
+        .require("name", "for instance name = \"unloaded 1\"")
+        .and_then(|i| i.string());
+    let payload_item = table.get("payload");
+    let payload = payload_item
+        .as_ref()
+        .and_then(Item::boolean)
+        .unwrap_or(false);
+    let has_payload = robot
+        .platform
+        .is_some_and(|platform| platform.payload.is_some());
+    if let (Some(item), true, false) = (&payload_item, payload, has_payload) {
+        let error = item.error("the robot has no payload");
+        table
+            .context
+            .report(error.help("describe it in a table [platform.payload]"));
+    }
+    let duration = table
+        .get("duration")
+        .and_then(|i| i.positive(Dimension::TIME, scope));
+    let help = "fundamental = \"0.1 Hz\", the frequency of the first harmonic";
+    let fundamental = table
+        .require("fundamental", help)
+        .and_then(|i| i.positive(Dimension::FREQUENCY, scope));
+    let help = "terms = [ { coordinate = \"x\", harmonic = 1, amplitude = \"0.05 m\" }, ... ]";
+    let terms = table
+        .require("terms", help)
+        .and_then(|i| i.list())
+        .unwrap_or_default();
+    let coordinates = robot.coordinates();
+    let terms = terms
+        .iter()
+        .filter_map(|item| term(item, &coordinates, scope))
+        .collect();
+    Some(Run {
+        name: name?,
+        payload,
+        duration,
+        fundamental: fundamental?,
+        terms,
+    })
+}
+
+fn term(item: &Item<'_, '_>, coordinates: &[(String, Dimension)], scope: &Scope) -> Option<Term> {
+    let table = item.table("a term")?;
+    let help = "coordinate = \"NAME\" of a platform coordinate, or of a joint without platform";
+    let coordinate = table.require("coordinate", help);
+    let harmonic = table
+        .require("harmonic", "harmonic = 1 is the fundamental")
+        .and_then(|i| i.integer(1));
+    let amplitude = table.require("amplitude", "for instance amplitude = \"0.05 m\"");
+    let phase = table
+        .get("phase")
+        .and_then(|i| i.float(Dimension::ANGLE, scope))
+        .unwrap_or(0.0);
+    table.finish();
+    let coordinate = coordinate?;
+    let text = coordinate.string()?;
+    let names = || coordinates.iter().map(|(name, _)| name.as_str());
+    let Some(index) = names().position(|name| name == text.value) else {
+        let list = || {
+            format!(
+                "its coordinates are {}",
+                names().collect::<Vec<_>>().join(", ")
+            )
+        };
+        let help = did_you_mean(&text.value, names()).unwrap_or_else(list);
+        let message = format!("the robot has no coordinate `{}`", text.value);
+        item.context.report(coordinate.error(message).help(help));
+        return None;
+    };
+    let (_, dimension) = coordinates.get(index)?;
+    let amplitude = amplitude?.float(*dimension, scope)?;
+    let harmonic = u32::try_from(harmonic?).unwrap_or(u32::MAX);
+    Some(Term {
+        coordinate: text,
+        index,
+        harmonic,
+        amplitude,
+        phase,
+    })
+}

@@ -1,0 +1,116 @@
+//! What the tables after the legs need to know of the robot: its actuators, coordinates and
+//! parameters by name.
+
+use super::dimension::Dimension;
+use super::experiment::Body;
+use super::joint;
+use super::model::{JointKind, Leg, Motion, Platform, actuators};
+use super::parameter::StandardParameter;
+use super::scope::Scope;
+
+/// What the tables that follow the legs need to know of the robot.
+pub(super) struct Inventory<'r> {
+    pub(super) platform: Option<&'r Platform>,
+    pub(super) legs: &'r [Leg],
+    pub(super) scope: &'r Scope,
+}
+
+impl Inventory<'_> {
+    /// Kind of each actuated joint.
+    pub(super) fn actuator_kinds(&self) -> Vec<JointKind> {
+        let kind =
+            |(leg, joint): (usize, usize)| Some(self.legs.get(leg)?.joints.get(joint)?.kind.value);
+        actuators(self.legs).into_iter().filter_map(kind).collect()
+    }
+
+    /// Names and dimensions of the r coordinates.
+    pub(super) fn coordinates(&self) -> Vec<(String, Dimension)> {
+        if let Some(platform) = self.platform {
+            return platform_coordinates(platform.motion.value);
+        }
+        let joints = self
+            .legs
+            .iter()
+            .flat_map(|leg| leg.joints.iter().enumerate());
+        let independent = joints.filter(|(index, joint)| joint.is_independent(*index));
+        let named = |(_, j): (usize, &super::Joint)| {
+            Some((j.name.value.clone(), joint::dimension(j.kind.value)?))
+        };
+        independent.filter_map(named).collect()
+    }
+
+    /// Names of all standard parameters with their bodies.
+    pub(super) fn parameters(&self) -> Vec<(String, Body, StandardParameter, Dimension)> {
+        let mut all = Vec::new();
+        let single = self.platform.is_none() && self.legs.len() == 1;
+        for (leg_index, leg) in self.legs.iter().enumerate() {
+            for (index, joint) in leg.joints.iter().enumerate() {
+                let body = Body::Joint {
+                    leg: leg_index,
+                    joint: index,
+                };
+                for symbol in &joint.parameters {
+                    let name = match single {
+                        true => format!("{}_{}", symbol.name(), joint.name.value),
+                        false => {
+                            format!("{}_{}_{}", symbol.name(), joint.name.value, leg.name.value)
+                        }
+                    };
+                    all.push((name, body, *symbol, symbol.dimension(joint.kind.value)));
+                }
+            }
+        }
+        let mut free = |body, name: &str, symbols: &[StandardParameter]| {
+            for symbol in symbols {
+                let dimension = symbol.dimension(JointKind::Fixed);
+                all.push((
+                    format!("{}_{name}", symbol.name()),
+                    body,
+                    *symbol,
+                    dimension,
+                ));
+            }
+        };
+        if let Some(platform) = self.platform {
+            free(Body::Platform, "platform", &platform.parameters);
+            free(
+                Body::Payload,
+                "payload",
+                platform.payload.as_deref().unwrap_or_default(),
+            );
+        }
+        all
+    }
+
+    /// The names of each actuator, the usual one first: `leg1` where the leg has one actuator, the
+    /// joint's where there is one leg, and `leg1.1` always.
+    pub(super) fn actuator_names(&self) -> Vec<Vec<String>> {
+        let all = actuators(self.legs);
+        let names = |&(leg_index, joint): &(usize, usize)| {
+            let leg = self.legs.get(leg_index)?;
+            let joint = &leg.joints.get(joint)?.name.value;
+            let mut names = Vec::new();
+            if self.platform.is_none() && self.legs.len() == 1 {
+                names.push(joint.clone());
+            }
+            if all.iter().filter(|(l, _)| *l == leg_index).count() == 1 {
+                names.push(leg.name.value.clone());
+            }
+            names.push(format!("{}.{joint}", leg.name.value));
+            Some(names)
+        };
+        all.iter().filter_map(names).collect()
+    }
+}
+
+fn platform_coordinates(motion: Motion) -> Vec<(String, Dimension)> {
+    let dimension = |name: &str| match name {
+        "x" | "y" | "z" => Dimension::LENGTH,
+        _ => Dimension::ANGLE,
+    };
+    motion
+        .coordinates()
+        .into_iter()
+        .map(|name| (name.to_owned(), dimension(name)))
+        .collect()
+}

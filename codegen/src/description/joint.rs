@@ -1,0 +1,219 @@
+//! The joints of a placed leg: geometry, and which joint follows which.
+
+use super::dimension::Dimension;
+use super::leg::home;
+use super::model::{Joint, JointKind, Spanned};
+use super::reader::{Item, Table};
+use super::scalar::Scalar;
+use super::scope::Scope;
+use super::shape::{JointShape, Shape};
+use super::value::Value;
+use crate::cas::{Angle, Number, Ratio};
+use crate::diagnostic::Diagnostic;
+
+/// Joint variables with their factors.
+type Combination = Vec<(usize, Ratio)>;
+
+/// Evaluates the joints of a shape with the names of one placement.
+pub(super) fn read(
+    shape: &Shape<'_, '_>,
+    names: &Scope,
+    homes: Option<&Table<'_, '_>>,
+) -> Vec<Joint> {
+    let mut scope = names.clone();
+    for (index, joint) in shape.joints.iter().enumerate() {
+        if let Some(dimension) = dimension(joint.kind.value) {
+            scope.add(joint.variable(), Some(Value::variable(index, dimension)));
+        }
+    }
+    let joints = shape.joints.iter().enumerate();
+    let mut joints: Vec<Joint> = joints
+        .map(|(index, joint)| Reader { joint, index }.read(&scope))
+        .collect();
+    resolve(&mut joints, shape);
+    for (index, joint) in joints.iter_mut().enumerate() {
+        let dimension = dimension(joint.kind.value).filter(|_| joint.is_independent(index));
+        if let Some(dimension) = dimension {
+            joint.home = home(homes, &joint.name.value, dimension, names);
+        }
+    }
+    if let Some(homes) = homes {
+        homes.finish();
+    }
+    joints
+}
+
+/// Dimension of a joint's variable.
+pub(super) fn dimension(kind: JointKind) -> Option<Dimension> {
+    match kind {
+        JointKind::Revolute => Some(Dimension::ANGLE),
+        JointKind::Prismatic => Some(Dimension::LENGTH),
+        JointKind::Fixed => None,
+    }
+}
+
+/// One joint while it is being evaluated.
+struct Reader<'s, 'c, 't> {
+    joint: &'s JointShape<'c, 't>,
+    index: usize,
+}
+
+impl Reader<'_, '_, '_> {
+    fn read(&self, scope: &Scope) -> Joint {
+        let joint = self.joint;
+        let mut scope = scope.clone();
+        if let Some(dimension) = dimension(joint.kind.value) {
+            scope.add("q".to_owned(), Some(Value::variable(self.index, dimension)));
+        }
+        let [gamma, b, alpha, d, theta, r] = joint.steps.each_ref().map(Option::as_ref);
+        let angle = |item: Option<&Item<'_, '_>>| self.angle(item, &scope);
+        let length = |item: Option<&Item<'_, '_>>| self.length(item, &scope);
+        let (theta, r, variable) = match joint.kind.value {
+            JointKind::Revolute => {
+                let (offset, variable) = self.position(theta, Dimension::ANGLE, &scope);
+                let offset = offset.to_angle().unwrap_or(Angle::ZERO);
+                (self.spanned(theta, offset), length(r), variable)
+            }
+            JointKind::Prismatic => {
+                let (offset, variable) = self.position(r, Dimension::LENGTH, &scope);
+                (angle(theta), self.spanned(r, offset.to_number()), variable)
+            }
+            JointKind::Fixed => (angle(theta), length(r), Vec::new()),
+        };
+        Joint {
+            name: joint.name.clone(),
+            kind: joint.kind.clone(),
+            antecedent: joint.antecedent,
+            gamma: angle(gamma),
+            b: length(b),
+            alpha: angle(alpha),
+            d: length(d),
+            theta,
+            r,
+            variable,
+            actuated: joint.actuated,
+            parameters: joint.parameters.clone(),
+            home: Number::ZERO,
+            span: joint.span.clone(),
+        }
+    }
+
+    /// A value with the place of its key, or of the joint if there is none.
+    fn spanned<T>(&self, item: Option<&Item<'_, '_>>, value: T) -> Spanned<T> {
+        Spanned::new(
+            value,
+            item.map_or(&self.joint.span, |item| &item.span).clone(),
+        )
+    }
+
+    fn angle(&self, item: Option<&Item<'_, '_>>, scope: &Scope) -> Spanned<Angle> {
+        let value = item.and_then(|item| item.angle(scope));
+        value.unwrap_or_else(|| self.spanned(item, Angle::ZERO))
+    }
+
+    fn length(&self, item: Option<&Item<'_, '_>>, scope: &Scope) -> Spanned<Number> {
+        let value = item.and_then(|item| item.number(Dimension::LENGTH, scope));
+        value.unwrap_or_else(|| self.spanned(item, Number::ZERO))
+    }
+
+    /// The constant and the variable part of θ (revolute) or r (prismatic). One that is missing, or
+    /// wrong and reported, is the joint's own variable.
+    fn position(
+        &self,
+        item: Option<&Item<'_, '_>>,
+        dimension: Dimension,
+        scope: &Scope,
+    ) -> (Scalar, Combination) {
+        let own = (Scalar::Number(Number::ZERO), vec![(self.index, Ratio::ONE)]);
+        let Some(item) = item else { return own };
+        let value = item
+            .evaluate(scope)
+            .filter(|v| item.check_dimension(v, dimension).is_some());
+        let Some(value) = value else { return own };
+        if let Some(problem) = self.problem(&value, item) {
+            item.context.report_once(problem);
+            return own;
+        }
+        (value.scalar, value.terms)
+    }
+
+    /// Why a value cannot be the joint's position.
+    fn problem(&self, value: &Value, item: &Item<'_, '_>) -> Option<Diagnostic> {
+        let has_own = value.terms.iter().any(|(joint, _)| *joint == self.index);
+        if value.terms.is_empty() {
+            let error = item.error("the position of this joint is a constant");
+            return Some(error.help("add the joint variable `q`, or use type = \"fixed\""));
+        }
+        if has_own && value.terms != [(self.index, Ratio::ONE)] {
+            let error =
+                item.error("the position of a joint with its own variable is `q` plus a constant");
+            let help = "turn the axis to change the sign; use the variables of other joints only for \
+                        a joint that has none of its own";
+            return Some(error.help(help));
+        }
+        if !has_own && self.joint.actuated {
+            let error = item.error("a joint that follows other joints cannot be actuated");
+            return Some(error.help("actuate the joint that it follows"));
+        }
+        None
+    }
+}
+
+/// Writes the variables of dependent joints as combinations of independent ones.
+fn resolve(joints: &mut [Joint], shape: &Shape<'_, '_>) {
+    let given: Vec<Combination> = joints.iter().map(|joint| joint.variable.clone()).collect();
+    for (index, joint) in joints.iter_mut().enumerate() {
+        match independent(&given, index) {
+            Ok(variable) => joint.variable = variable,
+            Err(message) => {
+                let span = match joint.kind.value {
+                    JointKind::Prismatic => joint.r.span.clone(),
+                    _ => joint.theta.span.clone(),
+                };
+                if let Some(item) = shape
+                    .joints
+                    .get(index)
+                    .and_then(|j| j.steps.iter().flatten().next())
+                {
+                    item.context.report_once(Diagnostic::new(message, span));
+                }
+                joint.variable = vec![(index, Ratio::ONE)];
+            }
+        }
+    }
+}
+
+/// The variable of one joint in terms of independent ones: dependent ones are replaced until none is
+/// left, which takes at most as many rounds as there are joints unless they form a cycle.
+fn independent(given: &[Combination], index: usize) -> Result<Combination, &'static str> {
+    let own = |joint: usize| {
+        given
+            .get(joint)
+            .is_some_and(|g| matches!(g.as_slice(), [(j, _)] if *j == joint))
+    };
+    let mut variable = given.get(index).cloned().unwrap_or_default();
+    for _ in 0..=given.len() {
+        if variable.iter().all(|(joint, _)| own(*joint)) {
+            return Ok(variable);
+        }
+        variable = substitute(given, &variable).ok_or("the factors of this joint are too large")?;
+    }
+    Err("the joints follow each other in a cycle")
+}
+
+/// Replaces every joint variable by what is given for it; `None` on overflow.
+fn substitute(given: &[Combination], variable: &Combination) -> Option<Combination> {
+    let mut result: Combination = Vec::new();
+    for (joint, factor) in variable {
+        for (target, weight) in given.get(*joint)? {
+            let product = factor.times(*weight)?;
+            match result.iter_mut().find(|(j, _)| j == target) {
+                Some((_, sum)) => *sum = sum.plus(product)?,
+                None => result.push((*target, product)),
+            }
+        }
+    }
+    result.retain(|(_, factor)| !factor.is_zero());
+    result.sort_unstable_by_key(|(joint, _)| *joint);
+    Some(result)
+}

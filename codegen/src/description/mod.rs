@@ -1,0 +1,49 @@
+//! TOML to [`Description`]: every field evaluated and with its place in the text.
+//!
+//! A description is a TOML file; `robots/README.md` documents its keys, frames and units. Reading it
+//! goes down the tables: [`parse`] reads the root, which reads constants, platform, shapes (legs
+//! written once) and placements (shapes evaluated with values of their own), and then the tables
+//! about experiments, which name what came before. All errors are noted with their places and
+//! reported together.
+//!
+//! Numbers are exact: decimals are fractions, angles are multiples of π and fractions of a radian.
+
+mod dimension;
+mod experiment;
+mod expression;
+mod function;
+mod geometry;
+mod inventory;
+mod joint;
+mod leg;
+mod model;
+mod parameter;
+mod parameters;
+mod platform;
+mod reader;
+mod robot;
+mod scalar;
+mod scope;
+mod settings;
+mod shape;
+#[cfg(test)]
+mod tests;
+mod token;
+mod value;
+
+pub use experiment::{Body, Experiment, Run, Term, TrueParameter};
+pub use model::{
+    Description, End, Joint, JointKind, Leg, Motion, Placement, Platform, PlatformHome, Spanned,
+};
+pub use parameter::StandardParameter;
+pub use settings::{Data, Factor, Friction, Identification, Normalisation};
+
+use crate::diagnostic::{Diagnostics, Source};
+
+/// Reads a description.
+///
+/// # Errors
+/// Everything that is wrong with it, in order of the text.
+pub fn parse(source: &Source) -> Result<Description, Diagnostics> {
+    robot::read(source)
+}

@@ -1,0 +1,272 @@
+//! What a description says, evaluated: one value per placement, lengths in m, masses in kg.
+
+use super::parameter::StandardParameter;
+use crate::cas::{Angle, Number, Ratio};
+use crate::diagnostic::Span;
+
+/// A value and where the description gives it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spanned<T> {
+    /// The value.
+    pub value: T,
+    /// Its place; for a value that is left out, that of the table which could hold it.
+    pub span: Span,
+}
+
+impl<T> Spanned<T> {
+    /// A value at a place.
+    #[must_use]
+    pub const fn new(value: T, span: Span) -> Self {
+        Self { value, span }
+    }
+}
+
+/// A robot as its author describes it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Description {
+    /// Name; letters, digits and underscores.
+    pub name: Spanned<String>,
+    /// One sentence.
+    pub summary: String,
+    /// Where the numbers come from.
+    pub source: String,
+    /// Acceleration of gravity in the base frame, m/s².
+    pub gravity: [Number; 3],
+    /// The platform; `None` for a serial or tree robot.
+    pub platform: Option<Platform>,
+    /// The legs in the order of their placement.
+    pub legs: Vec<Leg>,
+    /// The virtual experiment.
+    pub experiment: Option<super::Experiment>,
+    /// How a measured log maps on the robot.
+    pub data: Option<super::Data>,
+    /// Settings of the identification.
+    pub identification: super::Identification,
+}
+
+/// A motion that a platform can have. Axes are 0, 1, 2 for x, y, z of the base frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Motion {
+    /// Translation along an axis.
+    FixedAxis {
+        /// The axis.
+        axis: usize,
+    },
+    /// A point in a plane.
+    Point {
+        /// The plane's normal.
+        axis: usize,
+    },
+    /// Translations in a plane and rotation about its normal.
+    Planar {
+        /// The plane's normal.
+        axis: usize,
+    },
+    /// Three translations.
+    Translation,
+    /// Three translations and one rotation.
+    Schoenflies {
+        /// The rotation's axis.
+        axis: usize,
+    },
+    /// Rotations about the platform's origin.
+    Spherical,
+    /// All six motions.
+    Spatial,
+}
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+impl Motion {
+    /// Names of the coordinates that a description gives: translations, then `phi` or `rx`, `ry`,
+    /// `rz`. Their number is r, the number of degrees of freedom.
+    #[must_use]
+    pub fn coordinates(self) -> Vec<&'static str> {
+        let in_plane = |axis: usize| [AXES[(axis + 1) % 3], AXES[(axis + 2) % 3]];
+        match self {
+            Self::FixedAxis { axis } => vec![AXES[axis % 3]],
+            Self::Point { axis } => in_plane(axis).to_vec(),
+            Self::Planar { axis } => [&in_plane(axis)[..], &["phi"]].concat(),
+            Self::Translation => AXES.to_vec(),
+            Self::Schoenflies { .. } => [&AXES[..], &["phi"]].concat(),
+            Self::Spherical => vec!["rx", "ry", "rz"],
+            Self::Spatial => [&AXES[..], &["rx", "ry", "rz"]].concat(),
+        }
+    }
+}
+
+/// The platform.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Platform {
+    /// Which motion it has.
+    pub motion: Spanned<Motion>,
+    /// A point of the axis of a fixed-axis motion, m; zero for other motions.
+    pub axis_at: [Number; 3],
+    /// The home pose.
+    pub home: PlatformHome,
+    /// Its inertial parameters that are not absent.
+    pub parameters: Vec<StandardParameter>,
+    /// Inertial parameters of the payload, if the robot may carry one.
+    pub payload: Option<Vec<StandardParameter>>,
+    /// Place of its table.
+    pub span: Span,
+}
+
+/// The platform's home pose; coordinates that its motion has not are zero.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlatformHome {
+    /// Coordinates x, y, z of the platform's origin, m.
+    pub at: [Number; 3],
+    /// The angle φ of a motion with one rotation.
+    pub phi: Angle,
+    /// The angles rx, ry, rz of a motion with three: the orientation is Rz(rz) Ry(ry) Rx(rx).
+    pub rotation: [Angle; 3],
+}
+
+impl PlatformHome {
+    /// All coordinates zero.
+    pub const ZERO: Self = Self {
+        at: [Number::ZERO; 3],
+        phi: Angle::ZERO,
+        rotation: [Angle::ZERO; 3],
+    };
+}
+
+/// A position and an orientation Rz(rz) Ry(ry) Rx(rx).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Placement {
+    /// Coordinates of the origin, m.
+    pub at: [Number; 3],
+    /// The angles rx, ry, rz.
+    pub rotation: [Angle; 3],
+}
+
+impl Placement {
+    /// No displacement.
+    pub const IDENTITY: Self = Self {
+        at: [Number::ZERO; 3],
+        rotation: [Angle::ZERO; 3],
+    };
+}
+
+/// A placed leg.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Leg {
+    /// Name, unique in the robot.
+    pub name: Spanned<String>,
+    /// Number of its shape in the order of the file: legs written once and placed several times
+    /// share it.
+    pub shape: usize,
+    /// Name of its shape.
+    pub shape_name: String,
+    /// The leg's base frame in the robot's base frame.
+    pub base: Placement,
+    /// The joints; antecedents come first.
+    pub joints: Vec<Joint>,
+    /// Where the leg ends on the platform; `None` without platform.
+    pub end: Option<Spanned<End>>,
+    /// Place of its `[[place]]`.
+    pub span: Span,
+}
+
+/// How a leg ends on the platform.
+#[derive(Debug, Clone, PartialEq)]
+pub enum End {
+    /// The last frame is fixed on the platform, at this placement in the platform frame.
+    Rigid(Placement),
+    /// The last frame's origin coincides with this point of the platform frame, m.
+    Point([Number; 3]),
+}
+
+/// The kind of a joint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum JointKind {
+    /// σ = 0: rotates about its z axis.
+    Revolute,
+    /// σ = 1: slides along its z axis.
+    Prismatic,
+    /// σ = 2: fixed.
+    Fixed,
+}
+
+/// A joint and the body behind it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Joint {
+    /// Name, unique in its leg.
+    pub name: Spanned<String>,
+    /// Revolute, prismatic or fixed.
+    pub kind: Spanned<JointKind>,
+    /// The joint whose frame this one starts from, always an earlier one; `None` for the leg's base.
+    pub antecedent: Option<usize>,
+    /// MDH γ.
+    pub gamma: Spanned<Angle>,
+    /// MDH b, m.
+    pub b: Spanned<Number>,
+    /// MDH α.
+    pub alpha: Spanned<Angle>,
+    /// MDH d, m.
+    pub d: Spanned<Number>,
+    /// MDH θ; for a revolute joint its constant part.
+    pub theta: Spanned<Angle>,
+    /// MDH r, m; for a prismatic joint its constant part.
+    pub r: Spanned<Number>,
+    /// The joint's variable, which adds to θ (revolute) or r (prismatic), as a linear combination of
+    /// the independent joint variables of the leg: itself with factor one, or others for a dependent
+    /// joint (in rad or m per rad or m). Empty for a fixed joint.
+    pub variable: Vec<(usize, Ratio)>,
+    /// Whether a motor drives the joint.
+    pub actuated: bool,
+    /// The body's and the joint's standard parameters that are not absent, in order.
+    pub parameters: Vec<StandardParameter>,
+    /// Rough position at home, rad or m; zero for a dependent or fixed joint.
+    pub home: Number,
+    /// Place of its table.
+    pub span: Span,
+}
+
+impl Joint {
+    /// Whether the joint at `index` has a variable of its own.
+    #[must_use]
+    pub fn is_independent(&self, index: usize) -> bool {
+        matches!(self.variable.as_slice(), [(own, _)] if *own == index)
+    }
+}
+
+impl Description {
+    /// The name as a Rust type: `dual_v` becomes `DualV`.
+    #[must_use]
+    pub fn type_name(&self) -> String {
+        type_name(&self.name.value)
+    }
+
+    /// All actuators, as leg and joint, leg by leg: the order of q and τ.
+    #[must_use]
+    pub fn actuators(&self) -> Vec<(usize, usize)> {
+        actuators(&self.legs)
+    }
+
+    /// Whether parameter and actuator names do without the leg's: one leg and no platform.
+    #[must_use]
+    pub fn is_single_leg(&self) -> bool {
+        self.platform.is_none() && self.legs.len() == 1
+    }
+}
+
+pub(super) fn type_name(name: &str) -> String {
+    let word = |word: &str| {
+        let mut letters = word.chars();
+        let first = letters.next().map(|c| c.to_ascii_uppercase());
+        first.into_iter().chain(letters).collect::<String>()
+    };
+    name.split('_').map(word).collect()
+}
+
+pub(super) fn actuators(legs: &[Leg]) -> Vec<(usize, usize)> {
+    let of_leg = |(index, leg): (usize, &Leg)| {
+        let actuated = leg.joints.iter().enumerate().filter(|(_, j)| j.actuated);
+        actuated
+            .map(|(joint, _)| (index, joint))
+            .collect::<Vec<_>>()
+    };
+    legs.iter().enumerate().flat_map(of_leg).collect()
+}

@@ -1,0 +1,92 @@
+//! Lists of standard parameters: symbols, and groups of them.
+
+use super::model::JointKind;
+use super::parameter::StandardParameter as P;
+use super::reader::Item;
+use crate::diagnostic::did_you_mean;
+
+/// Whose parameters a list names.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Owner {
+    /// A body behind a joint of this kind.
+    Joint(JointKind),
+    /// The platform or the payload.
+    FreeBody,
+}
+
+impl Owner {
+    /// All parameters that it can have.
+    fn possible(self) -> &'static [P] {
+        match self {
+            Self::FreeBody | Self::Joint(JointKind::Fixed) => &P::INERTIA,
+            Self::Joint(_) => &P::ALL,
+        }
+    }
+
+    /// The parameters of a body whose description names none.
+    pub(super) fn default(self, actuated: bool) -> Vec<P> {
+        let all = self.possible().iter().copied();
+        all.filter(|p| actuated || *p != P::Ia).collect()
+    }
+}
+
+impl Item<'_, '_> {
+    /// The parameters of a list, sorted, each once; a single string stands for a list of one.
+    pub(super) fn parameters(&self, owner: Owner) -> Option<Vec<P>> {
+        let names = if self.value.is_str() {
+            vec![self.clone()]
+        } else {
+            self.list()?
+        };
+        let mut all = Vec::new();
+        for item in names {
+            all.extend(item.parameter_group(owner).unwrap_or_default());
+        }
+        all.sort_unstable();
+        all.dedup();
+        Some(all)
+    }
+
+    fn parameter_group(&self, owner: Owner) -> Option<Vec<P>> {
+        let name = self.string()?.value;
+        let group = match name.as_str() {
+            "all" => owner.possible().to_vec(),
+            "inertia" => P::INERTIA.to_vec(),
+            "friction" => P::FRICTION.to_vec(),
+            symbol => {
+                let Some(parameter) = P::from_name(symbol) else {
+                    self.unknown_parameter(symbol);
+                    return None;
+                };
+                vec![parameter]
+            }
+        };
+        if let Some(wrong) = group.iter().find(|p| !owner.possible().contains(p)) {
+            let body = if owner == Owner::FreeBody {
+                "a free body"
+            } else {
+                "a fixed joint"
+            };
+            let message = format!("{body} has no parameter `{}`", wrong.name());
+            self.context.report(
+                self.error(message)
+                    .help("its parameters are the ten of \"inertia\""),
+            );
+        }
+        Some(group)
+    }
+
+    fn unknown_parameter(&self, symbol: &str) {
+        let known = || {
+            P::ALL
+                .iter()
+                .map(|p| p.name())
+                .chain(["all", "inertia", "friction"])
+        };
+        let help = did_you_mean(symbol, known());
+        let list = || format!("known: {}", known().collect::<Vec<_>>().join(", "));
+        let message = format!("unknown parameter `{symbol}`");
+        self.context
+            .report(self.error(message).help(help.unwrap_or_else(list)));
+    }
+}

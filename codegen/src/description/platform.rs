@@ -1,0 +1,156 @@
+//! The table `[platform]`.
+
+use super::dimension::Dimension;
+use super::model::{Motion, Platform, PlatformHome, Spanned};
+use super::parameters::Owner;
+use super::reader::Item;
+use super::scope::Scope;
+use crate::cas::Number;
+
+/// The words for motions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Word {
+    FixedAxis,
+    Point,
+    Planar,
+    Translation,
+    Schoenflies,
+    Spherical,
+    Spatial,
+}
+
+const WORDS: [(&str, Word); 7] = [
+    ("fixed axis", Word::FixedAxis),
+    ("point", Word::Point),
+    ("planar", Word::Planar),
+    ("translation", Word::Translation),
+    ("schoenflies", Word::Schoenflies),
+    ("spherical", Word::Spherical),
+    ("spatial", Word::Spatial),
+];
+
+const AXES: [(&str, usize); 3] = [("x", 0), ("y", 1), ("z", 2)];
+
+pub(super) fn read(item: &Item<'_, '_>, scope: &Scope) -> Option<Platform> {
+    let table = item.table("the table `[platform]`")?;
+    let parameters = table
+        .get("parameters")
+        .and_then(|i| i.parameters(Owner::FreeBody));
+    let parameters = parameters.unwrap_or_else(|| Owner::FreeBody.default(false));
+    let payload = table.get("payload").and_then(|item| {
+        let payload = item.table("the table `[platform.payload]`")?;
+        let own = payload
+            .get("parameters")
+            .and_then(|i| i.parameters(Owner::FreeBody));
+        payload.finish();
+        Some(own.unwrap_or_else(|| parameters.clone()))
+    });
+    let word = table
+        .require("motion", "for instance motion = \"planar\"")
+        .and_then(|i| i.choice(&WORDS));
+    let (axis, home) = (table.get("axis"), table.get("home"));
+    table.finish();
+    let word = word?;
+    let (motion, axis_at) = motion(word.value, axis.as_ref(), scope)?;
+    let home = home.map_or(Some(PlatformHome::ZERO), |item| {
+        read_home(&item, motion, scope)
+    });
+    Some(Platform {
+        motion: Spanned::new(motion, word.span),
+        axis_at,
+        home: home.unwrap_or(PlatformHome::ZERO),
+        parameters,
+        payload,
+        span: table.span.clone(),
+    })
+}
+
+fn motion(word: Word, axis: Option<&Item<'_, '_>>, scope: &Scope) -> Option<(Motion, [Number; 3])> {
+    let mut at = [Number::ZERO; 3];
+    let motion = match word {
+        Word::FixedAxis => {
+            let direction;
+            (direction, at) = fixed_axis(axis, scope)?;
+            Motion::FixedAxis { axis: direction }
+        }
+        Word::Point => Motion::Point {
+            axis: normal(axis)?,
+        },
+        Word::Planar => Motion::Planar {
+            axis: normal(axis)?,
+        },
+        Word::Schoenflies => Motion::Schoenflies {
+            axis: normal(axis)?,
+        },
+        Word::Translation | Word::Spherical | Word::Spatial => {
+            if let Some(item) = axis {
+                let message = "`axis` has no meaning for this motion";
+                item.context
+                    .report(item.error(message).help("leave it out"));
+            }
+            match word {
+                Word::Translation => Motion::Translation,
+                Word::Spherical => Motion::Spherical,
+                _ => Motion::Spatial,
+            }
+        }
+    };
+    Some((motion, at))
+}
+
+/// The plane's normal or the rotation's axis; z if it is not given.
+fn normal(axis: Option<&Item<'_, '_>>) -> Option<usize> {
+    axis.map_or(Some(2), |item| Some(item.choice(&AXES)?.value))
+}
+
+/// Direction and point of a fixed axis; the word alone is an axis through the origin.
+fn fixed_axis(axis: Option<&Item<'_, '_>>, scope: &Scope) -> Option<(usize, [Number; 3])> {
+    let Some(item) = axis.filter(|item| item.is_table()) else {
+        return Some((normal(axis)?, [Number::ZERO; 3]));
+    };
+    let table = item.table("`axis`")?;
+    let at = table
+        .get("at")
+        .and_then(|i| i.vector(Dimension::LENGTH, scope));
+    let direction = table.require("direction", "for instance direction = \"z\"");
+    table.finish();
+    Some((
+        direction?.choice(&AXES)?.value,
+        at.unwrap_or([Number::ZERO; 3]),
+    ))
+}
+
+fn read_home(item: &Item<'_, '_>, motion: Motion, scope: &Scope) -> Option<PlatformHome> {
+    let table = item.table("the platform's `home`")?;
+    let mut home = PlatformHome::ZERO;
+    for name in motion.coordinates() {
+        let Some(value) = table.get(name) else {
+            continue;
+        };
+        match name {
+            "x" | "y" | "z" => {
+                let length = value.number(Dimension::LENGTH, scope).map(|n| n.value);
+                let axis = AXES
+                    .iter()
+                    .find(|(axis, _)| *axis == name)
+                    .map(|(_, index)| *index);
+                if let (Some(length), Some(place)) = (length, axis.and_then(|a| home.at.get_mut(a)))
+                {
+                    *place = length;
+                }
+            }
+            "phi" => home.phi = value.angle(scope).map_or(home.phi, |a| a.value),
+            _ => {
+                let angle = value.angle(scope).map(|a| a.value);
+                let axis = ["rx", "ry", "rz"].iter().position(|axis| *axis == name);
+                if let (Some(angle), Some(place)) =
+                    (angle, axis.and_then(|a| home.rotation.get_mut(a)))
+                {
+                    *place = angle;
+                }
+            }
+        }
+    }
+    table.finish();
+    Some(home)
+}

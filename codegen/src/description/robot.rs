@@ -1,0 +1,278 @@
+//! The description as a whole.
+
+use super::dimension::Dimension;
+use super::inventory::Inventory;
+use super::model::{Description, Leg, Platform, Spanned, actuators, type_name};
+use super::reader::{Context, Item, Table};
+use super::scope::Scope;
+use super::shape::Shape;
+use super::{experiment, leg, platform, settings, shape};
+use crate::cas::{Number, Ratio};
+use crate::diagnostic::{Diagnostic, Diagnostics, Source};
+use toml::de::DeTable;
+
+/// Words that cannot name a type.
+const KEYWORDS: [&str; 51] = [
+    "Self", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue",
+    "crate", "do", "dyn", "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if",
+    "impl", "in", "let", "loop", "macro", "match", "mod", "move", "mut", "override", "priv", "pub",
+    "ref", "return", "self", "static", "struct", "super", "trait", "true", "try", "type", "typeof",
+    "unsafe", "unsized", "use", "virtual", "where", "while",
+];
+
+pub(super) fn read(source: &Source) -> Result<Description, Diagnostics> {
+    let (document, syntax_errors) = DeTable::parse_recoverable(&source.text);
+    if !syntax_errors.is_empty() {
+        return Err(syntax(&syntax_errors));
+    }
+    let context = Context::new(source);
+    // Errors of the file as a whole are shown at its first line.
+    let table = Table::new(&context, document.get_ref(), 0..0, "the description");
+    let description = root(&table);
+    let mut errors = context.into_errors();
+    match description {
+        Some(description) => errors.into_result(description),
+        None => {
+            // Every reader that gives up reports why; a slip there must not read as success.
+            if errors.is_empty() {
+                errors.push(Diagnostic::global("the description is incomplete"));
+            }
+            Err(errors)
+        }
+    }
+}
+
+/// The parser's own messages.
+fn syntax(errors: &[toml::de::Error]) -> Diagnostics {
+    let mut all = Diagnostics::new();
+    for error in errors {
+        let message = format!("this is no TOML: {}", error.message());
+        all.push(match error.span() {
+            Some(span) => Diagnostic::new(message, span),
+            None => Diagnostic::global(message),
+        });
+    }
+    all
+}
+
+fn root(table: &Table<'_, '_>) -> Option<Description> {
+    let name = table
+        .require("name", "for instance name = \"MyRobot\"")
+        .and_then(|item| robot_name(&item));
+    let text = |key: &str| {
+        table
+            .get(key)
+            .and_then(|item| item.string())
+            .map(|text| text.value)
+    };
+    let (summary, source) = (
+        text("summary").unwrap_or_default(),
+        text("source").unwrap_or_default(),
+    );
+    let constants = table
+        .get("constants")
+        .and_then(|item| item.table("the table `[constants]`"));
+    let scope = constants
+        .map(|table| Scope::constants(&table))
+        .unwrap_or_default();
+    let gravity = table
+        .get("gravity")
+        .and_then(|i| i.vector(Dimension::ACCELERATION, &scope));
+    let platform_item = table.get("platform");
+    let platform = platform_item
+        .as_ref()
+        .and_then(|item| platform::read(item, &scope));
+    let shapes = shapes(table, &scope);
+    let legs = legs(table, &shapes, &scope);
+    check_ends(table, &shapes, platform_item.is_some(), &legs);
+    check_actuators(table, platform.as_ref(), &legs);
+    let robot = Inventory {
+        platform: platform.as_ref(),
+        legs: &legs,
+        scope: &scope,
+    };
+    check_parameter_names(table, &robot);
+    let (experiment, data) = (table.get("experiment"), table.get("data"));
+    let settings = table.get("identification");
+    table.finish();
+    // Names and numbers in what follows depend on all legs: a leg that failed would make every one
+    // of them wrong.
+    let complete = platform.is_some() == platform_item.is_some() && !legs.is_empty();
+    if !complete || legs.len() != placements(table).len() {
+        return None;
+    }
+    let experiment = experiment.and_then(|item| experiment::read(&item, &robot));
+    let data = data.and_then(|item| settings::data(&item, &robot));
+    let identification = settings::identification(settings.as_ref(), &robot);
+    Some(Description {
+        name: name?,
+        summary,
+        source,
+        gravity: gravity.unwrap_or_else(standard_gravity),
+        platform,
+        legs,
+        experiment,
+        data,
+        identification,
+    })
+}
+
+/// 9.81 m/s² down the z axis.
+fn standard_gravity() -> [Number; 3] {
+    let down = Ratio::new(-981, 100).unwrap_or(Ratio::integer(-10));
+    [Number::ZERO, Number::ZERO, Number::ratio(down)]
+}
+
+fn robot_name(item: &Item<'_, '_>) -> Option<Spanned<String>> {
+    let name = item.string()?;
+    let letter = name.value.starts_with(|c: char| c.is_ascii_alphabetic());
+    let keyword = |name: &str| KEYWORDS.contains(&name);
+    if !letter || !super::scope::is_word(&name.value) {
+        let error = item.error(format!(
+            "\"{}\" cannot be the name of a Rust type",
+            name.value
+        ));
+        item.context
+            .report(error.help("use letters and digits, a letter first, for instance \"DualV\""));
+    } else if keyword(&name.value) || keyword(&type_name(&name.value)) {
+        let error = item.error(format!("\"{}\" is a keyword of Rust", name.value));
+        item.context
+            .report(error.help("choose another name, for instance \"MyRobot\""));
+    }
+    Some(name)
+}
+
+fn shapes<'c, 't>(table: &Table<'c, 't>, scope: &Scope) -> Vec<Shape<'c, 't>> {
+    let help = "write each leg once as [[leg.NAME.joint]] and place it by [[place]]";
+    let Some(item) = table.require("leg", help) else {
+        return Vec::new();
+    };
+    let legs = item
+        .table("the table `[leg]`")
+        .map(|legs| legs.items())
+        .unwrap_or_default();
+    if item.is_table() && legs.is_empty() {
+        table
+            .context
+            .report(item.error("the robot has no leg").help(help));
+    }
+    legs.iter()
+        .filter_map(|item| shape::read(item, scope))
+        .collect()
+}
+
+fn placements<'c, 't>(table: &Table<'c, 't>) -> Vec<Table<'c, 't>> {
+    table
+        .get("place")
+        .map(|item| item.tables("a placement"))
+        .unwrap_or_default()
+}
+
+fn legs(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], scope: &Scope) -> Vec<Leg> {
+    let help =
+        "a table [[place]] with name = \"leg1\" and shape = \"NAME\" puts a leg in its place";
+    let wanted = !shapes.is_empty();
+    if wanted && table.require("place", help).is_none() {
+        return Vec::new();
+    }
+    let tables = placements(table);
+    for shape in shapes {
+        let placed = |t: &Table<'_, '_>| {
+            let name = t.get("shape");
+            name.is_some_and(|item| item.value.as_str() == Some(shape.name.value.as_str()))
+        };
+        if !tables.iter().any(placed) {
+            let message = format!("the leg `{}` is never placed", shape.name.value);
+            table
+                .context
+                .report(Diagnostic::new(message, shape.name.span.clone()).help(help));
+        }
+    }
+    leg::read(&placements(table), shapes, scope)
+}
+
+/// A platform needs leg ends; without one there is a single leg, and no end.
+fn check_ends(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], platform: bool, legs: &[Leg]) {
+    for shape in shapes {
+        let name = &shape.name.value;
+        let diagnostic = match &shape.end {
+            None if platform => {
+                let message = format!("the leg `{name}` has no end on the platform");
+                let help = format!(
+                    "[leg.{name}.end] says where it ends, for instance at = [0, \"0.1 m\", 0]"
+                );
+                Diagnostic::new(message, shape.span.clone()).help(help)
+            }
+            Some(end) if !platform => {
+                let message = format!("the leg `{name}` ends on a platform, but there is none");
+                Diagnostic::new(message, end.span.clone()).help("describe it in a table [platform]")
+            }
+            _ => continue,
+        };
+        table.context.report(diagnostic);
+    }
+    if let (false, Some(second)) = (platform, legs.get(1)) {
+        let message = "a robot without platform has one leg";
+        let help = "branches of a tree are joints whose `antecedent` is not the joint before them";
+        table
+            .context
+            .report(Diagnostic::new(message, second.span.clone()).help(help));
+    }
+}
+
+/// Without actuators there is nothing to identify from; a platform with more freedoms than the robot
+/// has actuators cannot be controlled.
+fn check_actuators(table: &Table<'_, '_>, platform: Option<&Platform>, legs: &[Leg]) {
+    let count = actuators(legs).len();
+    let Some(platform) = platform else {
+        let first = legs.iter().flat_map(|leg| &leg.joints).next();
+        // After another error nobody knows which joints were meant to be actuated.
+        if let (0, Some(joint), true) = (count, first, table.context.is_clean()) {
+            let diagnostic =
+                Diagnostic::new("no joint of the robot is actuated", joint.span.clone());
+            table
+                .context
+                .report(diagnostic.help("mark a joint with actuated = true"));
+        }
+        return;
+    };
+    let dof = platform.motion.value.coordinates().len();
+    if !legs.is_empty() && count < dof {
+        let message = format!(
+            "the platform has {dof} degrees of freedom, but the robot has {count} actuators"
+        );
+        let diagnostic = Diagnostic::new(message, platform.motion.span.clone());
+        table
+            .context
+            .report(diagnostic.help("mark more joints with actuated = true"));
+    }
+}
+
+/// Leg and joint names are joined by underscores, so two bodies can come by the same name.
+fn check_parameter_names(table: &Table<'_, '_>, robot: &Inventory<'_>) {
+    let mut names: Vec<&str> = Vec::new();
+    for leg in robot.legs {
+        for joint in &leg.joints {
+            let repeated = robot
+                .legs
+                .iter()
+                .filter(|other| other.name.value == leg.name.value)
+                .count()
+                > 1;
+            let name = format!("{}_{}", joint.name.value, leg.name.value);
+            let clash = robot.legs.iter().any(|other| {
+                let same =
+                    |j: &super::Joint| format!("{}_{}", j.name.value, other.name.value) == name;
+                other.name.value != leg.name.value && other.joints.iter().any(same)
+            });
+            if clash && !repeated && !names.contains(&leg.name.value.as_str()) {
+                let message = format!("another leg's joint is also called `{name}`");
+                let diagnostic = Diagnostic::new(message, leg.name.span.clone());
+                table
+                    .context
+                    .report(diagnostic.help("choose names without underscores"));
+                names.push(&leg.name.value);
+            }
+        }
+    }
+}

@@ -1,0 +1,268 @@
+//! The tables `[data]` and `[identification]`.
+
+use super::dimension::Dimension;
+use super::inventory::Inventory;
+use super::model::{Spanned, actuators};
+use super::reader::{Item, Table};
+use crate::diagnostic::{Span, did_you_mean};
+
+/// How a measured log maps on the robot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Data {
+    /// Column of the time, s.
+    pub time: String,
+    /// Columns of the actuators' positions.
+    pub positions: Vec<String>,
+    /// Columns of the actuators' torques, forces or drive signals.
+    pub torques: Vec<String>,
+    /// Factors from columns to rad or m, one for each actuator.
+    pub position_scale: Vec<Factor>,
+    /// Factors from columns to N m or N, one for each actuator.
+    pub torque_gain: Vec<Factor>,
+    /// Place of the table.
+    pub span: Span,
+}
+
+/// The factor of a column.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Factor {
+    /// A number, in SI units.
+    Value(f64),
+    /// The name of a variable in the log.
+    Variable(String),
+}
+
+/// How the variance of the residual is normalised.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Normalisation {
+    /// By the number of equations minus one, about the residual's mean.
+    MinusOne,
+    /// By the number of equations minus that of parameters, eq. (46).
+    #[default]
+    MinusParameters,
+}
+
+/// How friction is modelled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Friction {
+    /// The same coefficients in both directions, and an offset.
+    #[default]
+    Symmetric,
+    /// Coefficients of its own for each direction.
+    Asymmetric,
+}
+
+/// Settings of the identification.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Identification {
+    /// Order of the Butterworth low-pass on the positions.
+    pub filter_order: usize,
+    /// Its cutoff, Hz; chosen from the sampling frequency if absent.
+    pub filter_cutoff: Option<f64>,
+    /// One sample in so many is kept; chosen from the sampling frequency if absent.
+    pub decimation: Option<usize>,
+    /// Samples dropped at the start of each run after differentiation.
+    pub skip_start: usize,
+    /// Samples dropped at the end of each run.
+    pub skip_end: usize,
+    /// Ratio of relative standard deviations at which the elimination of parameters ends.
+    pub r_sigma: f64,
+    /// Kept actuators of case 2, indices among all actuators; the first r by default.
+    pub kept_actuators: Vec<usize>,
+    /// How the variance of the residual is normalised.
+    pub normalisation: Normalisation,
+    /// How friction is modelled.
+    pub friction: Friction,
+    /// Weighted least squares (48); ordinary ones otherwise.
+    pub weighted: bool,
+    /// Whether the base parameters are reduced to essential ones.
+    pub essential: bool,
+}
+
+/// Reads `[data]`.
+pub(super) fn data(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Data> {
+    let table = item.table("the table `[data]`")?;
+    let count = actuators(robot.legs).len();
+    let columns = |key: &str| {
+        let item = table.require(key, "give one column for each actuator")?;
+        let names = item.strings()?;
+        check_count(&item, names.len(), count)?;
+        Some(names.into_iter().map(|name| name.value).collect::<Vec<_>>())
+    };
+    let factors = |key: &str| {
+        let item = table.get(key);
+        item.map_or(Some(vec![Factor::Value(1.0); count]), |item| {
+            let list = if item.value.is_array() {
+                item.list()?
+            } else {
+                vec![item.clone(); count]
+            };
+            check_count(&item, list.len(), count)?;
+            let factors: Vec<_> = list.iter().map(|item| factor(item, robot)).collect();
+            factors.into_iter().collect()
+        })
+    };
+    let time = table
+        .require("time", "time = \"t\", the column of the time")
+        .and_then(|i| i.string());
+    let (positions, torques) = (columns("positions"), columns("torques"));
+    let (position_scale, torque_gain) = (factors("position_scale"), factors("torque_gain"));
+    table.finish();
+    Some(Data {
+        time: time?.value,
+        positions: positions?,
+        torques: torques?,
+        position_scale: position_scale?,
+        torque_gain: torque_gain?,
+        span: table.span.clone(),
+    })
+}
+
+fn check_count(item: &Item<'_, '_>, found: usize, expected: usize) -> Option<()> {
+    if found == expected {
+        return Some(());
+    }
+    let message = format!(
+        "`{}`: expected {expected} entries, one for each actuator, found {found}",
+        item.key.value
+    );
+    item.context.report(item.error(message));
+    None
+}
+
+/// A bare identifier that is no constant is the name of a variable in the log. The unit of a log is
+/// its own affair, so a factor may have any dimension.
+fn factor(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Factor> {
+    if let Some(text) = item.value.as_str() {
+        let text = text.trim();
+        let letter = text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
+        let word = super::scope::is_word(text);
+        if letter && word && text != "pi" && !robot.scope.contains(text) {
+            return Some(Factor::Variable(text.to_owned()));
+        }
+    }
+    let value = item.evaluate(robot.scope)?.scalar.value();
+    if value == 0.0 {
+        item.context
+            .report(item.error("a factor of 0 loses the signal"));
+        return None;
+    }
+    Some(Factor::Value(value))
+}
+
+/// Reads `[identification]`, which may be missing.
+pub(super) fn identification(item: Option<&Item<'_, '_>>, robot: &Inventory<'_>) -> Identification {
+    let mut settings = Identification {
+        filter_order: 4,
+        filter_cutoff: None,
+        decimation: None,
+        skip_start: 0,
+        skip_end: 0,
+        r_sigma: 10.0,
+        kept_actuators: (0..kept_count(robot)).collect(),
+        normalisation: Normalisation::default(),
+        friction: Friction::default(),
+        weighted: true,
+        essential: true,
+    };
+    if let Some(table) = item.and_then(|item| item.table("the table `[identification]`")) {
+        fill(&mut settings, &table, robot);
+        table.finish();
+    }
+    settings
+}
+
+fn fill(settings: &mut Identification, table: &Table<'_, '_>, robot: &Inventory<'_>) {
+    let scope = robot.scope;
+    let size = |key: &str, minimum| table.get(key).and_then(|i| i.size(minimum));
+    let switch = |key: &str| table.get(key).and_then(|i| i.boolean()).unwrap_or(true);
+    settings.filter_order = size("filter_order", 1).unwrap_or(settings.filter_order);
+    settings.filter_cutoff = table
+        .get("filter_cutoff")
+        .and_then(|i| i.positive(Dimension::FREQUENCY, scope));
+    settings.decimation = size("decimation", 1);
+    settings.skip_start = size("skip_start", 0).unwrap_or(0);
+    settings.skip_end = size("skip_end", 0).unwrap_or(0);
+    if let Some(item) = table.get("r_sigma") {
+        let ratio = item.positive(Dimension::NONE, scope);
+        if ratio.is_some_and(|ratio| ratio <= 1.0) {
+            let error = item
+                .error("`r_sigma` must be greater than 1")
+                .help("choose between 10 and 30");
+            table.context.report(error);
+        }
+        settings.r_sigma = ratio.unwrap_or(settings.r_sigma);
+    }
+    if let Some(kept) = table
+        .get("kept_actuators")
+        .and_then(|item| kept_actuators(&item, robot))
+    {
+        settings.kept_actuators = kept;
+    }
+    let choices = [
+        ("n-1", Normalisation::MinusOne),
+        ("n-p", Normalisation::MinusParameters),
+    ];
+    if let Some(choice) = table.get("normalisation").and_then(|i| i.choice(&choices)) {
+        settings.normalisation = choice.value;
+    }
+    let choices = [
+        ("symmetric", Friction::Symmetric),
+        ("asymmetric", Friction::Asymmetric),
+    ];
+    if let Some(choice) = table.get("friction").and_then(|i| i.choice(&choices)) {
+        settings.friction = choice.value;
+    }
+    settings.weighted = switch("weighted");
+    settings.essential = switch("essential");
+}
+
+/// Number of kept actuators: r, or all of a robot that has fewer.
+fn kept_count(robot: &Inventory<'_>) -> usize {
+    robot.coordinates().len().min(actuators(robot.legs).len())
+}
+
+fn kept_actuators(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Vec<usize>> {
+    let names = robot.actuator_names();
+    let given = item.strings()?;
+    let mut kept: Vec<usize> = Vec::new();
+    for name in &given {
+        match names.iter().position(|known| known.contains(&name.value)) {
+            Some(index) if kept.contains(&index) => {
+                let message = format!("the actuator `{}` is listed twice", name.value);
+                item.context.report(error_at(name, message));
+            }
+            Some(index) => kept.push(index),
+            None => {
+                let known = || {
+                    names
+                        .iter()
+                        .filter_map(|known| known.first())
+                        .map(String::as_str)
+                };
+                let list = || {
+                    format!(
+                        "the actuators are {}",
+                        known().collect::<Vec<_>>().join(", ")
+                    )
+                };
+                let help = did_you_mean(&name.value, known()).unwrap_or_else(list);
+                let message = format!("there is no actuator `{}`", name.value);
+                item.context.report(error_at(name, message).help(help));
+            }
+        }
+    }
+    let count = kept_count(robot);
+    if given.len() != count {
+        let message = format!(
+            "`kept_actuators`: expected {count} names, one for each degree of freedom, found {}",
+            given.len()
+        );
+        item.context.report(item.error(message));
+    }
+    (kept.len() == count).then_some(kept)
+}
+
+fn error_at(name: &Spanned<String>, message: String) -> crate::diagnostic::Diagnostic {
+    crate::diagnostic::Diagnostic::new(message, name.span.clone())
+}

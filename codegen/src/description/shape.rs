@@ -1,0 +1,297 @@
+//! The tables `[leg.NAME]`: legs written once, read without evaluating their expressions.
+
+use super::model::{JointKind, Spanned};
+use super::parameter::StandardParameter;
+use super::parameters::Owner;
+use super::reader::{Item, Table};
+use super::scope::{Scope, is_word, name_problem};
+use crate::diagnostic::{Diagnostic, Span, did_you_mean};
+
+/// A leg's shape.
+pub(super) struct Shape<'c, 't> {
+    pub(super) name: Spanned<String>,
+    /// Names of the constants that each placement gives.
+    pub(super) variables: Vec<Spanned<String>>,
+    pub(super) base_at: Option<Item<'c, 't>>,
+    pub(super) base_rotation: Option<Item<'c, 't>>,
+    pub(super) joints: Vec<JointShape<'c, 't>>,
+    pub(super) end: Option<EndShape<'c, 't>>,
+    pub(super) span: Span,
+}
+
+/// A joint's table.
+pub(super) struct JointShape<'c, 't> {
+    pub(super) name: Spanned<String>,
+    pub(super) kind: Spanned<JointKind>,
+    pub(super) antecedent: Option<usize>,
+    /// γ, b, α, d, θ, r where they are given.
+    pub(super) steps: [Option<Item<'c, 't>>; 6],
+    pub(super) actuated: bool,
+    pub(super) parameters: Vec<StandardParameter>,
+    pub(super) span: Span,
+}
+
+/// Keys of a joint's geometry, in the order of the MDH step.
+pub(super) const STEPS: [&str; 6] = ["gamma", "b", "alpha", "d", "theta", "r"];
+
+/// A leg's end.
+pub(super) struct EndShape<'c, 't> {
+    pub(super) rigid: bool,
+    pub(super) at: Option<Item<'c, 't>>,
+    pub(super) rotation: Option<Item<'c, 't>>,
+    pub(super) span: Span,
+}
+
+const KINDS: [(&str, JointKind); 3] = [
+    ("revolute", JointKind::Revolute),
+    ("prismatic", JointKind::Prismatic),
+    ("fixed", JointKind::Fixed),
+];
+
+impl JointShape<'_, '_> {
+    /// Name of the joint's variable in expressions of the leg: `q1`, `q_elbow`.
+    pub(super) fn variable(&self) -> String {
+        let name = &self.name.value;
+        let numbered = name.starts_with(|c: char| c.is_ascii_digit());
+        if numbered {
+            format!("q{name}")
+        } else {
+            format!("q_{name}")
+        }
+    }
+}
+
+/// Reads a shape; `None` if it is no table.
+pub(super) fn read<'c, 't>(item: &Item<'c, 't>, constants: &Scope) -> Option<Shape<'c, 't>> {
+    let name = item.key.clone();
+    let table = item.table(format!("the leg `{}`", name.value))?;
+    let variables = table
+        .get("variables")
+        .and_then(|i| i.strings())
+        .unwrap_or_default();
+    let variables = valid_variables(&table, variables, constants);
+    let base = table.get("base").and_then(|i| i.table("`base`"));
+    let (base_at, base_rotation) = match &base {
+        Some(base) => (base.get("at"), base.get("rotation")),
+        None => (None, None),
+    };
+    if let Some(base) = base {
+        base.finish();
+    }
+    let help = "write its joints as [[leg.NAME.joint]], from the base on";
+    let joints = table
+        .require("joint", help)
+        .map_or_else(Vec::new, |item| joints(&item));
+    let end = table.get("end").and_then(|item| end(&item));
+    table.finish();
+    Some(Shape {
+        name,
+        variables,
+        base_at,
+        base_rotation,
+        joints,
+        end,
+        span: table.span.clone(),
+    })
+}
+
+/// The variables whose names can be used; the others are reported and left out.
+fn valid_variables(
+    table: &Table<'_, '_>,
+    variables: Vec<Spanned<String>>,
+    constants: &Scope,
+) -> Vec<Spanned<String>> {
+    let mut valid: Vec<Spanned<String>> = Vec::new();
+    for variable in variables {
+        let name = &variable.value;
+        let problem = if ["name", "shape", "home"].contains(&name.as_str()) {
+            Some("this is a key that every placement has")
+        } else if constants.contains(name) {
+            Some("there is a constant of this name")
+        } else if valid.iter().any(|v| v.value == *name) {
+            Some("this variable is listed twice")
+        } else {
+            name_problem(name)
+        };
+        if let Some(problem) = problem {
+            let message = format!("a variable cannot be named `{name}`");
+            table
+                .context
+                .report(Diagnostic::new(message, variable.span).label(problem));
+        } else {
+            valid.push(variable);
+        }
+    }
+    valid
+}
+
+fn joints<'c, 't>(item: &Item<'c, 't>) -> Vec<JointShape<'c, 't>> {
+    let tables = item.tables("a joint");
+    if tables.is_empty() && item.value.as_array().is_some_and(|list| list.is_empty()) {
+        item.context
+            .report(item.error("a leg needs at least one joint"));
+    }
+    // Names come first, so that an antecedent can be told from a wrong name.
+    let names: Vec<_> = tables
+        .iter()
+        .enumerate()
+        .map(|(index, t)| joint_name(t, index))
+        .collect();
+    for (index, name) in names.iter().enumerate() {
+        let before = names.get(..index).unwrap_or_default();
+        if before.iter().any(|n| n.value == name.value) {
+            let message = format!("there are two joints `{}` in this leg", name.value);
+            item.context.report(
+                Diagnostic::new(message, name.span.clone())
+                    .help("a joint without a name is called by its number"),
+            );
+        }
+    }
+    let antecedents: Vec<_> = tables
+        .iter()
+        .enumerate()
+        .map(|(index, table)| antecedent(table, index, &names))
+        .collect();
+    check_order(&tables, &antecedents);
+    let parts = tables.iter().zip(names).zip(antecedents);
+    parts
+        .map(|((table, name), antecedent)| joint(table, name, antecedent.map(|a| a.value)))
+        .collect()
+}
+
+fn joint_name(table: &Table<'_, '_>, index: usize) -> Spanned<String> {
+    let number = || Spanned::new((index + 1).to_string(), table.span.clone());
+    let name = table
+        .get("name")
+        .and_then(|item| item.string())
+        .unwrap_or_else(number);
+    // "base" is the antecedent of the first joint.
+    if !is_word(&name.value) || name.value == "base" {
+        let message = format!("`{}` cannot be the name of a joint", name.value);
+        let diagnostic = Diagnostic::new(message, name.span.clone());
+        table
+            .context
+            .report(diagnostic.help("use letters, digits and underscores, but not \"base\""));
+    }
+    name
+}
+
+/// Index and place of a joint's antecedent; `None` for the base.
+fn antecedent(
+    table: &Table<'_, '_>,
+    index: usize,
+    names: &[Spanned<String>],
+) -> Option<Spanned<usize>> {
+    let before = || {
+        index
+            .checked_sub(1)
+            .map(|i| Spanned::new(i, table.span.clone()))
+    };
+    let Some(item) = table.get("antecedent") else {
+        return before();
+    };
+    let text = item.string()?;
+    if text.value == "base" {
+        return None;
+    }
+    let found = names.iter().position(|name| name.value == text.value);
+    if found.is_none() {
+        let known = || names.iter().map(|n| n.value.as_str()).chain(["base"]);
+        let message = format!("there is no joint `{}` in this leg", text.value);
+        let list = || format!("known: {}", known().collect::<Vec<_>>().join(", "));
+        let help = did_you_mean(&text.value, known()).unwrap_or_else(list);
+        table.context.report(item.error(message).help(help));
+    }
+    found.map(|i| Spanned::new(i, text.span))
+}
+
+/// Reports antecedents that form a cycle or come after their joint.
+fn check_order(tables: &[Table<'_, '_>], antecedents: &[Option<Spanned<usize>>]) {
+    for (index, (table, antecedent)) in tables.iter().zip(antecedents).enumerate() {
+        let Some(antecedent) = antecedent.as_ref().filter(|a| a.value >= index) else {
+            continue;
+        };
+        let mut at = Some(antecedent.value);
+        let mut steps = 0;
+        while let Some(joint) = at.filter(|joint| *joint != index && steps <= tables.len()) {
+            at = antecedents
+                .get(joint)
+                .and_then(Option::as_ref)
+                .map(|a| a.value);
+            steps += 1;
+        }
+        let diagnostic = if at.is_some() {
+            Diagnostic::new("the antecedents form a cycle", antecedent.span.clone())
+                .help("every chain of antecedents must lead to \"base\"")
+        } else {
+            Diagnostic::new(
+                "the antecedent comes after the joint",
+                antecedent.span.clone(),
+            )
+            .help("write the joints from the base on")
+        };
+        table.context.report(diagnostic);
+    }
+}
+
+fn joint<'c, 't>(
+    table: &Table<'c, 't>,
+    name: Spanned<String>,
+    antecedent: Option<usize>,
+) -> JointShape<'c, 't> {
+    let help = "type = \"revolute\", \"prismatic\" or \"fixed\"";
+    let kind = table
+        .require("type", help)
+        .and_then(|item| item.choice(&KINDS));
+    let kind = kind.unwrap_or(Spanned::new(JointKind::Revolute, table.span.clone()));
+    let steps = STEPS.map(|key| table.get(key));
+    let actuated_item = table.get("actuated");
+    let actuated = actuated_item
+        .as_ref()
+        .and_then(Item::boolean)
+        .unwrap_or(false);
+    if let (Some(item), true, JointKind::Fixed) = (&actuated_item, actuated, kind.value) {
+        table
+            .context
+            .report(item.error("a fixed joint cannot be actuated"));
+    }
+    let owner = Owner::Joint(kind.value);
+    let parameters = table
+        .get("parameters")
+        .and_then(|item| item.parameters(owner));
+    let parameters = parameters.unwrap_or_else(|| owner.default(actuated));
+    table.finish();
+    JointShape {
+        name,
+        kind,
+        antecedent,
+        steps,
+        actuated,
+        parameters,
+        span: table.span.clone(),
+    }
+}
+
+fn end<'c, 't>(item: &Item<'c, 't>) -> Option<EndShape<'c, 't>> {
+    let table = item.table("the leg's `end`")?;
+    let kind = table
+        .get("type")
+        .and_then(|item| item.choice(&[("rigid", true), ("point", false)]));
+    let rigid = kind.is_none_or(|kind| kind.value);
+    let (at, rotation) = (table.get("at"), table.get("rotation"));
+    if let (Some(rotation), false) = (&rotation, rigid) {
+        let message = "an end of type \"point\" has no rotation";
+        item.context.report(
+            rotation
+                .error(message)
+                .help("leave it out, or use type = \"rigid\""),
+        );
+    }
+    table.finish();
+    Some(EndShape {
+        rigid,
+        at,
+        rotation,
+        span: table.span.clone(),
+    })
+}

@@ -1,0 +1,126 @@
+//! Errors in the tables about experiments, data and identification.
+
+use super::{good, listed, single};
+use crate::description::Factor;
+
+/// The errors of a robot of one joint with these tables, which start at line 2.
+fn errors(tables: &str) -> Vec<String> {
+    listed(&single(tables, ""))
+}
+
+#[test]
+fn experiment() {
+    let tables = r#"[experiment]
+sampling = "5 s"
+duration = 0
+bandwith = 3
+encoder = [1, 2]
+torque_limit = "127 N"
+[experiment.parameters]
+zz_1 = "1 kg m"
+zz_2 = 1
+fv_1 = "0.1 N m s"
+fs_1 = "0.1 N m s"
+[[experiment.run]]
+payload = true
+fundamental = "1 Hz"
+terms = [
+  { coordinate = "2", harmonic = 0, amplitude = 1 },
+  { coordinate = "1", harmonic = 1, amplitude = "1 m" },
+]
+[[experiment.run]]
+name = "a"
+[[experiment.run]]
+name = "a"
+fundamental = 1
+terms = []
+"#;
+    let expected = [
+        "3:12 `sampling`: expected a frequency (Hz), found a time (5 s)",
+        "4:12 `duration`: expected a value greater than 0, found 0",
+        "5:1 unknown key `bandwith`; did you mean `bandwidth`?",
+        "6:11 `encoder`: expected one value or 1, one for each actuator, found 2",
+        "7:16 `torque_limit`: expected a torque (N m), found a force (127 N)",
+        "9:8 `zz_1`: expected a moment of inertia (kg m^2), found a first moment of mass (1 kg m)",
+        "10:1 the robot has no parameter `zz_2`; did you mean `zz_1`?",
+        "12:8 `fs_1`: expected a torque (N m), found a quantity in m^2 kg s^-1 (0.1 m^2 kg s^-1)",
+        "13:1 a run has no `name`; for instance name = \"unloaded 1\"",
+        "14:11 the robot has no payload; describe it in a table [platform.payload]",
+        "17:18 the robot has no coordinate `2`; its coordinates are 1",
+        "17:34 `harmonic`: expected an integer of at least 1, found 0",
+        "18:49 `amplitude`: expected an angle (rad), found a length (1 m)",
+        "20:1 a run has no `fundamental`; fundamental = \"0.1 Hz\", the frequency of the first harmonic",
+    ];
+    let found = errors(tables);
+    for line in expected {
+        assert!(found.iter().any(|f| f == line), "{line}\nnot in {found:#?}");
+    }
+    assert_eq!(found.len(), expected.len() + 1, "{found:#?}");
+}
+
+#[test]
+fn data() {
+    let found = errors("[data]\ntime = 1\npositions = [\"a\", \"b\"]\ntorque_gain = [0]");
+    let expected = [
+        "2:1 the table `[data]` has no `torques`; give one column for each actuator",
+        "3:8 `time`: expected a string, found an integer",
+        "4:13 `positions`: expected 1 entries, one for each actuator, found 2",
+        "5:16 a factor of 0 loses the signal",
+    ];
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn factors_are_numbers_expressions_or_variables() {
+    let tables = "[constants]\nk = \"2 N m/A\"\n[data]\ntime = \"t\"\npositions = [\"q\"]\n\
+                  torques = [\"i\"]\nposition_scale = \"1 deg\"\ntorque_gain = [\"k\"]";
+    let data = good(&single(tables, "")).data.unwrap();
+    assert_eq!(data.position_scale, [Factor::Value(1_f64.to_radians())]);
+    assert_eq!(data.torque_gain, [Factor::Value(2.0)]);
+    let variable = tables.replace("[\"k\"]", "\"gtau\"");
+    let data = good(&single(&variable, "")).data.unwrap();
+    assert_eq!(data.torque_gain, [Factor::Variable("gtau".to_owned())]);
+}
+
+#[test]
+fn identification() {
+    let tables = "[identification]\nfilter_order = 0\ndecimation = -1\nr_sigma = 0.5\n\
+                  normalisation = \"n\"\nkept_actuators = [\"arn\"]\nweighted = 1\nessental = true";
+    let expected = [
+        "3:16 `filter_order`: expected an integer of at least 1, found 0",
+        "4:14 `decimation`: expected an integer of at least 1, found -1",
+        "5:11 `r_sigma` must be greater than 1; choose between 10 and 30",
+        "6:17 `normalisation`: expected \"n-1\" or \"n-p\", found \"n\"",
+        "7:19 there is no actuator `arn`; the actuators are 1",
+        "8:12 `weighted`: expected true or false, found an integer",
+        "9:1 unknown key `essental`; did you mean `essential`?",
+    ];
+    assert_eq!(errors(tables), expected);
+}
+
+#[test]
+fn kept_actuators_of_the_dualv() {
+    let text = include_str!("../../../../robots/dualv.toml");
+    let kept = |names: &str| text.replace(r#"["leg1", "leg2", "leg3"]"#, names);
+    let robot = good(&kept(r#"["leg4", "leg2.1", "leg1"]"#));
+    assert_eq!(robot.identification.kept_actuators, [3, 1, 0]);
+    let found = listed(&kept(r#"["leg4", "leg4", "lag1", "leg2.2"]"#));
+    let messages: Vec<_> = found
+        .iter()
+        .filter_map(|f| f.split_once(' '))
+        .map(|(_, m)| m)
+        .collect();
+    let expected = [
+        "`kept_actuators`: expected 3 names, one for each degree of freedom, found 4",
+        "the actuator `leg4` is listed twice",
+        "there is no actuator `lag1`; did you mean `leg1`?",
+        "there is no actuator `leg2.2`; did you mean `leg2`?",
+    ];
+    assert_eq!(messages, expected);
+    let found = listed(&text.replace("zz_1_leg1 =", "zz_1_lag1 ="));
+    assert!(
+        found
+            .concat()
+            .ends_with("the robot has no parameter `zz_1_lag1`; did you mean `zz_1_leg1`?")
+    );
+}

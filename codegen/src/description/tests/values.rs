@@ -1,0 +1,140 @@
+//! Values of expressions and joints in good descriptions.
+
+use super::{good, single};
+use crate::cas::{Angle, Number, Ratio};
+use crate::description::*;
+
+/// θ's constant part, of a joint at `q + expression`.
+fn angle(constants: &str, expression: &str) -> Angle {
+    let root = format!("[constants]\n{constants}\n");
+    let robot = good(&single(&root, &format!("gamma = \"{expression}\"")));
+    robot.legs[0].joints[0].gamma.value
+}
+
+fn length(expression: &str) -> Number {
+    let robot = good(&single("", &format!("d = {expression}")));
+    robot.legs[0].joints[0].d.value
+}
+
+fn degrees(text: &str) -> Angle {
+    Angle::degrees(Ratio::decimal(text).unwrap()).unwrap()
+}
+
+fn ratio(n: i128, d: i128) -> Number {
+    Number::ratio(Ratio::new(n, d).unwrap())
+}
+
+#[test]
+fn angles_are_exact() {
+    assert_eq!(angle("", "15.52 deg"), degrees("15.52"));
+    assert_eq!(angle("", "pi/2"), degrees("90"));
+    assert_eq!(angle("", "-pi * 2 / 3 + 30 deg"), degrees("-90"));
+    assert_eq!(
+        angle("", "1e-3 rad"),
+        Angle::radians(Ratio::new(1, 1000).unwrap())
+    );
+    assert_eq!(angle("", "atan2(-1, 1)"), degrees("-45"));
+    assert_eq!(angle("", "atan2(sqrt(3) * 1 m, 1 m)"), degrees("60"));
+    assert_eq!(
+        angle("a = \"40 deg\"\nb = \"90 deg - a\"", "2*b - a/4"),
+        degrees("90")
+    );
+    let odd = angle("", "atan2(1, 3)").value();
+    assert!((odd - 1.0_f64.atan2(3.0)).abs() < 1e-15);
+}
+
+#[test]
+fn lengths_are_exact() {
+    assert_eq!(length("0.41"), ratio(41, 100));
+    assert_eq!(length("\"0.41 m\""), ratio(41, 100));
+    assert_eq!(length("\"3 mm + 1 cm\""), ratio(13, 1000));
+    assert_eq!(length("\"2 * 0.5 m * sin(30 deg)\""), ratio(1, 2));
+    assert_eq!(length("\"sqrt(9 m^2) / 2\""), ratio(3, 2));
+    assert_eq!(length("\"6 m / 2 m * 1 m\""), ratio(3, 1));
+    assert_eq!(length("\"1 m/s * 2 s\""), ratio(2, 1));
+    assert_eq!(length("\"-(2 m)^-1 * 4 m^2 + 2 m\""), Number::ZERO);
+    assert_eq!(length("\"1_000 mm\""), Number::ONE);
+    assert_eq!(length("\"1 N m / (0.5 kg m/s^2)\""), ratio(2, 1));
+    assert_eq!(length("\"-2^2 + 5\""), Number::ONE);
+    assert!((length("\"sqrt(2) * 1 m\"") * length("\"sqrt(2) * 1 m\"") - ratio(2, 1)).is_zero());
+}
+
+#[test]
+fn dependent_joints_are_resolved() {
+    let text = r#"
+name = "Parallelogram"
+[[leg.arm.joint]]
+name = "root"
+type = "revolute"
+actuated = true
+[[leg.arm.joint]]
+type = "revolute"
+theta = "-q_root / 2 + 90 deg"
+[[leg.arm.joint]]
+type = "revolute"
+antecedent = "root"
+theta = "q2 - q4"
+[[leg.arm.joint]]
+type = "revolute"
+[[leg.arm.joint]]
+type = "prismatic"
+r = "0.02 m/rad * q4 + 0.3 m"
+theta = "10 deg"
+[[place]]
+name = "arm"
+shape = "arm"
+home = { root = "20 deg", 4 = 1 }
+"#;
+    let robot = good(text);
+    let joints = &robot.legs[0].joints;
+    let half = Ratio::new(-1, 2).unwrap();
+    assert_eq!(joints[1].variable, [(0, half)]);
+    assert_eq!(joints[1].theta.value, degrees("90"));
+    assert_eq!(joints[2].variable, [(0, half), (3, Ratio::integer(-1))]);
+    assert_eq!(joints[2].antecedent, Some(0));
+    assert_eq!(joints[4].variable, [(3, Ratio::new(1, 50).unwrap())]);
+    assert_eq!(joints[4].r.value, ratio(3, 10));
+    let independent: Vec<_> = joints
+        .iter()
+        .enumerate()
+        .map(|(i, j)| j.is_independent(i))
+        .collect();
+    assert_eq!(independent, [true, false, false, true, false]);
+    assert!((joints[0].home.value() - 20_f64.to_radians()).abs() < 1e-15);
+    assert_eq!(joints[3].home, Number::ONE);
+}
+
+#[test]
+fn defaults() {
+    let robot = good(&single("", ""));
+    assert_eq!(
+        robot.gravity,
+        [Number::ZERO, Number::ZERO, ratio(-981, 100)]
+    );
+    let joint = &robot.legs[0].joints[0];
+    assert_eq!((joint.name.value.as_str(), joint.antecedent), ("1", None));
+    assert_eq!(joint.variable, [(0, Ratio::ONE)]);
+    assert_eq!(joint.parameters.len(), 14);
+    assert_eq!(robot.legs[0].base, Placement::IDENTITY);
+    assert!(robot.experiment.is_none() && robot.data.is_none());
+}
+
+#[test]
+fn motions_and_ends() {
+    let leg = "[[leg.a.joint]]\ntype = \"prismatic\"\nactuated = true\n[leg.a.end]\ntype = \"point\"\nat = [0, 0.1, 0]\n[[place]]\nname = \"a\"\nshape = \"a\"\n";
+    let robot = good(&format!(
+        "name = \"one_axis\"\n[platform]\nmotion = \"fixed axis\"\naxis = {{ at = [0, \"1 cm\", 0], direction = \"x\" }}\nhome = {{ x = 0.5 }}\n{leg}"
+    ));
+    assert_eq!(robot.type_name(), "OneAxis");
+    let platform = robot.platform.unwrap();
+    assert_eq!(platform.motion.value, Motion::FixedAxis { axis: 0 });
+    assert_eq!(platform.axis_at[1], ratio(1, 100));
+    assert_eq!(platform.home.at[0], ratio(1, 2));
+    assert_eq!(platform.parameters, StandardParameter::INERTIA);
+    assert_eq!(
+        robot.legs[0].end.as_ref().unwrap().value,
+        End::Point([Number::ZERO, ratio(1, 10), Number::ZERO])
+    );
+    assert_eq!(Motion::Planar { axis: 1 }.coordinates(), ["z", "x", "phi"]);
+    assert_eq!(Motion::Spatial.coordinates().len(), 6);
+}

@@ -1,0 +1,251 @@
+//! Source text, spans and collected errors, and how they are shown.
+//!
+//! A stage that finds an error notes a [`Diagnostic`] and goes on, so that one run shows every error
+//! of a description. Nothing here prints: rendering gives a string, plain for `compile_error!` and
+//! styled for a terminal, or plain data for machines.
+
+mod render;
+mod suggestion;
+
+pub use render::Located;
+pub use suggestion::{did_you_mean, nearest};
+
+use std::ops::Range;
+
+/// A range of bytes of a source text.
+pub type Span = Range<usize>;
+
+/// A text and what its user calls it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Source {
+    /// The path as the user gave it.
+    pub name: String,
+    /// The text.
+    pub text: String,
+}
+
+/// A place in a text for people.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Position {
+    /// Line, counted from 1.
+    pub line: usize,
+    /// Column in characters, counted from 1.
+    pub column: usize,
+}
+
+impl Source {
+    /// A text with its name.
+    #[must_use]
+    pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            text: text.into(),
+        }
+    }
+
+    /// Line and column at which a span starts; a start behind the end counts as the end.
+    #[must_use]
+    pub fn position(&self, span: &Span) -> Position {
+        let before = &self.text[..self.boundary(span.start)];
+        let line_start = before.rfind('\n').map_or(0, |at| at + 1);
+        Position {
+            line: before.matches('\n').count() + 1,
+            column: before[line_start..].chars().count() + 1,
+        }
+    }
+
+    /// The last character boundary at or before a byte.
+    fn boundary(&self, at: usize) -> usize {
+        let mut at = at.min(self.text.len());
+        while !self.text.is_char_boundary(at) {
+            at -= 1;
+        }
+        at
+    }
+
+    /// The part of a span that lies on its first line, cut to character boundaries.
+    fn first_line(&self, span: &Span) -> Span {
+        let start = self.boundary(span.start);
+        let end = self.boundary(span.end.max(start)).max(start);
+        let length = self.text[start..end]
+            .find(['\n', '\r'])
+            .unwrap_or(end - start);
+        start..start + length
+    }
+}
+
+/// One error.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// What is wrong, in one sentence.
+    pub message: String,
+    /// Where; `None` if it is no one place of the text.
+    pub span: Option<Span>,
+    /// What stands there or should stand there: the text under the caret, possibly empty.
+    pub label: String,
+    /// A way out.
+    pub help: Option<String>,
+}
+
+impl Diagnostic {
+    /// An error at a place.
+    #[must_use]
+    pub fn new(message: impl Into<String>, span: Span) -> Self {
+        Self {
+            message: message.into(),
+            span: Some(span),
+            label: String::new(),
+            help: None,
+        }
+    }
+
+    /// An error of the text as a whole.
+    #[must_use]
+    pub fn global(message: impl Into<String>) -> Self {
+        Self {
+            message: message.into(),
+            span: None,
+            label: String::new(),
+            help: None,
+        }
+    }
+
+    /// With a text under the caret.
+    #[must_use]
+    pub fn label(self, label: impl Into<String>) -> Self {
+        Self {
+            label: label.into(),
+            ..self
+        }
+    }
+
+    /// With a way out.
+    #[must_use]
+    pub fn help(self, help: impl Into<String>) -> Self {
+        Self {
+            help: Some(help.into()),
+            ..self
+        }
+    }
+
+    /// With a way out, if there is one.
+    #[must_use]
+    pub fn maybe_help(self, help: Option<String>) -> Self {
+        Self {
+            help: help.or(self.help),
+            ..self
+        }
+    }
+}
+
+/// All errors that were found so far, in order of their place.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Diagnostics {
+    list: Vec<Diagnostic>,
+}
+
+impl Diagnostics {
+    /// None yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds an error; the same error at the same place is kept once.
+    pub fn push(&mut self, diagnostic: Diagnostic) {
+        let same = |d: &Diagnostic| d.message == diagnostic.message && d.span == diagnostic.span;
+        if !self.list.iter().any(same) {
+            let start = |d: &Diagnostic| d.span.as_ref().map_or(0, |s| s.start);
+            let at = self
+                .list
+                .partition_point(|d| start(d) <= start(&diagnostic));
+            self.list.insert(at, diagnostic);
+        }
+    }
+
+    /// Adds all errors of another collection.
+    pub fn append(&mut self, other: Self) {
+        for diagnostic in other.list {
+            self.push(diagnostic);
+        }
+    }
+
+    /// Whether an error at exactly this place is known.
+    #[must_use]
+    pub fn has_error_at(&self, span: &Span) -> bool {
+        self.list.iter().any(|d| d.span.as_ref() == Some(span))
+    }
+
+    /// Whether there is no error.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// Number of errors.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    /// The errors in order of their place.
+    pub fn iter(&self) -> std::slice::Iter<'_, Diagnostic> {
+        self.list.iter()
+    }
+
+    /// The value, if there is no error.
+    ///
+    /// # Errors
+    /// The collection itself, if it is not empty.
+    pub fn into_result<T>(self, value: T) -> Result<T, Self> {
+        if self.is_empty() {
+            Ok(value)
+        } else {
+            Err(self)
+        }
+    }
+}
+
+impl<'a> IntoIterator for &'a Diagnostics {
+    type Item = &'a Diagnostic;
+    type IntoIter = std::slice::Iter<'a, Diagnostic>;
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
+    }
+}
+
+impl From<Diagnostic> for Diagnostics {
+    fn from(diagnostic: Diagnostic) -> Self {
+        Self {
+            list: vec![diagnostic],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_count_characters() {
+        let source = Source::new("a.toml", "ä = 1\nµß = 2\n");
+        assert_eq!(source.position(&(0..1)), Position { line: 1, column: 1 });
+        assert_eq!(source.position(&(12..13)), Position { line: 2, column: 4 });
+        assert_eq!(
+            source.position(&(900..901)),
+            Position { line: 3, column: 1 }
+        );
+    }
+
+    #[test]
+    fn errors_are_sorted_and_kept_once() {
+        let mut all = Diagnostics::new();
+        assert!(all.clone().into_result(()).is_ok());
+        all.push(Diagnostic::new("second", 5..6));
+        all.push(Diagnostic::new("first", 1..2));
+        all.push(Diagnostic::new("second", 5..6));
+        let messages: Vec<_> = all.iter().map(|d| d.message.as_str()).collect();
+        assert_eq!(messages, ["first", "second"]);
+        assert!(all.into_result(()).is_err());
+    }
+}

@@ -1,0 +1,145 @@
+//! Names, sizes and tables of a generated robot.
+
+use super::expression::number;
+use crate::derivation::BodyParameter;
+use crate::mechanism::{JointKind, StandardParameter};
+use crate::model::RobotModel;
+use proc_macro2::{Literal, TokenStream};
+use quote::{format_ident, quote};
+
+/// The associated constants of the robot's type.
+#[must_use]
+pub fn items(model: &RobotModel) -> TokenStream {
+    let mechanism = &model.mechanism;
+    let size = |n: usize| Literal::usize_unsuffixed(n);
+    let sizes = [
+        ("POSE", mechanism.pose_len(), " Numbers in a pose."),
+        ("DOF", mechanism.dof(), " r, independent platform coordinates."),
+        ("ACTUATORS", mechanism.actuated().len(), " n, actuated joints."),
+        ("JOINTS", mechanism.joints().len(), " n_t, joints of all legs."),
+    ];
+    let sizes = sizes.map(|(name, value, doc)| {
+        let (name, value) = (format_ident!("{name}"), size(value));
+        quote!(#[doc = #doc] pub const #name: usize = #value;)
+    });
+    let name = &mechanism.name;
+    let legs: Vec<&str> = mechanism.legs.iter().map(|l| l.name.as_str()).collect();
+    let actuators = mechanism.actuator_names();
+    let joints: Vec<String> = mechanism.joints().iter().map(|&j| mechanism.joint_name(j)).collect();
+    let strings = [
+        ("LEGS", legs.iter().map(ToString::to_string).collect(), " Names of the legs."),
+        ("ACTUATOR_NAMES", actuators, " Names of the actuators, in the order of q and τ."),
+        ("JOINT_NAMES", joints, " Names of the joints, in the order of q_t."),
+        ("COORDINATES", coordinates(model), " Names of the pose's numbers."),
+    ];
+    let strings = strings.map(|(name, values, doc): (_, Vec<String>, _)| {
+        let (name, count) = (format_ident!("{name}"), size(values.len()));
+        quote!(#[doc = #doc] pub const #name: [&'static str; #count] = [#(#values),*];)
+    });
+    let tables = [
+        parameters("PARAMETERS", " The standard parameters whose columns are not identically zero, in column order.", model, &model.selection.standard),
+        parameters("PAYLOAD_PARAMETERS", " The payload's parameters, in column order.", model, &model.selection.payload),
+    ];
+    let base = base_parameters(model);
+    let home = home(model);
+    quote! {
+        #[doc = " The robot's name."]
+        pub const NAME: &'static str = #name;
+        #(#sizes)*
+        #(#strings)*
+        #home
+        #(#tables)*
+        #base
+    }
+}
+
+fn coordinates(model: &RobotModel) -> Vec<String> {
+    match &model.mechanism.platform {
+        Some(platform) => {
+            platform.motion.pose_coordinates().iter().map(ToString::to_string).collect()
+        }
+        None => {
+            let joints = model.mechanism.joints();
+            joints.iter().map(|&j| format!("q_{}", model.mechanism.joint_name(j))).collect()
+        }
+    }
+}
+
+fn home(model: &RobotModel) -> TokenStream {
+    let mechanism = &model.mechanism;
+    let joints = mechanism.joints();
+    let actuated = mechanism.actuated();
+    let indices = actuated.iter().map(|&i| Literal::usize_unsuffixed(i));
+    let revolute = actuated.iter().map(|&i| mechanism.joint(joints[i]).kind == JointKind::Revolute);
+    let kept = mechanism.kept_actuators.iter().map(|&i| Literal::usize_unsuffixed(i));
+    let kept_count = Literal::usize_unsuffixed(mechanism.kept_actuators.len());
+    let pose = mechanism.home.pose.iter().map(|&v| number(v));
+    let positions = mechanism.home.joints.iter().map(|&v| number(v));
+    quote! {
+        #[doc = " Indices of the actuated joints among all joints."]
+        pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [#(#indices),*];
+        #[doc = " Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N)."]
+        pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [#(#revolute),*];
+        #[doc = " Kept actuators of case 2."]
+        pub const KEPT_ACTUATORS: [usize; #kept_count] = [#(#kept),*];
+        #[doc = " Pose of the home configuration (m, rad)."]
+        pub const HOME_POSE: [f64; Self::POSE] = [#(#pose),*];
+        #[doc = " Joint positions of the home configuration, which fixes the working mode (m, rad)."]
+        pub const HOME_JOINTS: [f64; Self::JOINTS] = [#(#positions),*];
+    }
+}
+
+fn parameters(name: &str, doc: &str, model: &RobotModel, of: &[BodyParameter]) -> TokenStream {
+    let entries = of.iter().map(|&parameter| {
+        let name = model.parameter_name(parameter);
+        let unit = model.parameter_unit(parameter);
+        let symbol = |s: StandardParameter| format_ident!("{s:?}");
+        match parameter {
+            BodyParameter::Leg { leg, joint, symbol: s } => {
+                let shape = model.mechanism.legs[leg].shape;
+                let (leg, joint, shape) = (index(leg), index(joint), index(shape));
+                let symbol = symbol(s);
+                quote!(Parameter::of_leg(#name, Symbol::#symbol, #unit, #leg, #joint, #shape))
+            }
+            BodyParameter::Platform(s) => {
+                let symbol = symbol(s);
+                quote!(Parameter::of_platform(#name, Symbol::#symbol, #unit))
+            }
+            BodyParameter::Payload(s) => {
+                let symbol = symbol(s);
+                quote!(Parameter::of_payload(#name, Symbol::#symbol, #unit))
+            }
+        }
+    });
+    let (name, count) = (format_ident!("{name}"), Literal::usize_unsuffixed(of.len()));
+    quote! {
+        #[doc = #doc]
+        pub const #name: [::overact::Parameter; #count] = {
+            use ::overact::{Parameter, Symbol};
+            [#(#entries),*]
+        };
+    }
+}
+
+fn index(value: usize) -> Literal {
+    Literal::usize_unsuffixed(value)
+}
+
+fn base_parameters(model: &RobotModel) -> TokenStream {
+    let entries = model.base.iter().map(|base| {
+        let (name, kept) = (model.base_name(base), model.parameter_name(base.parameter));
+        let regrouped = base.regrouped.iter().map(|(parameter, coefficient)| {
+            let (name, coefficient) = (model.parameter_name(*parameter), number(*coefficient));
+            quote!((#name, #coefficient))
+        });
+        quote!(BaseParameter::new(#name, #kept, &[#(#regrouped),*]))
+    });
+    let count = Literal::usize_unsuffixed(model.base.len());
+    quote! {
+        #[doc = " The base parameters and what is regrouped into them, in the symmetric order (43)."]
+        pub const BASE_PARAMETERS: [::overact::BaseParameter; #count] = {
+            use ::overact::BaseParameter;
+            [#(#entries),*]
+        };
+    }
+}

@@ -1,0 +1,250 @@
+//! The body of a function: assignments and results as tokens.
+//!
+//! A value that is used once and has no name is written where it is used, as long as the expression
+//! stays short; every other value is a `let` with the name that the derivation gave it, or a number.
+
+use crate::lowering::{Condition, Operation, Program, Source};
+use proc_macro2::{Ident, Literal, Span, TokenStream};
+use quote::quote;
+use std::collections::HashSet;
+
+/// Operations that one expression may hold.
+const LONGEST: usize = 10;
+
+/// How tightly an expression binds: sums, products, atoms.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Binding {
+    Sum,
+    Product,
+    Atom,
+}
+
+struct Text {
+    tokens: TokenStream,
+    binding: Binding,
+    size: usize,
+}
+
+impl Text {
+    fn atom(tokens: TokenStream) -> Self {
+        Self { tokens, binding: Binding::Atom, size: 0 }
+    }
+
+    /// The tokens, in parentheses if the context binds more tightly.
+    fn within(&self, binding: Binding) -> TokenStream {
+        let tokens = &self.tokens;
+        if self.binding < binding { quote!((#tokens)) } else { quote!(#tokens) }
+    }
+}
+
+/// Writes the body of a program: statements and the value of its output.
+pub struct Body<'p> {
+    program: &'p Program,
+    names: Vec<Option<Ident>>,
+    uses: Vec<usize>,
+    inlined: Vec<Option<Text>>,
+    statements: TokenStream,
+    taken: HashSet<String>,
+}
+
+impl<'p> Body<'p> {
+    /// Statements and value of a program.
+    #[must_use]
+    pub fn write(program: &'p Program) -> (TokenStream, TokenStream) {
+        let taken = program.inputs.iter().map(|a| a.name.clone()).collect();
+        let count = program.steps.len();
+        let mut body = Self {
+            program,
+            names: vec![None; count],
+            uses: crate::lowering::peephole::uses(program),
+            inlined: (0..count).map(|_| None).collect(),
+            statements: TokenStream::new(),
+            taken,
+        };
+        let mut at = 0;
+        while at < count {
+            at += body.step(at);
+        }
+        let value = body.output();
+        (body.statements, value)
+    }
+
+    /// Writes step `at`; returns how many steps were written.
+    fn step(&mut self, at: usize) -> usize {
+        if let Some(angle) = self.pair(at) {
+            return self.sine_and_cosine(at, angle);
+        }
+        let text = self.text(self.program.steps[at].operation);
+        let named = self.program.steps[at].name.is_some();
+        let guarded = self.program.guards.iter().any(|g| g.source == Source::Step(at));
+        if self.uses[at] == 1 && !named && !guarded && text.size < LONGEST {
+            self.inlined[at] = Some(text);
+        } else {
+            let name = self.declare(at);
+            let tokens = text.tokens;
+            self.statements.extend(quote!(let #name = #tokens;));
+        }
+        self.guards(at);
+        1
+    }
+
+    /// The angle, if steps `at` and `at + 1` are its cosine and sine in whatever order.
+    fn pair(&self, at: usize) -> Option<Source> {
+        let operation = |i: usize| self.program.steps.get(i).map(|s| s.operation);
+        match (operation(at)?, operation(at + 1)?) {
+            (Operation::Cosine(a), Operation::Sine(b)) | (Operation::Sine(a), Operation::Cosine(b))
+                if a == b =>
+            {
+                Some(a)
+            }
+            _ => None,
+        }
+    }
+
+    fn sine_and_cosine(&mut self, at: usize, angle: Source) -> usize {
+        let angle = self.source(angle).tokens;
+        let (first, second) = (self.declare(at), self.declare(at + 1));
+        let cosine_first = matches!(self.program.steps[at].operation, Operation::Cosine(_));
+        let (sine, cosine) = if cosine_first { (second, first) } else { (first, second) };
+        self.statements.extend(quote!(let (#sine, #cosine) = ::overact::math::sin_cos(#angle);));
+        self.guards(at);
+        self.guards(at + 1);
+        2
+    }
+
+    fn guards(&mut self, at: usize) {
+        for guard in self.program.guards.iter().filter(|g| g.source == Source::Step(at)) {
+            let value = self.source(guard.source).tokens;
+            self.statements.extend(match &guard.condition {
+                Condition::Reach { leg } => quote!(::overact::guard::reach(#value, #leg)?;),
+                Condition::Leg { leg, home } => {
+                    let home = number(*home);
+                    quote!(::overact::guard::leg(#value, #home, #leg)?;)
+                }
+                Condition::Platform { actuators, home } => {
+                    let home = number(*home);
+                    quote!(::overact::guard::platform(#value, #home, #actuators)?;)
+                }
+            });
+        }
+    }
+
+    /// A name for the value of a step: its own, made unique, or `t` with a number.
+    fn declare(&mut self, at: usize) -> Ident {
+        let wanted = self.program.steps[at].name.clone().unwrap_or_else(|| format!("t{at}"));
+        let mut name = wanted.clone();
+        let mut suffix = 2;
+        while !self.taken.insert(name.clone()) {
+            name = format!("{wanted}_{suffix}");
+            suffix += 1;
+        }
+        let ident = Ident::new(&name, Span::call_site());
+        self.names[at] = Some(ident.clone());
+        ident
+    }
+
+    fn source(&mut self, source: Source) -> Text {
+        match source {
+            Source::Constant(value) => {
+                let literal = number(value);
+                let binding = if value < 0.0 { Binding::Product } else { Binding::Atom };
+                Text { tokens: literal, binding, size: 0 }
+            }
+            Source::Input { array, index } => {
+                let name = Ident::new(&self.program.inputs[array].name, Span::call_site());
+                let index = Literal::usize_unsuffixed(index);
+                Text::atom(quote!(#name[#index]))
+            }
+            Source::Step(at) => match (&self.names[at], self.inlined[at].take()) {
+                (Some(name), _) => Text::atom(quote!(#name)),
+                (None, Some(text)) => text,
+                (None, None) => Text::atom(quote!(f64::NAN)),
+            },
+        }
+    }
+
+    fn text(&mut self, operation: Operation) -> Text {
+        match operation {
+            Operation::Add(a, b) => self.binary(a, b, &quote!(+), Binding::Sum, Binding::Sum),
+            Operation::Sub(a, b) => self.binary(a, b, &quote!(-), Binding::Sum, Binding::Product),
+            Operation::Mul(a, b) => self.binary(a, b, &quote!(*), Binding::Product, Binding::Atom),
+            Operation::Div(a, b) => self.binary(a, b, &quote!(/), Binding::Product, Binding::Atom),
+            Operation::Neg(a) => {
+                let inner = self.source(a);
+                let tokens = inner.within(Binding::Atom);
+                Text { tokens: quote!(-#tokens), binding: Binding::Product, size: inner.size }
+            }
+            Operation::Sqrt(a) => self.call(&quote!(sqrt), &[a]),
+            Operation::Sign(a) => self.call(&quote!(sign), &[a]),
+            Operation::Signed(a, b) => self.call(&quote!(signed), &[a, b]),
+            Operation::Atan2(y, x) => self.call(&quote!(atan2), &[y, x]),
+            // A sine without its cosine, or the other way round.
+            Operation::Sine(a) => self.part(a, &quote!(0)),
+            Operation::Cosine(a) => self.part(a, &quote!(1)),
+        }
+    }
+
+    fn binary(
+        &mut self,
+        a: Source,
+        b: Source,
+        operator: &TokenStream,
+        binding: Binding,
+        right: Binding,
+    ) -> Text {
+        let (a, b) = (self.source(a), self.source(b));
+        let (left, right) = (a.within(binding), b.within(right));
+        Text { tokens: quote!(#left #operator #right), binding, size: a.size + b.size + 1 }
+    }
+
+    fn call(&mut self, function: &TokenStream, arguments: &[Source]) -> Text {
+        let arguments: Vec<Text> = arguments.iter().map(|&a| self.source(a)).collect();
+        let size = arguments.iter().map(|a| a.size).sum::<usize>() + 1;
+        let tokens = arguments.iter().map(|a| &a.tokens);
+        let tokens = quote!(::overact::math::#function(#(#tokens),*));
+        Text { tokens, binding: Binding::Atom, size }
+    }
+
+    fn part(&mut self, angle: Source, index: &TokenStream) -> Text {
+        let angle = self.source(angle).tokens;
+        Text { tokens: quote!(::overact::math::sin_cos(#angle).#index), binding: Binding::Atom, size: 1 }
+    }
+
+    fn output(&mut self) -> TokenStream {
+        let values: Vec<TokenStream> = self
+            .program
+            .entries
+            .iter()
+            .map(|entry| {
+                let text = self.source(entry.source);
+                if entry.negative {
+                    let inner = text.within(Binding::Atom);
+                    quote!(-#inner)
+                } else {
+                    text.tokens
+                }
+            })
+            .collect();
+        match self.program.output.shape[..] {
+            [_, columns] if columns > 0 => {
+                let rows = values.chunks(columns).map(|row| quote!([#(#row),*]));
+                quote!([#(#rows),*])
+            }
+            [rows, _] => {
+                let rows = (0..rows).map(|_| quote!([]));
+                quote!([#(#rows),*])
+            }
+            _ => quote!([#(#values),*]),
+        }
+    }
+}
+
+/// A float that reads back as the same float.
+#[must_use]
+pub fn number(value: f64) -> TokenStream {
+    if value.is_nan() {
+        return quote!(f64::NAN);
+    }
+    let literal = Literal::f64_unsuffixed(value.abs());
+    if value < 0.0 { quote!(-#literal) } else { quote!(#literal) }
+}

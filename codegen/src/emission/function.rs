@@ -1,0 +1,167 @@
+//! One generated function: documentation, signature, body.
+
+use super::expression::Body;
+use crate::derivation::From;
+use crate::lowering::{Array, Program};
+use crate::model::{Function, RobotModel};
+use proc_macro2::{Ident, Literal, Span, TokenStream};
+use quote::{format_ident, quote};
+
+/// The function as an item of an `impl` block.
+#[must_use]
+pub fn item(model: &RobotModel, function: &Function) -> TokenStream {
+    let program = &function.program;
+    let (statements, value) = Body::write(program);
+    let name = format_ident!("{}", function.name);
+    let from_actuators = function.from == From::Actuators;
+    let fallible = is_fallible(function);
+    let output = array_type(&program.output);
+    let arguments = arguments(model, function);
+    let documentation = documentation(model, function);
+    let prelude = from_actuators.then(|| {
+        quote! {
+            let pose = Self::pose_from_actuators(actuators, start)?;
+        }
+    });
+    let signature = if fallible {
+        quote!(pub fn #name(#arguments) -> Result<#output, ::overact::Error>)
+    } else {
+        quote!(#[must_use] pub fn #name(#arguments) -> #output)
+    };
+    let value = if fallible { quote!(Ok(#value)) } else { value };
+    quote! {
+        #(#[doc = #documentation])*
+        #signature {
+            #prelude
+            #statements
+            #value
+        }
+    }
+}
+
+/// Whether the function returns a `Result`.
+#[must_use]
+pub fn is_fallible(function: &Function) -> bool {
+    function.from == From::Actuators || !function.program.guards.is_empty()
+}
+
+/// `[f64; 3]` or `[[f64; 64]; 3]`.
+#[must_use]
+pub fn array_type(array: &Array) -> TokenStream {
+    let length = |n: usize| Literal::usize_unsuffixed(n);
+    match array.shape[..] {
+        [rows, columns] => {
+            let (rows, columns) = (length(rows), length(columns));
+            quote!([[f64; #columns]; #rows])
+        }
+        _ => {
+            let len = length(array.len());
+            quote!([f64; #len])
+        }
+    }
+}
+
+fn arguments(model: &RobotModel, function: &Function) -> TokenStream {
+    let used = used_inputs(&function.program);
+    let mut arguments = Vec::new();
+    for (index, array) in function.program.inputs.iter().enumerate() {
+        let pose_is_found = function.from == From::Actuators && array.name == "pose";
+        let (name, array) = if pose_is_found {
+            let actuators = model.mechanism.actuated().len();
+            ("actuators".to_owned(), Array { name: String::new(), shape: vec![actuators] })
+        } else if used[index] {
+            (array.name.clone(), array.clone())
+        } else {
+            (format!("_{}", array.name), array.clone())
+        };
+        let name = Ident::new(&name, Span::call_site());
+        let kind = array_type(&array);
+        arguments.push(quote!(#name: &#kind));
+    }
+    if function.from == From::Actuators {
+        let pose = Literal::usize_unsuffixed(model.mechanism.pose_len());
+        arguments.push(quote!(start: &[f64; #pose]));
+    }
+    quote!(#(#arguments),*)
+}
+
+fn used_inputs(program: &Program) -> Vec<bool> {
+    use crate::lowering::Source;
+    let mut used = vec![false; program.inputs.len()];
+    let operands = program.steps.iter().flat_map(|s| s.operation.operands());
+    for source in operands.chain(program.entries.iter().map(|e| e.source)) {
+        if let Source::Input { array, .. } = source {
+            used[array] = true;
+        }
+    }
+    used
+}
+
+/// Lines of documentation: meaning, inputs, output, errors, operations.
+fn documentation(model: &RobotModel, function: &Function) -> Vec<String> {
+    let mut lines = vec![format!(" {}", function.family.summary()), String::new()];
+    let from = match (function.from, model.is_tree()) {
+        (_, true) => " From the joints' positions and rates.",
+        (From::Pose, _) => " From the platform's pose and motion.",
+        (From::Joints, _) => {
+            " From measured joint positions and the platform's motion; of the pose only the orientation is used."
+        }
+        (From::Actuators, _) => {
+            " From the actuators' motion: forward kinematics from the pose `start`, then least squares."
+        }
+    };
+    lines.push(from.to_owned());
+    for array in &function.program.inputs {
+        if let Some(text) = input_meaning(model, &array.name) {
+            let pose_is_found = function.from == From::Actuators && array.name == "pose";
+            if !pose_is_found {
+                lines.push(format!(" - `{}`: {text}", array.name));
+            }
+        }
+    }
+    let shape: Vec<String> = function.program.output.shape.iter().map(ToString::to_string).collect();
+    lines.push(String::new());
+    lines.push(format!(" Output: {}.", shape.join(" x ")));
+    if function.family.columns().is_some() {
+        lines.push(format!(" Columns: {}.", columns_constant(function)));
+    }
+    lines.push(String::new());
+    lines.push(format!(" {}.", function.program.cost()));
+    if is_fallible(function) {
+        lines.push(String::new());
+        lines.push(" # Errors".to_owned());
+        lines.push(" A pose out of reach, or a singular configuration.".to_owned());
+    }
+    lines
+}
+
+fn columns_constant(function: &Function) -> &'static str {
+    use crate::derivation::{Columns, Family};
+    match (function.family, function.family.columns()) {
+        (Family::IdmRedPayload | Family::IdmRedPayloadActuators, _) => "`PAYLOAD_PARAMETERS`",
+        (_, Some(Columns::Base)) => "`BASE_PARAMETERS`",
+        _ => "`PARAMETERS`",
+    }
+}
+
+fn input_meaning(model: &RobotModel, name: &str) -> Option<String> {
+    let platform = model.mechanism.platform.as_ref();
+    let coordinates = || platform.map(|p| p.motion.pose_coordinates().join(", ")).unwrap_or_default();
+    let rates = || platform.map(|p| p.motion.twist_names().join(", ")).unwrap_or_default();
+    Some(match name {
+        "pose" => format!("x = [{}] (m, rad), in the base frame", coordinates()),
+        "joints" => "q_t, all joint positions, leg by leg (m, rad)".to_owned(),
+        "twist" => format!("v = [{}] (m/s, rad/s), in the base frame", rates()),
+        "acceleration" => "the derivative of `twist` (m/s², rad/s²)".to_owned(),
+        "joint_velocities" => "velocities of the joints (m/s, rad/s)".to_owned(),
+        "joint_accelerations" => "accelerations of the joints (m/s², rad/s²)".to_owned(),
+        "actuator_velocities" => "velocities of the actuated joints (m/s, rad/s)".to_owned(),
+        "actuator_accelerations" => "accelerations of the actuated joints (m/s², rad/s²)".to_owned(),
+        "torques" => "τ, forces and torques of the actuators (N, N m)".to_owned(),
+        "parameters" => {
+            "values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)".to_owned()
+        }
+        "preload" => "coordinates of the internal torque on `null_space` (N, N m)".to_owned(),
+        _ => return None,
+    })
+}

@@ -1,0 +1,295 @@
+//! From the graph to the program: reachable nodes in an order in which operands come first.
+
+use super::program::{Array, Condition, Entry, Guard, Operation, Program, Source, Step};
+use super::trigonometry::{Plan, plan};
+use crate::cas::arena::{Handle, Op};
+use crate::cas::{Arena, Direction, Expr};
+use std::collections::HashMap;
+
+/// A condition on an expression.
+#[derive(Debug, Clone)]
+pub struct GuardedExpr<'a> {
+    /// The expression.
+    pub value: Expr<'a>,
+    /// The condition.
+    pub condition: Condition,
+}
+
+/// Lowers the expressions of one function. `inputs` are the arrays whose elements the graph's symbols
+/// `name[index]` stand for; a guard is kept if its expression is computed anyway.
+///
+/// Entries are visited column by column, so that the program works through leg after leg.
+#[must_use]
+pub fn lower<'a>(
+    arena: &'a Arena,
+    inputs: &[Array],
+    output: Array,
+    entries: &[Expr<'a>],
+    guards: &[GuardedExpr<'a>],
+) -> Program {
+    let mut lowering = Lowering::new(arena, inputs, entries);
+    let (rows, columns) = match output.shape[..] {
+        [rows, columns] => (rows, columns),
+        _ => (output.len(), 1),
+    };
+    let mut found = vec![None; entries.len()];
+    for column in 0..columns {
+        for row in 0..rows {
+            let at = row * columns + column;
+            found[at] = Some(lowering.entry(entries[at].handle()));
+        }
+    }
+    let entries: Vec<Entry> = found.into_iter().flatten().collect();
+    let guards = guards
+        .iter()
+        .filter_map(|guard| {
+            let source = *lowering.done.get(&guard.value.handle().index())?;
+            Some(Guard { source, condition: guard.condition.clone() })
+        })
+        .collect();
+    let program = Program { inputs: inputs.to_vec(), output, entries, steps: lowering.steps, guards };
+    super::peephole::improve(program)
+}
+
+struct Lowering<'a> {
+    arena: &'a Arena,
+    inputs: Vec<Array>,
+    steps: Vec<Step>,
+    done: HashMap<usize, Source>,
+    angles: Vec<(Direction, Plan)>,
+    units: HashMap<usize, (Source, Source)>,
+    by_operation: Vec<(Operation, usize)>,
+}
+
+impl<'a> Lowering<'a> {
+    fn new(arena: &'a Arena, inputs: &[Array], entries: &[Expr<'a>]) -> Self {
+        let angles = plan(&reachable_angles(arena, entries));
+        Self {
+            arena,
+            inputs: inputs.to_vec(),
+            steps: Vec::new(),
+            done: HashMap::new(),
+            angles,
+            units: HashMap::new(),
+            by_operation: Vec::new(),
+        }
+    }
+
+    fn entry(&mut self, handle: Handle) -> Entry {
+        let source = self.node(handle.index());
+        match source {
+            Source::Constant(value) if handle.is_negative() => {
+                Entry { source: Source::Constant(-value), negative: false }
+            }
+            _ => Entry { source, negative: handle.is_negative() },
+        }
+    }
+
+    /// The operand that a handle is; a negative one is negated first.
+    fn operand(&mut self, handle: Handle) -> Source {
+        let entry = self.entry(handle);
+        if entry.negative { self.push(Operation::Neg(entry.source), None, String::new()) } else { entry.source }
+    }
+
+    fn node(&mut self, index: usize) -> Source {
+        if let Some(&source) = self.done.get(&index) {
+            return source;
+        }
+        let operation = match self.arena.op(index) {
+            Op::Constant(id) => {
+                return self.finish(index, Source::Constant(self.arena.constant_at(id).value()));
+            }
+            Op::Symbol(id) => {
+                let source = self.input(&self.arena.symbol_name(id));
+                return self.finish(index, source);
+            }
+            Op::Cosine(id) => {
+                let source = self.unit_of(&self.arena.direction_at(id)).0;
+                return self.finish_named(index, source);
+            }
+            Op::Sine(id) => {
+                let source = self.unit_of(&self.arena.direction_at(id)).1;
+                return self.finish_named(index, source);
+            }
+            Op::Add(a, b) => Operation::Add(self.operand(a), self.operand(b)),
+            Op::Sub(a, b) => Operation::Sub(self.operand(a), self.operand(b)),
+            Op::Mul(a, b) => Operation::Mul(self.operand(a), self.operand(b)),
+            Op::Div(a, b) => Operation::Div(self.operand(a), self.operand(b)),
+            Op::Sqrt(a) => Operation::Sqrt(self.operand(a)),
+            Op::Sign(a) => Operation::Sign(self.operand(a)),
+            Op::Atan2(y, x) => Operation::Atan2(self.operand(y), self.operand(x)),
+        };
+        let source = self.push(operation, self.arena.name_of(index), self.arena.scope(index));
+        self.finish(index, source)
+    }
+
+    fn finish(&mut self, index: usize, source: Source) -> Source {
+        self.done.insert(index, source);
+        source
+    }
+
+    /// Sines and cosines are steps already; the node's name goes to the step.
+    fn finish_named(&mut self, index: usize, source: Source) -> Source {
+        if let Source::Step(at) = source {
+            let step = &mut self.steps[at];
+            if step.name.is_none() {
+                step.name = self.arena.name_of(index);
+                step.scope = self.arena.scope(index);
+            }
+        }
+        self.finish(index, source)
+    }
+
+    fn push(&mut self, operation: Operation, name: Option<String>, scope: String) -> Source {
+        self.steps.push(Step { operation, name, scope });
+        Source::Step(self.steps.len() - 1)
+    }
+
+    /// The input element of a symbol `name[index]`. A symbol that is none is a bug of the caller's
+    /// and becomes NaN, which no test survives.
+    fn input(&self, symbol: &str) -> Source {
+        let parts = symbol.strip_suffix(']').and_then(|s| s.split_once('['));
+        let found = parts.and_then(|(name, index)| {
+            let array = self.inputs.iter().position(|a| a.name == name)?;
+            Some(Source::Input { array, index: index.parse().ok()? })
+        });
+        debug_assert!(found.is_some(), "`{symbol}` is no input");
+        found.unwrap_or(Source::Constant(f64::NAN))
+    }
+
+    fn unit_of(&mut self, direction: &Direction) -> (Source, Source) {
+        match self.angles.iter().position(|(d, _)| d == direction) {
+            Some(at) => self.unit(at),
+            None => self.direct(direction),
+        }
+    }
+
+    /// Cosine and sine of a planned angle.
+    fn unit(&mut self, at: usize) -> (Source, Source) {
+        if let Some(&unit) = self.units.get(&at) {
+            return unit;
+        }
+        let (direction, how) = self.angles[at].clone();
+        let unit = match how {
+            Plan::Direct => self.direct(&direction),
+            Plan::Sum { first, second, sign, rest } => {
+                let mut unit = Turned { unit: self.unit(first), mirrored: sign < 0 };
+                if let Some((second, sign)) = second {
+                    let other = Turned { unit: self.unit(second), mirrored: sign < 0 };
+                    unit = self.sum(unit, other);
+                }
+                if !rest.offset().is_zero() {
+                    let (cosine, sine) = rest.offset().cosine_and_sine();
+                    let constant = (Source::Constant(cosine.value()), Source::Constant(sine.value()));
+                    unit = self.sum(unit, Turned { unit: constant, mirrored: false });
+                }
+                self.resolved(unit)
+            }
+        };
+        self.units.insert(at, unit);
+        unit
+    }
+
+    fn direct(&mut self, direction: &Direction) -> (Source, Source) {
+        let angle = self.angle_value(direction);
+        let cosine = self.push(Operation::Cosine(angle), None, String::new());
+        let sine = self.push(Operation::Sine(angle), None, String::new());
+        (cosine, sine)
+    }
+
+    fn angle_value(&mut self, direction: &Direction) -> Source {
+        let mut sum: Option<Source> = None;
+        for (symbol, factor) in direction.terms() {
+            let input = self.input(&self.arena.symbol_name(*symbol));
+            let size = factor.value().abs();
+            let part = if size == 1.0 {
+                input
+            } else {
+                self.push(Operation::Mul(Source::Constant(size), input), None, String::new())
+            };
+            let negative = factor.value() < 0.0;
+            sum = Some(match (sum, negative) {
+                (None, false) => part,
+                (None, true) => self.push(Operation::Neg(part), None, String::new()),
+                (Some(s), false) => self.push(Operation::Add(s, part), None, String::new()),
+                (Some(s), true) => self.push(Operation::Sub(s, part), None, String::new()),
+            });
+        }
+        let offset = direction.offset();
+        match sum {
+            Some(sum) if !offset.is_zero() => {
+                let constant = Source::Constant(offset.value());
+                self.push(Operation::Add(sum, constant), None, String::new())
+            }
+            Some(sum) => sum,
+            None => Source::Constant(offset.value()),
+        }
+    }
+
+    /// The addition theorem, with the signs of mirrored angles put into the additions.
+    fn sum(&mut self, a: Turned, b: Turned) -> Turned {
+        let ((ca, sa), (cb, sb)) = (a.unit, b.unit);
+        let mut product = |x, y| self.product(x, y);
+        let (cc, ss, sc, cs) = (product(ca, cb), product(sa, sb), product(sa, cb), product(ca, sb));
+        let same = a.mirrored == b.mirrored;
+        let cosine = if same { Operation::Sub(cc, ss) } else { Operation::Add(cc, ss) };
+        let sine = if same { Operation::Add(sc, cs) } else { Operation::Sub(sc, cs) };
+        let cosine = self.push(cosine, None, String::new());
+        let sine = self.push(sine, None, String::new());
+        // With a mirrored the whole sine changes its sign.
+        Turned { unit: (cosine, sine), mirrored: a.mirrored }
+    }
+
+    fn product(&mut self, x: Source, y: Source) -> Source {
+        let operation = Operation::Mul(x, y);
+        if let Some((_, at)) = self.by_operation.iter().find(|(o, _)| *o == operation) {
+            return Source::Step(*at);
+        }
+        let source = self.push(operation, None, String::new());
+        if let Source::Step(at) = source {
+            self.by_operation.push((operation, at));
+        }
+        source
+    }
+
+    fn resolved(&mut self, turned: Turned) -> (Source, Source) {
+        let (cosine, sine) = turned.unit;
+        if !turned.mirrored {
+            return (cosine, sine);
+        }
+        (cosine, self.push(Operation::Neg(sine), None, String::new()))
+    }
+}
+
+/// A cosine and sine, perhaps of the opposite angle.
+#[derive(Clone, Copy)]
+struct Turned {
+    unit: (Source, Source),
+    mirrored: bool,
+}
+
+/// All angles whose sine or cosine the entries need, in the order of their first use.
+fn reachable_angles(arena: &Arena, entries: &[Expr<'_>]) -> Vec<Direction> {
+    let mut seen = vec![false; arena.len()];
+    let mut stack: Vec<usize> = entries.iter().rev().map(|e| e.handle().index()).collect();
+    let mut angles: Vec<Direction> = Vec::new();
+    while let Some(index) = stack.pop() {
+        if std::mem::replace(&mut seen[index], true) {
+            continue;
+        }
+        match arena.op(index) {
+            Op::Cosine(id) | Op::Sine(id) => {
+                let direction = arena.direction_at(id);
+                if !angles.contains(&direction) {
+                    angles.push(direction);
+                }
+            }
+            Op::Add(a, b) | Op::Sub(a, b) | Op::Mul(a, b) | Op::Div(a, b) | Op::Atan2(a, b) => {
+                stack.extend([b.index(), a.index()]);
+            }
+            Op::Sqrt(a) | Op::Sign(a) => stack.push(a.index()),
+            Op::Constant(_) | Op::Symbol(_) => {}
+        }
+    }
+    angles
+}

@@ -1,0 +1,233 @@
+//! The straight-line program: the one form that both backends take.
+
+use std::fmt;
+
+/// Where an operand comes from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Source {
+    /// A constant.
+    Constant(f64),
+    /// Element of an input array.
+    Input {
+        /// Which input.
+        array: usize,
+        /// Which element.
+        index: usize,
+    },
+    /// The result of an earlier step.
+    Step(usize),
+}
+
+/// What a step computes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(missing_docs, reason = "the variants say it")]
+pub enum Operation {
+    Add(Source, Source),
+    Sub(Source, Source),
+    Mul(Source, Source),
+    Div(Source, Source),
+    Neg(Source),
+    Sqrt(Source),
+    /// Sine of an angle in radians; the cosine of the same angle follows or precedes it.
+    Sine(Source),
+    Cosine(Source),
+    /// -1, 0 or 1.
+    Sign(Source),
+    /// The first operand with the sign of the second: a × sign(b), as a selection.
+    Signed(Source, Source),
+    Atan2(Source, Source),
+}
+
+impl Operation {
+    /// The operands.
+    #[must_use]
+    pub fn operands(&self) -> Vec<Source> {
+        match *self {
+            Self::Add(a, b)
+            | Self::Sub(a, b)
+            | Self::Mul(a, b)
+            | Self::Div(a, b)
+            | Self::Signed(a, b)
+            | Self::Atan2(a, b) => vec![a, b],
+            Self::Neg(a) | Self::Sqrt(a) | Self::Sine(a) | Self::Cosine(a) | Self::Sign(a) => vec![a],
+        }
+    }
+}
+
+/// One assignment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// What is computed.
+    pub operation: Operation,
+    /// The name that the derivation gave the value.
+    pub name: Option<String>,
+    /// The heading under which it stands, for instance a leg's name.
+    pub scope: String,
+}
+
+/// A number of an output.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Entry {
+    /// The value.
+    pub source: Source,
+    /// Whether its negative is meant.
+    pub negative: bool,
+}
+
+/// A named array of numbers.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Array {
+    /// Name, a Rust identifier.
+    pub name: String,
+    /// Length, or rows and columns.
+    pub shape: Vec<usize>,
+}
+
+impl Array {
+    /// Number of elements.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.shape.iter().product()
+    }
+
+    /// Whether the array has no elements.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// What has to hold for the outputs to mean something.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Condition {
+    /// The value is not negative, else the pose is out of the leg's reach.
+    Reach {
+        /// Name of the leg.
+        leg: String,
+    },
+    /// The value is not small against `home`, else the leg is singular.
+    Leg {
+        /// Name of the leg.
+        leg: String,
+        /// The value's magnitude at the home configuration.
+        home: f64,
+    },
+    /// The value is not small against `home`, else the actuators do not determine the platform.
+    Platform {
+        /// `actuators` or `kept actuators`.
+        actuators: &'static str,
+        /// The value's magnitude at the home configuration.
+        home: f64,
+    },
+}
+
+/// A value below this fraction of its magnitude at home counts as zero.
+pub const SINGULAR: f64 = 1e-9;
+
+/// A condition on a value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Guard {
+    /// The value.
+    pub source: Source,
+    /// The condition.
+    pub condition: Condition,
+}
+
+/// A straight-line program.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Program {
+    /// Inputs, in the order of the function's arguments.
+    pub inputs: Vec<Array>,
+    /// The output.
+    pub output: Array,
+    /// The output's numbers, row-major.
+    pub entries: Vec<Entry>,
+    /// The assignments, operands first.
+    pub steps: Vec<Step>,
+    /// Conditions, each on a step that exists.
+    pub guards: Vec<Guard>,
+}
+
+/// Operation counts by the rule: a sum of n terms counts n - 1, a product of n factors n - 1, a
+/// square 1, a division 1; square roots, trigonometric pairs, signs and negations stand apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+pub struct Cost {
+    /// Additions and subtractions.
+    pub additions: usize,
+    /// Multiplications, those by constants included.
+    pub multiplications: usize,
+    /// Divisions.
+    pub divisions: usize,
+    /// Square roots.
+    pub square_roots: usize,
+    /// Angles of which sine or cosine is taken.
+    pub trigonometric_pairs: usize,
+    /// Arc tangents.
+    pub arc_tangents: usize,
+    /// Signs of velocities, as numbers or as selections.
+    pub signs: usize,
+    /// Sign changes.
+    pub negations: usize,
+    /// Values that are computed and are no output themselves.
+    pub intermediates: usize,
+}
+
+impl Cost {
+    /// Additions, multiplications and divisions together.
+    #[must_use]
+    pub const fn operations(&self) -> usize {
+        self.additions + self.multiplications + self.divisions
+    }
+}
+
+impl fmt::Display for Cost {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{} operations ({} additions, {} multiplications, {} divisions), {} square roots, {} trigonometric pairs, {} signs, {} intermediates",
+            self.operations(),
+            self.additions,
+            self.multiplications,
+            self.divisions,
+            self.square_roots,
+            self.trigonometric_pairs,
+            self.signs,
+            self.intermediates
+        )
+    }
+}
+
+impl Program {
+    /// Counts the program's operations.
+    #[must_use]
+    pub fn cost(&self) -> Cost {
+        let mut cost = Cost::default();
+        let mut angles: Vec<Source> = Vec::new();
+        for step in &self.steps {
+            match step.operation {
+                Operation::Add(..) | Operation::Sub(..) => cost.additions += 1,
+                Operation::Mul(..) => cost.multiplications += 1,
+                Operation::Div(..) => cost.divisions += 1,
+                Operation::Neg(_) => cost.negations += 1,
+                Operation::Sqrt(_) => cost.square_roots += 1,
+                Operation::Sign(_) | Operation::Signed(..) => cost.signs += 1,
+                Operation::Atan2(..) => cost.arc_tangents += 1,
+                Operation::Sine(angle) | Operation::Cosine(angle) => {
+                    if !angles.contains(&angle) {
+                        angles.push(angle);
+                    }
+                }
+            }
+        }
+        cost.trigonometric_pairs = angles.len();
+        cost.negations += self.entries.iter().filter(|e| e.negative).count();
+        let mut is_output = vec![false; self.steps.len()];
+        for entry in &self.entries {
+            if let Source::Step(at) = entry.source {
+                is_output[at] = true;
+            }
+        }
+        cost.intermediates = is_output.iter().filter(|o| !**o).count();
+        cost
+    }
+}

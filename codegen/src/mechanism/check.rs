@@ -1,0 +1,255 @@
+//! From a description to a checked mechanism: mobility, closure at home, leg singularities.
+
+use super::home::{Home, HomeError};
+use super::numeric::{platform_frame, target};
+use super::{Joint, Leg, Mechanism, Platform};
+use crate::derivation::Underivable;
+use crate::description::{Description, Motion};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use nalgebra::{DMatrix, Vector3};
+
+/// Checks a description and finds its home configuration.
+///
+/// # Errors
+/// All that is wrong with the mechanism, each at the place of the leg or the platform.
+pub fn check(description: &Description) -> Result<Mechanism, Diagnostics> {
+    let mut mechanism = plain(description);
+    let mut errors = Diagnostics::new();
+    check_actuators(description, &mechanism, &mut errors);
+    check_leg_sizes(description, &mut errors);
+    errors.into_result(())?;
+    let rough = rough_home(description);
+    match Home::refine(&mechanism, &rough) {
+        Ok(home) => mechanism.home = home,
+        Err(found) => {
+            let mut errors = Diagnostics::new();
+            found.iter().for_each(|e| errors.push(home_error(description, e)));
+            return Err(errors);
+        }
+    }
+    let mut errors = Diagnostics::new();
+    for leg in 0..mechanism.legs.len() {
+        check_mobility(description, &mechanism, leg, &mut errors);
+    }
+    errors.into_result(mechanism)
+}
+
+/// The mechanism as the description says it, with an empty home configuration.
+fn plain(description: &Description) -> Mechanism {
+    let joint = |j: &crate::description::Joint| Joint {
+        name: j.name.value.clone(),
+        kind: j.kind.value,
+        antecedent: j.antecedent,
+        gamma: j.gamma.value,
+        b: j.b.value,
+        alpha: j.alpha.value,
+        d: j.d.value,
+        theta: j.theta.value,
+        r: j.r.value,
+        variable: j.variable.clone(),
+        actuated: j.actuated,
+        parameters: j.parameters.clone(),
+    };
+    let leg = |l: &crate::description::Leg| Leg {
+        name: l.name.value.clone(),
+        shape: l.shape,
+        base: l.base.clone(),
+        joints: l.joints.iter().map(joint).collect(),
+        end: l.end.as_ref().map(|e| e.value.clone()),
+    };
+    let platform = description.platform.as_ref().map(|p| Platform {
+        motion: p.motion.value,
+        parameters: p.parameters.clone(),
+        payload: p.payload.clone(),
+    });
+    Mechanism {
+        name: description.type_name(),
+        summary: description.summary.clone(),
+        source: description.source.clone(),
+        gravity: description.gravity,
+        platform,
+        legs: description.legs.iter().map(leg).collect(),
+        home: Home::default(),
+        kept_actuators: description.identification.kept_actuators.clone(),
+    }
+}
+
+fn check_actuators(description: &Description, mechanism: &Mechanism, errors: &mut Diagnostics) {
+    let (n, r) = (mechanism.actuated().len(), mechanism.dof());
+    let span = match &description.platform {
+        Some(platform) => platform.span.clone(),
+        None => description.name.span.clone(),
+    };
+    if mechanism.platform.is_none() && n < r {
+        let passive = mechanism.joints().into_iter().find(|&i| !mechanism.joint(i).actuated);
+        let span = passive.map_or(span, |i| description.legs[i.leg].joints[i.joint].span.clone());
+        errors.push(
+            Diagnostic::new("a robot without a platform needs a motor at every joint", span)
+                .label(format!("{n} of {r} joints are actuated"))
+                .help("write `actuated = true` at this joint, or describe the platform that closes the loop"),
+        );
+    } else if n < r {
+        errors.push(
+            Diagnostic::new("the robot has fewer actuators than degrees of freedom", span)
+                .label(format!("{r} independent coordinates, {n} actuated joints"))
+                .help("mark the motors with `actuated = true`, or choose a platform motion with fewer coordinates"),
+        );
+    } else if mechanism.kept_actuators.len() != r {
+        let message = format!("case 2 keeps as many actuators as there are degrees of freedom, {r}");
+        errors.push(
+            Diagnostic::new(message, span)
+                .label(format!("`kept_actuators` names {}", mechanism.kept_actuators.len())),
+        );
+    }
+}
+
+/// A leg with more joints than its end has motions moves on its own.
+fn check_leg_sizes(description: &Description, errors: &mut Diagnostics) {
+    for leg in &description.legs {
+        if leg.joints.is_empty() {
+            errors.push(Diagnostic::new(
+                format!("leg `{}` has no joint", leg.name.value),
+                leg.span.clone(),
+            ));
+        }
+    }
+}
+
+fn rough_home(description: &Description) -> Home {
+    let joints = description.legs.iter().flat_map(|leg| {
+        let own = leg.joints.iter().enumerate().filter(|(i, j)| j.is_independent(*i));
+        own.map(|(_, j)| j.home.value())
+    });
+    let joints: Vec<f64> = joints.collect();
+    let pose = match &description.platform {
+        None => joints.clone(),
+        Some(platform) => home_pose(platform),
+    };
+    Home { pose, joints }
+}
+
+fn home_pose(platform: &crate::description::Platform) -> Vec<f64> {
+    let motion = platform.motion.value;
+    let at = platform.home.at.map(crate::cas::Number::value);
+    let mut pose: Vec<f64> = motion
+        .twist()
+        .iter()
+        .filter_map(|c| match c {
+            super::TwistCoordinate::Linear(axis) => Some(at[*axis]),
+            super::TwistCoordinate::Angular(_) => None,
+        })
+        .collect();
+    if motion.rotation_axis().is_some() {
+        pose.push(platform.home.phi.value());
+    }
+    if motion.has_quaternion() {
+        let [rx, ry, rz] = platform.home.rotation.map(crate::cas::Angle::value);
+        let q = nalgebra::UnitQuaternion::from_euler_angles(rx, ry, rz);
+        pose.extend([q.w, q.i, q.j, q.k]);
+    }
+    pose
+}
+
+fn home_error(description: &Description, error: &HomeError) -> Diagnostic {
+    let leg = |index: usize| &description.legs[index];
+    match error {
+        HomeError::Open { leg: index, gap } => {
+            let leg = leg(*index);
+            Diagnostic::new(
+                format!("leg `{}` does not close at the home configuration", leg.name.value),
+                leg.span.clone(),
+            )
+            .label(format!("its end stays {gap:.3} (m, rad) away from the platform"))
+            .help("check lengths, attachment and base; give rough joint positions in `home` near the wanted working mode")
+        }
+        HomeError::Singular { leg: index, condition } => {
+            let leg = leg(*index);
+            Diagnostic::new(
+                format!("leg `{}` is singular at the home configuration", leg.name.value),
+                leg.span.clone(),
+            )
+            .label(format!("its Jacobian has the condition number {condition:.1e}"))
+            .help("choose a home pose where the leg is neither stretched nor folded, and joints whose motions are independent")
+        }
+    }
+}
+
+/// The leg must be able to follow every motion of the platform.
+fn check_mobility(
+    description: &Description,
+    mechanism: &Mechanism,
+    index: usize,
+    errors: &mut Diagnostics,
+) {
+    let Some(platform) = &mechanism.platform else { return };
+    let leg = &mechanism.legs[index];
+    let Some(end) = &leg.end else { return };
+    let frame = platform_frame(platform.motion, &mechanism.home.pose);
+    let (target, oriented) = target(end, &frame);
+    let rows = if oriented { 6 } else { 3 };
+    let arm = target.translation.vector - frame.translation.vector;
+    let wanted = platform_columns(platform.motion, arm).rows(0, rows).into_owned();
+    let jacobian = leg.end_jacobian(&mechanism.home.joints[mechanism.leg_range(index)]);
+    let jacobian = jacobian.rows(0, rows).into_owned();
+    let Ok(pseudo_inverse) = jacobian.clone().pseudo_inverse(1e-9) else { return };
+    let missed = &wanted - &jacobian * (pseudo_inverse * &wanted);
+    if missed.amax() > 1e-6 {
+        let place = &description.legs[index];
+        errors.push(
+            Diagnostic::new(
+                format!("leg `{}` cannot follow the platform's motion", leg.name),
+                place.span.clone(),
+            )
+            .label(format!("{} joints, {} platform coordinates", jacobian.ncols(), wanted.ncols()))
+            .help("the leg blocks a motion that the platform has: add a passive joint, or choose another platform motion or leg end"),
+        );
+    }
+}
+
+/// Velocity of a platform point and angular velocity per twist coordinate, 6 x r.
+fn platform_columns(motion: Motion, arm: Vector3<f64>) -> DMatrix<f64> {
+    let twist = motion.twist();
+    let mut columns = DMatrix::zeros(6, twist.len());
+    for (c, coordinate) in twist.iter().enumerate() {
+        let mut axis = Vector3::zeros();
+        let (linear, angular) = match coordinate {
+            super::TwistCoordinate::Linear(a) => {
+                axis[*a] = 1.0;
+                (axis, Vector3::zeros())
+            }
+            super::TwistCoordinate::Angular(a) => {
+                axis[*a] = 1.0;
+                (axis.cross(&arm), axis)
+            }
+        };
+        for i in 0..3 {
+            columns[(i, c)] = linear[i];
+            columns[(3 + i, c)] = angular[i];
+        }
+    }
+    columns
+}
+
+/// Puts an error of the derivation at its place in the description.
+#[must_use]
+pub fn locate(description: &Description, error: &Underivable) -> Diagnostics {
+    let place = |leg: &str| description.legs.iter().find(|l| l.name.value == leg);
+    let diagnostic = match error {
+        Underivable::InverseKinematics { leg } => {
+            let span = place(leg).map_or(description.name.span.clone(), |l| l.span.clone());
+            Diagnostic::new(format!("no rule solves the inverse kinematics of leg `{leg}`"), span)
+                .help("supported so far: two revolute joints about parallel axes up to the end, and a third one at the end")
+        }
+        Underivable::SingularLeg { leg } => {
+            let span = place(leg).map_or(description.name.span.clone(), |l| l.span.clone());
+            Diagnostic::new(format!("leg `{leg}` is singular in every configuration"), span)
+                .help("its joint rates are never determined by the platform's motion: check attachment and axes")
+        }
+        Underivable::SingularPartition => Diagnostic::new(
+            "the kept actuators of case 2 never determine the platform's motion",
+            description.name.span.clone(),
+        )
+        .help("choose other `kept_actuators`"),
+    };
+    Diagnostics::from(diagnostic)
+}

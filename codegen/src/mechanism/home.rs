@@ -1,0 +1,127 @@
+//! The home configuration: from rough joint positions to ones that close every leg.
+
+use super::numeric::{closure_error, platform_frame, target};
+use super::{Leg, Mechanism};
+use nalgebra::{DMatrix, DVector};
+
+/// The home configuration.
+#[derive(Debug, Clone, Default)]
+pub struct Home {
+    /// Pose of the platform; joint positions of a tree.
+    pub pose: Vec<f64>,
+    /// Positions of all independent joints.
+    pub joints: Vec<f64>,
+}
+
+/// Why a leg has no home configuration.
+#[derive(Debug, Clone, PartialEq)]
+pub enum HomeError {
+    /// Newton's iteration ends with this distance between leg end and platform (m, rad).
+    Open {
+        /// Index of the leg.
+        leg: usize,
+        /// Remaining distance.
+        gap: f64,
+    },
+    /// The leg's joint rates are not determined by the platform's motion.
+    Singular {
+        /// Index of the leg.
+        leg: usize,
+        /// Ratio of the largest and smallest singular value of the leg's Jacobian.
+        condition: f64,
+    },
+}
+
+/// Largest gap that counts as closed, m and rad.
+const CLOSED: f64 = 1e-10;
+/// Condition number of a leg's Jacobian above which the leg counts as singular.
+const SINGULAR: f64 = 1e7;
+const STEPS: usize = 200;
+
+impl Home {
+    /// Closes all legs by Newton's iteration, starting from the rough joint positions.
+    ///
+    /// # Errors
+    /// Every leg that does not close, or is singular where it closes.
+    pub fn refine(mechanism: &Mechanism, rough: &Self) -> Result<Self, Vec<HomeError>> {
+        let Some(platform) = &mechanism.platform else {
+            return Ok(Self { pose: rough.joints.clone(), joints: rough.joints.clone() });
+        };
+        let frame = platform_frame(platform.motion, &rough.pose);
+        let mut joints = rough.joints.clone();
+        let mut errors = Vec::new();
+        for (index, leg) in mechanism.legs.iter().enumerate() {
+            let Some(end) = &leg.end else { continue };
+            let (target, oriented) = target(end, &frame);
+            let range = mechanism.leg_range(index);
+            match close(leg, &rough.joints[range.clone()], &target, oriented) {
+                Ok(q) => joints[range].copy_from_slice(&q),
+                Err(Failure::Open(gap)) => errors.push(HomeError::Open { leg: index, gap }),
+                Err(Failure::Singular(condition)) => {
+                    errors.push(HomeError::Singular { leg: index, condition });
+                }
+            }
+        }
+        if errors.is_empty() { Ok(Self { pose: rough.pose.clone(), joints }) } else { Err(errors) }
+    }
+}
+
+enum Failure {
+    Open(f64),
+    Singular(f64),
+}
+
+/// Damped Gauss-Newton on all closure equations of a leg.
+fn close(
+    leg: &Leg,
+    start: &[f64],
+    target: &nalgebra::Isometry3<f64>,
+    oriented: bool,
+) -> Result<Vec<f64>, Failure> {
+    let rows = if oriented { 6 } else { 3 };
+    let mut q = start.to_vec();
+    let mut gap = f64::INFINITY;
+    let mut damping = 1e-6;
+    for _ in 0..STEPS {
+        let error = DVector::from_row_slice(&closure_error(leg, &q, target, oriented)[..rows]);
+        gap = error.amax();
+        if gap < CLOSED {
+            break;
+        }
+        let jacobian = leg.end_jacobian(&q).rows(0, rows).into_owned();
+        let normal = jacobian.tr_mul(&jacobian) + DMatrix::identity(q.len(), q.len()) * damping;
+        let Some(step) = normal.lu().solve(&jacobian.tr_mul(&error)) else { break };
+        // A step of more than half a radian may jump to another working mode.
+        let limit = 0.5 / step.amax().max(0.5);
+        let trial: Vec<f64> = q.iter().zip(step.iter()).map(|(q, s)| q + limit * s).collect();
+        let better = closure_error(leg, &trial, target, oriented).iter().fold(0.0_f64, |m, e| m.max(e.abs()));
+        damping = if better < gap { (damping * 0.1).max(1e-14) } else { (damping * 10.0).min(1e2) };
+        if better < gap || damping > 1.0 {
+            q = trial;
+        }
+    }
+    if gap.is_nan() || gap >= CLOSED {
+        return Err(Failure::Open(gap));
+    }
+    let singular_values = leg.end_jacobian(&q).rows(0, rows).into_owned().singular_values();
+    let condition = singular_values.max() / singular_values.min();
+    if q.len() > rows || !(condition < SINGULAR) {
+        return Err(Failure::Singular(condition));
+    }
+    Ok(q)
+}
+
+/// Joint positions that close a leg, near `start`; `None` if the iteration does not get there or the
+/// leg is nearly singular where it does.
+#[must_use]
+pub fn close_from(
+    leg: &Leg,
+    start: &[f64],
+    target: &nalgebra::Isometry3<f64>,
+    oriented: bool,
+) -> Option<Vec<f64>> {
+    let q = close(leg, start, target, oriented).ok()?;
+    let rows = if oriented { 6 } else { 3 };
+    let values = leg.end_jacobian(&q).rows(0, rows).into_owned().singular_values();
+    (values.max() < 50.0 * values.min()).then_some(q)
+}

@@ -1,0 +1,193 @@
+//! The mechanism: bodies, joints, legs and platform as checked, plain data.
+//!
+//! Frames follow Khalil and Kleinfinger's modified Denavit-Hartenberg convention. From the antecedent
+//! frame to frame j: Rot(z, γ) Trans(z, b) Rot(x, α) Trans(x, d) Rot(z, θ) Trans(z, r). The joint's
+//! position is θ (revolute) or r (prismatic), plus a constant. Every leg starts at a base frame and
+//! ends on the platform: its last frame is fixed on the platform (`Rigid`), or its origin coincides
+//! with a platform point (`Point`). A robot without platform is a tree: one leg without an end.
+
+pub mod check;
+pub mod home;
+pub mod motion;
+pub mod numeric;
+
+pub use check::{check, locate};
+pub use home::Home;
+pub use motion::TwistCoordinate;
+
+use crate::cas::{Angle, Number, Ratio};
+pub use crate::description::{End, JointKind, Motion, Placement, StandardParameter};
+
+/// A joint and the body behind it.
+#[derive(Debug, Clone)]
+pub struct Joint {
+    /// Name, unique in its leg.
+    pub name: String,
+    /// Revolute, prismatic or fixed.
+    pub kind: JointKind,
+    /// The joint whose frame this one starts from; `None` for the leg's base frame.
+    pub antecedent: Option<usize>,
+    /// MDH γ.
+    pub gamma: Angle,
+    /// MDH b, m.
+    pub b: Number,
+    /// MDH α.
+    pub alpha: Angle,
+    /// MDH d, m.
+    pub d: Number,
+    /// MDH θ; for a revolute joint the constant part.
+    pub theta: Angle,
+    /// MDH r, m; for a prismatic joint the constant part.
+    pub r: Number,
+    /// The joint position as a linear combination of the leg's independent joint variables: itself
+    /// with factor one, or others for a dependent joint. Empty for a fixed joint.
+    pub variable: Vec<(usize, Ratio)>,
+    /// Whether a motor drives the joint.
+    pub actuated: bool,
+    /// The body's and the joint's standard parameters that are not absent.
+    pub parameters: Vec<StandardParameter>,
+}
+
+impl Joint {
+    /// Whether the joint at `index` has a variable of its own.
+    #[must_use]
+    pub fn is_independent(&self, index: usize) -> bool {
+        self.variable.len() == 1 && self.variable[0].0 == index
+    }
+}
+
+/// A leg.
+#[derive(Debug, Clone)]
+pub struct Leg {
+    /// Name, unique in the robot.
+    pub name: String,
+    /// Legs written once and placed several times share this number.
+    pub shape: usize,
+    /// The leg's base frame in the robot's base frame.
+    pub base: Placement,
+    /// The joints; antecedents come first.
+    pub joints: Vec<Joint>,
+    /// Where the leg ends on the platform; `None` for a tree.
+    pub end: Option<End>,
+}
+
+impl Leg {
+    /// Indices of the joints with a variable of their own.
+    pub fn independent(&self) -> impl Iterator<Item = usize> + '_ {
+        self.joints.iter().enumerate().filter(|(i, j)| j.is_independent(*i)).map(|(i, _)| i)
+    }
+}
+
+/// The platform.
+#[derive(Debug, Clone)]
+pub struct Platform {
+    /// Which motions it has.
+    pub motion: Motion,
+    /// Its inertial parameters that are not absent.
+    pub parameters: Vec<StandardParameter>,
+    /// Inertial parameters of the payload, if the robot may carry one.
+    pub payload: Option<Vec<StandardParameter>>,
+}
+
+/// A robot.
+#[derive(Debug, Clone)]
+pub struct Mechanism {
+    /// Name of the Rust type.
+    pub name: String,
+    /// One sentence.
+    pub summary: String,
+    /// Where the description comes from.
+    pub source: String,
+    /// Acceleration of gravity in the base frame, m/s².
+    pub gravity: [Number; 3],
+    /// The platform; `None` for a serial or tree robot.
+    pub platform: Option<Platform>,
+    /// The legs.
+    pub legs: Vec<Leg>,
+    /// The home configuration, which fixes assembly and working modes.
+    pub home: Home,
+    /// Kept actuators of case 2, as indices among the actuators.
+    pub kept_actuators: Vec<usize>,
+}
+
+/// An independent joint of the robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct JointIndex {
+    /// The leg.
+    pub leg: usize,
+    /// The joint in its leg.
+    pub joint: usize,
+}
+
+impl Mechanism {
+    /// All joints with a variable of their own, leg by leg: the order of q_t.
+    #[must_use]
+    pub fn joints(&self) -> Vec<JointIndex> {
+        let legs = self.legs.iter().enumerate();
+        legs.flat_map(|(leg, l)| l.independent().map(move |joint| JointIndex { leg, joint })).collect()
+    }
+
+    /// The joint behind an index.
+    #[must_use]
+    pub fn joint(&self, index: JointIndex) -> &Joint {
+        &self.legs[index.leg].joints[index.joint]
+    }
+
+    /// Positions of the actuated joints among [`Self::joints`]: the order of q and τ.
+    #[must_use]
+    pub fn actuated(&self) -> Vec<usize> {
+        let joints = self.joints();
+        let actuated = joints.iter().enumerate().filter(|(_, j)| self.joint(**j).actuated);
+        actuated.map(|(i, _)| i).collect()
+    }
+
+    /// r, the number of independent platform coordinates; for a tree, of its joints.
+    #[must_use]
+    pub fn dof(&self) -> usize {
+        self.platform.as_ref().map_or_else(|| self.joints().len(), |p| p.motion.twist().len())
+    }
+
+    /// Length of a pose.
+    #[must_use]
+    pub fn pose_len(&self) -> usize {
+        self.platform.as_ref().map_or_else(|| self.joints().len(), |p| p.motion.pose_coordinates().len())
+    }
+
+    /// Name of a joint for people: `leg1.2`, or `2` in a robot of one leg without a platform.
+    #[must_use]
+    pub fn joint_name(&self, index: JointIndex) -> String {
+        let joint = &self.joint(index).name;
+        if self.platform.is_none() && self.legs.len() == 1 {
+            return joint.clone();
+        }
+        format!("{}.{joint}", self.legs[index.leg].name)
+    }
+
+    /// Names of the actuators: the leg's name where the leg has one actuator, else leg and joint.
+    #[must_use]
+    pub fn actuator_names(&self) -> Vec<String> {
+        let joints = self.joints();
+        let name = |&at: &usize| {
+            let index = joints[at];
+            let leg = &self.legs[index.leg];
+            let several = leg.joints.iter().filter(|j| j.actuated).count() > 1;
+            match (self.platform.is_none(), several) {
+                (false, false) => leg.name.clone(),
+                (true, _) if self.legs.len() == 1 => self.joint(index).name.clone(),
+                _ => format!("{}_{}", leg.name, self.joint(index).name),
+            }
+        };
+        self.actuated().iter().map(name).collect()
+    }
+
+    /// Name of a leg's standard parameter: `zz_2_leg3`, or `zz_2` in a robot of one leg without a
+    /// platform.
+    #[must_use]
+    pub fn parameter_name(&self, symbol: StandardParameter, leg: usize, joint: usize) -> String {
+        let body = &self.legs[leg].joints[joint].name;
+        if self.platform.is_none() && self.legs.len() == 1 {
+            return format!("{}_{body}", symbol.name());
+        }
+        format!("{}_{body}_{}", symbol.name(), self.legs[leg].name)
+    }
+}

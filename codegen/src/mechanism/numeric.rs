@@ -1,0 +1,196 @@
+//! Numeric kinematics of a mechanism: positions, orientations and Jacobians as floats. They serve the
+//! checks at the home configuration, before any symbol is derived.
+
+use super::{End, Joint, JointKind, Leg, Mechanism, Motion, Placement};
+use nalgebra::{DMatrix, Isometry3, Quaternion, Rotation3, Translation3, UnitQuaternion, Vector3};
+
+/// Rotation about the z axis as a displacement.
+fn turn_z(angle: f64) -> Isometry3<f64> {
+    Isometry3::rotation(Vector3::z() * angle)
+}
+
+fn shift(x: f64, z: f64) -> Isometry3<f64> {
+    Isometry3::translation(x, 0.0, z)
+}
+
+impl Placement {
+    /// The placement as a displacement.
+    #[must_use]
+    pub fn numeric(&self) -> Isometry3<f64> {
+        let [rx, ry, rz] = self.rotation.map(crate::cas::Angle::value);
+        let rotation = Rotation3::from_euler_angles(rx, ry, rz);
+        let [x, y, z] = self.at.map(crate::cas::Number::value);
+        Isometry3::from_parts(Translation3::new(x, y, z), UnitQuaternion::from(rotation))
+    }
+}
+
+impl Joint {
+    /// From the antecedent frame to the joint's frame, for joint position `q`.
+    fn displacement(&self, q: f64) -> Isometry3<f64> {
+        let (theta, r) = match self.kind {
+            JointKind::Revolute => (self.theta.value() + q, self.r.value()),
+            JointKind::Prismatic => (self.theta.value(), self.r.value() + q),
+            JointKind::Fixed => (self.theta.value(), self.r.value()),
+        };
+        turn_z(self.gamma.value())
+            * shift(0.0, self.b.value())
+            * Isometry3::rotation(Vector3::x() * self.alpha.value())
+            * shift(self.d.value(), 0.0)
+            * turn_z(theta)
+            * shift(0.0, r)
+    }
+}
+
+impl Leg {
+    /// Frames of all joints in the robot's base frame; `q` holds the independent joint positions.
+    #[must_use]
+    pub fn frames(&self, q: &[f64]) -> Vec<Isometry3<f64>> {
+        let independent: Vec<usize> = self.independent().collect();
+        let position = |joint: &Joint| -> f64 {
+            let parts = joint.variable.iter().map(|(of, factor)| {
+                let at = independent.iter().position(|i| i == of);
+                at.map_or(0.0, |at| q[at]) * factor.value()
+            });
+            parts.sum()
+        };
+        let mut frames: Vec<Isometry3<f64>> = Vec::new();
+        for joint in &self.joints {
+            let from = joint.antecedent.map_or_else(|| self.base.numeric(), |a| frames[a]);
+            frames.push(from * joint.displacement(position(joint)));
+        }
+        frames
+    }
+
+    /// The end's velocity and angular velocity per independent joint rate, 6 x m, in the base frame
+    /// at the end's origin.
+    #[must_use]
+    pub fn end_jacobian(&self, q: &[f64]) -> DMatrix<f64> {
+        let frames = self.frames(q);
+        let independent: Vec<usize> = self.independent().collect();
+        let mut jacobian = DMatrix::zeros(6, independent.len());
+        let Some(last) = frames.last() else { return jacobian };
+        let mut on_path = vec![false; self.joints.len()];
+        let mut at = self.joints.len().checked_sub(1);
+        while let Some(joint) = at {
+            on_path[joint] = true;
+            at = self.joints[joint].antecedent;
+        }
+        for (index, joint) in self.joints.iter().enumerate().filter(|(i, _)| on_path[*i]) {
+            let axis = frames[index] * Vector3::z();
+            let arm = last.translation.vector - frames[index].translation.vector;
+            let (linear, angular) = match joint.kind {
+                JointKind::Revolute => (axis.cross(&arm), axis),
+                JointKind::Prismatic => (axis, Vector3::zeros()),
+                JointKind::Fixed => continue,
+            };
+            for (of, factor) in &joint.variable {
+                let Some(column) = independent.iter().position(|i| i == of) else { continue };
+                for i in 0..3 {
+                    jacobian[(i, column)] += linear[i] * factor.value();
+                    jacobian[(3 + i, column)] += angular[i] * factor.value();
+                }
+            }
+        }
+        jacobian
+    }
+}
+
+/// The platform frame of a pose in the base frame.
+#[must_use]
+pub fn platform_frame(motion: Motion, pose: &[f64]) -> Isometry3<f64> {
+    let mut at = Vector3::zeros();
+    let mut rotation = UnitQuaternion::identity();
+    let quaternion = |q: &[f64]| UnitQuaternion::from_quaternion(Quaternion::new(q[0], q[1], q[2], q[3]));
+    match motion {
+        Motion::FixedAxis { axis } => at[axis] = pose[0],
+        Motion::Point { axis } | Motion::Planar { axis } => {
+            at[(axis + 1) % 3] = pose[0];
+            at[(axis + 2) % 3] = pose[1];
+        }
+        Motion::Translation | Motion::Schoenflies { .. } | Motion::Spatial => {
+            at = Vector3::new(pose[0], pose[1], pose[2]);
+        }
+        Motion::Spherical => {}
+    }
+    if let Some(axis) = motion.rotation_axis() {
+        let mut direction = Vector3::zeros();
+        direction[axis] = pose[pose.len() - 1];
+        rotation = UnitQuaternion::from_scaled_axis(direction);
+    }
+    if motion.has_quaternion() {
+        rotation = quaternion(&pose[pose.len() - 4..]);
+    }
+    Isometry3::from_parts(Translation3::from(at), rotation)
+}
+
+/// Where a leg's last frame has to be for a platform frame, and whether its orientation counts.
+#[must_use]
+pub fn target(end: &End, platform: &Isometry3<f64>) -> (Isometry3<f64>, bool) {
+    match end {
+        End::Rigid(placement) => (platform * placement.numeric(), true),
+        End::Point(at) => {
+            let [x, y, z] = at.map(crate::cas::Number::value);
+            (platform * Isometry3::translation(x, y, z), false)
+        }
+    }
+}
+
+/// The six-vector (position, rotation) by which a leg's end misses its target, in the base frame.
+/// The rotational part is zero for a point end.
+#[must_use]
+pub fn closure_error(leg: &Leg, q: &[f64], target: &Isometry3<f64>, oriented: bool) -> [f64; 6] {
+    let Some(last) = leg.frames(q).pop() else { return [0.0; 6] };
+    let linear = target.translation.vector - last.translation.vector;
+    let angular = if oriented {
+        (target.rotation * last.rotation.inverse()).scaled_axis()
+    } else {
+        Vector3::zeros()
+    };
+    [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z]
+}
+
+impl Mechanism {
+    /// The joint positions of one leg within q_t.
+    #[must_use]
+    pub fn leg_range(&self, leg: usize) -> std::ops::Range<usize> {
+        let start = self.legs[..leg].iter().map(|l| l.independent().count()).sum::<usize>();
+        start..start + self.legs[leg].independent().count()
+    }
+
+    /// The rows of the six-vector (velocity, angular velocity) of a leg's end that are independent at
+    /// home and determine the leg's joint rates, in ascending order.
+    #[must_use]
+    pub fn closure_rows(&self, leg: usize) -> Vec<usize> {
+        let home = &self.home.joints[self.leg_range(leg)];
+        let rows = if matches!(self.legs[leg].end, Some(End::Rigid(_))) { 6 } else { 3 };
+        let jacobian = self.legs[leg].end_jacobian(home);
+        let mut basis: Vec<nalgebra::DVector<f64>> = Vec::new();
+        let mut selected = Vec::new();
+        for row in 0..rows {
+            let mut vector = jacobian.row(row).transpose();
+            let size = vector.norm();
+            for known in &basis {
+                vector -= known * known.dot(&vector);
+            }
+            if vector.norm() > 1e-6 * size.max(1e-6) && basis.len() < jacobian.ncols() {
+                basis.push(vector.normalize());
+                selected.push(row);
+            }
+        }
+        selected
+    }
+
+    /// A length that is typical of the robot, m: the mean distance of the legs' ends from their bases
+    /// at home.
+    #[must_use]
+    pub fn length_scale(&self) -> f64 {
+        let reach = |(index, leg): (usize, &Leg)| {
+            let frames = leg.frames(&self.home.joints[self.leg_range(index)]);
+            let last = frames.last().map(|f| f.translation.vector).unwrap_or_default();
+            let first = frames.first().map(|f| f.translation.vector).unwrap_or_default();
+            (last - first).norm()
+        };
+        let sum: f64 = self.legs.iter().enumerate().map(reach).sum();
+        (sum / self.legs.len().max(1) as f64).max(1e-3)
+    }
+}

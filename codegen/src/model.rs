@@ -1,0 +1,99 @@
+//! A compiled robot: sizes, parameters and one program per function.
+
+use crate::base::BaseParameter;
+use crate::derivation::{BodyParameter, Columns, Family, From, Selection};
+use crate::lowering::Program;
+use crate::mechanism::{JointKind, Mechanism};
+
+/// A function of the robot.
+#[derive(Debug, Clone)]
+pub struct Function {
+    /// Name of the Rust function.
+    pub name: String,
+    /// What it computes.
+    pub family: Family,
+    /// What it is evaluated from. From actuators, the program's pose is the one that forward
+    /// kinematics finds.
+    pub from: From,
+    /// The program.
+    pub program: Program,
+}
+
+/// A robot's model.
+#[derive(Debug, Clone)]
+pub struct RobotModel {
+    /// The robot.
+    pub mechanism: Mechanism,
+    /// Standard, base and payload columns, kept actuators.
+    pub selection: Selection,
+    /// Base parameters with their regroupings, in the symmetric order (43).
+    pub base: Vec<BaseParameter>,
+    /// All functions.
+    pub functions: Vec<Function>,
+}
+
+impl RobotModel {
+    /// The function of a family, evaluated from what is asked for.
+    #[must_use]
+    pub fn function(&self, family: Family, from: From) -> Option<&Function> {
+        self.functions.iter().find(|f| f.family == family && f.from == from)
+    }
+
+    /// The function that plain states (pose or, for a tree, joints) are given to.
+    #[must_use]
+    pub fn plain(&self, family: Family) -> Option<&Function> {
+        let from = if self.is_tree() { From::Joints } else { From::Pose };
+        self.function(family, from)
+    }
+
+    /// Whether the robot has no platform.
+    #[must_use]
+    pub const fn is_tree(&self) -> bool {
+        self.mechanism.platform.is_none()
+    }
+
+    /// The parameters that the columns of a function stand for.
+    #[must_use]
+    pub fn columns_of(&self, family: Family) -> &[BodyParameter] {
+        match family {
+            Family::IdmRedPayload | Family::IdmRedPayloadActuators => &self.selection.payload,
+            _ => match family.columns() {
+                Some(Columns::Standard) => &self.selection.standard,
+                Some(Columns::Base) => &self.selection.base,
+                None => &[],
+            },
+        }
+    }
+
+    /// Name of a parameter, `zz_2_leg3`, `m_platform` or `m_payload`.
+    #[must_use]
+    pub fn parameter_name(&self, parameter: BodyParameter) -> String {
+        match parameter {
+            BodyParameter::Leg { leg, joint, symbol } => {
+                self.mechanism.parameter_name(symbol, leg, joint)
+            }
+            BodyParameter::Platform(symbol) => format!("{}_platform", symbol.name()),
+            BodyParameter::Payload(symbol) => format!("{}_payload", symbol.name()),
+        }
+    }
+
+    /// Name of a base parameter: with the suffix `R` where others are regrouped into it.
+    #[must_use]
+    pub fn base_name(&self, base: &BaseParameter) -> String {
+        let suffix = if base.regrouped.is_empty() { "" } else { "R" };
+        format!("{}{suffix}", self.parameter_name(base.parameter))
+    }
+
+    /// SI unit of a parameter.
+    #[must_use]
+    pub fn parameter_unit(&self, parameter: BodyParameter) -> &'static str {
+        match parameter {
+            BodyParameter::Leg { leg, joint, symbol } => {
+                symbol.unit(self.mechanism.legs[leg].joints[joint].kind)
+            }
+            BodyParameter::Platform(symbol) | BodyParameter::Payload(symbol) => {
+                symbol.unit(JointKind::Fixed)
+            }
+        }
+    }
+}

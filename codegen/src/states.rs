@@ -1,0 +1,111 @@
+//! Random regular states of a mechanism, found numerically: poses around home with joints that close
+//! every leg in the working mode of the home configuration.
+
+use crate::cas::field::mix;
+use crate::mechanism::home::close_from;
+use crate::mechanism::numeric::{platform_frame, target};
+use crate::mechanism::Mechanism;
+
+/// A state of a robot.
+#[derive(Debug, Clone)]
+pub struct State {
+    /// Pose; joint positions of a tree.
+    pub pose: Vec<f64>,
+    /// Joint positions.
+    pub joints: Vec<f64>,
+    /// Twist coordinates; joint velocities of a tree.
+    pub twist: Vec<f64>,
+    /// Their derivatives.
+    pub acceleration: Vec<f64>,
+}
+
+/// A deterministic stream of numbers in (-1, 1).
+#[derive(Debug)]
+pub struct Stream(u64);
+
+impl Stream {
+    /// A stream for a seed.
+    #[must_use]
+    pub fn new(seed: u64) -> Self {
+        Self(mix(seed))
+    }
+
+    /// The next number.
+    pub fn next(&mut self) -> f64 {
+        self.0 = mix(self.0);
+        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}
+
+/// `count` random states. The spread around home is halved for a state that no leg's Newton iteration
+/// follows; a state that stays out of reach is home itself with random rates.
+#[must_use]
+pub fn random_states(mechanism: &Mechanism, count: usize, seed: u64) -> Vec<State> {
+    let mut stream = Stream::new(seed);
+    let dof = mechanism.dof();
+    let mut states = Vec::with_capacity(count);
+    for _ in 0..count {
+        let direction: Vec<f64> = (0..mechanism.pose_len()).map(|_| stream.next()).collect();
+        let mut spread = 0.4;
+        let (pose, joints) = loop {
+            match displaced(mechanism, &direction, spread) {
+                Some(found) => break found,
+                None if spread < 1e-4 => {
+                    break (mechanism.home.pose.clone(), mechanism.home.joints.clone());
+                }
+                None => spread *= 0.5,
+            }
+        };
+        let twist = (0..dof).map(|_| stream.next()).collect();
+        let acceleration = (0..dof).map(|_| 10.0 * stream.next()).collect();
+        states.push(State { pose, joints, twist, acceleration });
+    }
+    states
+}
+
+fn displaced(mechanism: &Mechanism, direction: &[f64], spread: f64) -> Option<(Vec<f64>, Vec<f64>)> {
+    let home = &mechanism.home;
+    let Some(platform) = &mechanism.platform else {
+        // Joints of a tree go anywhere.
+        let joints: Vec<f64> = home.joints.iter().zip(direction).map(|(h, d)| h + 3.0 * d).collect();
+        return Some((joints.clone(), joints));
+    };
+    // Lengths scale with the robot: with the distance of the legs' bases from the platform.
+    let scale = mechanism.length_scale();
+    let names = platform.motion.pose_coordinates();
+    let mut pose = home.pose.clone();
+    for ((coordinate, name), d) in pose.iter_mut().zip(&names).zip(direction) {
+        let angular = *name == "phi" || name.starts_with('q');
+        *coordinate += d * spread * if angular { 1.0 } else { scale };
+    }
+    if platform.motion.has_quaternion() {
+        let start = pose.len() - 4;
+        let norm = pose[start..].iter().map(|q| q * q).sum::<f64>().sqrt();
+        pose[start..].iter_mut().for_each(|q| *q /= norm);
+    }
+    let joints = follow(mechanism, &pose)?;
+    Some((pose, joints))
+}
+
+/// Joints at a pose, followed from home in small steps so that the working mode stays.
+fn follow(mechanism: &Mechanism, pose: &[f64]) -> Option<Vec<f64>> {
+    const STEPS: usize = 8;
+    let platform = mechanism.platform.as_ref()?;
+    let home = &mechanism.home;
+    let mut joints = home.joints.clone();
+    for step in 1..=STEPS {
+        let part = step as f64 / STEPS as f64;
+        let mut at: Vec<f64> = home.pose.iter().zip(pose).map(|(h, p)| h + part * (p - h)).collect();
+        if step == STEPS {
+            at.copy_from_slice(pose);
+        }
+        let frame = platform_frame(platform.motion, &at);
+        for (index, leg) in mechanism.legs.iter().enumerate() {
+            let (target, oriented) = target(leg.end.as_ref()?, &frame);
+            let range = mechanism.leg_range(index);
+            let closed = close_from(leg, &joints[range.clone()], &target, oriented)?;
+            joints[range].copy_from_slice(&closed);
+        }
+    }
+    Some(joints)
+}

@@ -1,0 +1,207 @@
+//! Base parameters: the fewest parameters from which the model can be computed, by QR without
+//! pivoting in the symmetric order (43), section 4.1 of the paper.
+//!
+//! The columns are taken platform first, then for each body and symbol those of all legs together,
+//! so that what stays is alike for like legs. The rank is decided on random states without noise,
+//! not on measured data: it is a property of the robot. The payload's columns are a block of their
+//! own, independent of the robot's, when loaded and unloaded runs are at hand (49); with loaded
+//! runs alone they are regrouped into the platform's.
+//!
+//! A deleted column d is W_d = Σ_k c_dk W_k, so the base parameter k is χ_k + Σ_d c_dk χ_d.
+
+use std::collections::BTreeMap;
+
+use nalgebra::DMatrix;
+use overact::{Body, Model, Symbol};
+
+use crate::{
+    columns::{Column, ColumnSet, Direction},
+    elimination::{Elimination, eliminate},
+    error::{Error, Problem},
+    states::{States, random_states},
+};
+
+/// A column is dependent when the part of it outside the kept ones is below this part of its norm.
+const RANK_TOLERANCE: f64 = 1e-9;
+
+/// How the payload's columns take part.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PayloadUse {
+    /// No run carries the payload.
+    Absent,
+    /// Some runs carry it and some do not: a block of its own (49).
+    Separate,
+    /// All runs carry it: it can't be told from the platform.
+    Regrouped,
+}
+
+/// The base parameters of a column set.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct BaseParameters {
+    /// Kept columns, in the symmetric order.
+    pub columns: Vec<usize>,
+    /// For each kept column, the deleted columns regrouped into it and their coefficients.
+    pub regroupings: Vec<Vec<(usize, f64)>>,
+    /// Columns that have no effect on the model.
+    pub without_effect: Vec<usize>,
+    /// Names: the kept parameter's, with the suffix `R` where others are regrouped into it.
+    pub names: Vec<String>,
+}
+
+impl BaseParameters {
+    /// The values of the base parameters that standard parameters (by name) give; `None` where one
+    /// of the values is not known.
+    #[must_use]
+    pub fn regrouped(
+        &self,
+        columns: &ColumnSet,
+        values: &BTreeMap<String, f64>,
+    ) -> Vec<Option<f64>> {
+        let all = columns.as_slice();
+        let value = |index: usize| all.get(index).and_then(|column| true_value(column, values));
+        self.columns
+            .iter()
+            .zip(&self.regroupings)
+            .map(|(&kept, regrouping)| {
+                regrouping
+                    .iter()
+                    .try_fold(value(kept)?, |sum, &(deleted, coefficient)| {
+                        Some(sum + coefficient * value(deleted)?)
+                    })
+            })
+            .collect()
+    }
+}
+
+/// The value of one column's parameter. Split friction has fv for both directions, and fs with the
+/// offset added or taken off.
+fn true_value(column: &Column, values: &BTreeMap<String, f64>) -> Option<f64> {
+    if let Some(value) = values.get(&column.name) {
+        return Some(*value);
+    }
+    let value = values.get(&column.standard).copied()?;
+    match (column.direction, column.symbol) {
+        (Some((_, direction)), Symbol::Fs) => {
+            let offset = column
+                .standard
+                .strip_prefix(Symbol::Fs.name())
+                .and_then(|rest| values.get(&format!("{}{rest}", Symbol::Off.name())))
+                .copied()
+                .unwrap_or(0.0);
+            Some(match direction {
+                Direction::Positive => value + offset,
+                Direction::Negative => value - offset,
+            })
+        }
+        _ => Some(value),
+    }
+}
+
+/// Finds the base parameters of a model's columns on random states drawn with `seed`.
+///
+/// # Errors
+/// A model that can't be evaluated near its home pose, or one without any parameter.
+pub fn base_parameters(
+    model: &dyn Model,
+    columns: &ColumnSet,
+    payload: PayloadUse,
+    seed: u64,
+) -> Result<BaseParameters, Error> {
+    let regressor = random_regressor(model, columns, seed)?;
+    let robot = symmetric_order(columns, columns.indices(false));
+    let loads = symmetric_order(columns, columns.indices(true));
+    let blocks = match payload {
+        PayloadUse::Absent => vec![robot],
+        PayloadUse::Separate => vec![robot, loads],
+        PayloadUse::Regrouped => vec![[robot, loads].concat()],
+    };
+    let mut base = BaseParameters::default();
+    for order in blocks {
+        collect(
+            &mut base,
+            columns,
+            eliminate(&regressor, &order, RANK_TOLERANCE),
+        );
+    }
+    if base.columns.is_empty() {
+        return Err(Problem::new(format!(
+            "no parameter of `{}` has an effect on its model",
+            model.info().name
+        ))
+        .help("list the parameters of the bodies in the description")
+        .into());
+    }
+    Ok(base)
+}
+
+/// Adds what one block yields to the base parameters.
+fn collect(base: &mut BaseParameters, columns: &ColumnSet, found: Elimination) {
+    for kept in found.kept {
+        let regrouping: Vec<(usize, f64)> = found
+            .dependent
+            .iter()
+            .flat_map(|(deleted, coefficients)| {
+                coefficients
+                    .iter()
+                    .filter(|(column, _)| *column == kept)
+                    .map(|(_, coefficient)| (*deleted, *coefficient))
+            })
+            .collect();
+        let name = columns
+            .as_slice()
+            .get(kept)
+            .map_or("", |column| column.name.as_str());
+        let suffix = if regrouping.is_empty() { "" } else { "R" };
+        base.names.push(format!("{name}{suffix}"));
+        base.columns.push(kept);
+        base.regroupings.push(regrouping);
+    }
+    base.without_effect.extend(found.zero);
+}
+
+/// The columns sorted as in eq. (43): platform, then by body, symbol and direction with the legs of
+/// one shape side by side, then the payload.
+fn symmetric_order(columns: &ColumnSet, mut indices: Vec<usize>) -> Vec<usize> {
+    indices.sort_by_key(|&index| {
+        columns.as_slice().get(index).map(|column| {
+            let direction = column.direction.map(|(_, direction)| direction);
+            match column.body {
+                Body::Platform => (0, 0, column.symbol, direction, 0, 0),
+                Body::Leg { leg, index, shape } => (1, index, column.symbol, direction, shape, leg),
+                Body::Payload => (2, 0, column.symbol, direction, 0, 0),
+            }
+        })
+    });
+    indices
+}
+
+/// The regressor on random states, (states r) x columns. The rows of a state are scaled by their
+/// largest entry, so that a state next to a singularity does not outweigh the others: relations
+/// between columns hold row by row.
+fn random_regressor(
+    model: &dyn Model,
+    columns: &ColumnSet,
+    seed: u64,
+) -> Result<DMatrix<f64>, Error> {
+    let r = model.info().sizes.dof.max(1);
+    let count = (3 * columns.len()).div_ceil(r) + 20;
+    let States {
+        samples,
+        pose,
+        twist,
+        acceleration,
+    } = random_states(model, count, seed)?;
+    let mut values = columns
+        .evaluate(model, &[&pose, &twist, &acceleration], samples, true)
+        .map_err(|error| Error::from(Problem::new(error.to_string())))?;
+    let width = columns.len().max(1);
+    for state in values.chunks_exact_mut(r * width) {
+        let largest = state
+            .iter()
+            .fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        if largest > 0.0 {
+            state.iter_mut().for_each(|value| *value /= largest);
+        }
+    }
+    Ok(DMatrix::from_row_slice(samples * r, columns.len(), &values))
+}

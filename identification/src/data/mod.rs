@@ -1,0 +1,126 @@
+//! Measured runs: a [`Log`] holds the actuator positions and torques of one run, uniformly sampled;
+//! a [`Mapping`] says which columns of a file they are and what turns them into SI units.
+//!
+//! Readers for CSV with a header and MATLAB v5 `.mat` files report every missing column, every
+//! cell that is not a number (up to twenty) and the first step of a time that is not uniform.
+
+mod csv_file;
+mod log;
+mod mapping;
+mod mat_file;
+
+use std::path::Path;
+
+pub use csv_file::read_csv;
+pub use log::Log;
+pub use mapping::{Gain, Mapping};
+pub use mat_file::read_mat;
+
+use crate::error::{Error, Problem, suggestion};
+
+/// Cells that are reported one by one; a file of text would else fill the screen.
+const LARGEST_NUMBER_OF_PROBLEMS: usize = 20;
+
+/// Reads a run from a file whose extension tells its format: `.mat` is MATLAB v5, all else CSV.
+///
+/// # Errors
+/// See [`read_csv`] and [`read_mat`].
+pub fn read(path: &Path, mapping: &Mapping, payload: bool) -> Result<Log, Error> {
+    let is_mat = path
+        .extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("mat"));
+    if is_mat {
+        read_mat(path, mapping, payload)
+    } else {
+        read_csv(path, mapping, payload)
+    }
+}
+
+/// The columns of a file that the mapping names, in SI units once scaled.
+struct Table {
+    file: String,
+    /// Line of the first sample, where the file has lines.
+    lines: Option<Vec<usize>>,
+    time: Vec<f64>,
+    /// One column per actuator.
+    positions: Vec<Vec<f64>>,
+    torques: Vec<Vec<f64>>,
+}
+
+impl Table {
+    /// Scales the columns and makes them a run.
+    fn into_log(self, mapping: &Mapping, gains: &[f64], payload: bool) -> Result<Log, Error> {
+        let frequency = log::uniform_frequency(&self.file, &self.time, self.lines.as_deref())?;
+        let interleave = |columns: &[Vec<f64>], scales: &[f64]| -> Vec<f64> {
+            let mut rows = Vec::with_capacity(columns.len() * self.time.len());
+            for sample in 0..self.time.len() {
+                rows.extend(columns.iter().zip(scales).map(|(column, scale)| {
+                    column.get(sample).copied().unwrap_or(f64::NAN) * scale
+                }));
+            }
+            rows
+        };
+        let positions = interleave(&self.positions, &mapping.position_scale);
+        let torques = interleave(&self.torques, gains);
+        Log::new(
+            self.file,
+            frequency,
+            mapping.positions.len(),
+            positions,
+            torques,
+            payload,
+        )
+    }
+}
+
+/// The name by which a file is called in messages: as the caller gave it.
+fn display_name(path: &Path) -> String {
+    path.display().to_string()
+}
+
+/// A file that can't be opened or read.
+fn unreadable(file: &str, error: &std::io::Error) -> Problem {
+    let problem = Problem::new(format!("the file can't be read: {error}")).file(file);
+    if error.kind() == std::io::ErrorKind::NotFound {
+        problem.help("check the path; it is taken from the folder in which the program was started")
+    } else {
+        problem
+    }
+}
+
+/// The error that names all columns that are missing and all that are there.
+fn missing_columns(file: &str, missing: &[&str], existing: &[&str], what: &str) -> Problem {
+    let quoted = |names: &[&str]| -> String {
+        names
+            .iter()
+            .map(|name| format!("`{name}`"))
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    let mut problem = Problem::new(format!(
+        "there {} no {what}{} {}; the file has {}",
+        if missing.len() == 1 { "is" } else { "are" },
+        if missing.len() == 1 { "" } else { "s" },
+        quoted(missing),
+        if existing.is_empty() {
+            String::from("none")
+        } else {
+            quoted(existing)
+        }
+    ))
+    .file(file);
+    if let Some(first) = missing.first() {
+        problem = problem.column(*first);
+    }
+    let guesses: Vec<String> = missing
+        .iter()
+        .filter_map(|name| {
+            suggestion(name, existing.iter().copied()).map(|near| format!("`{near}` for `{name}`"))
+        })
+        .collect();
+    if guesses.is_empty() {
+        problem.help("name the columns in the mapping")
+    } else {
+        problem.help(format!("did you mean {}?", guesses.join(", ")))
+    }
+}

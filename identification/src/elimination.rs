@@ -1,0 +1,120 @@
+//! Which columns of a matrix depend on those before them, and how: Householder QR without
+//! pivoting, eq. (42), column after column in a given order.
+//!
+//! A column whose part outside the span of the kept ones is smaller than a tolerance times its own
+//! norm is dependent: |R_kk| < α. It makes no reflection, and its coefficients on the kept columns
+//! are R_1^-1 times its part inside.
+
+use nalgebra::DMatrix;
+
+/// Coefficients smaller than this, for columns scaled to unit norm, are rounding.
+const COEFFICIENT_TOLERANCE: f64 = 1e-9;
+
+/// Columns with less than this part of the largest column's norm are zero.
+const ZERO_TOLERANCE: f64 = 1e-13;
+
+/// What the factorisation found; all numbers are column indices of the matrix.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Elimination {
+    /// Independent columns, in the given order.
+    pub(crate) kept: Vec<usize>,
+    /// Dependent columns and their coefficients on kept ones.
+    pub(crate) dependent: Vec<(usize, Vec<(usize, f64)>)>,
+    /// Columns that are zero.
+    pub(crate) zero: Vec<usize>,
+}
+
+/// Splits the columns of `matrix` named by `order` into independent, dependent and zero ones.
+pub(crate) fn eliminate(matrix: &DMatrix<f64>, order: &[usize], tolerance: f64) -> Elimination {
+    let norms: Vec<f64> = order
+        .iter()
+        .map(|&column| matrix.column(column).norm())
+        .collect();
+    let largest = norms
+        .iter()
+        .fold(0.0_f64, |largest, norm| largest.max(*norm));
+    let mut work = DMatrix::zeros(matrix.nrows(), order.len());
+    for (k, (&column, &norm)) in order.iter().zip(&norms).enumerate() {
+        if norm > 0.0 {
+            work.set_column(k, &(matrix.column(column) / norm));
+        }
+    }
+    let mut result = Elimination::default();
+    // Positions in `order` of the kept columns.
+    let mut places: Vec<usize> = Vec::new();
+    for k in 0..order.len() {
+        let rank = places.len();
+        let rest = work.nrows() - rank;
+        if norms[k] <= ZERO_TOLERANCE * largest {
+            result.zero.push(order[k]);
+        } else if rest == 0 || work.view((rank, k), (rest, 1)).norm() < tolerance {
+            let coefficients = back_substitute(&work, &places, k)
+                .into_iter()
+                .zip(&places)
+                .filter(|(coefficient, _)| coefficient.abs() >= COEFFICIENT_TOLERANCE)
+                .map(|(coefficient, &place)| (order[place], coefficient * norms[k] / norms[place]))
+                .collect();
+            result.dependent.push((order[k], coefficients));
+        } else {
+            reflect(&mut work, rank, k);
+            places.push(k);
+            result.kept.push(order[k]);
+        }
+    }
+    result
+}
+
+/// Zeroes column `k` below row `row` by a Householder reflection of it and all columns after it.
+fn reflect(work: &mut DMatrix<f64>, row: usize, k: usize) {
+    let (rows, columns) = work.shape();
+    let mut normal = work.view((row, k), (rows - row, 1)).clone_owned();
+    let norm = normal.norm();
+    // The sign that adds magnitudes instead of cancelling them.
+    normal[0] += norm.copysign(normal[0]);
+    let square = normal.norm_squared();
+    let mut rest = work.view_mut((row, k), (rows - row, columns - k));
+    let projection = normal.transpose() * &rest * (2.0 / square);
+    rest -= normal * projection;
+}
+
+/// Solves R_1 c = (column k above row `places.len()`), R_1 being the kept columns' triangle.
+fn back_substitute(work: &DMatrix<f64>, places: &[usize], k: usize) -> Vec<f64> {
+    let rank = places.len();
+    let mut c: Vec<f64> = (0..rank).map(|row| work[(row, k)]).collect();
+    for i in (0..rank).rev() {
+        for j in i + 1..rank {
+            c[i] -= work[(i, places[j])] * c[j];
+        }
+        c[i] /= work[(i, places[i])];
+    }
+    c
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::eliminate;
+
+    #[test]
+    fn relations_come_back() {
+        // Column 2 = 3 x column 0 - 0.5 x column 1, column 3 is zero, column 4 is new.
+        let matrix = DMatrix::from_fn(6, 5, |row, column| {
+            let x = [(row as f64).sin(), (row * row) as f64 * 0.1];
+            match column {
+                0 | 1 => x[column],
+                2 => 3.0 * x[0] - 0.5 * x[1],
+                3 => 0.0,
+                _ => (row as f64).exp(),
+            }
+        });
+        let result = eliminate(&matrix, &[0, 1, 2, 3, 4], 1e-9);
+        assert_eq!(result.kept, [0, 1, 4]);
+        assert_eq!(result.zero, [3]);
+        let (column, coefficients) = &result.dependent[0];
+        assert_eq!(*column, 2);
+        assert!((coefficients[0].1 - 3.0).abs() < 1e-13 && (coefficients[1].1 + 0.5).abs() < 1e-13);
+        // In another order another column is the dependent one.
+        assert_eq!(eliminate(&matrix, &[2, 1, 0], 1e-9).kept, [2, 1]);
+    }
+}

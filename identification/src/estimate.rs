@@ -1,0 +1,270 @@
+//! Least-squares estimation from the R factors of the lines, section 4.2 of the paper.
+//!
+//! χ minimises ||Y - W χ|| (44). With the residual's deviation σ_ρ (46) the covariance of χ is
+//! σ_ρ² (Wᵀ W)^-1 = σ_ρ² R^-1 R^-T (47). Weighted least squares divides the equations of each line j
+//! by the deviation of the residual that this line has on its own (48); lines in different units
+//! (N and N m) become comparable.
+//!
+//! Residuals, relative errors and the condition number are those of the unweighted system.
+
+use nalgebra::DMatrix;
+use serde::Serialize;
+
+use crate::{
+    elimination::eliminate,
+    error::{Error, Problem},
+    factor::Factor,
+    regression::{System, condition_number},
+    settings::{Normalisation, Settings},
+};
+
+/// Columns whose part outside the others is below this part of their norm are dependent on the
+/// data.
+pub(crate) const DATA_RANK_TOLERANCE: f64 = 1e-10;
+
+/// A line whose residual is below this part of its norm is exact but for rounding.
+const EXACT: f64 = 1e-9;
+
+/// Estimated parameters and how good they are.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Estimation {
+    /// Estimates χ, in the order of the selected columns (SI units).
+    pub values: Vec<f64>,
+    /// Standard deviations σ of the estimates, (47) (SI units).
+    pub standard_deviations: Vec<f64>,
+    /// 100 σ/|χ|; infinite for an estimate of zero.
+    pub relative_standard_deviations_percent: Vec<f64>,
+    /// ||ρ|| = ||Y - W χ|| of the unweighted system (N or N m, mixed for mixed lines).
+    pub residual_norm: f64,
+    /// 100 ||ρ||/||Y|| of the unweighted system.
+    pub relative_error_percent: f64,
+    /// Condition number of W, neither weighted nor scaled.
+    pub condition_number: f64,
+    /// r_c, number of equations.
+    pub equations: usize,
+    /// σ_ρ of the system that was solved: about 1 when it was weighted.
+    pub residual_deviation: f64,
+    /// Each line of Γ.
+    pub lines: Vec<LineError>,
+}
+
+impl Estimation {
+    /// The largest relative standard deviation divided by the smallest.
+    #[must_use]
+    pub fn deviation_ratio(&self) -> f64 {
+        let deviations = &self.relative_standard_deviations_percent;
+        let largest = deviations.iter().copied().fold(0.0, f64::max);
+        let smallest = deviations.iter().copied().fold(f64::INFINITY, f64::min);
+        if largest == 0.0 {
+            1.0
+        } else {
+            largest / smallest
+        }
+    }
+}
+
+/// How well one line of Γ, or one torque, is reproduced.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LineError {
+    /// Name of the coordinate or actuator.
+    pub name: String,
+    /// ||ρ_j|| (N or N m).
+    pub residual_norm: f64,
+    /// ||Y_j|| (N or N m).
+    pub measured_norm: f64,
+    /// 100 ||ρ_j||/||Y_j||.
+    pub relative_error_percent: f64,
+    /// Number of equations.
+    pub equations: usize,
+}
+
+impl LineError {
+    /// The errors of a line from its norms.
+    #[must_use]
+    pub fn new(name: &str, residual_norm: f64, measured_norm: f64, equations: usize) -> Self {
+        Self {
+            name: name.to_owned(),
+            residual_norm,
+            measured_norm,
+            relative_error_percent: percent(residual_norm, measured_norm),
+            equations,
+        }
+    }
+}
+
+/// 100 part/whole, 0 when both vanish.
+pub(crate) fn percent(part: f64, whole: f64) -> f64 {
+    if part == 0.0 {
+        0.0
+    } else {
+        100.0 * part / whole
+    }
+}
+
+/// The errors of given parameters on every line of a system.
+#[must_use]
+pub fn line_errors(system: &System, selected: &[usize], values: &[f64]) -> Vec<LineError> {
+    system
+        .lines
+        .iter()
+        .zip(&system.line_names)
+        .map(|(line, name)| {
+            let residual = line.residual_norm(selected, values);
+            LineError::new(name, residual, line.measured_norm(), line.equations())
+        })
+        .collect()
+}
+
+/// ||ρ|| and ||Y|| of all lines together.
+pub(crate) fn overall(lines: &[LineError]) -> (f64, f64) {
+    let norm = |of: fn(&LineError) -> f64| {
+        lines
+            .iter()
+            .map(|line| of(line).powi(2))
+            .sum::<f64>()
+            .sqrt()
+    };
+    (
+        norm(|line| line.residual_norm),
+        norm(|line| line.measured_norm),
+    )
+}
+
+/// Estimates the parameters of the columns `selected`.
+///
+/// # Errors
+/// No column, fewer equations than unknowns, or columns that are dependent on the data.
+pub fn estimate(
+    system: &System,
+    selected: &[usize],
+    settings: &Settings,
+) -> Result<Estimation, Error> {
+    let unknowns = selected.len();
+    let equations: usize = system.lines.iter().map(Factor::equations).sum();
+    if unknowns == 0 || equations <= unknowns {
+        return Err(Problem::new(format!(
+            "{equations} equations do not determine {unknowns} parameters"
+        ))
+        .help("record longer runs, decimate less or estimate fewer parameters")
+        .into());
+    }
+    let ones = vec![1.0; system.lines.len()];
+    let weights = if settings.weighted {
+        weights(system, selected)
+    } else {
+        ones.clone()
+    };
+    let weighted = Factor::merged(&system.lines, &weights);
+    let Solution {
+        values,
+        inverse,
+        residual_norm,
+    } = solve(&weighted, selected)?;
+    let deviation = residual_deviation(
+        &weighted,
+        selected,
+        &values,
+        residual_norm,
+        settings.normalisation,
+    );
+    let standard_deviations: Vec<f64> = inverse
+        .row_iter()
+        .map(|row| deviation * row.norm())
+        .collect();
+    let relative = values
+        .iter()
+        .zip(&standard_deviations)
+        .map(|(value, deviation)| percent(*deviation, value.abs()))
+        .collect();
+    let unweighted = Factor::merged(&system.lines, &ones);
+    let lines = line_errors(system, selected, &values);
+    let (residual_norm, measured_norm) = overall(&lines);
+    Ok(Estimation {
+        relative_standard_deviations_percent: relative,
+        standard_deviations,
+        residual_norm,
+        relative_error_percent: percent(residual_norm, measured_norm),
+        condition_number: condition_number(&unweighted.reduced(selected).triangle),
+        equations,
+        residual_deviation: deviation,
+        lines,
+        values,
+    })
+}
+
+/// A least-squares solution.
+struct Solution {
+    values: Vec<f64>,
+    /// R_1^-1, whose rows have the norms of the deviations but for σ_ρ (47).
+    inverse: DMatrix<f64>,
+    residual_norm: f64,
+}
+
+/// Solves R_1 χ = Q_1ᵀ Y (44).
+fn solve(factor: &Factor, selected: &[usize]) -> Result<Solution, Error> {
+    let reduced = factor.reduced(selected);
+    let identity = DMatrix::identity(selected.len(), selected.len());
+    let values = reduced.triangle.solve_upper_triangular(&reduced.rhs);
+    let inverse = reduced.triangle.solve_upper_triangular(&identity);
+    match (values, inverse) {
+        (Some(values), Some(inverse)) if values.iter().all(|value| value.is_finite()) => {
+            Ok(Solution {
+                values: values.iter().copied().collect(),
+                inverse,
+                residual_norm: reduced.residual_norm,
+            })
+        }
+        _ => Err(
+            Problem::new("the parameters are not independent on these data")
+                .help("excite the robot more, or estimate fewer parameters")
+                .into(),
+        ),
+    }
+}
+
+/// σ_ρ of a system, (46) or the sample variance.
+fn residual_deviation(
+    factor: &Factor,
+    selected: &[usize],
+    values: &[f64],
+    norm: f64,
+    normalisation: Normalisation,
+) -> f64 {
+    let count = factor.equations() as f64;
+    let square = match normalisation {
+        Normalisation::Unbiased => norm * norm / (count - selected.len() as f64),
+        Normalisation::SampleVariance => {
+            let sum = factor.residual_sum(selected, values);
+            (norm * norm - sum * sum / count).max(0.0) / (count - 1.0)
+        }
+    };
+    square.sqrt()
+}
+
+/// The weight of each line: the inverse of the deviation that its equations leave on their own (48).
+/// A line need not determine all parameters; only its independent columns count then.
+fn weights(system: &System, selected: &[usize]) -> Vec<f64> {
+    let deviation = |line: &Factor, norm: f64| norm / (line.equations().max(1) as f64).sqrt();
+    // Exact lines get a common floor, so that rounding does not choose between them.
+    let floor = system
+        .lines
+        .iter()
+        .map(|line| EXACT * deviation(line, line.measured_norm()))
+        .fold(0.0, f64::max);
+    let weights: Vec<f64> = system
+        .lines
+        .iter()
+        .map(|line| {
+            let own = eliminate(line.matrix(), selected, DATA_RANK_TOLERANCE).kept;
+            let freedom = line.equations().saturating_sub(own.len()).max(1) as f64;
+            let deviation = line.reduced(&own).residual_norm / freedom.sqrt();
+            1.0 / deviation.max(floor)
+        })
+        .collect();
+    // Data without any torque have no deviation to weight with.
+    if weights.iter().all(|weight| weight.is_finite()) {
+        weights
+    } else {
+        vec![1.0; system.lines.len()]
+    }
+}

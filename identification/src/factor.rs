@@ -1,0 +1,143 @@
+//! The least-squares system [W Y] of one line j of Γ, kept as its upper triangular factor R.
+//!
+//! Rows are added block by block: the QR factorisation of [R; block] is the factor of all rows so
+//! far, so memory does not grow with the number of equations. Residuals, norms, subsets of columns
+//! and weights all follow from R: ||Y - W χ|| = ||R_Y - R_W χ||.
+
+use nalgebra::{DMatrix, DVector};
+
+/// Rows are taken in blocks of this many times the number of columns.
+const BLOCK_RATIO: usize = 4;
+
+/// R factor of [W Y], with the sums of all columns for the mean of the residual.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Factor {
+    r: DMatrix<f64>,
+    equations: usize,
+    sums: DVector<f64>,
+}
+
+impl Factor {
+    /// The factor of no equations in `parameters` unknowns.
+    #[must_use]
+    pub fn new(parameters: usize) -> Self {
+        let size = parameters + 1;
+        Self {
+            r: DMatrix::zeros(size, size),
+            equations: 0,
+            sums: DVector::zeros(size),
+        }
+    }
+
+    /// Adds equations: rows x (parameters + 1), the last column being Y. A matrix of another
+    /// width is ignored.
+    pub fn push(&mut self, rows: &DMatrix<f64>) {
+        let size = self.r.ncols();
+        if rows.ncols() != size {
+            return;
+        }
+        self.equations += rows.nrows();
+        self.sums += rows.row_sum().transpose();
+        let step = BLOCK_RATIO * size;
+        for first in (0..rows.nrows()).step_by(step) {
+            let count = step.min(rows.nrows() - first);
+            self.absorb(&rows.rows(first, count).clone_owned());
+        }
+    }
+
+    /// Adds the equations of other factors, each scaled by a weight.
+    #[must_use]
+    pub fn merged(factors: &[Self], weights: &[f64]) -> Self {
+        let parameters = factors.first().map_or(0, Self::parameters);
+        let mut merged = Self::new(parameters);
+        for (factor, weight) in factors.iter().zip(weights) {
+            merged.equations += factor.equations;
+            merged.sums += &factor.sums * *weight;
+            merged.absorb(&(&factor.r * *weight));
+        }
+        merged
+    }
+
+    /// Factorises [R; block].
+    fn absorb(&mut self, block: &DMatrix<f64>) {
+        let size = self.r.ncols();
+        let mut stacked = DMatrix::zeros(size + block.nrows(), size);
+        stacked.rows_mut(0, size).copy_from(&self.r);
+        stacked.rows_mut(size, block.nrows()).copy_from(block);
+        self.r = stacked.qr().r();
+    }
+
+    /// Number of unknowns.
+    #[must_use]
+    pub fn parameters(&self) -> usize {
+        self.r.ncols() - 1
+    }
+
+    /// Number of equations.
+    #[must_use]
+    pub const fn equations(&self) -> usize {
+        self.equations
+    }
+
+    /// The factor R of [W Y], square.
+    #[must_use]
+    pub const fn matrix(&self) -> &DMatrix<f64> {
+        &self.r
+    }
+
+    /// ||Y||.
+    #[must_use]
+    pub fn measured_norm(&self) -> f64 {
+        self.r.column(self.parameters()).norm()
+    }
+
+    /// ||Y - W χ|| of parameters in the columns `selected`.
+    #[must_use]
+    pub fn residual_norm(&self, selected: &[usize], values: &[f64]) -> f64 {
+        let mut residual = self.r.column(self.parameters()).clone_owned();
+        for (&column, value) in selected.iter().zip(values) {
+            residual.axpy(-value, &self.r.column(column), 1.0);
+        }
+        residual.norm()
+    }
+
+    /// Σ(Y - W χ) over all equations.
+    #[must_use]
+    pub fn residual_sum(&self, selected: &[usize], values: &[f64]) -> f64 {
+        let explained: f64 = selected
+            .iter()
+            .zip(values)
+            .map(|(&column, value)| self.sums[column] * value)
+            .sum();
+        self.sums[self.parameters()] - explained
+    }
+
+    /// The factor of the columns `selected` and Y: R_1 (upper triangular), the right-hand side
+    /// Q_1ᵀ Y and the smallest possible residual norm.
+    pub(crate) fn reduced(&self, selected: &[usize]) -> Reduced {
+        let p = selected.len();
+        let mut columns: Vec<usize> = selected.to_vec();
+        columns.push(self.parameters());
+        let r = self.r.select_columns(&columns).qr().r();
+        let rows = r.nrows();
+        let residual_norm = if rows > p {
+            r.view((p, p), (rows - p, 1)).norm()
+        } else {
+            0.0
+        };
+        let rhs = r.view((0, p), (p, 1)).column(0).clone_owned();
+        Reduced {
+            triangle: r.view((0, 0), (p, p)).clone_owned(),
+            rhs,
+            residual_norm,
+        }
+    }
+}
+
+/// See [`Factor::reduced`].
+#[derive(Debug, Clone)]
+pub(crate) struct Reduced {
+    pub(crate) triangle: DMatrix<f64>,
+    pub(crate) rhs: DVector<f64>,
+    pub(crate) residual_norm: f64,
+}

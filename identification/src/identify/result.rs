@@ -1,0 +1,279 @@
+//! The result of an identification, as it is printed and as it is serialised: the names of the
+//! fields are the keys of the document.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::{
+    base::BaseParameters,
+    columns::ColumnSet,
+    essential::Removal,
+    estimate::LineError,
+    kinematics::Motion,
+    regression::PartitionCondition,
+    settings::Settings,
+    validation::{Series, Validation},
+};
+
+/// Everything that an identification found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Identification {
+    /// Name of the robot.
+    pub robot: String,
+    /// The runs identified from.
+    pub runs: Vec<Run>,
+    /// The base parameters and what is regrouped into them.
+    pub base_parameters: Vec<BaseParameter>,
+    /// Standard parameters that have no effect on the model.
+    pub without_effect: Vec<String>,
+    /// The estimates: for each model, base then essential.
+    pub estimates: Vec<Estimate>,
+    /// Every estimate on every run that was not identified from.
+    pub cross_validation: Vec<CrossValidation>,
+    /// What the user should know before trusting the numbers.
+    pub warnings: Vec<String>,
+    /// The settings used.
+    pub settings: Settings,
+}
+
+/// A run identified from.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Run {
+    /// Its name.
+    pub name: String,
+    /// Samples used, before decimation.
+    pub samples: usize,
+    /// f_m, Hz.
+    pub sampling_frequency: f64,
+    /// Whether the platform carried the payload.
+    pub payload: bool,
+    /// Largest miss of the loops' closure by the measured actuators (m, rad).
+    pub closure_residual: f64,
+}
+
+impl Run {
+    /// What is told of a run.
+    #[must_use]
+    pub fn new(motion: &Motion) -> Self {
+        Self {
+            name: motion.run.clone(),
+            samples: motion.samples,
+            sampling_frequency: motion.sampling_frequency,
+            payload: motion.payload,
+            closure_residual: motion.closure_residual,
+        }
+    }
+}
+
+/// A base parameter: a kept standard parameter and what is regrouped into it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BaseParameter {
+    /// Its name, with the suffix `R` where others are regrouped into it.
+    pub name: String,
+    /// Name of the kept parameter.
+    pub parameter: String,
+    /// SI unit.
+    pub unit: String,
+    /// What is added to the kept parameter.
+    pub regrouping: Vec<Regrouping>,
+    /// Its true value, where that is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub true_value: Option<f64>,
+}
+
+/// One term of a base parameter.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Regrouping {
+    /// Name of the parameter that is regrouped.
+    pub parameter: String,
+    /// Its coefficient.
+    pub coefficient: f64,
+}
+
+impl BaseParameter {
+    /// All base parameters by name.
+    #[must_use]
+    pub fn all(
+        columns: &ColumnSet,
+        base: &BaseParameters,
+        true_values: Option<&BTreeMap<String, f64>>,
+    ) -> Vec<Self> {
+        let name = |index: usize| {
+            columns
+                .as_slice()
+                .get(index)
+                .map_or_else(String::new, |column| column.name.clone())
+        };
+        let none = BTreeMap::new();
+        let values = base.regrouped(columns, true_values.unwrap_or(&none));
+        base.columns
+            .iter()
+            .zip(&base.regroupings)
+            .zip(base.names.iter().zip(values))
+            .map(|((&kept, regrouping), (own_name, true_value))| Self {
+                name: own_name.clone(),
+                parameter: name(kept),
+                unit: columns
+                    .as_slice()
+                    .get(kept)
+                    .map_or_else(String::new, |column| column.unit.to_owned()),
+                regrouping: regrouping
+                    .iter()
+                    .map(|&(deleted, coefficient)| Regrouping {
+                        parameter: name(deleted),
+                        coefficient,
+                    })
+                    .collect(),
+                true_value,
+            })
+            .collect()
+    }
+}
+
+/// Which parameters an estimate has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Stage {
+    /// All base parameters.
+    Base,
+    /// Those that the data determine.
+    Essential,
+}
+
+impl Stage {
+    /// `base` or `essential`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Base => "base",
+            Self::Essential => "essential",
+        }
+    }
+}
+
+/// One estimate of the robot's parameters.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Estimate {
+    /// `platform` (case 1), `actuators` (case 2) or `joints` (no redundancy).
+    pub model: &'static str,
+    /// Names of the actuators on which the inputs are projected; empty for the platform.
+    pub kept_actuators: Vec<String>,
+    /// Which parameters are estimated.
+    pub stage: Stage,
+    /// Whether least squares were weighted.
+    pub weighted: bool,
+    /// The parameters.
+    pub parameters: Vec<ParameterEstimate>,
+    /// ||ρ||, unweighted.
+    pub residual_norm: f64,
+    /// 100 ||ρ||/||Y||, unweighted.
+    pub relative_error_percent: f64,
+    /// Condition number of W, neither weighted nor scaled.
+    pub condition_number: f64,
+    /// r_c, number of equations.
+    pub equations: usize,
+    /// σ_ρ of the system that was solved.
+    pub residual_deviation: f64,
+    /// Each line of Γ.
+    pub lines: Vec<LineError>,
+    /// Where actuators are kept: how badly they determine the platform at worst.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub partition: Option<PartitionCondition>,
+    /// The way from the base parameters to the essential ones.
+    pub removals: Vec<Removal>,
+}
+
+impl Estimate {
+    /// Columns of the parameters.
+    #[must_use]
+    pub fn columns(&self) -> Vec<usize> {
+        self.parameters
+            .iter()
+            .map(|parameter| parameter.column)
+            .collect()
+    }
+
+    /// Values of the parameters (SI units).
+    #[must_use]
+    pub fn values(&self) -> Vec<f64> {
+        self.parameters
+            .iter()
+            .map(|parameter| parameter.value)
+            .collect()
+    }
+}
+
+/// The estimate of one parameter.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ParameterEstimate {
+    /// Its name.
+    pub name: String,
+    /// SI unit.
+    pub unit: String,
+    /// Its column in the column set.
+    #[serde(skip)]
+    pub column: usize,
+    /// Estimate.
+    pub value: f64,
+    /// σ.
+    pub standard_deviation: f64,
+    /// 100 σ/|χ|.
+    pub relative_standard_deviation_percent: f64,
+    /// The regrouped true value, where it is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub true_value: Option<f64>,
+    /// 100 (estimate - true value)/|true value|, where the truth is known and not zero.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error_percent: Option<f64>,
+}
+
+/// How well an estimate reproduces a run that it was not made from.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CrossValidation {
+    /// Name of the run.
+    pub run: String,
+    /// Whether the platform carried the payload.
+    pub payload: bool,
+    /// Model of the estimate.
+    pub model: &'static str,
+    /// Stage of the estimate.
+    pub stage: Stage,
+    /// ||Y - W χ||.
+    pub residual_norm: f64,
+    /// 100 ||Y - W χ||/||Y||.
+    pub relative_error_percent: f64,
+    /// Each line of Γ.
+    pub lines: Vec<LineError>,
+    /// Each actuator's torque against the least-norm prediction.
+    pub torques: Vec<LineError>,
+    /// The same with the measured torques freed of their internal part (50); empty without
+    /// redundancy.
+    pub projected_torques: Vec<LineError>,
+    /// The lines over time, for plots.
+    #[serde(skip)]
+    pub line_series: Vec<Series>,
+    /// The torques over time, for plots.
+    #[serde(skip)]
+    pub torque_series: Vec<Series>,
+}
+
+impl CrossValidation {
+    /// Joins an estimate's identity to its validation.
+    #[must_use]
+    pub fn new(estimate: &Estimate, payload: bool, validation: Validation) -> Self {
+        Self {
+            run: validation.run,
+            payload,
+            model: estimate.model,
+            stage: estimate.stage,
+            residual_norm: validation.residual_norm,
+            relative_error_percent: validation.relative_error_percent,
+            lines: validation.lines,
+            torques: validation.torques,
+            projected_torques: validation.projected_torques,
+            line_series: validation.line_series,
+            torque_series: validation.torque_series,
+        }
+    }
+}

@@ -1,0 +1,270 @@
+//! Base and essential estimates of one projection, with what is to be said about them.
+
+use std::collections::BTreeMap;
+
+use overact::Model;
+
+use super::{
+    Prepared, Progress,
+    result::{Estimate, ParameterEstimate, Stage},
+};
+use crate::{
+    elimination::eliminate,
+    error::{Error, Problem},
+    essential::{Removal, essential},
+    estimate::{DATA_RANK_TOLERANCE, Estimation, estimate},
+    factor::Factor,
+    regression::{Projection, System, system},
+    settings::Settings,
+};
+
+/// A partition whose condition exceeds this is likely to spoil case 2.
+const LARGEST_PARTITION_CONDITION: f64 = 30.0;
+
+/// A relative error above this means that the model does not explain the data.
+const LARGEST_RELATIVE_ERROR_PERCENT: f64 = 50.0;
+
+/// The estimates of one projection.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// All base parameters.
+    pub base: Estimate,
+    /// The essential parameters.
+    pub essential: Estimate,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Estimates base and essential parameters of one projection from prepared runs.
+///
+/// # Errors
+/// As [`system`](crate::regression::system), or data that determine no parameter.
+pub fn estimate_projection(
+    model: &dyn Model,
+    prepared: &Prepared,
+    projection: &Projection,
+    settings: &Settings,
+    true_values: Option<&BTreeMap<String, f64>>,
+    progress: &dyn Fn(Progress<'_>),
+) -> Result<Outcome, Error> {
+    let label = projection.name();
+    let report = |run: usize| {
+        let run = prepared
+            .motions
+            .get(run)
+            .map_or("", |motion| motion.run.as_str());
+        progress(Progress::Equations { model: label, run });
+    };
+    let system = system(
+        model,
+        &prepared.columns,
+        projection,
+        &prepared.motions,
+        settings,
+        &report,
+    )?;
+    progress(Progress::Estimation { model: label });
+    let mut warnings = Vec::new();
+    let (selected, names) = on_data(prepared, &system, &mut warnings)?;
+    let base = estimate(&system, &selected, settings)?;
+    let rest = essential(&system, &selected, &names, &base, settings)?;
+    warnings.extend(quality_warnings(&system, &base, &rest.removals));
+    let context = Context {
+        prepared,
+        system: &system,
+        truth: truth(prepared, true_values),
+        kept_actuators: match projection {
+            Projection::Platform => Vec::new(),
+            _ => system.line_names.clone(),
+        },
+        weighted: settings.weighted,
+    };
+    Ok(Outcome {
+        base: context.estimate(Stage::Base, base, &selected, &names, Vec::new()),
+        essential: context.estimate(
+            Stage::Essential,
+            rest.estimation,
+            &rest.selected,
+            &rest.names,
+            rest.removals,
+        ),
+        warnings,
+    })
+}
+
+/// True values of the base parameters by column, where they are known.
+fn truth(prepared: &Prepared, true_values: Option<&BTreeMap<String, f64>>) -> BTreeMap<usize, f64> {
+    let Some(values) = true_values else {
+        return BTreeMap::new();
+    };
+    let base = &prepared.base;
+    let regrouped = base.regrouped(&prepared.columns, values);
+    let known = base.columns.iter().zip(regrouped);
+    known
+        .filter_map(|(&column, value)| value.map(|value| (column, value)))
+        .collect()
+}
+
+/// What all estimates of a projection share.
+struct Context<'a> {
+    prepared: &'a Prepared,
+    system: &'a System,
+    truth: BTreeMap<usize, f64>,
+    kept_actuators: Vec<String>,
+    weighted: bool,
+}
+
+impl Context<'_> {
+    /// Joins an estimation to names, true values and the way to it.
+    fn estimate(
+        &self,
+        stage: Stage,
+        estimation: Estimation,
+        selected: &[usize],
+        names: &[String],
+        removals: Vec<Removal>,
+    ) -> Estimate {
+        Estimate {
+            model: self.system.projection.name(),
+            kept_actuators: self.kept_actuators.clone(),
+            stage,
+            weighted: self.weighted,
+            parameters: parameters(self.prepared, &estimation, selected, names, &self.truth),
+            residual_norm: estimation.residual_norm,
+            relative_error_percent: estimation.relative_error_percent,
+            condition_number: estimation.condition_number,
+            equations: estimation.equations,
+            residual_deviation: estimation.residual_deviation,
+            lines: estimation.lines,
+            partition: self.system.partition.clone(),
+            removals,
+        }
+    }
+}
+
+/// The base parameters that the data can tell apart, with their names; the others are warned of.
+fn on_data(
+    prepared: &Prepared,
+    system: &System,
+    warnings: &mut Vec<String>,
+) -> Result<(Vec<usize>, Vec<String>), Error> {
+    let base = &prepared.base;
+    let ones = vec![1.0; system.lines.len()];
+    let all = Factor::merged(&system.lines, &ones);
+    let found = eliminate(all.matrix(), &base.columns, DATA_RANK_TOLERANCE);
+    let name = |column: usize| -> &str {
+        base.columns
+            .iter()
+            .position(|kept| *kept == column)
+            .and_then(|place| base.names.get(place))
+            .map_or("", String::as_str)
+    };
+    let label = system.projection.name();
+    for &column in &found.zero {
+        warnings.push(format!(
+            "model {label}: `{}` is not identifiable: its column is zero on these data",
+            name(column)
+        ));
+    }
+    for (column, coefficients) in &found.dependent {
+        let others: Vec<String> = coefficients
+            .iter()
+            .map(|(kept, _)| format!("`{}`", name(*kept)))
+            .collect();
+        warnings.push(format!(
+            "model {label}: `{}` is not identifiable: on these data its column is a combination of those of {}",
+            name(*column),
+            others.join(", ")
+        ));
+    }
+    if found.kept.is_empty() {
+        return Err(
+            Problem::new("the data determine no parameter: the robot stands still")
+                .help("record runs in which the robot moves")
+                .into(),
+        );
+    }
+    let names = found
+        .kept
+        .iter()
+        .map(|&column| name(column).to_owned())
+        .collect();
+    Ok((found.kept, names))
+}
+
+/// Joins estimates, names and true values.
+fn parameters(
+    prepared: &Prepared,
+    estimation: &Estimation,
+    selected: &[usize],
+    names: &[String],
+    truth: &BTreeMap<usize, f64>,
+) -> Vec<ParameterEstimate> {
+    let deviations = estimation
+        .standard_deviations
+        .iter()
+        .zip(&estimation.relative_standard_deviations_percent);
+    selected
+        .iter()
+        .zip(names)
+        .zip(estimation.values.iter().zip(deviations))
+        .map(
+            |((&column, name), (&value, (&standard_deviation, &relative)))| {
+                let true_value = truth.get(&column).copied();
+                let unit = prepared
+                    .columns
+                    .as_slice()
+                    .get(column)
+                    .map_or("", |column| column.unit);
+                ParameterEstimate {
+                    name: name.clone(),
+                    unit: unit.to_owned(),
+                    column,
+                    value,
+                    standard_deviation,
+                    relative_standard_deviation_percent: relative,
+                    true_value,
+                    error_percent: true_value
+                        .filter(|truth| *truth != 0.0)
+                        .map(|truth| 100.0 * (value - truth) / truth.abs()),
+                }
+            },
+        )
+        .collect()
+}
+
+/// What is wrong with a system, its estimate or its elimination.
+fn quality_warnings(system: &System, base: &Estimation, removals: &[Removal]) -> Vec<String> {
+    let label = system.projection.name();
+    let mut warnings = Vec::new();
+    if let Some(partition) = &system.partition
+        && partition.largest > LARGEST_PARTITION_CONDITION
+        && matches!(system.projection, Projection::Actuators(_))
+    {
+        warnings.push(format!(
+            "model {label}: the condition number of the kept actuators reaches {:.1} ({}, t = {:.3} s), above {LARGEST_PARTITION_CONDITION}; keep other actuators or trust the platform model",
+            partition.largest, partition.run, partition.time
+        ));
+    }
+    if base.relative_error_percent > LARGEST_RELATIVE_ERROR_PERCENT {
+        warnings.push(format!(
+            "model {label}: the relative error is {:.0} %: the model does not explain the torques; check signs, units and gains",
+            base.relative_error_percent
+        ));
+    }
+    let significant: Vec<String> = removals
+        .iter()
+        .filter(|removal| removal.significant)
+        .map(|removal| {
+            let deviation = removal.relative_standard_deviation_percent;
+            format!("`{}` to {deviation:.1} %", removal.name)
+        })
+        .collect();
+    if !significant.is_empty() {
+        warnings.push(format!(
+            "model {label}: the elimination cancelled parameters that the data determine ({}); raise r_sigma, keep significant parameters, or trust the base parameters",
+            significant.join(", ")
+        ));
+    }
+    warnings
+}

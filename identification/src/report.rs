@@ -1,0 +1,388 @@
+//! Plain-text tables of an identification, for a terminal or a file.
+
+use std::fmt::Write;
+
+use crate::estimate::LineError;
+use crate::identify::{BaseParameter, CrossValidation, Estimate, Identification, Regrouping};
+
+/// Largest denominator of a fraction that a coefficient is printed as.
+const LARGEST_DENOMINATOR: u32 = 10_000;
+
+/// A coefficient is printed as a decimal or a fraction that it equals to this relative tolerance.
+const SNAP: f64 = 1e-11;
+
+/// The whole report: runs, base parameters, estimates, cross-validation, warnings.
+#[must_use]
+pub fn report(identification: &Identification) -> String {
+    let mut text = format!("Identification of {}\n", identification.robot);
+    text.push_str(&runs(identification));
+    text.push_str(&base_parameters(&identification.base_parameters));
+    if !identification.without_effect.is_empty() {
+        let _ = writeln!(
+            text,
+            "without effect: {}",
+            identification.without_effect.join(", ")
+        );
+    }
+    for one in &identification.estimates {
+        text.push('\n');
+        text.push_str(&estimate(one));
+    }
+    if !identification.cross_validation.is_empty() {
+        text.push('\n');
+        text.push_str(&cross_validation(&identification.cross_validation));
+    }
+    text.push_str(&warnings(&identification.warnings));
+    text
+}
+
+/// The runs identified from.
+fn runs(identification: &Identification) -> String {
+    let rows = identification.runs.iter().map(|run| {
+        vec![
+            run.name.clone(),
+            run.samples.to_string(),
+            format!("{:.1}", run.sampling_frequency),
+            String::from(if run.payload { "yes" } else { "no" }),
+        ]
+    });
+    format!(
+        "\nRuns\n{}",
+        table(&["run", "samples", "Hz", "payload"], rows.collect())
+    )
+}
+
+/// The base parameters and their regroupings in words.
+#[must_use]
+pub fn base_parameters(parameters: &[BaseParameter]) -> String {
+    let (alone, regrouped): (Vec<&BaseParameter>, Vec<&BaseParameter>) = parameters
+        .iter()
+        .partition(|base| base.regrouping.is_empty());
+    let rows = regrouped
+        .iter()
+        .map(|base| {
+            let mut sum = base.parameter.clone();
+            for term in &base.regrouping {
+                sum.push_str(&signed_term(term));
+            }
+            vec![base.name.clone(), String::from("="), sum]
+        })
+        .collect();
+    let mut text = format!(
+        "\nBase parameters ({})\n{}",
+        parameters.len(),
+        left_table(rows)
+    );
+    if !alone.is_empty() {
+        let names: Vec<&str> = alone.iter().map(|base| base.name.as_str()).collect();
+        let _ = writeln!(text, "alone: {}", names.join(", "));
+    }
+    text
+}
+
+/// ` + 0.0784 m_2_leg1`, with a coefficient of 1 left out.
+fn signed_term(term: &Regrouping) -> String {
+    let sign = if term.coefficient < 0.0 { '-' } else { '+' };
+    match coefficient(term.coefficient.abs()).as_str() {
+        "1" => format!(" {sign} {}", term.parameter),
+        number => format!(" {sign} {number} {}", term.parameter),
+    }
+}
+
+/// A positive coefficient as a short decimal or a fraction that it equals, else with six digits.
+#[must_use]
+pub fn coefficient(value: f64) -> String {
+    let near = |candidate: f64| (candidate - value).abs() <= SNAP * value.abs();
+    for digits in 1..=7 {
+        let text = significant(value, digits);
+        if text.parse().is_ok_and(near) {
+            return text;
+        }
+    }
+    match fraction(value) {
+        Some((numerator, denominator)) => format!("({numerator}/{denominator})"),
+        None => significant(value, 6),
+    }
+}
+
+/// The fraction of the smallest denominator that equals a positive value, by its continued
+/// fraction.
+fn fraction(value: f64) -> Option<(u64, u64)> {
+    let (mut before, mut now) = ((0.0, 1.0), (1.0, 0.0));
+    let mut rest = value;
+    loop {
+        let whole = rest.floor();
+        (before, now) = (now, (whole * now.0 + before.0, whole * now.1 + before.1));
+        let (numerator, denominator): (f64, f64) = now;
+        if !(denominator <= f64::from(LARGEST_DENOMINATOR) && numerator < 1e9) {
+            return None;
+        }
+        if (numerator / denominator - value).abs() <= SNAP * value {
+            return Some((numerator as u64, denominator as u64));
+        }
+        rest = 1.0 / (rest - whole);
+    }
+}
+
+/// The table of one estimate with its quality below.
+#[must_use]
+pub fn estimate(estimate: &Estimate) -> String {
+    let what = match estimate.model {
+        "platform" => String::from("Case 1, inputs projected on the platform"),
+        "actuators" => format!(
+            "Case 2, inputs projected on {}",
+            estimate.kept_actuators.join(", ")
+        ),
+        _ => String::from("Joint model"),
+    };
+    let mut text = format!("{what}: {} parameters\n", estimate.stage.name());
+    let truth = estimate
+        .parameters
+        .iter()
+        .any(|parameter| parameter.true_value.is_some());
+    let mut header = vec!["parameter"];
+    if truth {
+        header.push("true value");
+    }
+    header.extend(["estimate", "% sigma"]);
+    if truth {
+        header.push("error %");
+    }
+    header.push("unit");
+    let optional = |value: Option<f64>, digits: usize| {
+        value.map_or_else(|| String::from("-"), |value| significant(value, digits))
+    };
+    let rows = estimate.parameters.iter().map(|parameter| {
+        let mut row = vec![parameter.name.clone()];
+        if truth {
+            row.push(optional(parameter.true_value, 6));
+        }
+        row.push(significant(parameter.value, 6));
+        row.push(significant(
+            parameter.relative_standard_deviation_percent,
+            4,
+        ));
+        if truth {
+            row.push(optional(parameter.error_percent, 3));
+        }
+        row.push(parameter.unit.clone());
+        row
+    });
+    text.push_str(&table(&header, rows.collect()));
+    text.push_str(&quality(estimate));
+    text
+}
+
+/// Errors, condition and the path of the elimination of an estimate.
+fn quality(estimate: &Estimate) -> String {
+    let mut text = format!(
+        "relative error {:.4} %, residual norm {}, condition number {}, {} equations{}\n",
+        estimate.relative_error_percent,
+        significant(estimate.residual_norm, 7),
+        significant(estimate.condition_number, 6),
+        estimate.equations,
+        if estimate.weighted { ", weighted" } else { "" },
+    );
+    if estimate.lines.len() > 1 {
+        let lines: Vec<String> = estimate
+            .lines
+            .iter()
+            .map(|line| format!("{} {:.3} %", line.name, line.relative_error_percent))
+            .collect();
+        let _ = writeln!(text, "by line: {}", lines.join(", "));
+    }
+    if let Some(partition) = &estimate.partition
+        && estimate.model == "actuators"
+    {
+        let _ = writeln!(
+            text,
+            "condition of the kept actuators: at most {} ({}, t = {:.3} s)",
+            significant(partition.largest, 4),
+            partition.run,
+            partition.time
+        );
+    }
+    if !estimate.removals.is_empty() {
+        let rows = estimate.removals.iter().map(|removal| {
+            vec![
+                removal.name.clone(),
+                significant(removal.relative_standard_deviation_percent, 4),
+                significant(removal.deviation_ratio, 4),
+                format!("{:.4}", removal.relative_error_before_percent),
+                format!("{:.4}", removal.relative_error_after_percent),
+            ]
+        });
+        let header = ["cancelled", "% sigma", "max/min", "error % before", "after"];
+        text.push_str(&table(&header, rows.collect()));
+    }
+    text
+}
+
+/// The cross-validation of all estimates.
+#[must_use]
+pub fn cross_validation(all: &[CrossValidation]) -> String {
+    let list = |errors: &[LineError]| -> String {
+        let errors: Vec<String> = errors
+            .iter()
+            .map(|error| format!("{:.2}", error.relative_error_percent))
+            .collect();
+        errors.join(" ")
+    };
+    let redundant = all.iter().any(|one| !one.projected_torques.is_empty());
+    let mut header = vec![
+        "run",
+        "model",
+        "stage",
+        "residual norm",
+        "error %",
+        "torques %",
+    ];
+    if redundant {
+        header.push("without preload %");
+    }
+    let rows = all.iter().map(|one| {
+        let mut row = vec![
+            one.run.clone(),
+            one.model.to_owned(),
+            one.stage.name().to_owned(),
+            significant(one.residual_norm, 7),
+            format!("{:.4}", one.relative_error_percent),
+            list(&one.torques),
+        ];
+        if redundant {
+            row.push(list(&one.projected_torques));
+        }
+        row
+    });
+    format!("Cross-validation\n{}", table(&header, rows.collect()))
+}
+
+/// The warnings, one a line.
+fn warnings(warnings: &[String]) -> String {
+    let mut text = String::new();
+    for (index, warning) in warnings.iter().enumerate() {
+        if index == 0 {
+            text.push('\n');
+        }
+        let _ = writeln!(text, "warning: {warning}");
+    }
+    text
+}
+
+/// A number with so many significant digits, as a decimal where that is short, without trailing
+/// zeros; scientific for very small and very large ones.
+#[must_use]
+pub fn significant(value: f64, digits: usize) -> String {
+    if !value.is_finite() {
+        return String::from(if value.is_nan() {
+            "undefined"
+        } else {
+            "infinite"
+        });
+    }
+    if value == 0.0 {
+        return String::from("0");
+    }
+    let digits = digits.max(1);
+    let scientific = format!("{value:.*e}", digits - 1);
+    // Rounding may carry into another power of ten, so the exponent is that of the rounded number.
+    let exponent: i32 = scientific
+        .split_once('e')
+        .and_then(|(_, exponent)| exponent.parse().ok())
+        .unwrap_or(0);
+    if !(-4..9).contains(&exponent) {
+        return scientific;
+    }
+    let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+/// Rows under a header: the first column to the left, the others to the right.
+fn table(header: &[&str], rows: Vec<Vec<String>>) -> String {
+    let mut all = vec![
+        header
+            .iter()
+            .map(|cell| (*cell).to_owned())
+            .collect::<Vec<_>>(),
+    ];
+    all.extend(rows);
+    let widths = widths(&all);
+    let rule: usize = widths.iter().sum::<usize>() + 2 * widths.len().saturating_sub(1);
+    let mut text = String::new();
+    for (index, row) in all.iter().enumerate() {
+        let cells: Vec<String> = row
+            .iter()
+            .zip(&widths)
+            .enumerate()
+            .map(|(column, (cell, &width))| {
+                if column == 0 {
+                    format!("{cell:<width$}")
+                } else {
+                    format!("{cell:>width$}")
+                }
+            })
+            .collect();
+        let _ = writeln!(text, "{}", cells.join("  ").trim_end());
+        if index == 0 {
+            let _ = writeln!(text, "{}", "-".repeat(rule));
+        }
+    }
+    text
+}
+
+/// Rows without a header, all to the left.
+fn left_table(rows: Vec<Vec<String>>) -> String {
+    let widths = widths(&rows);
+    let mut text = String::new();
+    for row in &rows {
+        let cells: Vec<String> = row
+            .iter()
+            .zip(&widths)
+            .map(|(cell, &width)| format!("{cell:<width$}"))
+            .collect();
+        let _ = writeln!(text, "{}", cells.join(" ").trim_end());
+    }
+    text
+}
+
+/// The widest cell of each column, in characters.
+fn widths(rows: &[Vec<String>]) -> Vec<usize> {
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    (0..columns)
+        .map(|column| {
+            rows.iter()
+                .filter_map(|row| row.get(column))
+                .map(|cell| cell.chars().count())
+                .max()
+                .unwrap_or(0)
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{coefficient, significant};
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!(significant(95.108_935_08, 6), "95.1089");
+        assert_eq!(significant(9.999_99e-3, 3), "0.01");
+        assert_eq!(significant(-2.5e-7, 3), "-2.50e-7");
+        assert_eq!(significant(1234.5, 3), "1234");
+        assert_eq!(significant(f64::INFINITY, 3), "infinite");
+    }
+
+    #[test]
+    fn coefficients_are_recognised() {
+        assert_eq!(coefficient(0.28 * 0.28), "0.0784");
+        assert_eq!(coefficient(1.0 / 0.28), "(25/7)");
+        assert_eq!(coefficient(0.11 * 0.11 / 0.28), "(121/2800)");
+        assert_eq!(coefficient(std::f64::consts::PI), "3.14159");
+        assert_eq!(coefficient(1.0), "1");
+    }
+}

@@ -1,0 +1,173 @@
+//! Settings of an identification and the usual rules for them (Gautier 1997, the paper's
+//! Ref. \[27\]).
+//!
+//! Let f_dyn be the bandwidth of the robot's dynamics, the fastest motion that the run excites.
+//! The low-pass on the positions must not bend the signals inside of it: cutoff >= 10 f_dyn. The
+//! decimation removes all above the model's band: 0.8 f_m/(2 n_d) about 2 to 5 times f_dyn.
+
+use overact::Info;
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    error::{Error, Problem},
+    filters::DECIMATION_PADDING,
+};
+
+/// Decimation keeps frequencies up to this many times f_dyn.
+const DECIMATION_BAND: f64 = 4.0;
+
+/// The position low-pass stays below this fraction of the Nyquist frequency.
+const LARGEST_CUTOFF: f64 = 0.8;
+
+/// How σ_ρ of eq. (46) is computed from the residual.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Normalisation {
+    /// σ² = ||ρ||²/(r_c - n_b), the unbiased estimate (46).
+    #[default]
+    Unbiased,
+    /// σ² = Σ(ρ - mean)²/(N - 1), the sample variance (MATLAB's `std`), as published EMPS
+    /// results use it.
+    SampleVariance,
+}
+
+/// What an identification can be told.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// Order of the Butterworth low-pass on the positions, run forwards and backwards.
+    pub filter_order: usize,
+    /// Its cutoff frequency, Hz.
+    pub filter_cutoff_hz: f64,
+    /// n_d: one sample in so many is kept after the parallel decimation; 1 keeps all, unfiltered.
+    pub decimation: usize,
+    /// Samples dropped from the start of each run after differentiation.
+    pub skip_start: usize,
+    /// Samples dropped from the end of each run after differentiation.
+    pub skip_end: usize,
+    /// r_σ: the elimination of parameters ends when the largest relative standard deviation is
+    /// less than this many times the smallest one.
+    pub r_sigma: f64,
+    /// Ends the elimination, too, before it would cancel a parameter that the data speak for
+    /// (|χ| > 5 σ). Off is the paper's rule, which only the warnings temper.
+    pub keep_significant: bool,
+    /// How σ_ρ is computed.
+    pub normalisation: Normalisation,
+    /// Friction with separate coefficients for the two directions of motion of each joint.
+    pub asymmetric_friction: bool,
+    /// Weighted least squares (48); ordinary least squares otherwise.
+    pub weighted: bool,
+    /// Kept actuators of case 2, indices among the actuators; r of them.
+    pub kept_actuators: Vec<usize>,
+    /// Seed of the random states from which the base parameters are found.
+    pub seed: u64,
+}
+
+impl Settings {
+    /// The usual rules for a robot of bandwidth `dynamics_hz` (f_dyn) sampled at
+    /// `sampling_frequency` (f_m, Hz): order 4, cutoff 10 f_dyn, decimation to 4 f_dyn.
+    /// `kept_actuators` is the description's choice.
+    #[must_use]
+    pub fn for_bandwidth(dynamics_hz: f64, sampling_frequency: f64, info: &Info<'_>) -> Self {
+        let nyquist = sampling_frequency / 2.0;
+        // A bandwidth of zero has no decimation; its cutoff is found by the check.
+        let decimation = if dynamics_hz > 0.0 {
+            (0.8 * nyquist / (DECIMATION_BAND * dynamics_hz)).floor()
+        } else {
+            1.0
+        };
+        Self {
+            filter_order: 4,
+            filter_cutoff_hz: (10.0 * dynamics_hz).min(LARGEST_CUTOFF * nyquist),
+            // A cast from a float saturates, and `max` takes care of NaN.
+            decimation: decimation.max(1.0) as usize,
+            skip_start: 0,
+            skip_end: 0,
+            r_sigma: 10.0,
+            keep_significant: false,
+            normalisation: Normalisation::Unbiased,
+            asymmetric_friction: false,
+            weighted: true,
+            kept_actuators: info.kept_actuators.to_vec(),
+            seed: 1,
+        }
+    }
+
+    /// [`Settings::for_bandwidth`] where the bandwidth is not known: f_dyn = f_m/100, since
+    /// controllers run about a hundred times faster than the robot moves (cutoff f_m/10,
+    /// decimation by 10).
+    #[must_use]
+    pub fn for_sampling_frequency(sampling_frequency: f64, info: &Info<'_>) -> Self {
+        Self::for_bandwidth(sampling_frequency / 100.0, sampling_frequency, info)
+    }
+
+    /// Number of samples that a run must have for these settings.
+    #[must_use]
+    pub fn samples_needed(&self) -> usize {
+        let filter = self.filter_order.saturating_mul(3).saturating_add(1);
+        let decimation = if self.decimation > 1 {
+            DECIMATION_PADDING + 1
+        } else {
+            1
+        };
+        let skipped = self.skip_start.saturating_add(self.skip_end);
+        filter.max(skipped.saturating_add(decimation.max(self.decimation)))
+    }
+
+    /// Checks the settings against the robot; those that concern a run are checked with it.
+    ///
+    /// # Errors
+    /// Every setting that is not possible.
+    pub fn check(&self, info: &Info<'_>) -> Result<(), Error> {
+        let mut problems = Vec::new();
+        if !(self.filter_cutoff_hz.is_finite() && self.filter_cutoff_hz > 0.0) {
+            problems.push(
+                Problem::new(format!(
+                    "the cutoff frequency is {} Hz",
+                    self.filter_cutoff_hz
+                ))
+                .help("choose about ten times the bandwidth of the motion"),
+            );
+        }
+        if self.filter_order == 0 {
+            problems.push(Problem::new("the filter's order is 0").help("4 is usual"));
+        }
+        if self.decimation == 0 {
+            problems.push(
+                Problem::new("a decimation by 0 is not possible")
+                    .help("choose 1 to keep every sample"),
+            );
+        }
+        if self.r_sigma.is_nan() || self.r_sigma <= 1.0 {
+            problems.push(
+                Problem::new(format!(
+                    "r_sigma is {}; it must be greater than 1",
+                    self.r_sigma
+                ))
+                .help("choose between 10 and 30"),
+            );
+        }
+        if info.sizes.actuators > info.sizes.dof {
+            problems.extend(check_partition(&self.kept_actuators, info));
+        }
+        Error::check(problems)
+    }
+}
+
+/// Checks a set of kept actuators of case 2: r different ones.
+pub(crate) fn check_partition(kept: &[usize], info: &Info<'_>) -> Option<Problem> {
+    let (dof, actuators) = (info.sizes.dof, info.sizes.actuators);
+    let mut sorted = kept.to_vec();
+    sorted.sort_unstable();
+    sorted.dedup();
+    let right = sorted.len() == dof && kept.len() == dof && sorted.iter().all(|k| *k < actuators);
+    (!right).then(|| {
+        Problem::new(format!(
+            "the kept actuators {kept:?} are not a choice of {dof} among the {actuators} actuators"
+        ))
+        .help(format!(
+            "the choice consists of different indices from 0 to {}",
+            actuators.saturating_sub(1)
+        ))
+    })
+}

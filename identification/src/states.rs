@@ -1,0 +1,117 @@
+//! Random states of a model without noise, on which linear relations between columns are exact.
+//!
+//! Poses lie around the home pose. A pose that the robot can't reach is replaced by one of half the
+//! spread, again and again, so that any robot, large or small, yields states.
+
+use overact::{Function, Model};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+use crate::error::{Error, Problem};
+
+/// First spread of the poses around home (m, rad).
+const SPREAD: f64 = 1.0;
+/// How often a spread is halved before the model counts as impossible to evaluate.
+const HALVINGS: usize = 40;
+/// Largest random twist coordinate (m/s, rad/s).
+const LARGEST_TWIST: f64 = 3.0;
+/// Largest random acceleration coordinate (m/s², rad/s²).
+const LARGEST_ACCELERATION: f64 = 10.0;
+
+/// States of a robot, sample after sample.
+#[derive(Debug, Clone, PartialEq)]
+pub struct States {
+    /// Number of states.
+    pub samples: usize,
+    /// Poses, samples x pose coordinates (m, rad).
+    pub pose: Vec<f64>,
+    /// Twist coordinates, samples x r (m/s, rad/s).
+    pub twist: Vec<f64>,
+    /// Accelerations, samples x r (m/s², rad/s²).
+    pub acceleration: Vec<f64>,
+}
+
+/// Draws `count` random states at which the model has a value; one `seed`, one result.
+///
+/// # Errors
+/// A model that has no value even next to its home pose.
+pub fn random_states(model: &dyn Model, count: usize, seed: u64) -> Result<States, Error> {
+    let info = model.info();
+    let dof = info.sizes.dof;
+    let mut generator = Pcg64::seed_from_u64(seed);
+    let mut draw = |largest: f64| -> Vec<f64> {
+        (0..dof)
+            .map(|_| generator.random_range(-largest..largest))
+            .collect()
+    };
+    let mut states = States {
+        samples: count,
+        pose: Vec::new(),
+        twist: Vec::new(),
+        acceleration: Vec::new(),
+    };
+    for _ in 0..count {
+        let twist = draw(LARGEST_TWIST);
+        let acceleration = draw(LARGEST_ACCELERATION);
+        let mut spread = SPREAD;
+        let mut reason = None;
+        let mut found = None;
+        for _ in 0..HALVINGS {
+            let mut pose = info.home_pose.to_vec();
+            model.displace(&mut pose, &draw(spread));
+            match try_state(model, &pose, &twist, &acceleration) {
+                Ok(()) => {
+                    found = Some(pose);
+                    break;
+                }
+                Err(error) => reason = Some(error),
+            }
+            spread /= 2.0;
+        }
+        let Some(pose) = found else {
+            let why = reason.map_or_else(String::new, |error| format!(": {error}"));
+            return Err(Problem::new(format!(
+                "the model of `{}` has no value even next to its home pose{why}",
+                info.name
+            ))
+            .help("check the geometry and the home pose of the description")
+            .into());
+        };
+        states.pose.extend(pose);
+        states.twist.extend(twist);
+        states.acceleration.extend(acceleration);
+    }
+    Ok(states)
+}
+
+/// Whether the model can be evaluated at a state, with finite results.
+fn try_state(
+    model: &dyn Model,
+    pose: &[f64],
+    twist: &[f64],
+    acceleration: &[f64],
+) -> Result<(), overact::Error> {
+    let sizes = model.info().sizes;
+    let functions = [
+        (Function::InverseJacobian, true),
+        (Function::JointVelocities, true),
+        (Function::IdmRedPlatform, true),
+        (Function::IdmRedPayload, sizes.payload_parameters > 0),
+    ];
+    for (function, wanted) in functions {
+        let (rows, columns) = function.shape(&sizes);
+        if !wanted || rows * columns == 0 {
+            continue;
+        }
+        let inputs: &[&[f64]] = &[pose, twist, acceleration];
+        let inputs = &inputs[..function.inputs().len()];
+        let mut output = vec![0.0; rows * columns];
+        model
+            .evaluate(function, inputs, &mut output)
+            .map_err(|error| error.error)?;
+        if output.iter().any(|value| !value.is_finite()) {
+            return Err(overact::Error::NotFinite);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,162 @@
+//! Filters against reference vectors of MATLAB's semantics and of scipy's designs.
+
+mod common;
+
+use overact_identification::filters::{butterworth, chebyshev1, decimate, filtfilt};
+use serde_json::Value;
+
+/// A list of numbers of the reference.
+fn numbers(value: &Value) -> Vec<f64> {
+    value
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|x| x.as_f64().expect("a number"))
+        .collect()
+}
+
+/// Fails when two vectors differ by more than `tolerance`.
+fn close(found: &[f64], expected: &[f64], tolerance: f64, what: &str) {
+    assert_eq!(found.len(), expected.len(), "{what}: length");
+    let worst = found
+        .iter()
+        .zip(expected)
+        .map(|(f, e)| (f - e).abs())
+        .fold(0.0, f64::max);
+    println!("{what}: largest difference {worst:.1e}, allowed {tolerance:.0e}");
+    assert!(worst <= tolerance, "{what}: {worst:.2e} > {tolerance:.0e}");
+}
+
+#[test]
+fn filters_agree_with_the_reference() {
+    let Some(path) = common::shared("data/filters/filters_reference.json") else {
+        return;
+    };
+    let text = std::fs::read_to_string(path).expect("readable");
+    let reference: Value = serde_json::from_str(&text).expect("JSON");
+    let x = numbers(&reference["x"]);
+
+    let cheby = chebyshev1(8, 0.05, 0.8 / 10.0).expect("a design");
+    for (section, expected) in cheby
+        .sections()
+        .iter()
+        .zip(reference["sos"].as_array().expect("sections"))
+    {
+        let found = [section.b, section.a].concat();
+        close(&found, &numbers(expected), 1e-12, "section");
+    }
+    let (b, a) = cheby.polynomials();
+    close(&b, &numbers(&reference["cheby1_b"]), 1e-12, "Chebyshev b");
+    close(&a, &numbers(&reference["cheby1_a"]), 1e-9, "Chebyshev a");
+    let filtered = filtfilt(&cheby, &x).expect("long enough");
+    close(
+        &filtered,
+        &numbers(&reference["sosfiltfilt_padlen24"]),
+        1e-9,
+        "sections, filtfilt",
+    );
+    close(
+        &filtered,
+        &numbers(&reference["filtfilt_matlab_padlen24"]),
+        1e-7,
+        "polynomials, filtfilt",
+    );
+    let decimated = decimate(&x, 10).expect("long enough");
+    close(
+        &decimated,
+        &numbers(&reference["decimate_matlab"]),
+        1e-7,
+        "decimate",
+    );
+    // Sections against sections: the last sample of 203 is kept, so the first one is number 2.
+    let kept: Vec<f64> = numbers(&reference["sosfiltfilt_padlen24"])
+        .into_iter()
+        .skip(2)
+        .step_by(10)
+        .collect();
+    close(&decimated, &kept, 1e-9, "decimate in sections");
+}
+
+#[test]
+fn butterworth_agrees_with_the_reference() {
+    let Some(path) = common::shared("data/filters/filters_reference.json") else {
+        return;
+    };
+    let text = std::fs::read_to_string(path).expect("readable");
+    let reference: Value = serde_json::from_str(&text).expect("JSON");
+    // 100 Hz at 1 kHz, as for EMPS.
+    let butter = butterworth(4, 0.2).expect("a design");
+    let (b, a) = butter.polynomials();
+    close(
+        &b,
+        &numbers(&reference["butter4_b"]),
+        1e-12,
+        "Butterworth b",
+    );
+    close(
+        &a,
+        &numbers(&reference["butter4_a"]),
+        1e-12,
+        "Butterworth a",
+    );
+    let filtered = filtfilt(&butter, &numbers(&reference["x"])).expect("long enough");
+    close(
+        &filtered,
+        &numbers(&reference["butter4_filtfilt_matlab"]),
+        1e-9,
+        "Butterworth, filtfilt",
+    );
+}
+
+#[test]
+fn responses_are_those_of_the_definitions() {
+    // |H|² of a section cascade at a fraction of the Nyquist frequency.
+    let magnitude = |filter: &overact_identification::filters::LowPass, fraction: f64| -> f64 {
+        let w = std::f64::consts::PI * fraction;
+        let norm = |p: [f64; 3]| {
+            let re = p[0] + p[1] * w.cos() + p[2] * (2.0 * w).cos();
+            let im = p[1] * w.sin() + p[2] * (2.0 * w).sin();
+            re * re + im * im
+        };
+        filter
+            .sections()
+            .iter()
+            .map(|s| norm(s.b) / norm(s.a))
+            .product()
+    };
+    for order in 1..=9 {
+        for cutoff in [0.002, 0.3, 0.9] {
+            let butter = butterworth(order, cutoff).expect("a design");
+            assert!(
+                (magnitude(&butter, cutoff) - 0.5).abs() < 1e-8,
+                "half power at the cutoff"
+            );
+            assert!((magnitude(&butter, 0.0) - 1.0).abs() < 1e-6, "one at rest");
+            let cheby = chebyshev1(order, 0.05, cutoff).expect("a design");
+            let bottom = 10.0_f64.powf(-0.005);
+            assert!(
+                (magnitude(&cheby, cutoff) - bottom).abs() < 1e-6,
+                "the ripple at the edge"
+            );
+        }
+    }
+}
+
+#[test]
+fn impossible_filters_are_errors() {
+    let text = butterworth(0, 1.5).expect_err("two problems").to_string();
+    assert_eq!(
+        text,
+        "a filter of order 0 is not possible\n  help: choose an order from 1 to 50; 4 is usual\n\
+         a cutoff frequency of 1.5 times the Nyquist frequency is not possible\n  \
+         help: choose a cutoff between 0 and half the sampling frequency"
+    );
+    let text = decimate(&[1.0; 24], 10).expect_err("too short").to_string();
+    assert_eq!(
+        text,
+        "a filter of order 8 run forwards and backwards needs at least 25 samples; there are 24\n  \
+         help: record a longer run, or skip fewer samples"
+    );
+    assert!(decimate(&[1.0; 30], 0).is_err());
+    assert_eq!(decimate(&[1.0, 2.0], 1).expect("unfiltered"), [1.0, 2.0]);
+}

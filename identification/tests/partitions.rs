@@ -1,0 +1,214 @@
+//! Case 1 and all partitions of case 2 on a robot of two coordinates and three actuators whose
+//! Jacobian depends on the pose.
+
+mod common;
+#[path = "common/point.rs"]
+mod point;
+
+use std::{collections::BTreeMap, f64::consts::PI};
+
+use nalgebra::DMatrix;
+use overact::{Function, Model};
+use overact_identification::{
+    Experiment, Log, Motion, Projection, Settings, Stage,
+    identify::{estimate_projection, identify, prepare},
+    motion,
+};
+use point::{Point, column, leg};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+/// ia, fv, fs, off of each leg, then the mass.
+const TRUTH: [f64; 13] = [
+    0.5, 4.0, 1.0, 0.2, 0.6, 5.0, 1.5, -0.3, 0.4, 3.0, 0.7, 0.1, 6.0,
+];
+
+fn settings() -> Settings {
+    let mut settings = Settings::for_bandwidth(2.0, 500.0, &Point.info());
+    settings.decimation = 5;
+    settings.skip_start = 100;
+    settings.skip_end = 100;
+    settings
+}
+
+/// A run; the torques are those of the true parameters on the filtered motion, with a preload in
+/// the null space of Jᵀ and noise of the deviation `noise` (N).
+fn run(name: &str, seed: f64, noise: f64) -> Log {
+    let (frequency, samples) = (500.0, 5000);
+    let wave = |t: f64, phase: f64| -> f64 {
+        (1..=4)
+            .map(|k| {
+                let k = f64::from(k);
+                0.15 / k
+                    * (2.0 * PI * (0.25 * k + 0.05 * seed + 0.03 * phase) * t + phase * k).sin()
+            })
+            .sum()
+    };
+    let positions: Vec<f64> = (0..samples)
+        .flat_map(|k| {
+            let t = f64::from(k) / frequency;
+            let x = [wave(t, seed), 0.1 + wave(t, seed + 1.3)];
+            [0, 1, 2].map(|index| leg(index, x, [0.0; 2], [0.0; 2]).q)
+        })
+        .collect();
+    let idle = vec![0.0; positions.len()];
+    let idle = Log::new(name, frequency, 3, positions.clone(), idle, false).expect("a run");
+    let whole = Settings {
+        skip_start: 0,
+        skip_end: 0,
+        ..settings()
+    };
+    let motion = motion(&Point, &idle, &whole, &|_, _| {}).expect("a motion");
+    // The filter treats each leg alone, and its ends are reflections, so the loops close nearly.
+    println!("{name}: closure residual {:.1e} m", motion.closure_residual);
+    assert!(motion.closure_residual < 1e-3);
+    let mut generator = Pcg64::seed_from_u64(seed as u64);
+    let torques = (0..motion.samples).flat_map(|k| {
+        let pair = |values: &[f64]| [values[2 * k], values[2 * k + 1]];
+        let (x, v, a) = (
+            pair(&motion.pose),
+            pair(&motion.twist),
+            pair(&motion.acceleration),
+        );
+        let mut gamma = [0.0; 2];
+        for (index, value) in TRUTH.iter().enumerate() {
+            let column = column(index, x, v, a);
+            gamma[0] += value * column[0];
+            gamma[1] += value * column[1];
+        }
+        // Leg 3 is given; legs 1 and 2 balance the rest.
+        let third = 2.0 + (0.01 * k as f64).sin();
+        let [u1, u2, u3] = [0, 1, 2].map(|index| leg(index, x, v, a).u);
+        let rest = [gamma[0] - third * u3[0], gamma[1] - third * u3[1]];
+        let determinant = u1[0] * u2[1] - u1[1] * u2[0];
+        let first = (rest[0] * u2[1] - rest[1] * u2[0]) / determinant;
+        let second = (u1[0] * rest[1] - u1[1] * rest[0]) / determinant;
+        let mut random = || noise * generator.random_range(-1.0..1.0);
+        [first + random(), second + random(), third + random()]
+    });
+    let torques = torques.collect();
+    Log::new(name, frequency, 3, positions, torques, false).expect("a run")
+}
+
+fn truth() -> BTreeMap<String, f64> {
+    let info = Point.info();
+    info.parameters
+        .iter()
+        .map(|parameter| parameter.name.to_owned())
+        .zip(TRUTH)
+        .collect()
+}
+
+#[test]
+fn every_partition_recovers_the_truth() {
+    let runs = [run("one", 1.0, 0.0), run("two", 2.0, 0.0)];
+    let prepared = prepare(&Point, &runs, &settings(), &|_| {}).expect("prepared");
+    let truth = truth();
+    let projections = [vec![0, 1], vec![0, 2], vec![2, 1]].map(Projection::Actuators);
+    for projection in [Projection::Platform].iter().chain(&projections) {
+        let outcome = estimate_projection(
+            &Point,
+            &prepared,
+            projection,
+            &settings(),
+            Some(&truth),
+            &|_| {},
+        )
+        .expect("an estimate");
+        // The symmetric order: platform, then each symbol of all legs.
+        let names: Vec<&str> = outcome
+            .base
+            .parameters
+            .iter()
+            .map(|p| p.name.as_str())
+            .collect();
+        assert_eq!(
+            names[..5],
+            [
+                "m_platform",
+                "ia_1_leg1",
+                "ia_1_leg2",
+                "ia_1_leg3",
+                "fv_1_leg1"
+            ]
+        );
+        for parameter in &outcome.base.parameters {
+            let known = parameter.true_value.expect("known");
+            let error = (parameter.value - known).abs();
+            // Case 2 multiplies before the decimation filter, so it stays exact, too.
+            assert!(
+                error < 1e-8 * known.abs(),
+                "{projection:?} {}: {error:e}",
+                parameter.name
+            );
+        }
+        assert_eq!(outcome.base.equations, 2 * 2 * 960);
+        if let Some(partition) = &outcome.base.partition {
+            let expected = worst_condition(&prepared.motions, projection);
+            assert!((partition.largest / expected - 1.0).abs() < 1e-12);
+        }
+    }
+}
+
+/// The largest condition number of the kept rows, sample by sample.
+fn worst_condition(motions: &[Motion], projection: &Projection) -> f64 {
+    let Projection::Actuators(kept) = projection else {
+        return 1.0;
+    };
+    let mut worst = 0.0_f64;
+    for motion in motions {
+        let mut jacobians = vec![0.0; motion.samples * 6];
+        Point
+            .evaluate(Function::InverseJacobian, &[&motion.pose], &mut jacobians)
+            .expect("a Jacobian");
+        for jacobian in jacobians.chunks_exact(6) {
+            let rows = DMatrix::from_fn(2, 2, |i, j| jacobian[2 * kept[i] + j]);
+            let values = rows.svd(false, false).singular_values;
+            worst = worst.max(values.max() / values.min());
+        }
+    }
+    worst
+}
+
+#[test]
+fn noise_is_covered_by_the_standard_deviations() {
+    let runs = [run("one", 1.0, 0.5), run("two", 2.0, 0.5)];
+    let validation = [run("three", 3.0, 0.5)];
+    let truth = truth();
+    let experiment = Experiment {
+        runs: &runs,
+        validation: &validation,
+        true_values: Some(&truth),
+    };
+    let result = identify(&Point, &experiment, &settings(), &|_| {}).expect("a result");
+    println!("{}", overact_identification::report::report(&result));
+    assert_eq!(result.estimates[2].kept_actuators, ["leg1", "leg3"]);
+    for estimate in result
+        .estimates
+        .iter()
+        .filter(|estimate| estimate.stage == Stage::Base)
+    {
+        for parameter in &estimate.parameters {
+            let error = parameter.value - parameter.true_value.expect("known");
+            // Five deviations: the decimation filter colours the noise a little.
+            assert!(
+                error.abs() < 5.0 * parameter.standard_deviation,
+                "{}: {error} against {}",
+                parameter.name,
+                parameter.standard_deviation
+            );
+        }
+        let mass = &estimate.parameters[0];
+        assert!(mass.relative_standard_deviation_percent < 0.1);
+    }
+    // The cross-validation has the size of the noise, like the run identified from.
+    for cross in &result.cross_validation {
+        let own = result
+            .estimates
+            .iter()
+            .find(|estimate| (estimate.model, estimate.stage) == (cross.model, cross.stage))
+            .expect("its estimate");
+        assert!(cross.relative_error_percent < 1.5 * own.relative_error_percent);
+        assert_eq!(cross.torques.len(), 3);
+    }
+}

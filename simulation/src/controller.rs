@@ -1,0 +1,313 @@
+//! The controller of Fig. 4: independent PD on every actuator, a filtered derivative, feed-forward of
+//! the inverse dynamics, removal of internal torques by eq. (50), and the torque limit.
+//!
+//! **Gains.** The error of a controlled mass m obeys m (ë + 2ξω_c ė + ω_c² e) = 0 with K_p = ω_c² m and
+//! K_d = 2ξω_c m, ω_c = 2πf_c. A parallel robot has no mass per actuator but the mass matrix M on the
+//! platform. With J = J_p^inv, least squares gives the actuators' inertia matrix J^{+T} M J^+; its
+//! diagonal at home, d, shares the inertia among the actuators, and m_i = c d_i scales it. Small errors
+//! of the platform obey M δẍ + Jᵀ K_d J δẋ + Jᵀ K_p J δx = 0, whose squared natural frequencies are ω_c²
+//! times the eigenvalues of M^-1 Jᵀ diag(m) J. The factor c makes the largest of them, over poses
+//! spread along the run, equal to 1: no mode anywhere is faster than the chosen bandwidth. This
+//! matters because the derivative's filter (70 Hz, like the bandwidth) leaves a phase margin of some
+//! 15 degrees only, which a mode of twice the frequency would lose. For the paper's Fig. 1 (two motors
+//! on one mass) it gives each motor half of the mass.
+//!
+//! **Derivative.** d_k = a d_{k-1} + (1 - a)(e_k - e_{k-1})/T with a = exp(-2π f_d T).
+//!
+//! **Projection.** (50) is evaluated at the desired pose, which the controller knows without forward
+//! kinematics. The limit comes last, as an amplifier's would.
+
+use nalgebra::{DMatrix, Matrix4, SymmetricEigen};
+use overact::{Function, Model};
+use std::f64::consts::TAU;
+
+use crate::{error::Cause, experiment::Experiment};
+
+/// Controller of one run; nothing is allocated after `new`.
+pub(crate) struct Controller<'a> {
+    stiffness: Vec<f64>,
+    damping: Vec<f64>,
+    sampling_hz: f64,
+    /// a of the filtered derivative.
+    smoothing: f64,
+    project: bool,
+    limit: Option<&'a [f64]>,
+    /// Errors of the previous sample; none before the first.
+    previous: Vec<f64>,
+    started: bool,
+    derivative: Vec<f64>,
+    command: Vec<f64>,
+}
+
+impl<'a> Controller<'a> {
+    /// A controller for actuators of the given effective inertias (kg m² or kg) on a platform with
+    /// `dof` coordinates.
+    pub(crate) fn new(experiment: &'a Experiment, inertia: &[f64], dof: usize) -> Self {
+        let rate = TAU * experiment.bandwidth_hz;
+        Self {
+            stiffness: inertia.iter().map(|m| rate * rate * m).collect(),
+            damping: inertia
+                .iter()
+                .map(|m| 2.0 * experiment.damping * rate * m)
+                .collect(),
+            sampling_hz: experiment.sampling_hz,
+            smoothing: smoothing(experiment),
+            // Without redundancy there are no internal torques.
+            project: experiment.project_internal && inertia.len() > dof,
+            limit: experiment.torque_limit.as_deref(),
+            previous: vec![0.0; inertia.len()],
+            started: false,
+            derivative: vec![0.0; inertia.len()],
+            command: vec![0.0; inertia.len()],
+        }
+    }
+
+    /// Writes the torques for one sample from desired and measured positions, the feed-forward and
+    /// the desired pose.
+    pub(crate) fn step(
+        &mut self,
+        model: &dyn Model,
+        desired: &Desired<'_>,
+        measured: &[f64],
+        torques: &mut [f64],
+    ) -> Result<(), Cause> {
+        for (i, position) in measured.iter().enumerate() {
+            let error = desired.positions[i] - position;
+            let rate = if self.started {
+                (error - self.previous[i]) * self.sampling_hz
+            } else {
+                0.0
+            };
+            self.previous[i] = error;
+            self.derivative[i] += (1.0 - self.smoothing) * (rate - self.derivative[i]);
+            self.command[i] = desired.torques[i]
+                + self.stiffness[i] * error
+                + self.damping[i] * self.derivative[i];
+        }
+        self.started = true;
+        if self.project {
+            model
+                .evaluate(
+                    Function::ProjectTorques,
+                    &[desired.pose, &self.command],
+                    torques,
+                )
+                .map_err(|e| Cause::Model(e.error))?;
+        } else {
+            torques.copy_from_slice(&self.command);
+        }
+        for (torque, limit) in torques.iter_mut().zip(self.limit.unwrap_or(&[])) {
+            *torque = torque.clamp(-limit, *limit);
+        }
+        Ok(())
+    }
+}
+
+/// What the trajectory asks for at one sample.
+pub(crate) struct Desired<'a> {
+    /// Platform pose.
+    pub(crate) pose: &'a [f64],
+    /// Actuator positions.
+    pub(crate) positions: &'a [f64],
+    /// Feed-forward torques.
+    pub(crate) torques: &'a [f64],
+}
+
+/// a of the filtered derivative.
+fn smoothing(experiment: &Experiment) -> f64 {
+    (-TAU * experiment.derivative_cutoff_hz / experiment.sampling_hz).exp()
+}
+
+/// Largest modulus of the poles of one mode at the chosen bandwidth, sampled, with held torques: below
+/// one the loop is stable. The state is (x, v, x_{k-1}, d_{k-1}) of a unit mass.
+pub(crate) fn spectral_radius(experiment: &Experiment) -> f64 {
+    let (t, a) = (1.0 / experiment.sampling_hz, smoothing(experiment));
+    let rate = TAU * experiment.bandwidth_hz;
+    let difference = (1.0 - a) / t;
+    let gain = 2.0 * experiment.damping * rate;
+    let force = [
+        -rate * rate - gain * difference,
+        0.0,
+        gain * difference,
+        gain * a,
+    ];
+    let half = 0.5 * t * t;
+    #[rustfmt::skip]
+    let transition = Matrix4::new(
+        1.0 + half * force[0], t, half * force[2], half * force[3],
+        t * force[0], 1.0, t * force[2], t * force[3],
+        1.0, 0.0, 0.0, 0.0,
+        -difference, 0.0, difference, a,
+    );
+    let poles = transition.complex_eigenvalues();
+    poles.iter().map(|pole| pole.norm()).fold(0.0, f64::max)
+}
+
+/// Effective inertias m_i = c d_i of the actuators; `poses` are spread along the run.
+pub(crate) fn effective_inertia<'p>(
+    model: &dyn Model,
+    parameters: &[f64],
+    poses: impl Iterator<Item = &'p [f64]>,
+) -> Result<Vec<f64>, Cause> {
+    let info = model.info();
+    let (jacobian, mass) = jacobian_and_mass(model, parameters, info.home_pose)?;
+    let normal = jacobian.tr_mul(&jacobian).cholesky().ok_or(Cause::Model(
+        overact::Error::SingularPlatform {
+            actuators: "actuators",
+            condition: f64::INFINITY,
+        },
+    ))?;
+    let inverse = normal.solve(&jacobian.transpose());
+    let inertia = inverse.tr_mul(&mass) * &inverse;
+    let shares = inertia.diagonal();
+    let mut largest = highest_ratio(&jacobian, &mass, shares.as_slice())?;
+    for pose in poses {
+        // A pose out of reach is left to the reference, which tells the exact time.
+        let Ok((jacobian, mass)) = jacobian_and_mass(model, parameters, pose) else {
+            continue;
+        };
+        largest = largest.max(highest_ratio(&jacobian, &mass, shares.as_slice())?);
+    }
+    Ok(shares.iter().map(|share| share / largest).collect())
+}
+
+/// J_p^inv and M of a pose.
+fn jacobian_and_mass(
+    model: &dyn Model,
+    parameters: &[f64],
+    pose: &[f64],
+) -> Result<(DMatrix<f64>, DMatrix<f64>), Cause> {
+    let sizes = model.info().sizes;
+    let failed = |e: overact::SampleError| Cause::Model(e.error);
+    let mut jacobian = vec![0.0; sizes.actuators * sizes.dof];
+    model
+        .evaluate(Function::InverseJacobian, &[pose], &mut jacobian)
+        .map_err(failed)?;
+    let mut mass = vec![0.0; sizes.dof * sizes.dof];
+    model
+        .evaluate(Function::MassMatrix, &[pose, parameters], &mut mass)
+        .map_err(failed)?;
+    Ok((
+        DMatrix::from_row_slice(sizes.actuators, sizes.dof, &jacobian),
+        DMatrix::from_row_slice(sizes.dof, sizes.dof, &mass),
+    ))
+}
+
+/// Largest eigenvalue of M^-1 Jᵀ diag(m) J, by M = L Lᵀ as that of the symmetric L^-1 Jᵀ diag(m) J L^-T.
+fn highest_ratio(
+    jacobian: &DMatrix<f64>,
+    mass: &DMatrix<f64>,
+    inertia: &[f64],
+) -> Result<f64, Cause> {
+    let factor = mass.clone().cholesky().ok_or(Cause::MassMatrix)?.unpack();
+    let scaled = factor
+        .solve_lower_triangular(&jacobian.transpose())
+        .ok_or(Cause::MassMatrix)?;
+    let weights = DMatrix::from_diagonal(&nalgebra::DVector::from_column_slice(inertia));
+    let ratios = SymmetricEigen::new(&scaled * weights * scaled.transpose()).eigenvalues;
+    let highest = ratios.iter().copied().fold(0.0, f64::max);
+    if highest.is_finite() && highest > 0.0 {
+        Ok(highest)
+    } else {
+        Err(Cause::MassMatrix)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::support::{
+        Robot,
+        mechanisms::{DualV, Tripod, TwoMotors},
+    };
+
+    #[test]
+    fn two_motors_on_one_mass_share_it() {
+        let parameters = [0.3, 0.0, 0.0, 0.3, 0.0, 0.0, 1.0, 0.4];
+        let inertia = effective_inertia(&Robot::new(TwoMotors), &parameters, std::iter::empty());
+        // 2.0 kg altogether.
+        for m in inertia.unwrap() {
+            assert!((m - 1.0).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn no_mode_is_faster_than_the_bandwidth() {
+        let model = Robot::new(DualV);
+        let mut parameters = [0.0; 20];
+        for (i, zz) in [4.45e-2, 4.81e-2, 4.81e-2, 5.07e-2].into_iter().enumerate() {
+            parameters[3 * i] = zz;
+        }
+        parameters[12..16].copy_from_slice(&[1.92, 0.0, 0.0, 2.06e-2]);
+        let poses = [[0.05, 0.02, 0.2], [-0.04, 0.03, -0.1]];
+        let inertia =
+            effective_inertia(&model, &parameters, poses.iter().map(|p| p.as_slice())).unwrap();
+        let highest = poses.iter().map(|pose| {
+            let (jacobian, mass) = jacobian_and_mass(&model, &parameters, pose).unwrap();
+            highest_ratio(&jacobian, &mass, &inertia).unwrap()
+        });
+        assert!(highest.fold(0.0, f64::max) < 1.0 + 1e-12);
+        assert!(inertia.iter().all(|m| *m > 0.02 && *m < 0.2), "{inertia:?}");
+    }
+
+    #[test]
+    fn projection_leaves_no_internal_torque_and_the_limit_holds() {
+        let model = Robot::new(Tripod);
+        let pose = [0.1, 0.2];
+        let mut jacobian = [0.0; 6];
+        model
+            .evaluate(Function::InverseJacobian, &[&pose], &mut jacobian)
+            .unwrap();
+        let jacobian = DMatrix::from_row_slice(3, 2, &jacobian);
+        let range = &jacobian * jacobian.clone().pseudo_inverse(1e-12).unwrap();
+        let experiment = Experiment::default();
+        let internal = |experiment: &Experiment| {
+            let mut controller = Controller::new(experiment, &[1.0, 1.0, 1.0], 2);
+            let desired = Desired {
+                pose: &pose,
+                positions: &[1.0; 3],
+                torques: &[1.0, 2.0, 3.0],
+            };
+            let mut torques = [0.0; 3];
+            controller
+                .step(&model, &desired, &[0.999, 1.0, 1.001], &mut torques)
+                .unwrap();
+            let torques = DMatrix::from_column_slice(3, 1, &torques);
+            ((&range * &torques - &torques).norm(), torques.amax())
+        };
+        assert!(internal(&experiment).0 < 1e-11);
+        let free = Experiment {
+            project_internal: false,
+            ..experiment.clone()
+        };
+        assert!(internal(&free).0 > 1.0);
+        let limited = Experiment {
+            torque_limit: Some(vec![7.0; 3]),
+            ..experiment
+        };
+        assert_eq!(internal(&limited).1, 7.0);
+    }
+
+    #[test]
+    fn the_papers_loop_is_stable_at_5_khz_and_not_at_600_hz() {
+        let paper = Experiment::default();
+        // The slowest pole of the continuous loop s³ + s² + 2.4 s + 1 (in units of ω_c) is its complex
+        // pair with real part -0.267; sampling at 5 kHz adds delay but keeps it stable.
+        let radius = spectral_radius(&paper);
+        assert!(
+            radius < 1.0 && radius > (-0.267 * TAU * 70.0 / 5000.0_f64).exp(),
+            "{radius}"
+        );
+        let continuous = spectral_radius(&Experiment {
+            sampling_hz: 1e6,
+            ..paper.clone()
+        });
+        assert!((continuous.ln() * 1e6 / (TAU * 70.0) + 0.267).abs() < 2e-3);
+        assert!(
+            spectral_radius(&Experiment {
+                sampling_hz: 600.0,
+                ..paper
+            }) > 1.0
+        );
+    }
+}

@@ -1,0 +1,152 @@
+//! What the controller and the log see of the robot: quantised positions and noisy torques.
+//!
+//! An encoder of resolution δ shows δ round(q / δ): an error uniform in ±δ/2 with standard deviation
+//! δ/√12. The torque measurement adds white Gaussian noise. Each pair of run and actuator has a random
+//! stream of its own, chosen by the run's name, so a run's noise depends on neither the other runs nor
+//! their order.
+
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64;
+
+use crate::experiment::Experiment;
+
+/// The sensors of one run.
+pub(crate) struct Sensors<'a> {
+    /// Empty where all encoders are ideal; likewise the deviations.
+    resolution: &'a [f64],
+    deviation: &'a [f64],
+    streams: Vec<Pcg64>,
+}
+
+impl<'a> Sensors<'a> {
+    /// The sensors of `actuators` actuators in the run of that name.
+    pub(crate) fn new(experiment: &'a Experiment, actuators: usize, run: &str) -> Self {
+        let name = u128::from(fnv1a(run.as_bytes()));
+        let streams = (0..actuators)
+            .map(|i| Pcg64::new(u128::from(experiment.seed), (name << 32) | i as u128))
+            .collect();
+        Self {
+            resolution: &experiment.encoder_resolution,
+            deviation: &experiment.torque_noise,
+            streams,
+        }
+    }
+
+    /// Quantises positions in place.
+    pub(crate) fn encode(&self, positions: &mut [f64]) {
+        for (position, resolution) in positions.iter_mut().zip(self.resolution) {
+            if *resolution > 0.0 {
+                *position = (*position / resolution).round() * resolution;
+            }
+        }
+    }
+
+    /// Adds noise to torques in place; once per sample.
+    pub(crate) fn disturb(&mut self, torques: &mut [f64]) {
+        for ((torque, deviation), stream) in torques
+            .iter_mut()
+            .zip(self.deviation)
+            .zip(&mut self.streams)
+        {
+            let normal: f64 = StandardNormal.sample(stream);
+            *torque += deviation * normal;
+        }
+    }
+}
+
+/// The hash FNV-1a, which is the same on every machine and in every version.
+fn fnv1a(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Mean and standard deviation.
+    fn statistics(values: &[f64]) -> (f64, f64) {
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let square = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>();
+        (mean, (square / (values.len() - 1) as f64).sqrt())
+    }
+
+    #[test]
+    fn the_noise_is_white_gaussian_of_the_given_deviation() {
+        const N: usize = 200_000;
+        let experiment = Experiment {
+            torque_noise: vec![0.5, 2.0],
+            seed: 7,
+            ..Experiment::default()
+        };
+        let mut sensors = Sensors::new(&experiment, 2, "a");
+        let samples: Vec<[f64; 2]> = (0..N)
+            .map(|_| {
+                let mut torques = [0.0, 0.0];
+                sensors.disturb(&mut torques);
+                torques
+            })
+            .collect();
+        for (i, deviation) in [0.5, 2.0].into_iter().enumerate() {
+            let values: Vec<f64> = samples.iter().map(|s| s[i] / deviation).collect();
+            let (mean, spread) = statistics(&values);
+            // Four standard errors of mean and standard deviation.
+            assert!(mean.abs() < 4.0 / (N as f64).sqrt(), "{mean}");
+            assert!(
+                (spread - 1.0).abs() < 4.0 / (2.0 * N as f64).sqrt(),
+                "{spread}"
+            );
+            let beyond = values.iter().filter(|v| v.abs() > 2.0).count() as f64 / N as f64;
+            assert!(
+                (beyond - 0.0455).abs() < 4.0 * (0.0455_f64 / N as f64).sqrt(),
+                "{beyond}"
+            );
+            let lag = values.windows(2).map(|w| w[0] * w[1]).sum::<f64>() / N as f64;
+            assert!(lag.abs() < 4.0 / (N as f64).sqrt(), "{lag}");
+        }
+        let cross = samples.iter().map(|s| s[0] * s[1]).sum::<f64>() / N as f64;
+        assert!(cross.abs() < 4.0 / (N as f64).sqrt(), "{cross}");
+    }
+
+    #[test]
+    fn the_encoder_error_is_uniform_within_half_a_step() {
+        const N: usize = 100_000;
+        let experiment = Experiment {
+            encoder_resolution: vec![1e-3],
+            ..Experiment::default()
+        };
+        let sensors = Sensors::new(&experiment, 1, "a");
+        let errors: Vec<f64> = (0..N)
+            .map(|k| {
+                let mut q = [1e-3 * (k as f64 * 0.618_033_988_75)];
+                let exact = q[0];
+                sensors.encode(&mut q);
+                q[0] - exact
+            })
+            .collect();
+        let (mean, spread) = statistics(&errors);
+        assert!(errors.iter().all(|e| e.abs() <= 0.5e-3 + 1e-12));
+        assert!(mean.abs() < 1e-6);
+        assert!((spread / (1e-3 / 12.0_f64.sqrt()) - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn streams_differ_by_run_actuator_and_seed() {
+        let first = |seed, run: &str| {
+            let mut torques = [0.0, 0.0];
+            let experiment = Experiment {
+                torque_noise: vec![1.0; 2],
+                seed,
+                ..Experiment::default()
+            };
+            Sensors::new(&experiment, 2, run).disturb(&mut torques);
+            torques
+        };
+        let base = first(1, "a");
+        assert_eq!(base, first(1, "a"));
+        assert_ne!(base[0], base[1]);
+        assert_ne!(base, first(2, "a"));
+        assert_ne!(base, first(1, "b"));
+    }
+}

@@ -1,0 +1,264 @@
+//! Checks of an experiment against a robot: all problems at once, each with what would be right.
+
+use std::collections::BTreeSet;
+
+use overact::Info;
+
+use crate::{
+    controller::spectral_radius,
+    error::Problem,
+    experiment::{Experiment, Run},
+    trajectory::{Term, Trajectory},
+};
+
+/// Most samples of one run: a record of that length takes about a gigabyte.
+const SAMPLES: f64 = 1e7;
+
+/// Collects problems.
+#[derive(Default)]
+struct Problems(Vec<Problem>);
+
+impl Problems {
+    fn add(&mut self, field: impl Into<String>, message: impl Into<String>) {
+        self.0.push(Problem {
+            field: field.into(),
+            message: message.into(),
+        });
+    }
+
+    fn positive(&mut self, field: impl Into<String>, value: f64, unit: &str) -> bool {
+        let good = value.is_finite() && value > 0.0;
+        if !good {
+            self.add(field, format!("is {value}; give a positive number{unit}"));
+        }
+        good
+    }
+
+    /// One number per actuator, each of which `good` accepts; `empty` tells whether none is fine too.
+    fn per_actuator(
+        &mut self,
+        field: &str,
+        values: &[f64],
+        info: &Info<'_>,
+        empty: bool,
+        positive: bool,
+    ) {
+        let n = info.sizes.actuators;
+        if values.len() != n && !(empty && values.is_empty()) {
+            self.add(
+                field,
+                format!(
+                    "has {} numbers; give {n}, one for each actuator",
+                    values.len()
+                ),
+            );
+        }
+        for (i, value) in values.iter().enumerate() {
+            let at = format!("{field}[{i}]");
+            if positive {
+                self.positive(at, *value, "");
+            } else if !(value.is_finite() && *value >= 0.0) {
+                self.add(at, format!("is {value}; give zero or a positive number"));
+            }
+        }
+    }
+
+    fn parameters(&mut self, field: &str, values: &[f64], info: &Info<'_>) {
+        let (own, payload) = (info.sizes.parameters, info.sizes.payload_parameters);
+        if values.len() != own + payload {
+            self.add(
+                field,
+                format!(
+                    "has {} numbers; give {}: {own} of the robot and {payload} of the payload, in column order",
+                    values.len(),
+                    own + payload
+                ),
+            );
+        }
+        for (i, value) in values
+            .iter()
+            .enumerate()
+            .filter(|(_, value)| !value.is_finite())
+        {
+            self.add(
+                format!("{field}[{i}]"),
+                format!("is {value}; give a finite number"),
+            );
+        }
+    }
+}
+
+/// All problems of an experiment.
+pub(crate) fn problems(experiment: &Experiment, info: &Info<'_>) -> Vec<Problem> {
+    let mut found = Problems::default();
+    control(&mut found, experiment);
+    found.per_actuator(
+        "encoder_resolution",
+        &experiment.encoder_resolution,
+        info,
+        true,
+        false,
+    );
+    found.per_actuator("torque_noise", &experiment.torque_noise, info, true, false);
+    if let Some(limit) = &experiment.torque_limit {
+        found.per_actuator("torque_limit", limit, info, false, true);
+    }
+    found.parameters("parameters", &experiment.parameters, info);
+    if let Some(nominal) = &experiment.nominal_parameters {
+        found.parameters("nominal_parameters", nominal, info);
+    }
+    if experiment.runs.is_empty() {
+        found.add("runs", "is empty; give at least one run");
+    }
+    let mut names = BTreeSet::new();
+    for (i, run) in experiment.runs.iter().enumerate() {
+        if run.name.is_empty() {
+            found.add(format!("runs[{i}].name"), "is empty; give a name");
+        } else if !names.insert(run.name.as_str()) {
+            found.add(
+                format!("runs[{i}].name"),
+                format!(
+                    "`{}` is the name of an earlier run; give each run its own",
+                    run.name
+                ),
+            );
+        }
+        check_run(&mut found, experiment, run, i, info);
+    }
+    found.0
+}
+
+/// The controller's numbers, and whether they give a stable loop.
+fn control(found: &mut Problems, experiment: &Experiment) {
+    let mut good = found.positive("sampling_hz", experiment.sampling_hz, " of hertz");
+    found.positive("duration_s", experiment.duration_s, " of seconds");
+    good &= found.positive("bandwidth_hz", experiment.bandwidth_hz, " of hertz");
+    good &= found.positive("damping", experiment.damping, "");
+    good &= found.positive(
+        "derivative_cutoff_hz",
+        experiment.derivative_cutoff_hz,
+        " of hertz",
+    );
+    if good && spectral_radius(experiment) >= 1.0 {
+        found.add(
+            "bandwidth_hz",
+            "the controlled robot would be unstable; lower `bandwidth_hz`, or raise `sampling_hz`, `derivative_cutoff_hz` or `damping`",
+        );
+    }
+    if !(1..=1000).contains(&experiment.integration_steps) {
+        found.add(
+            "integration_steps",
+            format!(
+                "is {}; give 1 to 1000 steps a sample",
+                experiment.integration_steps
+            ),
+        );
+    }
+}
+
+/// Duration and trajectory of a run.
+fn check_run(
+    found: &mut Problems,
+    experiment: &Experiment,
+    run: &Run,
+    index: usize,
+    info: &Info<'_>,
+) {
+    let at = format!("runs[{index}]");
+    if let Some(duration) = run.duration_s {
+        found.positive(format!("{at}.duration_s"), duration, " of seconds");
+    }
+    let samples = run.duration_s.unwrap_or(experiment.duration_s) * experiment.sampling_hz;
+    if samples.is_finite() && samples > 0.0 && !(1.5..=SAMPLES).contains(&samples) {
+        found.add(
+            format!("{at}.duration_s"),
+            format!("gives {samples:.0} samples; choose a duration of 2 to {SAMPLES:.0} samples"),
+        );
+    }
+    let at = format!("{at}.trajectory");
+    match &run.trajectory {
+        Trajectory::Periodic {
+            fundamental_hz,
+            terms,
+        } => {
+            check_terms(found, experiment, &at, *fundamental_hz, terms, info);
+        }
+        Trajectory::PointToPoint { points, times } => {
+            check_points(found, &at, points, times, info.sizes.dof);
+        }
+    }
+}
+
+/// Frequencies, coordinates and numbers of a Fourier series.
+fn check_terms(
+    found: &mut Problems,
+    experiment: &Experiment,
+    at: &str,
+    fundamental_hz: f64,
+    terms: &[Term],
+    info: &Info<'_>,
+) {
+    let known = found.positive(format!("{at}.fundamental_hz"), fundamental_hz, " of hertz");
+    for (i, term) in terms.iter().enumerate() {
+        let at = format!("{at}.terms[{i}]");
+        if !info.coordinates.contains(&term.coordinate.as_str()) {
+            found.add(
+                format!("{at}.coordinate"),
+                format!(
+                    "`{}` is none of {}",
+                    term.coordinate,
+                    info.coordinates.join(", ")
+                ),
+            );
+        }
+        let frequency = fundamental_hz * f64::from(term.harmonic);
+        if term.harmonic == 0 {
+            found.add(format!("{at}.harmonic"), "is 0; give 1 or more");
+        } else if known && frequency >= 0.5 * experiment.sampling_hz {
+            found.add(
+                format!("{at}.harmonic"),
+                format!("is a motion of {frequency} Hz; stay below half of `sampling_hz`"),
+            );
+        }
+        for (name, value) in [("amplitude", term.amplitude), ("phase_rad", term.phase_rad)] {
+            if !value.is_finite() {
+                found.add(
+                    format!("{at}.{name}"),
+                    format!("is {value}; give a finite number"),
+                );
+            }
+        }
+    }
+}
+
+/// Points and times of a point-to-point motion.
+fn check_points(found: &mut Problems, at: &str, points: &[Vec<f64>], times: &[f64], dof: usize) {
+    if points.is_empty() || points.len() != times.len() {
+        found.add(
+            format!("{at}.times"),
+            format!(
+                "has {} numbers for {} points; give one for each point",
+                times.len(),
+                points.len()
+            ),
+        );
+    }
+    for (i, point) in points.iter().enumerate() {
+        if point.len() != dof || point.iter().any(|s| !s.is_finite()) {
+            found.add(
+                format!("{at}.points[{i}]"),
+                format!(
+                    "is {point:?}; give {dof} finite numbers, one for each platform coordinate"
+                ),
+            );
+        }
+    }
+    for (i, time) in times.iter().enumerate() {
+        if !time.is_finite() || (i > 0 && *time <= times[i - 1]) {
+            found.add(
+                format!("{at}.times[{i}]"),
+                format!("is {time}; give increasing times in seconds"),
+            );
+        }
+    }
+}

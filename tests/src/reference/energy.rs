@@ -1,0 +1,54 @@
+//! Energy of all bodies, from positions and velocities alone.
+//!
+//! Kinetic: ½ m v·v + v·(ω x s) + ½ ω·I ω and ½ ia q̇² for every rotor. Potential: -g·(m p + s).
+//! Neither knows of accelerations or of the inverse dynamics, so the power balance
+//! dE/dt = vᵀ Γ¹, without friction, checks these.
+
+use super::closure::State;
+use super::kinematics::BodyMotion;
+use super::mechanism::{JointKind, Mechanism};
+use super::motion::Motion;
+use super::newton_euler::inertia;
+use super::parameters::{BODY, INERTIAL, leg_start, platform_start};
+use nalgebra::{DVector, Vector3};
+
+/// Kinetic and potential energy of a body, its parameters those of [`inertia`].
+#[must_use]
+pub fn body_energy(body: &BodyMotion, parameters: &[f64], gravity: &Vector3<f64>) -> f64 {
+    let (mass, moment, inertia) = inertia(&body.frame.rotation, parameters);
+    let (velocity, spin) = (body.velocity, body.angular_velocity);
+    let kinetic = 0.5 * mass * velocity.norm_squared()
+        + velocity.dot(&spin.cross(&moment))
+        + 0.5 * spin.dot(&(inertia * spin));
+    kinetic - gravity.dot(&(mass * body.frame.position + moment))
+}
+
+/// Energy of the whole robot, rotors included.
+#[must_use]
+pub fn total_energy(mechanism: &Mechanism, state: &State, parameters: &DVector<f64>) -> f64 {
+    let all = parameters.as_slice();
+    let mut energy = 0.0;
+    let motions = state.legs(mechanism);
+    for (k, (leg, range)) in mechanism
+        .legs
+        .iter()
+        .zip(mechanism.leg_ranges())
+        .enumerate()
+    {
+        let rates = leg.joint_values(&state.qd.as_slice()[range]);
+        for (j, body) in motions[k].iter().enumerate() {
+            let own = &all[leg_start(mechanism, k) + BODY * j..];
+            energy += body_energy(body, own, &mechanism.gravity);
+            if leg.joints[j].kind != JointKind::Fixed {
+                energy += 0.5 * own[INERTIAL] * rates[j] * rates[j];
+            }
+        }
+    }
+    if mechanism.motion != Motion::None {
+        let (platform, first) = (state.platform(mechanism), platform_start(mechanism));
+        for start in [first, first + INERTIAL] {
+            energy += body_energy(&platform, &all[start..], &mechanism.gravity);
+        }
+    }
+    energy
+}

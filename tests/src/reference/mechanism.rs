@@ -1,0 +1,264 @@
+//! A parallel, serial or tree robot as plain data.
+//!
+//! Frames follow the modified Denavit-Hartenberg notation of Khalil and Kleinfinger. From the
+//! antecedent frame to frame j: Rot(z,γ) Trans(z,b) Rot(x,α) Trans(x,d) Rot(z,θ) Trans(z,r).
+//! A revolute joint turns θ, a prismatic joint slides r. The joint's own constant is its offset:
+//! θ = `theta` + Σ c_i q_i, or r = `r` + Σ c_i q_i, over the variables q_i of the same leg. A joint
+//! whose sum contains its own index owns a variable; a joint whose sum doesn't is dependent, like
+//! the return joints of a parallelogram.
+//!
+//! Every joint carries a body. Whether the body has mass is a matter of the parameters alone.
+
+use super::frame::Frame;
+use super::motion::Motion;
+use nalgebra::Vector3;
+
+/// What a joint moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointKind {
+    /// Rotation about z.
+    Revolute,
+    /// Translation along z.
+    Prismatic,
+    /// No motion: a frame fixed to its antecedent.
+    Fixed,
+}
+
+/// A joint, the frame behind it and the body that the frame belongs to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joint {
+    /// Revolute, prismatic or fixed.
+    pub kind: JointKind,
+    /// Index of the antecedent joint in the leg; none is the base of the leg.
+    pub antecedent: Option<usize>,
+    /// Rotation about the antecedent's z, rad.
+    pub gamma: f64,
+    /// Translation along the antecedent's z, m.
+    pub b: f64,
+    /// Rotation about x, rad.
+    pub alpha: f64,
+    /// Translation along x, m.
+    pub d: f64,
+    /// Rotation about the joint's z, rad: the offset of a revolute joint.
+    pub theta: f64,
+    /// Translation along the joint's z, m: the offset of a prismatic joint.
+    pub r: f64,
+    /// Coefficients of the leg's joint variables in this joint's position.
+    pub terms: Vec<(usize, f64)>,
+    /// Whether a motor drives the joint.
+    pub actuated: bool,
+}
+
+impl Joint {
+    /// Joint `index` of a serial chain, with its own variable; geometry all zero.
+    #[must_use]
+    pub fn new(kind: JointKind, index: usize) -> Self {
+        let terms = if kind == JointKind::Fixed {
+            Vec::new()
+        } else {
+            vec![(index, 1.0)]
+        };
+        Self {
+            kind,
+            antecedent: index.checked_sub(1),
+            gamma: 0.0,
+            b: 0.0,
+            alpha: 0.0,
+            d: 0.0,
+            theta: 0.0,
+            r: 0.0,
+            terms,
+            actuated: false,
+        }
+    }
+
+    /// Revolute joint `index` of a serial chain at `alpha`, `d` from its antecedent.
+    #[must_use]
+    pub fn revolute(index: usize, alpha: f64, d: f64) -> Self {
+        Self {
+            alpha,
+            d,
+            ..Self::new(JointKind::Revolute, index)
+        }
+    }
+
+    /// Prismatic joint `index` of a serial chain at `alpha`, `d` from its antecedent.
+    #[must_use]
+    pub fn prismatic(index: usize, alpha: f64, d: f64) -> Self {
+        Self {
+            alpha,
+            d,
+            ..Self::new(JointKind::Prismatic, index)
+        }
+    }
+
+    /// The same joint, driven by a motor.
+    #[must_use]
+    pub fn actuated(self) -> Self {
+        Self {
+            actuated: true,
+            ..self
+        }
+    }
+
+    /// The same joint, moved by other joints' variables instead of its own.
+    #[must_use]
+    pub fn dependent(self, terms: &[(usize, f64)]) -> Self {
+        Self {
+            terms: terms.to_vec(),
+            ..self
+        }
+    }
+
+    /// Placement in the antecedent frame, the joint's sum Σ c_i q_i being `value`.
+    #[must_use]
+    pub fn placement(&self, value: f64) -> Frame {
+        let (mut theta, mut r) = (self.theta, self.r);
+        match self.kind {
+            JointKind::Revolute => theta += value,
+            JointKind::Prismatic => r += value,
+            JointKind::Fixed => {}
+        }
+        Frame::about_z(self.gamma)
+            * Frame::along_z(self.b)
+            * Frame::about_x(self.alpha)
+            * Frame::along_x(self.d)
+            * Frame::about_z(theta)
+            * Frame::along_z(r)
+    }
+}
+
+/// How a leg ends.
+#[derive(Clone, Debug, PartialEq)]
+pub enum End {
+    /// Nowhere: a branch of a serial or tree robot.
+    Free,
+    /// A frame of the leg is fixed to the platform.
+    Rigid {
+        /// Index of the joint whose frame is fixed.
+        joint: usize,
+        /// Where that frame sits in the platform frame.
+        attachment: Frame,
+    },
+    /// The origin of a frame of the leg coincides with a point of the platform.
+    Point {
+        /// Index of the joint whose frame's origin it is.
+        joint: usize,
+        /// The point in the platform frame.
+        attachment: Vector3<f64>,
+    },
+}
+
+/// A chain or tree of joints between the base and the platform.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Leg {
+    /// Placement of the leg's base in the robot's base frame.
+    pub base: Frame,
+    /// Joints; every antecedent comes before its successors.
+    pub joints: Vec<Joint>,
+    /// How the leg meets the platform.
+    pub end: End,
+    /// Joint variables near the home pose; they choose the working mode.
+    pub start: Vec<f64>,
+}
+
+impl Leg {
+    /// Indices of the joints that own a variable, in order.
+    #[must_use]
+    pub fn variables(&self) -> Vec<usize> {
+        let owns = |index: &usize| {
+            self.joints[*index]
+                .terms
+                .iter()
+                .any(|term| term.0 == *index)
+        };
+        (0..self.joints.len()).filter(owns).collect()
+    }
+
+    /// Sum Σ c_i q_i of every joint for the values of the leg's variables.
+    ///
+    /// The map is linear, so it serves positions, velocities and accelerations alike.
+    #[must_use]
+    pub fn joint_values(&self, variables: &[f64]) -> Vec<f64> {
+        let owners = self.variables();
+        let value = |owner: usize| {
+            owners
+                .iter()
+                .position(|&index| index == owner)
+                .map_or(0.0, |at| variables[at])
+        };
+        let sum = |joint: &Joint| joint.terms.iter().map(|&(owner, c)| c * value(owner)).sum();
+        self.joints.iter().map(sum).collect()
+    }
+}
+
+/// A whole robot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mechanism {
+    /// Acceleration of gravity in the base frame, m/s².
+    pub gravity: Vector3<f64>,
+    /// Free motions of the platform.
+    pub motion: Motion,
+    /// Pose coordinates around which random states are drawn.
+    pub home: Vec<f64>,
+    /// Largest displacement of random poses from home, by twist coordinate.
+    pub workspace: Vec<f64>,
+    /// Legs.
+    pub legs: Vec<Leg>,
+}
+
+impl Mechanism {
+    /// Leg and joint of every variable, legs in order: the layout of all joint vectors.
+    #[must_use]
+    pub fn variables(&self) -> Vec<(usize, usize)> {
+        let of_leg = |(k, leg): (usize, &Leg)| leg.variables().into_iter().map(move |j| (k, j));
+        self.legs.iter().enumerate().flat_map(of_leg).collect()
+    }
+
+    /// Positions, among the variables, of the actuated ones. Without a platform all are: the
+    /// model of a serial robot gives every joint's torque, eq. (1).
+    #[must_use]
+    pub fn actuated(&self) -> Vec<usize> {
+        let all = self.motion == Motion::None;
+        let variables = self.variables();
+        let driven = |at: &usize| {
+            let (leg, joint) = variables[*at];
+            all || self.legs[leg].joints[joint].actuated
+        };
+        (0..variables.len()).filter(driven).collect()
+    }
+
+    /// Number of joint variables, n_t.
+    #[must_use]
+    pub fn joints(&self) -> usize {
+        self.variables().len()
+    }
+
+    /// Number of independent coordinates, r.
+    #[must_use]
+    pub fn dof(&self) -> usize {
+        if self.motion == Motion::None {
+            self.joints()
+        } else {
+            self.motion.dof()
+        }
+    }
+
+    /// Number of actuators, n.
+    #[must_use]
+    pub fn actuators(&self) -> usize {
+        self.actuated().len()
+    }
+
+    /// Range of every leg's variables within a joint vector.
+    #[must_use]
+    pub fn leg_ranges(&self) -> Vec<std::ops::Range<usize>> {
+        let mut start = 0;
+        let mut range = |leg: &Leg| {
+            let first = start;
+            start += leg.variables().len();
+            first..start
+        };
+        self.legs.iter().map(&mut range).collect()
+    }
+}

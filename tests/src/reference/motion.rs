@@ -1,0 +1,142 @@
+//! Platform motions: pose coordinates, twist coordinates and the matrix D of (14).
+//!
+//! The twist t holds the linear velocity of the platform's origin and the angular velocity, both
+//! in the base frame. The free coordinates v give it by t = D v. D is constant for every motion
+//! here, so the derivative of the twist is D v̇.
+
+use super::frame::{Frame, logarithm};
+use nalgebra::{DMatrix, DVector, Quaternion, Rotation3, UnitQuaternion, Vector3, Vector6};
+
+/// Free motions of the platform.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Motion {
+    /// No platform: a serial or tree robot. Pose and twist coordinates are the joints'.
+    None,
+    /// Translation along a fixed direction through the base origin. Pose: one distance.
+    Slide(Vector3<f64>),
+    /// Rotation about a fixed axis through a point, where the platform's origin stays. Pose: angle.
+    Hinge {
+        /// Point of the axis.
+        point: Vector3<f64>,
+        /// Unit direction of the axis.
+        direction: Vector3<f64>,
+    },
+    /// A point in the plane z = 0. Pose: x, y.
+    Point,
+    /// Motion in the plane z = 0. Pose: x, y, φ about z.
+    Planar,
+    /// Translations. Pose: x, y, z.
+    Translation,
+    /// Translations and rotation about z. Pose: x, y, z, φ.
+    Schoenflies,
+    /// Rotations about the base origin. Pose: unit quaternion w, x, y, z.
+    Spherical,
+    /// Any motion. Pose: x, y, z and unit quaternion w, x, y, z.
+    Spatial,
+}
+
+impl Motion {
+    /// Number of free coordinates; none has 0 of its own.
+    #[must_use]
+    pub fn dof(&self) -> usize {
+        self.twist_basis().ncols()
+    }
+
+    /// Matrix D of t = D v, 6 x r (14).
+    #[must_use]
+    pub fn twist_basis(&self) -> DMatrix<f64> {
+        let rows: &[usize] = match self {
+            Self::None => &[],
+            Self::Slide(direction) => return column(*direction, Vector3::zeros()),
+            Self::Hinge { direction, .. } => return column(Vector3::zeros(), *direction),
+            Self::Point => &[0, 1],
+            Self::Planar => &[0, 1, 5],
+            Self::Translation => &[0, 1, 2],
+            Self::Schoenflies => &[0, 1, 2, 5],
+            Self::Spherical => &[3, 4, 5],
+            Self::Spatial => &[0, 1, 2, 3, 4, 5],
+        };
+        let mut basis = DMatrix::zeros(6, rows.len());
+        for (at, &row) in rows.iter().enumerate() {
+            basis[(row, at)] = 1.0;
+        }
+        basis
+    }
+
+    /// Placement of the platform frame in the base frame.
+    #[must_use]
+    pub fn placement(&self, pose: &[f64]) -> Frame {
+        match *self {
+            Self::None => Frame::identity(),
+            Self::Slide(direction) => Frame::new(Frame::identity().rotation, direction * pose[0]),
+            Self::Hinge { point, direction } => {
+                Frame::new(Rotation3::new(direction * pose[0]).into_inner(), point)
+            }
+            Self::Point => Frame::at(pose[0], pose[1], 0.0),
+            Self::Planar => Frame::at(pose[0], pose[1], 0.0) * Frame::about_z(pose[2]),
+            Self::Translation => Frame::at(pose[0], pose[1], pose[2]),
+            Self::Schoenflies => Frame::at(pose[0], pose[1], pose[2]) * Frame::about_z(pose[3]),
+            Self::Spherical => Frame::new(orientation(pose).into_inner(), Vector3::zeros()),
+            Self::Spatial => Frame::new(
+                orientation(&pose[3..]).into_inner(),
+                Vector3::new(pose[0], pose[1], pose[2]),
+            ),
+        }
+    }
+
+    /// Pose after a displacement given in twist coordinates.
+    ///
+    /// A rotation displacement is a rotation vector in the base frame, applied after the pose.
+    #[must_use]
+    pub fn displace(&self, pose: &[f64], displacement: &DVector<f64>) -> Vec<f64> {
+        let turn_at = match self {
+            Self::Spherical => 0,
+            Self::Spatial => 3,
+            _ => {
+                return pose
+                    .iter()
+                    .zip(displacement)
+                    .map(|(x, dx)| x + dx)
+                    .collect();
+            }
+        };
+        let turn = UnitQuaternion::new(Vector3::new(
+            displacement[turn_at],
+            displacement[turn_at + 1],
+            displacement[turn_at + 2],
+        ));
+        let turned = turn * UnitQuaternion::new_normalize(quaternion(&pose[turn_at..]));
+        let mut moved: Vec<f64> = (0..turn_at)
+            .map(|axis| pose[axis] + displacement[axis])
+            .collect();
+        moved.extend([turned.w, turned.i, turned.j, turned.k]);
+        moved
+    }
+
+    /// Displacement, in twist coordinates, from one pose to another.
+    #[must_use]
+    pub fn displacement(&self, from: &[f64], to: &[f64]) -> DVector<f64> {
+        if *self == Self::None {
+            return DVector::from_iterator(from.len(), to.iter().zip(from).map(|(b, a)| b - a));
+        }
+        let (a, b) = (self.placement(from), self.placement(to));
+        let shift = b.position - a.position;
+        let turn = logarithm(&(b.rotation * a.rotation.transpose()));
+        let both = Vector6::new(shift.x, shift.y, shift.z, turn.x, turn.y, turn.z);
+        self.twist_basis().transpose() * both
+    }
+}
+
+fn column(linear: Vector3<f64>, angular: Vector3<f64>) -> DMatrix<f64> {
+    let entries = linear.iter().chain(angular.iter()).copied();
+    DMatrix::from_iterator(6, 1, entries)
+}
+
+fn quaternion(pose: &[f64]) -> Quaternion<f64> {
+    Quaternion::new(pose[0], pose[1], pose[2], pose[3])
+}
+
+/// Rotation of a quaternion as it stands: a pose must already be of unit norm.
+fn orientation(pose: &[f64]) -> Rotation3<f64> {
+    UnitQuaternion::new_unchecked(quaternion(pose)).to_rotation_matrix()
+}

@@ -1,0 +1,208 @@
+//! Recursive Newton-Euler on the virtual tree and on the free platform (1), (6).
+//!
+//! A body of mass m, first moment s and inertia I, all about the origin of its frame, needs
+//!
+//! - the force f = m (a - g) + ω̇ x s + ω x (ω x s),
+//! - the moment n = s x (a - g) + I ω̇ + ω x I ω about the origin,
+//!
+//! a being the acceleration of the origin. From the tips to the base, a joint carries the sum of
+//! the wrenches behind it; its torque is the component along its axis, plus rotor inertia and
+//! friction (5). A dependent joint's torque counts for the variables that move it.
+//!
+//! Everything is linear in the parameters: a column is the same computation with one parameter
+//! equal to 1 and all others zero.
+
+use super::closure::State;
+use super::kinematics::BodyMotion;
+use super::mechanism::{JointKind, Leg, Mechanism};
+use super::motion::Motion;
+use super::parameters::{BODY, INERTIAL, leg_start, platform_start};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+
+/// A force and the moment about the origin of the body's frame, in the base frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wrench {
+    /// Force, N.
+    pub force: Vector3<f64>,
+    /// Moment, N m.
+    pub moment: Vector3<f64>,
+}
+
+/// Mass, first moment and inertia of a body about its frame's origin, in the base frame.
+///
+/// `parameters` begins with [xx xy xz yy yz zz mx my mz m] in the body's frame.
+#[must_use]
+pub fn inertia(rotation: &Matrix3<f64>, parameters: &[f64]) -> (f64, Vector3<f64>, Matrix3<f64>) {
+    let [xx, xy, xz, yy, yz, zz, mx, my, mz, m] =
+        std::array::from_fn::<f64, INERTIAL, _>(|at| parameters[at]);
+    let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+    (
+        m,
+        rotation * Vector3::new(mx, my, mz),
+        rotation * tensor * rotation.transpose(),
+    )
+}
+
+/// Wrench that moves a body as given against gravity and inertia.
+#[must_use]
+pub fn body_wrench(body: &BodyMotion, parameters: &[f64], gravity: &Vector3<f64>) -> Wrench {
+    let (mass, moment, inertia) = inertia(&body.frame.rotation, parameters);
+    let (spin, growth) = (body.angular_velocity, body.angular_acceleration);
+    let acceleration = body.acceleration - gravity;
+    Wrench {
+        force: mass * acceleration + growth.cross(&moment) + spin.cross(&spin.cross(&moment)),
+        moment: moment.cross(&acceleration) + inertia * growth + spin.cross(&(inertia * spin)),
+    }
+}
+
+/// Sign of a velocity, 0 at rest.
+#[must_use]
+pub fn sign(velocity: f64) -> f64 {
+    if velocity == 0.0 {
+        0.0
+    } else {
+        velocity.signum()
+    }
+}
+
+/// Torques of a leg's variables; `parameters` holds 14 per joint.
+#[must_use]
+pub fn leg_torques(
+    leg: &Leg,
+    bodies: &[BodyMotion],
+    qd: &[f64],
+    qdd: &[f64],
+    parameters: &[f64],
+    gravity: &Vector3<f64>,
+) -> DVector<f64> {
+    let (rates, growth) = (leg.joint_values(qd), leg.joint_values(qdd));
+    let owners = leg.variables();
+    let own = |j: usize| &parameters[BODY * j..BODY * (j + 1)];
+    let mut wrenches: Vec<Wrench> = bodies
+        .iter()
+        .enumerate()
+        .map(|(j, body)| body_wrench(body, own(j), gravity))
+        .collect();
+    let mut torques = DVector::zeros(owners.len());
+    for (j, joint) in leg.joints.iter().enumerate().rev() {
+        let (wrench, place) = (wrenches[j], bodies[j].frame);
+        if let Some(before) = joint.antecedent {
+            let arm = place.position - bodies[before].frame.position;
+            wrenches[before].force += wrench.force;
+            wrenches[before].moment += wrench.moment + arm.cross(&wrench.force);
+        }
+        let along = match joint.kind {
+            JointKind::Revolute => place.z().dot(&wrench.moment),
+            JointKind::Prismatic => place.z().dot(&wrench.force),
+            JointKind::Fixed => continue,
+        };
+        let [rotor, viscous, dry, offset] = std::array::from_fn(|at| own(j)[INERTIAL + at]);
+        let drive = rotor * growth[j] + viscous * rates[j] + dry * sign(rates[j]) + offset;
+        for &(owner, coefficient) in &joint.terms {
+            let at = owners.iter().position(|&index| index == owner);
+            torques[at.unwrap_or_default()] += coefficient * (along + drive);
+        }
+    }
+    torques
+}
+
+/// Torques τ_t of the virtual tree for all parameters (1).
+#[must_use]
+pub fn tree_torques(
+    mechanism: &Mechanism,
+    state: &State,
+    parameters: &DVector<f64>,
+) -> DVector<f64> {
+    let mut all = DVector::zeros(mechanism.joints());
+    let motions = state.legs(mechanism);
+    for (k, (leg, range)) in mechanism
+        .legs
+        .iter()
+        .zip(mechanism.leg_ranges())
+        .enumerate()
+    {
+        let own = &parameters.as_slice()[leg_start(mechanism, k)..leg_start(mechanism, k + 1)];
+        let (qd, qdd) = (
+            &state.qd.as_slice()[range.clone()],
+            &state.qdd.as_slice()[range.clone()],
+        );
+        let torques = leg_torques(leg, &motions[k], qd, qdd, own, &mechanism.gravity);
+        all.rows_mut(range.start, range.len()).copy_from(&torques);
+    }
+    all
+}
+
+/// Wrench τ_p of the platform and its payload as [force; moment] (6); zero without a platform.
+#[must_use]
+pub fn platform_wrench(
+    mechanism: &Mechanism,
+    state: &State,
+    parameters: &DVector<f64>,
+) -> DVector<f64> {
+    if mechanism.motion == Motion::None {
+        return DVector::zeros(0);
+    }
+    let body = state.platform(mechanism);
+    let first = platform_start(mechanism);
+    let mut total = DVector::zeros(6);
+    for start in [first, first + INERTIAL] {
+        let own = &parameters.as_slice()[start..start + INERTIAL];
+        let wrench = body_wrench(&body, own, &mechanism.gravity);
+        for axis in 0..3 {
+            total[axis] += wrench.force[axis];
+            total[3 + axis] += wrench.moment[axis];
+        }
+    }
+    total
+}
+
+/// Projected platform wrench τ_pr = Dᵀ τ_p (17).
+#[must_use]
+pub fn projected_platform_wrench(
+    mechanism: &Mechanism,
+    state: &State,
+    parameters: &DVector<f64>,
+) -> DVector<f64> {
+    if mechanism.motion == Motion::None {
+        return DVector::zeros(mechanism.dof());
+    }
+    mechanism.motion.twist_basis().transpose() * platform_wrench(mechanism, state, parameters)
+}
+
+/// Right-hand side [τ_t; τ_pr] of (16) for every unit parameter, (n_t + r) x n_st.
+#[must_use]
+pub fn regressor(mechanism: &Mechanism, state: &State) -> DMatrix<f64> {
+    let count = super::parameters::count(mechanism);
+    let (joints, dof) = (mechanism.joints(), mechanism.dof());
+    let mut columns = DMatrix::zeros(joints + dof, count);
+    let motions = state.legs(mechanism);
+    for (k, (leg, range)) in mechanism
+        .legs
+        .iter()
+        .zip(mechanism.leg_ranges())
+        .enumerate()
+    {
+        let (qd, qdd) = (
+            &state.qd.as_slice()[range.clone()],
+            &state.qdd.as_slice()[range.clone()],
+        );
+        for at in 0..BODY * leg.joints.len() {
+            let mut unit = vec![0.0; BODY * leg.joints.len()];
+            unit[at] = 1.0;
+            let torques = leg_torques(leg, &motions[k], qd, qdd, &unit, &mechanism.gravity);
+            let place = (range.start, leg_start(mechanism, k) + at);
+            columns
+                .view_mut(place, (range.len(), 1))
+                .copy_from(&torques);
+        }
+    }
+    for at in platform_start(mechanism)..count {
+        let mut unit = DVector::zeros(count);
+        unit[at] = 1.0;
+        let platform = projected_platform_wrench(mechanism, state, &unit);
+        columns
+            .view_mut((joints, at), (dof, 1))
+            .copy_from(&platform);
+    }
+    columns
+}

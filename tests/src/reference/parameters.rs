@@ -1,0 +1,65 @@
+//! Layout and names of the standard parameters χ.
+//!
+//! Every body of a leg has 14, in the order of (2) and (5):
+//! [xx xy xz yy yz zz mx my mz m ia fv fs off]. The platform and then the payload have the first
+//! ten. Inertial ones are taken about the origin of the body's frame, in its axes. Columns run
+//! through the legs, within a leg through the joints, within a joint through the parameters.
+
+use super::mechanism::Mechanism;
+use super::motion::Motion;
+
+/// Symbols of a leg body's parameters, in column order.
+pub const SYMBOLS: [&str; 14] = [
+    "xx", "xy", "xz", "yy", "yz", "zz", "mx", "my", "mz", "m", "ia", "fv", "fs", "off",
+];
+/// Number of parameters of a leg body.
+pub const BODY: usize = 14;
+/// Number of inertial parameters, those of the platform and of the payload.
+pub const INERTIAL: usize = 10;
+
+/// Total number of standard parameters; a serial robot has no platform and no payload.
+#[must_use]
+pub fn count(mechanism: &Mechanism) -> usize {
+    platform_start(mechanism)
+        + if mechanism.motion == Motion::None {
+            0
+        } else {
+            2 * INERTIAL
+        }
+}
+
+/// Column of the first parameter of a leg, both counted from 0.
+#[must_use]
+pub fn leg_start(mechanism: &Mechanism, leg: usize) -> usize {
+    BODY * mechanism.legs[..leg]
+        .iter()
+        .map(|leg| leg.joints.len())
+        .sum::<usize>()
+}
+
+/// Column of the first parameter of the platform; the payload's follow.
+#[must_use]
+pub fn platform_start(mechanism: &Mechanism) -> usize {
+    leg_start(mechanism, mechanism.legs.len())
+}
+
+/// Names in column order: `zz_2_leg3`, counted from 1, then `m_platform` and `m_payload`.
+#[must_use]
+pub fn names(mechanism: &Mechanism) -> Vec<String> {
+    let mut names = Vec::new();
+    for (k, leg) in mechanism.legs.iter().enumerate() {
+        for j in 0..leg.joints.len() {
+            names.extend(
+                SYMBOLS
+                    .iter()
+                    .map(|s| format!("{s}_{}_leg{}", j + 1, k + 1)),
+            );
+        }
+    }
+    if mechanism.motion != Motion::None {
+        for body in ["platform", "payload"] {
+            names.extend(SYMBOLS[..INERTIAL].iter().map(|s| format!("{s}_{body}")));
+        }
+    }
+    names
+}

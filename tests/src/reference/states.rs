@@ -1,0 +1,118 @@
+//! Random regular states and random parameters, the same for the same seed on any machine.
+//!
+//! Poses lie within the workspace around home, joints in the working mode of the legs' start.
+//! A state is rejected if a leg can't reach it or a leg, the inverse Jacobian or the reduced
+//! closure is badly conditioned: comparisons there would measure the conditioning, not the model.
+
+use super::Error;
+use super::closure::State;
+use super::linear::condition;
+use super::mechanism::Mechanism;
+use super::motion::Motion;
+use super::parameters::{BODY, INERTIAL, count, platform_start};
+use nalgebra::{DVector, Matrix3, Vector3};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+/// Largest condition number of a leg's Jacobian, of J_p^inv and of A_p in a regular state.
+pub const MAX_CONDITION: f64 = 60.0;
+/// Largest twist coordinate, m/s and rad/s.
+pub const MAX_SPEED: f64 = 1.5;
+/// Largest derivative of a twist coordinate, m/s² and rad/s².
+pub const MAX_ACCELERATION: f64 = 12.0;
+
+/// `count` random regular states.
+///
+/// # Errors
+///
+/// If hardly any pose of the workspace is regular.
+pub fn random_states(mechanism: &Mechanism, count: usize, seed: u64) -> Result<Vec<State>, Error> {
+    let mut generator = Pcg64::seed_from_u64(seed);
+    let mut states = Vec::with_capacity(count);
+    for _ in 0..200 * count.max(1) {
+        if states.len() == count {
+            break;
+        }
+        let dof = mechanism.dof();
+        let scales: Vec<f64> = mechanism.workspace.clone();
+        let displacement = random_vector(&mut generator, &scales);
+        let twist = random_vector(&mut generator, &vec![MAX_SPEED; dof]);
+        let acceleration = random_vector(&mut generator, &vec![MAX_ACCELERATION; dof]);
+        let pose = mechanism.motion.displace(&mechanism.home, &displacement);
+        if let Ok(state) = State::solve(mechanism, &pose, &twist, &acceleration)
+            && is_regular(mechanism, &state)
+        {
+            states.push(state);
+        }
+    }
+    if states.len() == count {
+        Ok(states)
+    } else {
+        Err(Error::NoRegularState)
+    }
+}
+
+/// Whether the legs, the inverse Jacobian and the reduced closure are well conditioned.
+#[must_use]
+pub fn is_regular(mechanism: &Mechanism, state: &State) -> bool {
+    state.jacobians(mechanism).is_ok_and(|jacobians| {
+        jacobians.worst_leg_condition(mechanism) < MAX_CONDITION
+            && condition(&jacobians.inverse) < MAX_CONDITION
+            && condition(&jacobians.a_p) < MAX_CONDITION
+    })
+}
+
+/// Random parameters of bodies that could exist: every mass positive, every central inertia a
+/// sum of point masses; friction and rotor inertia positive.
+#[must_use]
+pub fn random_parameters(mechanism: &Mechanism, seed: u64) -> DVector<f64> {
+    let mut generator = Pcg64::seed_from_u64(seed);
+    let mut all = Vec::with_capacity(count(mechanism));
+    for _ in 0..platform_start(mechanism) / BODY {
+        all.extend(random_body(&mut generator));
+        let mut within = |low: f64, high: f64| generator.random_range(low..high);
+        all.extend([
+            within(0.01, 0.1),
+            within(0.1, 1.0),
+            within(0.1, 1.0),
+            within(-0.3, 0.3),
+        ]);
+    }
+    if mechanism.motion != Motion::None {
+        all.extend(random_body(&mut generator));
+        all.extend(random_body(&mut generator));
+    }
+    DVector::from_vec(all)
+}
+
+/// The same parameters without what dissipates: viscous and dry friction and offset zero.
+#[must_use]
+pub fn frictionless(mechanism: &Mechanism, parameters: &DVector<f64>) -> DVector<f64> {
+    let mut kept = parameters.clone();
+    for at in 0..platform_start(mechanism) {
+        if at % BODY > INERTIAL {
+            kept[at] = 0.0;
+        }
+    }
+    kept
+}
+
+/// Four random point masses make a general body: [xx xy xz yy yz zz mx my mz m].
+fn random_body(generator: &mut Pcg64) -> [f64; INERTIAL] {
+    let (mut mass, mut moment, mut inertia) = (0.0, Vector3::zeros(), Matrix3::zeros());
+    for _ in 0..4 {
+        let part: f64 = generator.random_range(0.1..0.5);
+        let at = Vector3::from_fn(|_, _| generator.random_range(-0.2..0.2));
+        mass += part;
+        moment += part * at;
+        inertia += part * (at.norm_squared() * Matrix3::identity() - at * at.transpose());
+    }
+    let [xx, xy, xz] = [inertia[(0, 0)], inertia[(0, 1)], inertia[(0, 2)]];
+    let [yy, yz, zz] = [inertia[(1, 1)], inertia[(1, 2)], inertia[(2, 2)]];
+    [xx, xy, xz, yy, yz, zz, moment.x, moment.y, moment.z, mass]
+}
+
+fn random_vector(generator: &mut Pcg64, scales: &[f64]) -> DVector<f64> {
+    let entry = |scale: &f64| scale * generator.random_range(-1.0..1.0);
+    DVector::from_vec(scales.iter().map(entry).collect())
+}

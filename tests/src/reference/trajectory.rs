@@ -1,0 +1,50 @@
+//! States along a path through a given state, and derivatives along it by finite differences.
+//!
+//! The path keeps v̇ constant: the displacement at time t is v t + v̇ t²/2. For rotations it is a
+//! rotation vector, exact up to the second derivative at t = 0, which is all that is asked of it.
+
+use super::Error;
+use super::closure::State;
+use super::mechanism::Mechanism;
+use nalgebra::DVector;
+
+/// Step of the finite differences, s.
+pub const STEP: f64 = 3e-4;
+
+/// State at time `t` on the path through `state`.
+///
+/// # Errors
+///
+/// If the robot can't reach the pose.
+pub fn at(mechanism: &Mechanism, state: &State, t: f64) -> Result<State, Error> {
+    let displacement = &state.twist * t + &state.acceleration * (0.5 * t * t);
+    let pose = mechanism.motion.displace(&state.pose, &displacement);
+    let twist = &state.twist + &state.acceleration * t;
+    State::solve_near(mechanism, &state.q, &pose, &twist, &state.acceleration)
+}
+
+/// First and second derivative along the path of a quantity of the state.
+///
+/// The seven-point central formulas have an error of order six in the step.
+///
+/// # Errors
+///
+/// If the robot can't reach a pose of the stencil.
+pub fn derivatives(
+    mechanism: &Mechanism,
+    state: &State,
+    quantity: impl Fn(&State) -> DVector<f64>,
+) -> Result<(DVector<f64>, DVector<f64>), Error> {
+    const FIRST: [f64; 4] = [0.0, 0.75, -0.15, 1.0 / 60.0];
+    const SECOND: [f64; 4] = [-49.0 / 18.0, 1.5, -0.15, 1.0 / 90.0];
+    let sample = |n: f64| Ok(quantity(&at(mechanism, state, n * STEP)?));
+    let mut second: DVector<f64> = sample(0.0)? * SECOND[0];
+    let mut first = DVector::zeros(second.len());
+    for n in 1..4 {
+        let (ahead, behind): (DVector<f64>, DVector<f64>) =
+            (sample(n as f64)?, sample(-(n as f64))?);
+        first += (&ahead - &behind) * FIRST[n];
+        second += (ahead + behind) * SECOND[n];
+    }
+    Ok((first / STEP, second / (STEP * STEP)))
+}
