@@ -15,7 +15,11 @@ use tempfile::NamedTempFile;
 /// A stdout that takes no more, for instance a full disk behind it.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();
-    let newline = if text.ends_with('\n') || text.is_empty() { "" } else { "\n" };
+    let newline = if text.ends_with('\n') || text.is_empty() {
+        ""
+    } else {
+        "\n"
+    };
     let written = write!(stdout, "{text}{newline}").and_then(|()| stdout.flush());
     match written {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
@@ -34,7 +38,10 @@ pub(crate) fn emit(text: &str, file: Option<&Path>) -> Result<(), Failure> {
         None => print(text),
         Some(path) => {
             let newline = if text.ends_with('\n') { "" } else { "\n" };
-            write(vec![(path.to_owned(), format!("{text}{newline}").into_bytes())])
+            write(vec![(
+                path.to_owned(),
+                format!("{text}{newline}").into_bytes(),
+            )])
         }
     }
 }
@@ -83,7 +90,10 @@ fn stage(path: &Path, bytes: &[u8]) -> io::Result<Staged> {
     let existing = fs::metadata(path).ok();
     if let Some(existing) = &existing {
         if existing.is_dir() {
-            return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder"));
+            return Err(io::Error::new(
+                io::ErrorKind::IsADirectory,
+                "it is a folder",
+            ));
         }
         if !existing.is_file() {
             return Ok(Staged::Device);
@@ -100,7 +110,10 @@ fn stage(path: &Path, bytes: &[u8]) -> io::Result<Staged> {
     };
     let mut builder = tempfile::Builder::new();
     builder.prefix(".overact-");
-    let permissions = existing.as_ref().map(fs::Metadata::permissions).or_else(usual_permissions);
+    let permissions = existing
+        .as_ref()
+        .map(fs::Metadata::permissions)
+        .or_else(usual_permissions);
     let mut file = match permissions {
         Some(permissions) => builder.permissions(permissions).tempfile_in(folder)?,
         None => builder.tempfile_in(folder)?,
@@ -145,7 +158,11 @@ pub(crate) fn table(rows: &[Vec<String>], left: &[bool]) -> String {
         let cell = |(column, cell): (usize, &String)| {
             let width = widths[column];
             let is_left = left.get(column).copied().unwrap_or(false);
-            if is_left { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+            if is_left {
+                format!("{cell:<width$}")
+            } else {
+                format!("{cell:>width$}")
+            }
         };
         let cells: Vec<String> = row.iter().enumerate().map(cell).collect();
         text.push_str(cells.join("  ").trim_end());
@@ -161,7 +178,10 @@ mod tests {
     #[test]
     fn an_error_leaves_all_files_as_they_were() -> std::io::Result<()> {
         let folder = tempfile::tempdir()?;
-        let (good, bad) = (folder.path().join("a.csv"), folder.path().join("none/b.csv"));
+        let (good, bad) = (
+            folder.path().join("a.csv"),
+            folder.path().join("none/b.csv"),
+        );
         std::fs::write(&good, "old")?;
         assert!(write(vec![(good.clone(), b"new".to_vec()), (bad, Vec::new())]).is_err());
         assert_eq!(std::fs::read_to_string(&good)?, "old");

@@ -69,7 +69,10 @@ pub fn select(
     }
     let mut result: Vec<BaseParameter> = kept
         .iter()
-        .map(|&c| BaseParameter { parameter: parameters[c], regrouped: Vec::new() })
+        .map(|&c| BaseParameter {
+            parameter: parameters[c],
+            regrouped: Vec::new(),
+        })
         .collect();
     let coefficients = combinations(matrix, &kept, &dependent);
     for (k, &column) in dependent.iter().enumerate() {

@@ -1,7 +1,31 @@
 //! From a robot's description to its symbolic identification model and to specialised Rust.
+//!
+//! A parallel robot is opened at its platform into legs, which are trees, and a free body. The legs'
+//! bodies move with quasi-velocities u, absolute rates along parallel axes; the closure of each leg
+//! gives u = (∂u/∂v) v for the platform's twist coordinates v. By virtual power, the column of standard
+//! parameter p in the identification model of case 1 is Σ (∂u_i/∂v)ᵀ s_i, with s_i the generalised force on
+//! u_i of the wrench that p alone produces: Γ¹ = (J_p^inv)ᵀ τ = IDM_red χ, eq. (30) of Briot, Krut, Gautier
+//! 2015. Everything is linear in the parameters and divides by nothing but the leg determinants.
+//!
+//! The stages, in the order of [`compile`](mod@compile), each a folder or file with its theory:
+//!
+//! | stage | from | to |
+//! |---|---|---|
+//! | [`description`] | TOML | values with units and places; errors in [`diagnostic`] |
+//! | [`mechanism`] | description | checked legs, platform, home configuration |
+//! | [`derivation`] | mechanism | expressions of the algebra [`cas`] |
+//! | [`columns`], [`base`], [`combine`] | regressor | present, independent and combined columns |
+//! | [`lowering`] | expressions | a straight-line program with its operation count |
+//! | [`emission`] | programs | Rust |
+//! | [`evaluation`] | programs | numbers, block by block |
+//!
+//! The crate is pure: text in, model or diagnostics out.
 
+pub mod assemble;
 pub mod base;
 pub mod cas;
+pub mod columns;
+pub mod combine;
 pub mod compile;
 pub mod derivation;
 pub mod description;

@@ -36,13 +36,19 @@ impl RobotModel {
     /// The function of a family, evaluated from what is asked for.
     #[must_use]
     pub fn function(&self, family: Family, from: From) -> Option<&Function> {
-        self.functions.iter().find(|f| f.family == family && f.from == from)
+        self.functions
+            .iter()
+            .find(|f| f.family == family && f.from == from)
     }
 
     /// The function that plain states (pose or, for a tree, joints) are given to.
     #[must_use]
     pub fn plain(&self, family: Family) -> Option<&Function> {
-        let from = if self.is_tree() { From::Joints } else { From::Pose };
+        let from = if self.is_tree() {
+            From::Joints
+        } else {
+            From::Pose
+        };
         self.function(family, from)
     }
 

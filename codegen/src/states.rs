@@ -2,9 +2,9 @@
 //! every leg in the working mode of the home configuration.
 
 use crate::cas::field::mix;
+use crate::mechanism::Mechanism;
 use crate::mechanism::home::close_from;
 use crate::mechanism::numeric::{platform_frame, target};
-use crate::mechanism::Mechanism;
 
 /// A state of a robot.
 #[derive(Debug, Clone)]
@@ -31,7 +31,7 @@ impl Stream {
     }
 
     /// The next number.
-    pub fn next(&mut self) -> f64 {
+    pub fn number(&mut self) -> f64 {
         self.0 = mix(self.0);
         (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
@@ -45,7 +45,7 @@ pub fn random_states(mechanism: &Mechanism, count: usize, seed: u64) -> Vec<Stat
     let dof = mechanism.dof();
     let mut states = Vec::with_capacity(count);
     for _ in 0..count {
-        let direction: Vec<f64> = (0..mechanism.pose_len()).map(|_| stream.next()).collect();
+        let direction: Vec<f64> = (0..mechanism.pose_len()).map(|_| stream.number()).collect();
         let mut spread = 0.4;
         let (pose, joints) = loop {
             match displaced(mechanism, &direction, spread) {
@@ -56,18 +56,32 @@ pub fn random_states(mechanism: &Mechanism, count: usize, seed: u64) -> Vec<Stat
                 None => spread *= 0.5,
             }
         };
-        let twist = (0..dof).map(|_| stream.next()).collect();
-        let acceleration = (0..dof).map(|_| 10.0 * stream.next()).collect();
-        states.push(State { pose, joints, twist, acceleration });
+        let twist = (0..dof).map(|_| stream.number()).collect();
+        let acceleration = (0..dof).map(|_| 10.0 * stream.number()).collect();
+        states.push(State {
+            pose,
+            joints,
+            twist,
+            acceleration,
+        });
     }
     states
 }
 
-fn displaced(mechanism: &Mechanism, direction: &[f64], spread: f64) -> Option<(Vec<f64>, Vec<f64>)> {
+fn displaced(
+    mechanism: &Mechanism,
+    direction: &[f64],
+    spread: f64,
+) -> Option<(Vec<f64>, Vec<f64>)> {
     let home = &mechanism.home;
     let Some(platform) = &mechanism.platform else {
         // Joints of a tree go anywhere.
-        let joints: Vec<f64> = home.joints.iter().zip(direction).map(|(h, d)| h + 3.0 * d).collect();
+        let joints: Vec<f64> = home
+            .joints
+            .iter()
+            .zip(direction)
+            .map(|(h, d)| h + 3.0 * d)
+            .collect();
         return Some((joints.clone(), joints));
     };
     // Lengths scale with the robot: with the distance of the legs' bases from the platform.
@@ -95,7 +109,12 @@ fn follow(mechanism: &Mechanism, pose: &[f64]) -> Option<Vec<f64>> {
     let mut joints = home.joints.clone();
     for step in 1..=STEPS {
         let part = step as f64 / STEPS as f64;
-        let mut at: Vec<f64> = home.pose.iter().zip(pose).map(|(h, p)| h + part * (p - h)).collect();
+        let mut at: Vec<f64> = home
+            .pose
+            .iter()
+            .zip(pose)
+            .map(|(h, p)| h + part * (p - h))
+            .collect();
         if step == STEPS {
             at.copy_from_slice(pose);
         }

@@ -644,8 +644,8 @@ impl DualV {
         let g1_vy_leg2 = t44 * t52;
         let g1_vy_leg3 = t73 * t81;
         let g1_vy_leg4 = t97 * t105;
-        let t121 = g1_vy_leg1 * g1_vx_leg1 + g1_vy_leg2 * g1_vx_leg2
-            + g1_vy_leg3 * g1_vx_leg3 + g1_vy_leg4 * g1_vx_leg4;
+        let t121 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
         let t122 = t121 * t109;
         let t131 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t121 * t122;
@@ -995,7 +995,7 @@ impl DualV {
     ///
     /// Output: 12.
     ///
-    /// 238 operations (114 additions, 116 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 232 intermediates.
+    /// 230 operations (114 additions, 108 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 224 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1034,97 +1034,105 @@ impl DualV {
         let g1_vy_leg1 = t21 * t29;
         let t40 = twist[1] - t33;
         let rate_1_leg1 = g1_vx_leg1 * t37 + g1_vy_leg1 * t40;
+        let t43 = rate_1_leg1 * rate_1_leg1;
         let g2_vy_leg1 = t26 * t29;
         let minus_g2_vx_leg1 = t23 * t29;
         let rate_2_leg1 = g2_vy_leg1 * t40 - minus_g2_vx_leg1 * t37;
         let t51 = rate_1_leg1 + rate_2_leg1 - rate_1_leg1;
-        let t55 = t35 + rate_1_leg1 * (t16 * rate_1_leg1) + t51 * (t17 * t51);
+        let t52 = t51 * t51;
+        let t55 = t35 + t16 * t43 + t17 * t52;
         let t57 = t2 * acceleration[2];
         let t59 = twist[2] * t36;
         let t60 = acceleration[1] - t57 - t59;
-        let t66 = t60 + rate_1_leg1 * (t20 * rate_1_leg1) + t51 * (t21 * t51);
-        let rate_dot_1_leg1 = g1_vx_leg1 * t55 + g1_vy_leg1 * t66;
-        let rate_dot_2_leg1 = g2_vy_leg1 * t66 - minus_g2_vx_leg1 * t55;
-        let t74 = t3 + 0.3950502153918333;
-        let t79 = 0.0784 / (t74 * t74 + t10) - 0.25;
-        ::overact::guard::reach(t79, "leg2")?;
-        let t80 = ::overact::math::sqrt(t79);
-        let t82 = 0.5 * t74 - t8 * t80;
-        let t83 = t74 - t82;
-        let t85 = t18 + t74 * t80;
-        let t86 = t8 - t85;
-        let t88 = t82 + t83 - t83;
-        let t91 = t86 - (t85 + t86);
-        let t93 = t86 * t88 + t83 * t91;
-        ::overact::guard::leg(t93, 0.078399138102973, "leg2")?;
-        let t94 = 1.0 / t93;
-        let g1_vx_leg2 = t83 * t94;
-        let g1_vy_leg2 = t86 * t94;
+        let t64 = t60 + t20 * t43 + t21 * t52;
+        let rate_dot_1_leg1 = g1_vx_leg1 * t55 + g1_vy_leg1 * t64;
+        let rate_dot_2_leg1 = g2_vy_leg1 * t64 - minus_g2_vx_leg1 * t55;
+        let t72 = t3 + 0.3950502153918333;
+        let t77 = 0.0784 / (t72 * t72 + t10) - 0.25;
+        ::overact::guard::reach(t77, "leg2")?;
+        let t78 = ::overact::math::sqrt(t77);
+        let t80 = 0.5 * t72 - t8 * t78;
+        let t81 = t72 - t80;
+        let t83 = t18 + t72 * t78;
+        let t84 = t8 - t83;
+        let t86 = t80 + t81 - t81;
+        let t89 = t84 - (t83 + t84);
+        let t91 = t84 * t86 + t81 * t89;
+        ::overact::guard::leg(t91, 0.078399138102973, "leg2")?;
+        let t92 = 1.0 / t91;
+        let g1_vx_leg2 = t81 * t92;
+        let g1_vy_leg2 = t84 * t92;
         let rate_1_leg2 = g1_vx_leg2 * t37 + g1_vy_leg2 * t40;
-        let g2_vy_leg2 = t91 * t94;
-        let minus_g2_vx_leg2 = t88 * t94;
+        let t98 = rate_1_leg2 * rate_1_leg2;
+        let g2_vy_leg2 = t89 * t92;
+        let minus_g2_vx_leg2 = t86 * t92;
         let rate_2_leg2 = g2_vy_leg2 * t40 - minus_g2_vx_leg2 * t37;
-        let t108 = rate_1_leg2 + rate_2_leg2 - rate_1_leg2;
-        let t112 = t35 + rate_1_leg2 * (t82 * rate_1_leg2) + t108 * (t83 * t108);
-        let t119 = t60 + rate_1_leg2 * (t85 * rate_1_leg2) + t108 * (t86 * t108);
-        let rate_dot_1_leg2 = g1_vx_leg2 * t112 + g1_vy_leg2 * t119;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t119 - minus_g2_vx_leg2 * t112;
-        let t127 = pose[0] + t2;
-        let t128 = t127 + 0.3950502153918333;
-        let t131 = pose[1] - t6 + 0.10970563941232059;
-        let t133 = t131 * t131;
-        let t136 = 0.0784 / (t128 * t128 + t133) - 0.25;
-        ::overact::guard::reach(t136, "leg3")?;
-        let t137 = ::overact::math::sqrt(t136);
-        let t139 = 0.5 * t128 + t131 * t137;
-        let t140 = t128 - t139;
-        let t141 = 0.5 * t131;
-        let t143 = t141 - t128 * t137;
-        let t144 = t131 - t143;
-        let t146 = t139 + t140 - t140;
-        let t149 = t144 - (t143 + t144);
-        let t151 = t144 * t146 + t140 * t149;
-        ::overact::guard::leg(t151, 0.078399138102973, "leg3")?;
-        let t152 = 1.0 / t151;
-        let g1_vx_leg3 = t140 * t152;
-        let t155 = acceleration[0] + t31 - t34;
-        let t156 = twist[0] + t36;
-        let g1_vy_leg3 = t144 * t152;
-        let t159 = twist[1] + t33;
-        let rate_1_leg3 = g1_vx_leg3 * t156 + g1_vy_leg3 * t159;
-        let g2_vy_leg3 = t149 * t152;
-        let minus_g2_vx_leg3 = t146 * t152;
-        let rate_2_leg3 = g2_vy_leg3 * t159 - minus_g2_vx_leg3 * t156;
-        let t170 = rate_1_leg3 + rate_2_leg3 - rate_1_leg3;
-        let t174 = t155 + rate_1_leg3 * (t139 * rate_1_leg3) + t170 * (t140 * t170);
-        let t177 = acceleration[1] + t57 + t59;
-        let t183 = t177 + rate_1_leg3 * (t143 * rate_1_leg3) + t170 * (t144 * t170);
-        let rate_dot_1_leg3 = g1_vx_leg3 * t174 + g1_vy_leg3 * t183;
-        let rate_dot_2_leg3 = g2_vy_leg3 * t183 - minus_g2_vx_leg3 * t174;
-        let t191 = t127 - 0.3950502153918333;
-        let t196 = 0.0784 / (t191 * t191 + t133) - 0.25;
-        ::overact::guard::reach(t196, "leg4")?;
-        let t197 = ::overact::math::sqrt(t196);
-        let t199 = 0.5 * t191 - t131 * t197;
-        let t200 = t191 - t199;
-        let t202 = t141 + t191 * t197;
-        let t203 = t131 - t202;
-        let t205 = t199 + t200 - t200;
-        let t208 = t203 - (t202 + t203);
-        let t210 = t203 * t205 + t200 * t208;
-        ::overact::guard::leg(t210, 0.078399138102973, "leg4")?;
-        let t211 = 1.0 / t210;
-        let g1_vx_leg4 = t200 * t211;
-        let g1_vy_leg4 = t203 * t211;
-        let rate_1_leg4 = g1_vx_leg4 * t156 + g1_vy_leg4 * t159;
-        let g2_vy_leg4 = t208 * t211;
-        let minus_g2_vx_leg4 = t205 * t211;
-        let rate_2_leg4 = g2_vy_leg4 * t159 - minus_g2_vx_leg4 * t156;
-        let t225 = rate_1_leg4 + rate_2_leg4 - rate_1_leg4;
-        let t229 = t155 + rate_1_leg4 * (t199 * rate_1_leg4) + t225 * (t200 * t225);
-        let t236 = t177 + rate_1_leg4 * (t202 * rate_1_leg4) + t225 * (t203 * t225);
-        let rate_dot_1_leg4 = g1_vx_leg4 * t229 + g1_vy_leg4 * t236;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t236 - minus_g2_vx_leg4 * t229;
+        let t106 = rate_1_leg2 + rate_2_leg2 - rate_1_leg2;
+        let t107 = t106 * t106;
+        let t110 = t35 + t80 * t98 + t81 * t107;
+        let t115 = t60 + t83 * t98 + t84 * t107;
+        let rate_dot_1_leg2 = g1_vx_leg2 * t110 + g1_vy_leg2 * t115;
+        let rate_dot_2_leg2 = g2_vy_leg2 * t115 - minus_g2_vx_leg2 * t110;
+        let t123 = pose[0] + t2;
+        let t124 = t123 + 0.3950502153918333;
+        let t127 = pose[1] - t6 + 0.10970563941232059;
+        let t129 = t127 * t127;
+        let t132 = 0.0784 / (t124 * t124 + t129) - 0.25;
+        ::overact::guard::reach(t132, "leg3")?;
+        let t133 = ::overact::math::sqrt(t132);
+        let t135 = 0.5 * t124 + t127 * t133;
+        let t136 = t124 - t135;
+        let t137 = 0.5 * t127;
+        let t139 = t137 - t124 * t133;
+        let t140 = t127 - t139;
+        let t142 = t135 + t136 - t136;
+        let t145 = t140 - (t139 + t140);
+        let t147 = t140 * t142 + t136 * t145;
+        ::overact::guard::leg(t147, 0.078399138102973, "leg3")?;
+        let t148 = 1.0 / t147;
+        let g1_vx_leg3 = t136 * t148;
+        let t151 = acceleration[0] + t31 - t34;
+        let t152 = twist[0] + t36;
+        let g1_vy_leg3 = t140 * t148;
+        let t155 = twist[1] + t33;
+        let rate_1_leg3 = g1_vx_leg3 * t152 + g1_vy_leg3 * t155;
+        let t158 = rate_1_leg3 * rate_1_leg3;
+        let g2_vy_leg3 = t145 * t148;
+        let minus_g2_vx_leg3 = t142 * t148;
+        let rate_2_leg3 = g2_vy_leg3 * t155 - minus_g2_vx_leg3 * t152;
+        let t166 = rate_1_leg3 + rate_2_leg3 - rate_1_leg3;
+        let t167 = t166 * t166;
+        let t170 = t151 + t135 * t158 + t136 * t167;
+        let t173 = acceleration[1] + t57 + t59;
+        let t177 = t173 + t139 * t158 + t140 * t167;
+        let rate_dot_1_leg3 = g1_vx_leg3 * t170 + g1_vy_leg3 * t177;
+        let rate_dot_2_leg3 = g2_vy_leg3 * t177 - minus_g2_vx_leg3 * t170;
+        let t185 = t123 - 0.3950502153918333;
+        let t190 = 0.0784 / (t185 * t185 + t129) - 0.25;
+        ::overact::guard::reach(t190, "leg4")?;
+        let t191 = ::overact::math::sqrt(t190);
+        let t193 = 0.5 * t185 - t127 * t191;
+        let t194 = t185 - t193;
+        let t196 = t137 + t185 * t191;
+        let t197 = t127 - t196;
+        let t199 = t193 + t194 - t194;
+        let t202 = t197 - (t196 + t197);
+        let t204 = t197 * t199 + t194 * t202;
+        ::overact::guard::leg(t204, 0.078399138102973, "leg4")?;
+        let t205 = 1.0 / t204;
+        let g1_vx_leg4 = t194 * t205;
+        let g1_vy_leg4 = t197 * t205;
+        let rate_1_leg4 = g1_vx_leg4 * t152 + g1_vy_leg4 * t155;
+        let t211 = rate_1_leg4 * rate_1_leg4;
+        let g2_vy_leg4 = t202 * t205;
+        let minus_g2_vx_leg4 = t199 * t205;
+        let rate_2_leg4 = g2_vy_leg4 * t155 - minus_g2_vx_leg4 * t152;
+        let t219 = rate_1_leg4 + rate_2_leg4 - rate_1_leg4;
+        let t220 = t219 * t219;
+        let t223 = t151 + t193 * t211 + t194 * t220;
+        let t228 = t173 + t196 * t211 + t197 * t220;
+        let rate_dot_1_leg4 = g1_vx_leg4 * t223 + g1_vy_leg4 * t228;
+        let rate_dot_2_leg4 = g2_vy_leg4 * t228 - minus_g2_vx_leg4 * t223;
         Ok([
             rate_dot_1_leg1, rate_dot_2_leg1 - rate_dot_1_leg1, acceleration[2] - rate_dot_2_leg1,
             rate_dot_1_leg2, rate_dot_2_leg2 - rate_dot_1_leg2, acceleration[2] - rate_dot_2_leg2,
@@ -1218,8 +1226,8 @@ impl DualV {
         let g1_vy_leg2 = t44 * t52;
         let g1_vy_leg3 = t73 * t81;
         let g1_vy_leg4 = t97 * t105;
-        let t128 = g1_vy_leg1 * g1_vx_leg1 + g1_vy_leg2 * g1_vx_leg2
-            + g1_vy_leg3 * g1_vx_leg3 + g1_vy_leg4 * g1_vx_leg4;
+        let t128 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
         let t129 = t128 * t116;
         let t138 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t128 * t129;
@@ -1261,7 +1269,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 315 operations (139 additions, 165 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 318 intermediates.
+    /// 307 operations (139 additions, 157 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 310 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1298,131 +1306,133 @@ impl DualV {
         let g1_vy_leg1 = t21 * t29;
         let t37 = twist[1] - t31;
         let rate_1_leg1 = g1_vx_leg1 * t34 + g1_vy_leg1 * t37;
+        let t40 = rate_1_leg1 * rate_1_leg1;
         let g2_vy_leg1 = t26 * t29;
         let minus_g2_vx_leg1 = t23 * t29;
         let rate_2_leg1 = g2_vy_leg1 * t37 - minus_g2_vx_leg1 * t34;
         let t48 = rate_1_leg1 + rate_2_leg1 - rate_1_leg1;
-        let t59 = twist[2] * t33;
-        let rate_dot_1_leg1 = g1_vx_leg1
-            * (t32 + rate_1_leg1 * (t16 * rate_1_leg1) + t48 * (t17 * t48))
-            + g1_vy_leg1 * (rate_1_leg1 * (t20 * rate_1_leg1) + t48 * (t21 * t48) - t59);
-        let t63 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t65 = t3 + 0.3950502153918333;
-        let t70 = 0.0784 / (t65 * t65 + t10) - 0.25;
-        ::overact::guard::reach(t70, "leg2")?;
-        let t71 = ::overact::math::sqrt(t70);
-        let t73 = 0.5 * t65 - t8 * t71;
-        let t74 = t65 - t73;
-        let t76 = t18 + t65 * t71;
-        let t77 = t8 - t76;
-        let t79 = t73 + t74 - t74;
-        let t82 = t77 - (t76 + t77);
-        let t84 = t77 * t79 + t74 * t82;
-        ::overact::guard::leg(t84, 0.078399138102973, "leg2")?;
-        let t85 = 1.0 / t84;
-        let g1_vx_leg2 = t74 * t85;
-        let g1_vy_leg2 = t77 * t85;
+        let t49 = t48 * t48;
+        let t57 = twist[2] * t33;
+        let rate_dot_1_leg1 = g1_vx_leg1 * (t32 + t16 * t40 + t17 * t49)
+            + g1_vy_leg1 * (t20 * t40 + t21 * t49 - t57);
+        let t61 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let t63 = t3 + 0.3950502153918333;
+        let t68 = 0.0784 / (t63 * t63 + t10) - 0.25;
+        ::overact::guard::reach(t68, "leg2")?;
+        let t69 = ::overact::math::sqrt(t68);
+        let t71 = 0.5 * t63 - t8 * t69;
+        let t72 = t63 - t71;
+        let t74 = t18 + t63 * t69;
+        let t75 = t8 - t74;
+        let t77 = t71 + t72 - t72;
+        let t80 = t75 - (t74 + t75);
+        let t82 = t75 * t77 + t72 * t80;
+        ::overact::guard::leg(t82, 0.078399138102973, "leg2")?;
+        let t83 = 1.0 / t82;
+        let g1_vx_leg2 = t72 * t83;
+        let g1_vy_leg2 = t75 * t83;
         let rate_1_leg2 = g1_vx_leg2 * t34 + g1_vy_leg2 * t37;
-        let g2_vy_leg2 = t82 * t85;
-        let minus_g2_vx_leg2 = t79 * t85;
+        let t89 = rate_1_leg2 * rate_1_leg2;
+        let g2_vy_leg2 = t80 * t83;
+        let minus_g2_vx_leg2 = t77 * t83;
         let rate_2_leg2 = g2_vy_leg2 * t37 - minus_g2_vx_leg2 * t34;
-        let t99 = rate_1_leg2 + rate_2_leg2 - rate_1_leg2;
-        let rate_dot_1_leg2 = g1_vx_leg2
-            * (t32 + rate_1_leg2 * (t73 * rate_1_leg2) + t99 * (t74 * t99))
-            + g1_vy_leg2 * (rate_1_leg2 * (t76 * rate_1_leg2) + t99 * (t77 * t99) - t59);
-        let t113 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let t116 = pose[0] + t2;
-        let t117 = t116 + 0.3950502153918333;
-        let t120 = pose[1] - t6 + 0.10970563941232059;
-        let t122 = t120 * t120;
-        let t125 = 0.0784 / (t117 * t117 + t122) - 0.25;
-        ::overact::guard::reach(t125, "leg3")?;
-        let t126 = ::overact::math::sqrt(t125);
-        let t128 = 0.5 * t117 + t120 * t126;
-        let t129 = t117 - t128;
-        let t130 = 0.5 * t120;
-        let t132 = t130 - t117 * t126;
-        let t133 = t120 - t132;
-        let t135 = t128 + t129 - t129;
-        let t138 = t133 - (t132 + t133);
-        let t140 = t133 * t135 + t129 * t138;
-        ::overact::guard::leg(t140, 0.078399138102973, "leg3")?;
-        let t141 = 1.0 / t140;
-        let g1_vx_leg3 = t129 * t141;
-        let t143 = twist[0] + t33;
-        let g1_vy_leg3 = t133 * t141;
-        let t146 = twist[1] + t31;
-        let rate_1_leg3 = g1_vx_leg3 * t143 + g1_vy_leg3 * t146;
-        let g2_vy_leg3 = t138 * t141;
-        let minus_g2_vx_leg3 = t135 * t141;
-        let rate_2_leg3 = g2_vy_leg3 * t146 - minus_g2_vx_leg3 * t143;
-        let t157 = rate_1_leg3 + rate_2_leg3 - rate_1_leg3;
-        let rate_dot_1_leg3 = g1_vx_leg3
-            * (rate_1_leg3 * (t128 * rate_1_leg3) + t157 * (t129 * t157) - t32)
-            + g1_vy_leg3
-                * (t59 + rate_1_leg3 * (t132 * rate_1_leg3) + t157 * (t133 * t157));
-        let t171 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t174 = t116 - 0.3950502153918333;
-        let t179 = 0.0784 / (t174 * t174 + t122) - 0.25;
-        ::overact::guard::reach(t179, "leg4")?;
-        let t180 = ::overact::math::sqrt(t179);
-        let t182 = 0.5 * t174 - t120 * t180;
-        let t183 = t174 - t182;
-        let t185 = t130 + t174 * t180;
-        let t186 = t120 - t185;
-        let t188 = t182 + t183 - t183;
-        let t191 = t186 - (t185 + t186);
-        let t193 = t186 * t188 + t183 * t191;
-        ::overact::guard::leg(t193, 0.078399138102973, "leg4")?;
-        let t194 = 1.0 / t193;
-        let g1_vx_leg4 = t183 * t194;
-        let g1_vy_leg4 = t186 * t194;
-        let rate_1_leg4 = g1_vx_leg4 * t143 + g1_vy_leg4 * t146;
-        let g2_vy_leg4 = t191 * t194;
-        let minus_g2_vx_leg4 = t188 * t194;
-        let rate_2_leg4 = g2_vy_leg4 * t146 - minus_g2_vx_leg4 * t143;
-        let t208 = rate_1_leg4 + rate_2_leg4 - rate_1_leg4;
-        let rate_dot_1_leg4 = g1_vx_leg4
-            * (rate_1_leg4 * (t182 * rate_1_leg4) + t208 * (t183 * t208) - t32)
-            + g1_vy_leg4
-                * (t59 + rate_1_leg4 * (t185 * rate_1_leg4) + t208 * (t186 * t208));
-        let t222 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t224 = g1_vx_leg1 * t63 + g1_vx_leg2 * t113 + g1_vx_leg3 * t171
-            + g1_vx_leg4 * t222;
-        let t231 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t97 = rate_1_leg2 + rate_2_leg2 - rate_1_leg2;
+        let t98 = t97 * t97;
+        let rate_dot_1_leg2 = g1_vx_leg2 * (t32 + t71 * t89 + t72 * t98)
+            + g1_vy_leg2 * (t74 * t89 + t75 * t98 - t57);
+        let t109 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let t112 = pose[0] + t2;
+        let t113 = t112 + 0.3950502153918333;
+        let t116 = pose[1] - t6 + 0.10970563941232059;
+        let t118 = t116 * t116;
+        let t121 = 0.0784 / (t113 * t113 + t118) - 0.25;
+        ::overact::guard::reach(t121, "leg3")?;
+        let t122 = ::overact::math::sqrt(t121);
+        let t124 = 0.5 * t113 + t116 * t122;
+        let t125 = t113 - t124;
+        let t126 = 0.5 * t116;
+        let t128 = t126 - t113 * t122;
+        let t129 = t116 - t128;
+        let t131 = t124 + t125 - t125;
+        let t134 = t129 - (t128 + t129);
+        let t136 = t129 * t131 + t125 * t134;
+        ::overact::guard::leg(t136, 0.078399138102973, "leg3")?;
+        let t137 = 1.0 / t136;
+        let g1_vx_leg3 = t125 * t137;
+        let t139 = twist[0] + t33;
+        let g1_vy_leg3 = t129 * t137;
+        let t142 = twist[1] + t31;
+        let rate_1_leg3 = g1_vx_leg3 * t139 + g1_vy_leg3 * t142;
+        let t145 = rate_1_leg3 * rate_1_leg3;
+        let g2_vy_leg3 = t134 * t137;
+        let minus_g2_vx_leg3 = t131 * t137;
+        let rate_2_leg3 = g2_vy_leg3 * t142 - minus_g2_vx_leg3 * t139;
+        let t153 = rate_1_leg3 + rate_2_leg3 - rate_1_leg3;
+        let t154 = t153 * t153;
+        let rate_dot_1_leg3 = g1_vx_leg3 * (t124 * t145 + t125 * t154 - t32)
+            + g1_vy_leg3 * (t57 + t128 * t145 + t129 * t154);
+        let t165 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let t168 = t112 - 0.3950502153918333;
+        let t173 = 0.0784 / (t168 * t168 + t118) - 0.25;
+        ::overact::guard::reach(t173, "leg4")?;
+        let t174 = ::overact::math::sqrt(t173);
+        let t176 = 0.5 * t168 - t116 * t174;
+        let t177 = t168 - t176;
+        let t179 = t126 + t168 * t174;
+        let t180 = t116 - t179;
+        let t182 = t176 + t177 - t177;
+        let t185 = t180 - (t179 + t180);
+        let t187 = t180 * t182 + t177 * t185;
+        ::overact::guard::leg(t187, 0.078399138102973, "leg4")?;
+        let t188 = 1.0 / t187;
+        let g1_vx_leg4 = t177 * t188;
+        let g1_vy_leg4 = t180 * t188;
+        let rate_1_leg4 = g1_vx_leg4 * t139 + g1_vy_leg4 * t142;
+        let t194 = rate_1_leg4 * rate_1_leg4;
+        let g2_vy_leg4 = t185 * t188;
+        let minus_g2_vx_leg4 = t182 * t188;
+        let rate_2_leg4 = g2_vy_leg4 * t142 - minus_g2_vx_leg4 * t139;
+        let t202 = rate_1_leg4 + rate_2_leg4 - rate_1_leg4;
+        let t203 = t202 * t202;
+        let rate_dot_1_leg4 = g1_vx_leg4 * (t176 * t194 + t177 * t203 - t32)
+            + g1_vy_leg4 * (t57 + t179 * t194 + t180 * t203);
+        let t214 = actuator_accelerations[3] - rate_dot_1_leg4;
+        let t216 = g1_vx_leg1 * t61 + g1_vx_leg2 * t109 + g1_vx_leg3 * t165
+            + g1_vx_leg4 * t214;
+        let t223 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t231, 25.429161076750646, "actuators")?;
-        let t232 = 1.0 / t231;
-        let t240 = g1_vy_leg1 * g1_vx_leg1 + g1_vy_leg2 * g1_vx_leg2
-            + g1_vy_leg3 * g1_vx_leg3 + g1_vy_leg4 * g1_vx_leg4;
-        let t241 = t240 * t232;
-        let t250 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t240 * t241;
-        ::overact::guard::platform(t250, 25.59236889935335, "actuators")?;
-        let t251 = 1.0 / t250;
-        let t260 = g1_vy_leg1 * t63 + g1_vy_leg2 * t113 + g1_vy_leg3 * t171
-            + g1_vy_leg4 * t222 - t224 * t241;
+        ::overact::guard::platform(t223, 25.429161076750646, "actuators")?;
+        let t224 = 1.0 / t223;
+        let t232 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
+        let t233 = t232 * t224;
+        let t242 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t232 * t233;
+        ::overact::guard::platform(t242, 25.59236889935335, "actuators")?;
+        let t243 = 1.0 / t242;
+        let t252 = g1_vy_leg1 * t61 + g1_vy_leg2 * t109 + g1_vy_leg3 * t165
+            + g1_vy_leg4 * t214 - t216 * t233;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
         let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t6 * g1_vx_leg2;
         let g1_wz_leg4 = t2 * g1_vy_leg4 + t6 * g1_vx_leg4;
-        let t287 = g1_vx_leg3 * g1_wz_leg3
+        let t279 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + g1_vx_leg2 * minus_g1_wz_leg2)
             + g1_vx_leg4 * g1_wz_leg4;
-        let t288 = t287 * t232;
-        let t290 = g1_vy_leg3 * g1_wz_leg3
+        let t280 = t279 * t224;
+        let t282 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
-            + g1_vy_leg4 * g1_wz_leg4 - t240 * t288;
-        let t291 = t290 * t251;
-        let t302 = minus_g1_wz_leg1 * minus_g1_wz_leg1
+            + g1_vy_leg4 * g1_wz_leg4 - t232 * t280;
+        let t283 = t282 * t243;
+        let t294 = minus_g1_wz_leg1 * minus_g1_wz_leg1
             + minus_g1_wz_leg2 * minus_g1_wz_leg2 + g1_wz_leg3 * g1_wz_leg3
-            + g1_wz_leg4 * g1_wz_leg4 - t287 * t288 - t290 * t291;
-        ::overact::guard::platform(t302, 0.3076928490286828, "actuators")?;
-        let t313 = g1_wz_leg3 * t171 - (minus_g1_wz_leg1 * t63 + minus_g1_wz_leg2 * t113)
-            + g1_wz_leg4 * t222 - t224 * t288 - t291 * t260;
-        let t314 = t313 / t302;
-        let t316 = t251 * t260 - t291 * t314;
-        Ok([t224 * t232 - t241 * t316 - t288 * t314, t316, t314])
+            + g1_wz_leg4 * g1_wz_leg4 - t279 * t280 - t282 * t283;
+        ::overact::guard::platform(t294, 0.3076928490286828, "actuators")?;
+        let t305 = g1_wz_leg3 * t165 - (minus_g1_wz_leg1 * t61 + minus_g1_wz_leg2 * t109)
+            + g1_wz_leg4 * t214 - t216 * t280 - t283 * t252;
+        let t306 = t305 / t294;
+        let t308 = t243 * t252 - t283 * t306;
+        Ok([t216 * t224 - t233 * t308 - t280 * t306, t308, t306])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1434,7 +1444,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 536 operations (194 additions, 334 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 406 intermediates.
+    /// 517 operations (204 additions, 305 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 387 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1474,274 +1484,285 @@ impl DualV {
         let g1_vy_leg1 = t21 * t29;
         let t40 = twist[1] - t33;
         let rate_1_leg1 = g1_vx_leg1 * t37 + g1_vy_leg1 * t40;
+        let t43 = rate_1_leg1 * rate_1_leg1;
         let g2_vy_leg1 = t26 * t29;
         let minus_g2_vx_leg1 = t23 * t29;
         let rate_2_leg1 = g2_vy_leg1 * t40 - minus_g2_vx_leg1 * t37;
         let t50 = rate_2_leg1 - rate_1_leg1;
         let t51 = rate_1_leg1 + t50;
-        let t55 = t35 + rate_1_leg1 * (t16 * rate_1_leg1) + t51 * (t17 * t51);
+        let t52 = t51 * t51;
+        let t55 = t35 + t16 * t43 + t17 * t52;
         let t57 = t2 * acceleration[2];
         let t59 = twist[2] * t36;
         let t60 = acceleration[1] - t57 - t59;
-        let t66 = t60 + rate_1_leg1 * (t20 * rate_1_leg1) + t51 * (t21 * t51);
-        let rate_dot_1_leg1 = g1_vx_leg1 * t55 + g1_vy_leg1 * t66;
-        let t69 = g1_vx_leg1 * rate_dot_1_leg1;
-        let t70 = g1_vy_leg1 * rate_dot_1_leg1;
+        let t64 = t60 + t20 * t43 + t21 * t52;
+        let rate_dot_1_leg1 = g1_vx_leg1 * t55 + g1_vy_leg1 * t64;
+        let t67 = g1_vx_leg1 * rate_dot_1_leg1;
+        let t68 = g1_vy_leg1 * rate_dot_1_leg1;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let t74 = minus_g1_wz_leg1 * rate_dot_1_leg1;
-        let rate_dot_2_leg1 = g2_vy_leg1 * t66 - minus_g2_vx_leg1 * t55;
-        let t85 = rate_dot_1_leg1 + rate_dot_2_leg1 - rate_dot_1_leg1;
+        let t72 = minus_g1_wz_leg1 * rate_dot_1_leg1;
+        let rate_dot_2_leg1 = g2_vy_leg1 * t64 - minus_g2_vx_leg1 * t55;
+        let t83 = rate_dot_1_leg1 + rate_dot_2_leg1 - rate_dot_1_leg1;
+        let t84 = minus_g2_vx_leg1 * t83;
+        let t85 = g2_vy_leg1 * t83;
         let g2_wz_leg1 = t6 * minus_g2_vx_leg1 - t2 * g2_vy_leg1;
-        let t92 = t11 - 0.1568;
-        let t93 = 1.7857142857142858 * t92;
-        let t95 = t11 * t14;
-        let t96 = 3.5714285714285716 * t95;
-        let t97 = t51 * t51;
-        let t99 = t85 * t93 - t96 * t97;
-        let t101 = rate_1_leg1 * rate_1_leg1;
-        let t106 = 3.5714285714285716 * (t95 * t101)
-            + 1.7857142857142858 * (t92 * rate_dot_1_leg1);
-        let t119 = 3.5714285714285716 * (t95 * rate_dot_1_leg1)
-            - 1.7857142857142858 * (t92 * t101);
-        let t123 = t85 * t96 + t93 * t97;
-        let t134 = t119 * t96 + t106 * t93;
-        let t138 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t140 = g2_vy_leg1 - g1_vy_leg1;
-        let t142 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t147 = twist[2] - rate_2_leg1;
-        let t150 = 1.0 - g2_wz_leg1;
-        let t155 = t3 + 0.3950502153918333;
-        let t158 = t155 * t155 + t10;
-        let t160 = 0.0784 / t158 - 0.25;
-        ::overact::guard::reach(t160, "leg2")?;
-        let t161 = ::overact::math::sqrt(t160);
-        let t163 = 0.5 * t155 - t8 * t161;
-        let t164 = t155 - t163;
-        let t166 = t18 + t155 * t161;
-        let t167 = t8 - t166;
-        let t169 = t163 + t164 - t164;
-        let t172 = t167 - (t166 + t167);
-        let t174 = t167 * t169 + t164 * t172;
-        ::overact::guard::leg(t174, 0.078399138102973, "leg2")?;
-        let t175 = 1.0 / t174;
-        let g1_vx_leg2 = t164 * t175;
-        let g1_vy_leg2 = t167 * t175;
+        let t89 = g2_wz_leg1 * t83;
+        let t90 = 3.5714285714285716 * t35;
+        let t94 = 3.5714285714285716 * t60;
+        let t100 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t101 = 9.090909090909092 * t100;
+        let t103 = 0.04321428571428571 * (acceleration[2] - t101);
+        let t107 = t11 * t14;
+        let t110 = t11 - 0.1568;
+        let t113 = 3.5714285714285716 * (t107 * rate_dot_1_leg1)
+            - 1.7857142857142858 * (t110 * t43);
+        let t115 = 3.5714285714285716 * t107;
+        let t117 = 1.7857142857142858 * t110;
+        let t119 = t83 * t115 + t52 * t117;
+        let t135 = t113 * t115
+            + (3.5714285714285716 * (t107 * t43)
+                + 1.7857142857142858 * (t110 * rate_dot_1_leg1)) * t117;
+        let t139 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let t141 = g2_vy_leg1 - g1_vy_leg1;
+        let t143 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t148 = twist[2] - rate_2_leg1;
+        let t151 = 1.0 - g2_wz_leg1;
+        let t156 = t3 + 0.3950502153918333;
+        let t159 = t156 * t156 + t10;
+        let t161 = 0.0784 / t159 - 0.25;
+        ::overact::guard::reach(t161, "leg2")?;
+        let t162 = ::overact::math::sqrt(t161);
+        let t164 = 0.5 * t156 - t8 * t162;
+        let t165 = t156 - t164;
+        let t167 = t18 + t156 * t162;
+        let t168 = t8 - t167;
+        let t170 = t164 + t165 - t165;
+        let t173 = t168 - (t167 + t168);
+        let t175 = t168 * t170 + t165 * t173;
+        ::overact::guard::leg(t175, 0.078399138102973, "leg2")?;
+        let t176 = 1.0 / t175;
+        let g1_vx_leg2 = t165 * t176;
+        let g1_vy_leg2 = t168 * t176;
         let rate_1_leg2 = g1_vx_leg2 * t37 + g1_vy_leg2 * t40;
-        let g2_vy_leg2 = t172 * t175;
-        let minus_g2_vx_leg2 = t169 * t175;
+        let t182 = rate_1_leg2 * rate_1_leg2;
+        let g2_vy_leg2 = t173 * t176;
+        let minus_g2_vx_leg2 = t170 * t176;
         let rate_2_leg2 = g2_vy_leg2 * t40 - minus_g2_vx_leg2 * t37;
-        let t188 = rate_2_leg2 - rate_1_leg2;
-        let t189 = rate_1_leg2 + t188;
-        let t193 = t35 + rate_1_leg2 * (t163 * rate_1_leg2) + t189 * (t164 * t189);
-        let t200 = t60 + rate_1_leg2 * (t166 * rate_1_leg2) + t189 * (t167 * t189);
-        let rate_dot_1_leg2 = g1_vx_leg2 * t193 + g1_vy_leg2 * t200;
-        let t203 = g1_vx_leg2 * rate_dot_1_leg2;
-        let t204 = g1_vy_leg2 * rate_dot_1_leg2;
+        let t189 = rate_2_leg2 - rate_1_leg2;
+        let t190 = rate_1_leg2 + t189;
+        let t191 = t190 * t190;
+        let t194 = t35 + t164 * t182 + t165 * t191;
+        let t199 = t60 + t167 * t182 + t168 * t191;
+        let rate_dot_1_leg2 = g1_vx_leg2 * t194 + g1_vy_leg2 * t199;
+        let t202 = g1_vx_leg2 * rate_dot_1_leg2;
+        let t203 = g1_vy_leg2 * rate_dot_1_leg2;
         let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t6 * g1_vx_leg2;
-        let t208 = minus_g1_wz_leg2 * rate_dot_1_leg2;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t200 - minus_g2_vx_leg2 * t193;
-        let t219 = rate_dot_1_leg2 + rate_dot_2_leg2 - rate_dot_1_leg2;
+        let t207 = minus_g1_wz_leg2 * rate_dot_1_leg2;
+        let rate_dot_2_leg2 = g2_vy_leg2 * t199 - minus_g2_vx_leg2 * t194;
+        let t218 = rate_dot_1_leg2 + rate_dot_2_leg2 - rate_dot_1_leg2;
+        let t219 = minus_g2_vx_leg2 * t218;
+        let t220 = g2_vy_leg2 * t218;
         let g2_wz_leg2 = t6 * minus_g2_vx_leg2 - t2 * g2_vy_leg2;
-        let t226 = t158 * t161;
-        let t227 = 3.5714285714285716 * t226;
-        let t228 = t189 * t189;
-        let t230 = t158 - 0.1568;
-        let t231 = 1.7857142857142858 * t230;
-        let t233 = t227 * t228 + t219 * t231;
-        let t237 = rate_1_leg2 * rate_1_leg2;
-        let t240 = 1.7857142857142858 * (t230 * rate_dot_1_leg2)
-            - 3.5714285714285716 * (t226 * t237);
-        let t251 = t219 * t227 - t231 * t228;
-        let t257 = 1.7857142857142858 * (t230 * t237)
-            + 3.5714285714285716 * (t226 * rate_dot_1_leg2);
-        let t268 = t257 * t227 + t240 * t231;
-        let t272 = g1_vx_leg2 + minus_g2_vx_leg2;
-        let t274 = g2_vy_leg2 - g1_vy_leg2;
-        let t276 = minus_g1_wz_leg2 + g2_wz_leg2;
-        let t281 = twist[2] - rate_2_leg2;
-        let t284 = 1.0 - g2_wz_leg2;
-        let t289 = pose[0] + t2;
-        let t290 = t289 + 0.3950502153918333;
-        let t293 = pose[1] - t6 + 0.10970563941232059;
-        let t295 = t293 * t293;
-        let t296 = t290 * t290 + t295;
-        let t298 = 0.0784 / t296 - 0.25;
-        ::overact::guard::reach(t298, "leg3")?;
-        let t299 = ::overact::math::sqrt(t298);
-        let t301 = 0.5 * t290 + t293 * t299;
-        let t302 = t290 - t301;
-        let t303 = 0.5 * t293;
-        let t305 = t303 - t290 * t299;
-        let t306 = t293 - t305;
-        let t308 = t301 + t302 - t302;
-        let t311 = t306 - (t305 + t306);
-        let t313 = t306 * t308 + t302 * t311;
-        ::overact::guard::leg(t313, 0.078399138102973, "leg3")?;
-        let t314 = 1.0 / t313;
-        let g1_vx_leg3 = t302 * t314;
-        let t317 = acceleration[0] + t31 - t34;
-        let t318 = twist[0] + t36;
-        let g1_vy_leg3 = t306 * t314;
-        let t321 = twist[1] + t33;
-        let rate_1_leg3 = g1_vx_leg3 * t318 + g1_vy_leg3 * t321;
-        let g2_vy_leg3 = t311 * t314;
-        let minus_g2_vx_leg3 = t308 * t314;
-        let rate_2_leg3 = g2_vy_leg3 * t321 - minus_g2_vx_leg3 * t318;
-        let t331 = rate_2_leg3 - rate_1_leg3;
-        let t332 = rate_1_leg3 + t331;
-        let t336 = t317 + rate_1_leg3 * (t301 * rate_1_leg3) + t332 * (t302 * t332);
-        let t339 = acceleration[1] + t57 + t59;
-        let t345 = t339 + rate_1_leg3 * (t305 * rate_1_leg3) + t332 * (t306 * t332);
-        let rate_dot_1_leg3 = g1_vx_leg3 * t336 + g1_vy_leg3 * t345;
-        let t348 = g1_vx_leg3 * rate_dot_1_leg3;
-        let t349 = g1_vy_leg3 * rate_dot_1_leg3;
+        let t224 = g2_wz_leg2 * t218;
+        let t234 = t159 * t162;
+        let t235 = 3.5714285714285716 * t234;
+        let t237 = t159 - 0.1568;
+        let t238 = 1.7857142857142858 * t237;
+        let t240 = t218 * t235 - t191 * t238;
+        let t246 = 1.7857142857142858 * (t237 * t182)
+            + 3.5714285714285716 * (t234 * rate_dot_1_leg2);
+        let t262 = t246 * t235
+            + (1.7857142857142858 * (t237 * rate_dot_1_leg2)
+                - 3.5714285714285716 * (t234 * t182)) * t238;
+        let t266 = g1_vx_leg2 + minus_g2_vx_leg2;
+        let t268 = g2_vy_leg2 - g1_vy_leg2;
+        let t270 = minus_g1_wz_leg2 + g2_wz_leg2;
+        let t275 = twist[2] - rate_2_leg2;
+        let t278 = 1.0 - g2_wz_leg2;
+        let t283 = pose[0] + t2;
+        let t284 = t283 + 0.3950502153918333;
+        let t287 = pose[1] - t6 + 0.10970563941232059;
+        let t289 = t287 * t287;
+        let t290 = t284 * t284 + t289;
+        let t292 = 0.0784 / t290 - 0.25;
+        ::overact::guard::reach(t292, "leg3")?;
+        let t293 = ::overact::math::sqrt(t292);
+        let t295 = 0.5 * t284 + t287 * t293;
+        let t296 = t284 - t295;
+        let t297 = 0.5 * t287;
+        let t299 = t297 - t284 * t293;
+        let t300 = t287 - t299;
+        let t302 = t295 + t296 - t296;
+        let t305 = t300 - (t299 + t300);
+        let t307 = t300 * t302 + t296 * t305;
+        ::overact::guard::leg(t307, 0.078399138102973, "leg3")?;
+        let t308 = 1.0 / t307;
+        let g1_vx_leg3 = t296 * t308;
+        let t311 = acceleration[0] + t31 - t34;
+        let t312 = twist[0] + t36;
+        let g1_vy_leg3 = t300 * t308;
+        let t315 = twist[1] + t33;
+        let rate_1_leg3 = g1_vx_leg3 * t312 + g1_vy_leg3 * t315;
+        let t318 = rate_1_leg3 * rate_1_leg3;
+        let g2_vy_leg3 = t305 * t308;
+        let minus_g2_vx_leg3 = t302 * t308;
+        let rate_2_leg3 = g2_vy_leg3 * t315 - minus_g2_vx_leg3 * t312;
+        let t325 = rate_2_leg3 - rate_1_leg3;
+        let t326 = rate_1_leg3 + t325;
+        let t327 = t326 * t326;
+        let t330 = t311 + t295 * t318 + t296 * t327;
+        let t333 = acceleration[1] + t57 + t59;
+        let t337 = t333 + t299 * t318 + t300 * t327;
+        let rate_dot_1_leg3 = g1_vx_leg3 * t330 + g1_vy_leg3 * t337;
+        let t340 = g1_vx_leg3 * rate_dot_1_leg3;
+        let t341 = g1_vy_leg3 * rate_dot_1_leg3;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let t353 = g1_wz_leg3 * rate_dot_1_leg3;
-        let rate_dot_2_leg3 = g2_vy_leg3 * t345 - minus_g2_vx_leg3 * t336;
-        let t364 = rate_dot_1_leg3 + rate_dot_2_leg3 - rate_dot_1_leg3;
+        let t345 = g1_wz_leg3 * rate_dot_1_leg3;
+        let rate_dot_2_leg3 = g2_vy_leg3 * t337 - minus_g2_vx_leg3 * t330;
+        let t356 = rate_dot_1_leg3 + rate_dot_2_leg3 - rate_dot_1_leg3;
+        let t357 = minus_g2_vx_leg3 * t356;
+        let t358 = g2_vy_leg3 * t356;
         let g2_wz_leg3 = t2 * g2_vy_leg3 - t6 * minus_g2_vx_leg3;
-        let t371 = t296 - 0.1568;
-        let t372 = 1.7857142857142858 * t371;
-        let t374 = t296 * t299;
-        let t375 = 3.5714285714285716 * t374;
-        let t376 = t332 * t332;
-        let t378 = t364 * t372 - t375 * t376;
-        let t380 = rate_1_leg3 * rate_1_leg3;
-        let t385 = 3.5714285714285716 * (t374 * t380)
-            + 1.7857142857142858 * (t371 * rate_dot_1_leg3);
-        let t398 = 3.5714285714285716 * (t374 * rate_dot_1_leg3)
-            - 1.7857142857142858 * (t371 * t380);
-        let t402 = t364 * t375 + t372 * t376;
-        let t413 = t398 * t375 + t385 * t372;
-        let t417 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t419 = g2_vy_leg3 - g1_vy_leg3;
-        let t421 = g2_wz_leg3 - g1_wz_leg3;
-        let t426 = twist[2] - rate_2_leg3;
-        let t429 = 1.0 - g2_wz_leg3;
-        let t434 = t289 - 0.3950502153918333;
-        let t437 = t434 * t434 + t295;
-        let t439 = 0.0784 / t437 - 0.25;
-        ::overact::guard::reach(t439, "leg4")?;
-        let t440 = ::overact::math::sqrt(t439);
-        let t442 = 0.5 * t434 - t293 * t440;
-        let t443 = t434 - t442;
-        let t445 = t303 + t434 * t440;
-        let t446 = t293 - t445;
-        let t448 = t442 + t443 - t443;
-        let t451 = t446 - (t445 + t446);
-        let t453 = t446 * t448 + t443 * t451;
-        ::overact::guard::leg(t453, 0.078399138102973, "leg4")?;
-        let t454 = 1.0 / t453;
-        let g1_vx_leg4 = t443 * t454;
-        let g1_vy_leg4 = t446 * t454;
-        let rate_1_leg4 = g1_vx_leg4 * t318 + g1_vy_leg4 * t321;
-        let g2_vy_leg4 = t451 * t454;
-        let minus_g2_vx_leg4 = t448 * t454;
-        let rate_2_leg4 = g2_vy_leg4 * t321 - minus_g2_vx_leg4 * t318;
-        let t467 = rate_2_leg4 - rate_1_leg4;
-        let t468 = rate_1_leg4 + t467;
-        let t472 = t317 + rate_1_leg4 * (t442 * rate_1_leg4) + t468 * (t443 * t468);
-        let t479 = t339 + rate_1_leg4 * (t445 * rate_1_leg4) + t468 * (t446 * t468);
-        let rate_dot_1_leg4 = g1_vx_leg4 * t472 + g1_vy_leg4 * t479;
-        let t482 = g1_vx_leg4 * rate_dot_1_leg4;
-        let t483 = g1_vy_leg4 * rate_dot_1_leg4;
+        let t362 = g2_wz_leg3 * t356;
+        let t363 = 3.5714285714285716 * t311;
+        let t367 = 3.5714285714285716 * t333;
+        let t372 = 0.04321428571428571 * (acceleration[2] + t101);
+        let t376 = t290 * t293;
+        let t379 = t290 - 0.1568;
+        let t382 = 3.5714285714285716 * (t376 * rate_dot_1_leg3)
+            - 1.7857142857142858 * (t379 * t318);
+        let t384 = 3.5714285714285716 * t376;
+        let t386 = 1.7857142857142858 * t379;
+        let t388 = t356 * t384 + t327 * t386;
+        let t404 = t382 * t384
+            + (3.5714285714285716 * (t376 * t318)
+                + 1.7857142857142858 * (t379 * rate_dot_1_leg3)) * t386;
+        let t408 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t410 = g2_vy_leg3 - g1_vy_leg3;
+        let t412 = g2_wz_leg3 - g1_wz_leg3;
+        let t417 = twist[2] - rate_2_leg3;
+        let t420 = 1.0 - g2_wz_leg3;
+        let t425 = t283 - 0.3950502153918333;
+        let t428 = t425 * t425 + t289;
+        let t430 = 0.0784 / t428 - 0.25;
+        ::overact::guard::reach(t430, "leg4")?;
+        let t431 = ::overact::math::sqrt(t430);
+        let t433 = 0.5 * t425 - t287 * t431;
+        let t434 = t425 - t433;
+        let t436 = t297 + t425 * t431;
+        let t437 = t287 - t436;
+        let t439 = t433 + t434 - t434;
+        let t442 = t437 - (t436 + t437);
+        let t444 = t437 * t439 + t434 * t442;
+        ::overact::guard::leg(t444, 0.078399138102973, "leg4")?;
+        let t445 = 1.0 / t444;
+        let g1_vx_leg4 = t434 * t445;
+        let g1_vy_leg4 = t437 * t445;
+        let rate_1_leg4 = g1_vx_leg4 * t312 + g1_vy_leg4 * t315;
+        let t451 = rate_1_leg4 * rate_1_leg4;
+        let g2_vy_leg4 = t442 * t445;
+        let minus_g2_vx_leg4 = t439 * t445;
+        let rate_2_leg4 = g2_vy_leg4 * t315 - minus_g2_vx_leg4 * t312;
+        let t458 = rate_2_leg4 - rate_1_leg4;
+        let t459 = rate_1_leg4 + t458;
+        let t460 = t459 * t459;
+        let t463 = t311 + t433 * t451 + t434 * t460;
+        let t468 = t333 + t436 * t451 + t437 * t460;
+        let rate_dot_1_leg4 = g1_vx_leg4 * t463 + g1_vy_leg4 * t468;
+        let t471 = g1_vx_leg4 * rate_dot_1_leg4;
+        let t472 = g1_vy_leg4 * rate_dot_1_leg4;
         let g1_wz_leg4 = t2 * g1_vy_leg4 + t6 * g1_vx_leg4;
-        let t487 = g1_wz_leg4 * rate_dot_1_leg4;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t479 - minus_g2_vx_leg4 * t472;
-        let t498 = rate_dot_1_leg4 + rate_dot_2_leg4 - rate_dot_1_leg4;
+        let t476 = g1_wz_leg4 * rate_dot_1_leg4;
+        let rate_dot_2_leg4 = g2_vy_leg4 * t468 - minus_g2_vx_leg4 * t463;
+        let t487 = rate_dot_1_leg4 + rate_dot_2_leg4 - rate_dot_1_leg4;
+        let t488 = minus_g2_vx_leg4 * t487;
+        let t489 = g2_vy_leg4 * t487;
         let g2_wz_leg4 = t2 * g2_vy_leg4 - t6 * minus_g2_vx_leg4;
-        let t505 = t437 * t440;
-        let t506 = 3.5714285714285716 * t505;
-        let t507 = t468 * t468;
-        let t509 = t437 - 0.1568;
-        let t510 = 1.7857142857142858 * t509;
-        let t512 = t506 * t507 + t498 * t510;
-        let t516 = rate_1_leg4 * rate_1_leg4;
-        let t519 = 1.7857142857142858 * (t509 * rate_dot_1_leg4)
-            - 3.5714285714285716 * (t505 * t516);
-        let t530 = t498 * t506 - t510 * t507;
-        let t536 = 1.7857142857142858 * (t509 * t516)
-            + 3.5714285714285716 * (t505 * rate_dot_1_leg4);
-        let t547 = t536 * t506 + t519 * t510;
-        let t551 = g1_vx_leg4 + minus_g2_vx_leg4;
-        let t553 = g2_vy_leg4 - g1_vy_leg4;
-        let t555 = g2_wz_leg4 - g1_wz_leg4;
-        let t560 = twist[2] - rate_2_leg4;
-        let t563 = 1.0 - g2_wz_leg4;
-        let t569 = 9.090909090909092 * (t59 + t57);
-        let t571 = 9.090909090909092 * (t31 - t34);
+        let t493 = g2_wz_leg4 * t487;
+        let t503 = t428 * t431;
+        let t504 = 3.5714285714285716 * t503;
+        let t506 = t428 - 0.1568;
+        let t507 = 1.7857142857142858 * t506;
+        let t509 = t487 * t504 - t460 * t507;
+        let t515 = 1.7857142857142858 * (t506 * t451)
+            + 3.5714285714285716 * (t503 * rate_dot_1_leg4);
+        let t531 = t515 * t504
+            + (1.7857142857142858 * (t506 * rate_dot_1_leg4)
+                - 3.5714285714285716 * (t503 * t451)) * t507;
+        let t535 = g1_vx_leg4 + minus_g2_vx_leg4;
+        let t537 = g2_vy_leg4 - g1_vy_leg4;
+        let t539 = g2_wz_leg4 - g1_wz_leg4;
+        let t544 = twist[2] - rate_2_leg4;
+        let t547 = 1.0 - g2_wz_leg4;
+        let t553 = 9.090909090909092 * (t59 + t57);
+        let t555 = 9.090909090909092 * (t31 - t34);
         Ok([
             [
-                t69, t69, g1_vx_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1,
-                -(minus_g2_vx_leg1 * t85), g1_vx_leg1 * t99 - minus_g2_vx_leg1 * t106,
-                minus_g2_vx_leg1 * t119 - g1_vx_leg1 * t123, g1_vx_leg1 * t134, -(t50 * t138),
-                -::overact::math::signed(t138, t50), -t138, minus_g2_vx_leg1 * t147,
-                ::overact::math::signed(minus_g2_vx_leg1, t147), minus_g2_vx_leg1, t203, t203,
-                g1_vx_leg2 * rate_1_leg2, ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
-                g1_vx_leg2, -(minus_g2_vx_leg2 * t219), g1_vx_leg2 * t233 - minus_g2_vx_leg2 * t240,
-                g1_vx_leg2 * t251 - minus_g2_vx_leg2 * t257, g1_vx_leg2 * t268, -(t188 * t272),
-                -::overact::math::signed(t272, t188), -t272, minus_g2_vx_leg2 * t281,
-                ::overact::math::signed(minus_g2_vx_leg2, t281), minus_g2_vx_leg2, t348, t348,
-                g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                g1_vx_leg3, -(minus_g2_vx_leg3 * t364), g1_vx_leg3 * t378 - minus_g2_vx_leg3 * t385,
-                minus_g2_vx_leg3 * t398 - g1_vx_leg3 * t402, g1_vx_leg3 * t413, -(t331 * t417),
-                -::overact::math::signed(t417, t331), -t417, minus_g2_vx_leg3 * t426,
-                ::overact::math::signed(minus_g2_vx_leg3, t426), minus_g2_vx_leg3, t482, t482,
-                g1_vx_leg4 * rate_1_leg4, ::overact::math::signed(g1_vx_leg4, rate_1_leg4),
-                g1_vx_leg4, -(minus_g2_vx_leg4 * t498), g1_vx_leg4 * t512 - minus_g2_vx_leg4 * t519,
-                g1_vx_leg4 * t530 - minus_g2_vx_leg4 * t536, g1_vx_leg4 * t547, -(t467 * t551),
-                -::overact::math::signed(t551, t467), -t551, minus_g2_vx_leg4 * t560,
-                ::overact::math::signed(minus_g2_vx_leg4, t560), minus_g2_vx_leg4, 0.0, -t569,
-                -t571, acceleration[0],
+                t67, t67, g1_vx_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, -t84,
+                t90 - 0.28 * (t67 - t84), minus_g2_vx_leg1 * t113 - g1_vx_leg1 * t119,
+                g1_vx_leg1 * t135, -(t50 * t139), -::overact::math::signed(t139, t50), -t139,
+                minus_g2_vx_leg1 * t148, ::overact::math::signed(minus_g2_vx_leg1, t148),
+                minus_g2_vx_leg1, t202, t202, g1_vx_leg2 * rate_1_leg2,
+                ::overact::math::signed(g1_vx_leg2, rate_1_leg2), g1_vx_leg2, -t219,
+                t90 - 0.28 * (t202 - t219), g1_vx_leg2 * t240 - minus_g2_vx_leg2 * t246,
+                g1_vx_leg2 * t262, -(t189 * t266), -::overact::math::signed(t266, t189), -t266,
+                minus_g2_vx_leg2 * t275, ::overact::math::signed(minus_g2_vx_leg2, t275),
+                minus_g2_vx_leg2, t340, t340, g1_vx_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3, -t357,
+                t363 - 0.28 * (t340 - t357), minus_g2_vx_leg3 * t382 - g1_vx_leg3 * t388,
+                g1_vx_leg3 * t404, -(t325 * t408), -::overact::math::signed(t408, t325), -t408,
+                minus_g2_vx_leg3 * t417, ::overact::math::signed(minus_g2_vx_leg3, t417),
+                minus_g2_vx_leg3, t471, t471, g1_vx_leg4 * rate_1_leg4,
+                ::overact::math::signed(g1_vx_leg4, rate_1_leg4), g1_vx_leg4, -t488,
+                t363 - 0.28 * (t471 - t488), g1_vx_leg4 * t509 - minus_g2_vx_leg4 * t515,
+                g1_vx_leg4 * t531, -(t458 * t535), -::overact::math::signed(t535, t458), -t535,
+                minus_g2_vx_leg4 * t544, ::overact::math::signed(minus_g2_vx_leg4, t544),
+                minus_g2_vx_leg4, 0.0, -t553, -t555, acceleration[0],
             ],
             [
-                t70, t70, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, g2_vy_leg1 * t85,
-                g1_vy_leg1 * t99 + g2_vy_leg1 * t106, -(g1_vy_leg1 * t123 + g2_vy_leg1 * t119),
-                g1_vy_leg1 * t134, t50 * t140, ::overact::math::signed(t140, t50), t140,
-                -(g2_vy_leg1 * t147), -::overact::math::signed(g2_vy_leg1, t147), -g2_vy_leg1, t204,
-                t204, g1_vy_leg2 * rate_1_leg2, ::overact::math::signed(g1_vy_leg2, rate_1_leg2),
-                g1_vy_leg2, g2_vy_leg2 * t219, g1_vy_leg2 * t233 + g2_vy_leg2 * t240,
-                g1_vy_leg2 * t251 + g2_vy_leg2 * t257, g1_vy_leg2 * t268, t188 * t274,
-                ::overact::math::signed(t274, t188), t274, -(g2_vy_leg2 * t281),
-                -::overact::math::signed(g2_vy_leg2, t281), -g2_vy_leg2, t349, t349,
-                g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
-                g1_vy_leg3, g2_vy_leg3 * t364, g1_vy_leg3 * t378 + g2_vy_leg3 * t385,
-                -(g1_vy_leg3 * t402 + g2_vy_leg3 * t398), g1_vy_leg3 * t413, t331 * t419,
-                ::overact::math::signed(t419, t331), t419, -(g2_vy_leg3 * t426),
-                -::overact::math::signed(g2_vy_leg3, t426), -g2_vy_leg3, t483, t483,
+                t68, t68, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t85,
+                t94 - 0.28 * (t68 + t85), -(g1_vy_leg1 * t119 + g2_vy_leg1 * t113),
+                g1_vy_leg1 * t135, t50 * t141, ::overact::math::signed(t141, t50), t141,
+                -(g2_vy_leg1 * t148), -::overact::math::signed(g2_vy_leg1, t148), -g2_vy_leg1, t203,
+                t203, g1_vy_leg2 * rate_1_leg2, ::overact::math::signed(g1_vy_leg2, rate_1_leg2),
+                g1_vy_leg2, t220, t94 - 0.28 * (t203 + t220), g1_vy_leg2 * t240 + g2_vy_leg2 * t246,
+                g1_vy_leg2 * t262, t189 * t268, ::overact::math::signed(t268, t189), t268,
+                -(g2_vy_leg2 * t275), -::overact::math::signed(g2_vy_leg2, t275), -g2_vy_leg2, t341,
+                t341, g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
+                g1_vy_leg3, t358, t367 - 0.28 * (t341 + t358),
+                -(g1_vy_leg3 * t388 + g2_vy_leg3 * t382), g1_vy_leg3 * t404, t325 * t410,
+                ::overact::math::signed(t410, t325), t410, -(g2_vy_leg3 * t417),
+                -::overact::math::signed(g2_vy_leg3, t417), -g2_vy_leg3, t472, t472,
                 g1_vy_leg4 * rate_1_leg4, ::overact::math::signed(g1_vy_leg4, rate_1_leg4),
-                g1_vy_leg4, g2_vy_leg4 * t498, g1_vy_leg4 * t512 + g2_vy_leg4 * t519,
-                g1_vy_leg4 * t530 + g2_vy_leg4 * t536, g1_vy_leg4 * t547, t467 * t553,
-                ::overact::math::signed(t553, t467), t553, -(g2_vy_leg4 * t560),
-                -::overact::math::signed(g2_vy_leg4, t560), -g2_vy_leg4, 0.0, t571, -t569,
+                g1_vy_leg4, t489, t367 - 0.28 * (t472 + t489),
+                g1_vy_leg4 * t509 + g2_vy_leg4 * t515, g1_vy_leg4 * t531, t458 * t537,
+                ::overact::math::signed(t537, t458), t537, -(g2_vy_leg4 * t544),
+                -::overact::math::signed(g2_vy_leg4, t544), -g2_vy_leg4, 0.0, t555, -t553,
                 acceleration[1],
             ],
             [
-                -t74, -t74, -(minus_g1_wz_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1,
-                g2_wz_leg1 * t85, g2_wz_leg1 * t106 - minus_g1_wz_leg1 * t99,
-                minus_g1_wz_leg1 * t123 - g2_wz_leg1 * t119, -(minus_g1_wz_leg1 * t134), t50 * t142,
-                ::overact::math::signed(t142, t50), t142, t147 * t150,
-                ::overact::math::signed(t150, t147), t150, -t208, -t208,
+                -t72, -t72, -(minus_g1_wz_leg1 * rate_1_leg1),
+                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1, t89,
+                t103 - 0.28 * (t89 - t72), minus_g1_wz_leg1 * t119 - g2_wz_leg1 * t113,
+                -(minus_g1_wz_leg1 * t135), t50 * t143, ::overact::math::signed(t143, t50), t143,
+                t148 * t151, ::overact::math::signed(t151, t148), t151, -t207, -t207,
                 -(minus_g1_wz_leg2 * rate_1_leg2),
-                -::overact::math::signed(minus_g1_wz_leg2, rate_1_leg2), -minus_g1_wz_leg2,
-                g2_wz_leg2 * t219, g2_wz_leg2 * t240 - minus_g1_wz_leg2 * t233,
-                g2_wz_leg2 * t257 - minus_g1_wz_leg2 * t251, -(minus_g1_wz_leg2 * t268),
-                t188 * t276, ::overact::math::signed(t276, t188), t276, t281 * t284,
-                ::overact::math::signed(t284, t281), t284, t353, t353, g1_wz_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_wz_leg3, rate_1_leg3), g1_wz_leg3, g2_wz_leg3 * t364,
-                g1_wz_leg3 * t378 + g2_wz_leg3 * t385, -(g1_wz_leg3 * t402 + g2_wz_leg3 * t398),
-                g1_wz_leg3 * t413, t331 * t421, ::overact::math::signed(t421, t331), t421,
-                t426 * t429, ::overact::math::signed(t429, t426), t429, t487, t487,
-                g1_wz_leg4 * rate_1_leg4, ::overact::math::signed(g1_wz_leg4, rate_1_leg4),
-                g1_wz_leg4, g2_wz_leg4 * t498, g1_wz_leg4 * t512 + g2_wz_leg4 * t519,
-                g1_wz_leg4 * t530 + g2_wz_leg4 * t536, g1_wz_leg4 * t547, t467 * t555,
-                ::overact::math::signed(t555, t467), t555, t560 * t563,
-                ::overact::math::signed(t563, t560), t563, acceleration[2],
-                c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
+                -::overact::math::signed(minus_g1_wz_leg2, rate_1_leg2), -minus_g1_wz_leg2, t224,
+                t103 - 0.28 * (t224 - t207), g2_wz_leg2 * t246 - minus_g1_wz_leg2 * t240,
+                -(minus_g1_wz_leg2 * t262), t189 * t270, ::overact::math::signed(t270, t189), t270,
+                t275 * t278, ::overact::math::signed(t278, t275), t278, t345, t345,
+                g1_wz_leg3 * rate_1_leg3, ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
+                g1_wz_leg3, t362, t372 - 0.28 * (t345 + t362),
+                -(g1_wz_leg3 * t388 + g2_wz_leg3 * t382), g1_wz_leg3 * t404, t325 * t412,
+                ::overact::math::signed(t412, t325), t412, t417 * t420,
+                ::overact::math::signed(t420, t417), t420, t476, t476, g1_wz_leg4 * rate_1_leg4,
+                ::overact::math::signed(g1_wz_leg4, rate_1_leg4), g1_wz_leg4, t493,
+                t372 - 0.28 * (t476 + t493), g1_wz_leg4 * t509 + g2_wz_leg4 * t515,
+                g1_wz_leg4 * t531, t458 * t539, ::overact::math::signed(t539, t458), t539,
+                t544 * t547, ::overact::math::signed(t547, t544), t547, acceleration[2],
+                c_phi * acceleration[1] - s_phi * acceleration[0], -t100, 0.0,
             ],
         ])
     }
@@ -1756,7 +1777,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 450 operations (128 additions, 318 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 36 signs, 332 intermediates.
+    /// 375 operations (126 additions, 245 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 36 signs, 257 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1768,6 +1789,7 @@ impl DualV {
     ) -> Result<[[f64; 64]; 3], ::overact::Error> {
         let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(joints[0]);
         let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
+        ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
         let t10 = 3.5714285714285716 / s2_leg1;
@@ -1779,244 +1801,219 @@ impl DualV {
         let t18 = t17 * twist[2];
         let t19 = twist[2] * t18;
         let t20 = acceleration[0] - t15 + t19;
-        let t21 = t14 * twist[2];
-        let t22 = twist[0] - t21;
-        let g1_vy_leg1 = s12_leg1 * t10;
-        let t25 = twist[1] - t18;
-        let rate_1_leg1 = g1_vx_leg1 * t22 + g1_vy_leg1 * t25;
+        let t22 = t17 * acceleration[2];
+        let t24 = t14 * twist[2];
+        let t25 = twist[2] * t24;
+        let t26 = acceleration[1] - t22 - t25;
         let minus_g2_vx_leg1 = c1_leg1 * t10;
+        let t30 = twist[0] - t24;
         let minus_g2_vy_leg1 = s1_leg1 * t10;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t22 + minus_g2_vy_leg1 * t25;
-        let t40 = t20 + rate_1_leg1 * (0.28 * c1_leg1 * rate_1_leg1)
-            + minus_rate_2_leg1 * (0.28 * c12_leg1 * minus_rate_2_leg1);
-        let t42 = t17 * acceleration[2];
-        let t44 = twist[2] * t21;
-        let t45 = acceleration[1] - t42 - t44;
-        let t53 = t45 + rate_1_leg1 * (0.28 * s1_leg1 * rate_1_leg1)
-            + minus_rate_2_leg1 * (0.28 * s12_leg1 * minus_rate_2_leg1);
-        let rate_dot_1_leg1 = g1_vx_leg1 * t40 + g1_vy_leg1 * t53;
-        let t56 = g1_vx_leg1 * rate_dot_1_leg1;
-        let t57 = g1_vy_leg1 * rate_dot_1_leg1;
+        let t33 = twist[1] - t18;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t30 + minus_g2_vy_leg1 * t33;
+        let t36 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t38 = c12_leg1 * t20 + s12_leg1 * t26 + 0.28 * t36;
+        let g1_vy_leg1 = s12_leg1 * t10;
+        let rate_1_leg1 = g1_vx_leg1 * t30 + g1_vy_leg1 * t33;
+        let t43 = rate_1_leg1 * rate_1_leg1;
+        let t44 = 0.28 * c2_leg1;
+        let rate_dot_1_leg1 = t10 * (t38 + t43 * t44);
+        let t48 = g1_vx_leg1 * rate_dot_1_leg1;
+        let t49 = g1_vy_leg1 * rate_dot_1_leg1;
         let minus_g1_wz_leg1 = g1_vy_leg1 * t17 + g1_vx_leg1 * t14;
-        let t61 = minus_g1_wz_leg1 * rate_dot_1_leg1;
-        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * t40 + minus_g2_vy_leg1 * t53;
+        let t53 = minus_g1_wz_leg1 * rate_dot_1_leg1;
+        let t64 = c1_leg1 * t20 + s1_leg1 * t26 + 0.28 * t43;
+        let minus_rate_dot_2_leg1 = t10 * (t64 + t36 * t44);
+        let t68 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+        let t69 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
         let g2_wz_leg1 = minus_g2_vy_leg1 * t17 + minus_g2_vx_leg1 * t14;
-        let t77 = 0.28 * s2_leg1;
-        let t78 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t80 = 0.28 * c2_leg1;
-        let t82 = t77 * t78 + minus_rate_dot_2_leg1 * t80;
-        let t85 = 0.28 * (rate_1_leg1 * rate_1_leg1);
-        let t87 = 0.28 * rate_dot_1_leg1;
-        let t89 = s2_leg1 * t85 + c2_leg1 * t87;
-        let t100 = minus_rate_dot_2_leg1 * t77 - t80 * t78;
-        let t104 = s2_leg1 * t87 - c2_leg1 * t85;
-        let t116 = rate_1_leg1 + minus_rate_2_leg1;
-        let t117 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t119 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let t121 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t126 = minus_rate_2_leg1 + twist[2];
-        let t129 = 1.0 - g2_wz_leg1;
+        let t73 = g2_wz_leg1 * minus_rate_dot_2_leg1;
+        let t74 = 3.5714285714285716 * t20;
+        let t78 = 3.5714285714285716 * t26;
+        let t84 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t85 = 9.090909090909092 * t84;
+        let t87 = 0.04321428571428571 * (acceleration[2] - t85);
+        let t103 = rate_1_leg1 + minus_rate_2_leg1;
+        let t104 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let t106 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let t108 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t113 = minus_rate_2_leg1 + twist[2];
+        let t116 = 1.0 - g2_wz_leg1;
         let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(joints[3]);
         let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
+        ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let t144 = 3.5714285714285716 / s2_leg2;
-        let g1_vx_leg2 = c12_leg2 * t144;
-        let g1_vy_leg2 = s12_leg2 * t144;
-        let rate_1_leg2 = g1_vx_leg2 * t22 + g1_vy_leg2 * t25;
-        let minus_g2_vx_leg2 = c1_leg2 * t144;
-        let minus_g2_vy_leg2 = s1_leg2 * t144;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t22 + minus_g2_vy_leg2 * t25;
-        let t162 = t20 + rate_1_leg2 * (0.28 * c1_leg2 * rate_1_leg2)
-            + minus_rate_2_leg2 * (0.28 * c12_leg2 * minus_rate_2_leg2);
-        let t171 = t45 + rate_1_leg2 * (0.28 * s1_leg2 * rate_1_leg2)
-            + minus_rate_2_leg2 * (0.28 * s12_leg2 * minus_rate_2_leg2);
-        let rate_dot_1_leg2 = g1_vx_leg2 * t162 + g1_vy_leg2 * t171;
-        let t174 = g1_vx_leg2 * rate_dot_1_leg2;
-        let t175 = g1_vy_leg2 * rate_dot_1_leg2;
+        let t131 = 3.5714285714285716 / s2_leg2;
+        let g1_vx_leg2 = c12_leg2 * t131;
+        let minus_g2_vx_leg2 = c1_leg2 * t131;
+        let minus_g2_vy_leg2 = s1_leg2 * t131;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t30 + minus_g2_vy_leg2 * t33;
+        let t141 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t143 = c12_leg2 * t20 + s12_leg2 * t26 + 0.28 * t141;
+        let g1_vy_leg2 = s12_leg2 * t131;
+        let rate_1_leg2 = g1_vx_leg2 * t30 + g1_vy_leg2 * t33;
+        let t148 = rate_1_leg2 * rate_1_leg2;
+        let t149 = 0.28 * c2_leg2;
+        let rate_dot_1_leg2 = t131 * (t143 + t148 * t149);
+        let t153 = g1_vx_leg2 * rate_dot_1_leg2;
+        let t154 = g1_vy_leg2 * rate_dot_1_leg2;
         let minus_g1_wz_leg2 = t17 * g1_vy_leg2 + t14 * g1_vx_leg2;
-        let t179 = minus_g1_wz_leg2 * rate_dot_1_leg2;
-        let minus_rate_dot_2_leg2 = minus_g2_vx_leg2 * t162 + minus_g2_vy_leg2 * t171;
+        let t158 = minus_g1_wz_leg2 * rate_dot_1_leg2;
+        let t169 = c1_leg2 * t20 + s1_leg2 * t26 + 0.28 * t148;
+        let minus_rate_dot_2_leg2 = t131 * (t169 + t141 * t149);
+        let t173 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let t174 = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
         let g2_wz_leg2 = t17 * minus_g2_vy_leg2 + t14 * minus_g2_vx_leg2;
-        let t195 = 0.28 * s2_leg2;
-        let t196 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t198 = 0.28 * c2_leg2;
-        let t200 = t195 * t196 + minus_rate_dot_2_leg2 * t198;
-        let t203 = 0.28 * (rate_1_leg2 * rate_1_leg2);
-        let t205 = 0.28 * rate_dot_1_leg2;
-        let t207 = s2_leg2 * t203 + c2_leg2 * t205;
-        let t218 = minus_rate_dot_2_leg2 * t195 - t198 * t196;
-        let t222 = s2_leg2 * t205 - c2_leg2 * t203;
-        let t234 = rate_1_leg2 + minus_rate_2_leg2;
-        let t235 = g1_vx_leg2 + minus_g2_vx_leg2;
-        let t237 = g1_vy_leg2 + minus_g2_vy_leg2;
-        let t239 = minus_g1_wz_leg2 + g2_wz_leg2;
-        let t244 = minus_rate_2_leg2 + twist[2];
-        let t247 = 1.0 - g2_wz_leg2;
+        let t178 = g2_wz_leg2 * minus_rate_dot_2_leg2;
+        let t200 = rate_1_leg2 + minus_rate_2_leg2;
+        let t201 = g1_vx_leg2 + minus_g2_vx_leg2;
+        let t203 = g1_vy_leg2 + minus_g2_vy_leg2;
+        let t205 = minus_g1_wz_leg2 + g2_wz_leg2;
+        let t210 = minus_rate_2_leg2 + twist[2];
+        let t213 = 1.0 - g2_wz_leg2;
         let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(joints[6]);
         let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
+        ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let t262 = 3.5714285714285716 / s2_leg3;
-        let g1_vx_leg3 = c12_leg3 * t262;
-        let t265 = acceleration[0] + t15 - t19;
-        let t266 = twist[0] + t21;
-        let g1_vy_leg3 = s12_leg3 * t262;
-        let t269 = twist[1] + t18;
-        let rate_1_leg3 = g1_vx_leg3 * t266 + g1_vy_leg3 * t269;
-        let minus_g2_vx_leg3 = c1_leg3 * t262;
-        let minus_g2_vy_leg3 = s1_leg3 * t262;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t266 + minus_g2_vy_leg3 * t269;
-        let t284 = t265 + rate_1_leg3 * (0.28 * c1_leg3 * rate_1_leg3)
-            + minus_rate_2_leg3 * (0.28 * c12_leg3 * minus_rate_2_leg3);
-        let t287 = acceleration[1] + t42 + t44;
-        let t295 = t287 + rate_1_leg3 * (0.28 * s1_leg3 * rate_1_leg3)
-            + minus_rate_2_leg3 * (0.28 * s12_leg3 * minus_rate_2_leg3);
-        let rate_dot_1_leg3 = g1_vx_leg3 * t284 + g1_vy_leg3 * t295;
-        let t298 = g1_vx_leg3 * rate_dot_1_leg3;
-        let t299 = g1_vy_leg3 * rate_dot_1_leg3;
+        let t228 = 3.5714285714285716 / s2_leg3;
+        let g1_vx_leg3 = c12_leg3 * t228;
+        let t231 = acceleration[0] + t15 - t19;
+        let t234 = acceleration[1] + t22 + t25;
+        let minus_g2_vx_leg3 = c1_leg3 * t228;
+        let t238 = twist[0] + t24;
+        let minus_g2_vy_leg3 = s1_leg3 * t228;
+        let t241 = twist[1] + t18;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t238 + minus_g2_vy_leg3 * t241;
+        let t244 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t246 = c12_leg3 * t231 + s12_leg3 * t234 + 0.28 * t244;
+        let g1_vy_leg3 = s12_leg3 * t228;
+        let rate_1_leg3 = g1_vx_leg3 * t238 + g1_vy_leg3 * t241;
+        let t251 = rate_1_leg3 * rate_1_leg3;
+        let t252 = 0.28 * c2_leg3;
+        let rate_dot_1_leg3 = t228 * (t246 + t251 * t252);
+        let t256 = g1_vx_leg3 * rate_dot_1_leg3;
+        let t257 = g1_vy_leg3 * rate_dot_1_leg3;
         let g1_wz_leg3 = t17 * g1_vy_leg3 + t14 * g1_vx_leg3;
-        let t303 = g1_wz_leg3 * rate_dot_1_leg3;
-        let minus_rate_dot_2_leg3 = minus_g2_vx_leg3 * t284 + minus_g2_vy_leg3 * t295;
+        let t261 = g1_wz_leg3 * rate_dot_1_leg3;
+        let t272 = c1_leg3 * t231 + s1_leg3 * t234 + 0.28 * t251;
+        let minus_rate_dot_2_leg3 = t228 * (t272 + t244 * t252);
+        let t276 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let t277 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
         let minus_g2_wz_leg3 = t17 * minus_g2_vy_leg3 + t14 * minus_g2_vx_leg3;
-        let t319 = 0.28 * s2_leg3;
-        let t320 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t322 = 0.28 * c2_leg3;
-        let t324 = t319 * t320 + minus_rate_dot_2_leg3 * t322;
-        let t327 = 0.28 * (rate_1_leg3 * rate_1_leg3);
-        let t329 = 0.28 * rate_dot_1_leg3;
-        let t331 = s2_leg3 * t327 + c2_leg3 * t329;
-        let t342 = minus_rate_dot_2_leg3 * t319 - t322 * t320;
-        let t346 = s2_leg3 * t329 - c2_leg3 * t327;
-        let t358 = rate_1_leg3 + minus_rate_2_leg3;
-        let t359 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t361 = g1_vy_leg3 + minus_g2_vy_leg3;
-        let t363 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let t368 = minus_rate_2_leg3 + twist[2];
-        let t371 = minus_g2_wz_leg3 + 1.0;
+        let t281 = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
+        let t282 = 3.5714285714285716 * t231;
+        let t286 = 3.5714285714285716 * t234;
+        let t291 = 0.04321428571428571 * (acceleration[2] + t85);
+        let t307 = rate_1_leg3 + minus_rate_2_leg3;
+        let t308 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t310 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let t312 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let t317 = minus_rate_2_leg3 + twist[2];
+        let t320 = minus_g2_wz_leg3 + 1.0;
         let (s1_leg4, c1_leg4) = ::overact::math::sin_cos(joints[9]);
         let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
+        ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
         let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
-        let t386 = 3.5714285714285716 / s2_leg4;
-        let g1_vx_leg4 = c12_leg4 * t386;
-        let g1_vy_leg4 = s12_leg4 * t386;
-        let rate_1_leg4 = g1_vx_leg4 * t266 + g1_vy_leg4 * t269;
-        let minus_g2_vx_leg4 = c1_leg4 * t386;
-        let minus_g2_vy_leg4 = s1_leg4 * t386;
-        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t266 + minus_g2_vy_leg4 * t269;
-        let t404 = t265 + rate_1_leg4 * (0.28 * c1_leg4 * rate_1_leg4)
-            + minus_rate_2_leg4 * (0.28 * c12_leg4 * minus_rate_2_leg4);
-        let t413 = t287 + rate_1_leg4 * (0.28 * s1_leg4 * rate_1_leg4)
-            + minus_rate_2_leg4 * (0.28 * s12_leg4 * minus_rate_2_leg4);
-        let rate_dot_1_leg4 = g1_vx_leg4 * t404 + g1_vy_leg4 * t413;
-        let t416 = g1_vx_leg4 * rate_dot_1_leg4;
-        let t417 = g1_vy_leg4 * rate_dot_1_leg4;
+        let t335 = 3.5714285714285716 / s2_leg4;
+        let g1_vx_leg4 = c12_leg4 * t335;
+        let minus_g2_vx_leg4 = c1_leg4 * t335;
+        let minus_g2_vy_leg4 = s1_leg4 * t335;
+        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t238 + minus_g2_vy_leg4 * t241;
+        let t345 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let t347 = c12_leg4 * t231 + s12_leg4 * t234 + 0.28 * t345;
+        let g1_vy_leg4 = s12_leg4 * t335;
+        let rate_1_leg4 = g1_vx_leg4 * t238 + g1_vy_leg4 * t241;
+        let t352 = rate_1_leg4 * rate_1_leg4;
+        let t353 = 0.28 * c2_leg4;
+        let rate_dot_1_leg4 = t335 * (t347 + t352 * t353);
+        let t357 = g1_vx_leg4 * rate_dot_1_leg4;
+        let t358 = g1_vy_leg4 * rate_dot_1_leg4;
         let g1_wz_leg4 = t17 * g1_vy_leg4 + t14 * g1_vx_leg4;
-        let t421 = g1_wz_leg4 * rate_dot_1_leg4;
-        let minus_rate_dot_2_leg4 = minus_g2_vx_leg4 * t404 + minus_g2_vy_leg4 * t413;
+        let t362 = g1_wz_leg4 * rate_dot_1_leg4;
+        let t373 = c1_leg4 * t231 + s1_leg4 * t234 + 0.28 * t352;
+        let minus_rate_dot_2_leg4 = t335 * (t373 + t345 * t353);
+        let t377 = minus_g2_vx_leg4 * minus_rate_dot_2_leg4;
+        let t378 = minus_g2_vy_leg4 * minus_rate_dot_2_leg4;
         let minus_g2_wz_leg4 = t17 * minus_g2_vy_leg4 + t14 * minus_g2_vx_leg4;
-        let t437 = 0.28 * s2_leg4;
-        let t438 = minus_rate_2_leg4 * minus_rate_2_leg4;
-        let t440 = 0.28 * c2_leg4;
-        let t442 = t437 * t438 + minus_rate_dot_2_leg4 * t440;
-        let t445 = 0.28 * (rate_1_leg4 * rate_1_leg4);
-        let t447 = 0.28 * rate_dot_1_leg4;
-        let t449 = s2_leg4 * t445 + c2_leg4 * t447;
-        let t460 = minus_rate_dot_2_leg4 * t437 - t440 * t438;
-        let t464 = s2_leg4 * t447 - c2_leg4 * t445;
-        let t476 = rate_1_leg4 + minus_rate_2_leg4;
-        let t477 = g1_vx_leg4 + minus_g2_vx_leg4;
-        let t479 = g1_vy_leg4 + minus_g2_vy_leg4;
-        let t481 = g1_wz_leg4 + minus_g2_wz_leg4;
-        let t486 = minus_rate_2_leg4 + twist[2];
-        let t489 = minus_g2_wz_leg4 + 1.0;
-        let t495 = 9.090909090909092 * (t44 + t42);
-        let t497 = 9.090909090909092 * (t15 - t19);
+        let t382 = minus_g2_wz_leg4 * minus_rate_dot_2_leg4;
+        let t404 = rate_1_leg4 + minus_rate_2_leg4;
+        let t405 = g1_vx_leg4 + minus_g2_vx_leg4;
+        let t407 = g1_vy_leg4 + minus_g2_vy_leg4;
+        let t409 = g1_wz_leg4 + minus_g2_wz_leg4;
+        let t414 = minus_rate_2_leg4 + twist[2];
+        let t417 = minus_g2_wz_leg4 + 1.0;
+        let t423 = 9.090909090909092 * (t25 + t22);
+        let t425 = 9.090909090909092 * (t15 - t19);
         Ok([
             [
-                t56, t56, g1_vx_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1,
-                minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
-                -(g1_vx_leg1 * t82 + minus_g2_vx_leg1 * t89),
-                g1_vx_leg1 * t100 + minus_g2_vx_leg1 * t104, 0.0784 * t56, t116 * t117,
-                ::overact::math::signed(t117, t116), -t117, minus_g2_vx_leg1 * t126,
-                ::overact::math::signed(minus_g2_vx_leg1, t126), minus_g2_vx_leg1, t174, t174,
+                t48, t48, g1_vx_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t68,
+                t74 - 0.28 * (t48 + t68), g1_vx_leg1 * t64 + minus_g2_vx_leg1 * t38, 0.0784 * t48,
+                t103 * t104, ::overact::math::signed(t104, t103), -t104, minus_g2_vx_leg1 * t113,
+                ::overact::math::signed(minus_g2_vx_leg1, t113), minus_g2_vx_leg1, t153, t153,
                 g1_vx_leg2 * rate_1_leg2, ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
-                g1_vx_leg2, minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
-                -(g1_vx_leg2 * t200 + minus_g2_vx_leg2 * t207),
-                g1_vx_leg2 * t218 + minus_g2_vx_leg2 * t222, 0.0784 * t174, t234 * t235,
-                ::overact::math::signed(t235, t234), -t235, minus_g2_vx_leg2 * t244,
-                ::overact::math::signed(minus_g2_vx_leg2, t244), minus_g2_vx_leg2, t298, t298,
+                g1_vx_leg2, t173, t74 - 0.28 * (t153 + t173),
+                g1_vx_leg2 * t169 + minus_g2_vx_leg2 * t143, 0.0784 * t153, t200 * t201,
+                ::overact::math::signed(t201, t200), -t201, minus_g2_vx_leg2 * t210,
+                ::overact::math::signed(minus_g2_vx_leg2, t210), minus_g2_vx_leg2, t256, t256,
                 g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                g1_vx_leg3, minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
-                -(g1_vx_leg3 * t324 + minus_g2_vx_leg3 * t331),
-                g1_vx_leg3 * t342 + minus_g2_vx_leg3 * t346, 0.0784 * t298, t358 * t359,
-                ::overact::math::signed(t359, t358), -t359, minus_g2_vx_leg3 * t368,
-                ::overact::math::signed(minus_g2_vx_leg3, t368), minus_g2_vx_leg3, t416, t416,
+                g1_vx_leg3, t276, t282 - 0.28 * (t256 + t276),
+                g1_vx_leg3 * t272 + minus_g2_vx_leg3 * t246, 0.0784 * t256, t307 * t308,
+                ::overact::math::signed(t308, t307), -t308, minus_g2_vx_leg3 * t317,
+                ::overact::math::signed(minus_g2_vx_leg3, t317), minus_g2_vx_leg3, t357, t357,
                 g1_vx_leg4 * rate_1_leg4, ::overact::math::signed(g1_vx_leg4, rate_1_leg4),
-                g1_vx_leg4, minus_g2_vx_leg4 * minus_rate_dot_2_leg4,
-                -(g1_vx_leg4 * t442 + minus_g2_vx_leg4 * t449),
-                g1_vx_leg4 * t460 + minus_g2_vx_leg4 * t464, 0.0784 * t416, t476 * t477,
-                ::overact::math::signed(t477, t476), -t477, minus_g2_vx_leg4 * t486,
-                ::overact::math::signed(minus_g2_vx_leg4, t486), minus_g2_vx_leg4, 0.0, -t495,
-                -t497, acceleration[0],
+                g1_vx_leg4, t377, t282 - 0.28 * (t357 + t377),
+                g1_vx_leg4 * t373 + minus_g2_vx_leg4 * t347, 0.0784 * t357, t404 * t405,
+                ::overact::math::signed(t405, t404), -t405, minus_g2_vx_leg4 * t414,
+                ::overact::math::signed(minus_g2_vx_leg4, t414), minus_g2_vx_leg4, 0.0, -t423,
+                -t425, acceleration[0],
             ],
             [
-                t57, t57, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1,
-                minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
-                -(g1_vy_leg1 * t82 + minus_g2_vy_leg1 * t89),
-                g1_vy_leg1 * t100 + minus_g2_vy_leg1 * t104, 0.0784 * t57, t116 * t119,
-                ::overact::math::signed(t119, t116), -t119, minus_g2_vy_leg1 * t126,
-                ::overact::math::signed(minus_g2_vy_leg1, t126), minus_g2_vy_leg1, t175, t175,
+                t49, t49, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t69,
+                t78 - 0.28 * (t49 + t69), g1_vy_leg1 * t64 + minus_g2_vy_leg1 * t38, 0.0784 * t49,
+                t103 * t106, ::overact::math::signed(t106, t103), -t106, minus_g2_vy_leg1 * t113,
+                ::overact::math::signed(minus_g2_vy_leg1, t113), minus_g2_vy_leg1, t154, t154,
                 g1_vy_leg2 * rate_1_leg2, ::overact::math::signed(g1_vy_leg2, rate_1_leg2),
-                g1_vy_leg2, minus_g2_vy_leg2 * minus_rate_dot_2_leg2,
-                -(g1_vy_leg2 * t200 + minus_g2_vy_leg2 * t207),
-                g1_vy_leg2 * t218 + minus_g2_vy_leg2 * t222, 0.0784 * t175, t234 * t237,
-                ::overact::math::signed(t237, t234), -t237, minus_g2_vy_leg2 * t244,
-                ::overact::math::signed(minus_g2_vy_leg2, t244), minus_g2_vy_leg2, t299, t299,
+                g1_vy_leg2, t174, t78 - 0.28 * (t154 + t174),
+                g1_vy_leg2 * t169 + minus_g2_vy_leg2 * t143, 0.0784 * t154, t200 * t203,
+                ::overact::math::signed(t203, t200), -t203, minus_g2_vy_leg2 * t210,
+                ::overact::math::signed(minus_g2_vy_leg2, t210), minus_g2_vy_leg2, t257, t257,
                 g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
-                g1_vy_leg3, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                -(g1_vy_leg3 * t324 + minus_g2_vy_leg3 * t331),
-                g1_vy_leg3 * t342 + minus_g2_vy_leg3 * t346, 0.0784 * t299, t358 * t361,
-                ::overact::math::signed(t361, t358), -t361, minus_g2_vy_leg3 * t368,
-                ::overact::math::signed(minus_g2_vy_leg3, t368), minus_g2_vy_leg3, t417, t417,
+                g1_vy_leg3, t277, t286 - 0.28 * (t257 + t277),
+                g1_vy_leg3 * t272 + minus_g2_vy_leg3 * t246, 0.0784 * t257, t307 * t310,
+                ::overact::math::signed(t310, t307), -t310, minus_g2_vy_leg3 * t317,
+                ::overact::math::signed(minus_g2_vy_leg3, t317), minus_g2_vy_leg3, t358, t358,
                 g1_vy_leg4 * rate_1_leg4, ::overact::math::signed(g1_vy_leg4, rate_1_leg4),
-                g1_vy_leg4, minus_g2_vy_leg4 * minus_rate_dot_2_leg4,
-                -(g1_vy_leg4 * t442 + minus_g2_vy_leg4 * t449),
-                g1_vy_leg4 * t460 + minus_g2_vy_leg4 * t464, 0.0784 * t417, t476 * t479,
-                ::overact::math::signed(t479, t476), -t479, minus_g2_vy_leg4 * t486,
-                ::overact::math::signed(minus_g2_vy_leg4, t486), minus_g2_vy_leg4, 0.0, t497, -t495,
+                g1_vy_leg4, t378, t286 - 0.28 * (t358 + t378),
+                g1_vy_leg4 * t373 + minus_g2_vy_leg4 * t347, 0.0784 * t358, t404 * t407,
+                ::overact::math::signed(t407, t404), -t407, minus_g2_vy_leg4 * t414,
+                ::overact::math::signed(minus_g2_vy_leg4, t414), minus_g2_vy_leg4, 0.0, t425, -t423,
                 acceleration[1],
             ],
             [
-                -t61, -t61, -(minus_g1_wz_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1,
-                -(g2_wz_leg1 * minus_rate_dot_2_leg1), minus_g1_wz_leg1 * t82 + g2_wz_leg1 * t89,
-                -(minus_g1_wz_leg1 * t100 + g2_wz_leg1 * t104), -(0.0784 * t61), -(t116 * t121),
-                -::overact::math::signed(t121, t116), t121, t126 * t129,
-                ::overact::math::signed(t129, t126), t129, -t179, -t179,
+                -t53, -t53, -(minus_g1_wz_leg1 * rate_1_leg1),
+                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1, -t73,
+                t87 + 0.28 * (t53 + t73), -(minus_g1_wz_leg1 * t64 + g2_wz_leg1 * t38),
+                -(0.0784 * t53), -(t103 * t108), -::overact::math::signed(t108, t103), t108,
+                t113 * t116, ::overact::math::signed(t116, t113), t116, -t158, -t158,
                 -(minus_g1_wz_leg2 * rate_1_leg2),
-                -::overact::math::signed(minus_g1_wz_leg2, rate_1_leg2), -minus_g1_wz_leg2,
-                -(g2_wz_leg2 * minus_rate_dot_2_leg2), minus_g1_wz_leg2 * t200 + g2_wz_leg2 * t207,
-                -(minus_g1_wz_leg2 * t218 + g2_wz_leg2 * t222), -(0.0784 * t179), -(t234 * t239),
-                -::overact::math::signed(t239, t234), t239, t244 * t247,
-                ::overact::math::signed(t247, t244), t247, t303, t303, g1_wz_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_wz_leg3, rate_1_leg3), g1_wz_leg3,
-                minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                -(g1_wz_leg3 * t324 + minus_g2_wz_leg3 * t331),
-                g1_wz_leg3 * t342 + minus_g2_wz_leg3 * t346, 0.0784 * t303, t358 * t363,
-                ::overact::math::signed(t363, t358), -t363, t368 * t371,
-                ::overact::math::signed(t371, t368), t371, t421, t421, g1_wz_leg4 * rate_1_leg4,
-                ::overact::math::signed(g1_wz_leg4, rate_1_leg4), g1_wz_leg4,
-                minus_g2_wz_leg4 * minus_rate_dot_2_leg4,
-                -(g1_wz_leg4 * t442 + minus_g2_wz_leg4 * t449),
-                g1_wz_leg4 * t460 + minus_g2_wz_leg4 * t464, 0.0784 * t421, t476 * t481,
-                ::overact::math::signed(t481, t476), -t481, t486 * t489,
-                ::overact::math::signed(t489, t486), t489, acceleration[2],
-                c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
+                -::overact::math::signed(minus_g1_wz_leg2, rate_1_leg2), -minus_g1_wz_leg2, -t178,
+                t87 + 0.28 * (t158 + t178), -(minus_g1_wz_leg2 * t169 + g2_wz_leg2 * t143),
+                -(0.0784 * t158), -(t200 * t205), -::overact::math::signed(t205, t200), t205,
+                t210 * t213, ::overact::math::signed(t213, t210), t213, t261, t261,
+                g1_wz_leg3 * rate_1_leg3, ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
+                g1_wz_leg3, t281, t291 - 0.28 * (t261 + t281),
+                g1_wz_leg3 * t272 + minus_g2_wz_leg3 * t246, 0.0784 * t261, t307 * t312,
+                ::overact::math::signed(t312, t307), -t312, t317 * t320,
+                ::overact::math::signed(t320, t317), t320, t362, t362, g1_wz_leg4 * rate_1_leg4,
+                ::overact::math::signed(g1_wz_leg4, rate_1_leg4), g1_wz_leg4, t382,
+                t291 - 0.28 * (t362 + t382), g1_wz_leg4 * t373 + minus_g2_wz_leg4 * t347,
+                0.0784 * t362, t404 * t409, ::overact::math::signed(t409, t404), -t409, t414 * t417,
+                ::overact::math::signed(t417, t414), t417, acceleration[2],
+                c_phi * acceleration[1] - s_phi * acceleration[0], -t84, 0.0,
             ],
         ])
     }
@@ -2029,7 +2026,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 699 operations (266 additions, 422 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 564 intermediates.
+    /// 683 operations (266 additions, 406 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 548 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2128,8 +2125,8 @@ impl DualV {
             - (g1_vx_leg1 * minus_g1_wz_leg1 + g1_vx_leg2 * minus_g1_wz_leg2)
             + g1_vx_leg4 * g1_wz_leg4;
         let t140 = t139 * t109;
-        let t156 = g1_vy_leg1 * g1_vx_leg1 + g1_vy_leg2 * g1_vx_leg2
-            + g1_vy_leg3 * g1_vx_leg3 + g1_vy_leg4 * g1_vx_leg4;
+        let t156 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
         let t158 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
             + g1_vy_leg4 * g1_wz_leg4 - t156 * t140;
@@ -2165,249 +2162,249 @@ impl DualV {
         let t213 = t211 - t212;
         let t215 = t207 - t202;
         let rate_1_leg1 = g1_vx_leg1 * t213 + g1_vy_leg1 * t215;
+        let t218 = rate_1_leg1 * rate_1_leg1;
         let g2_vy_leg1 = t26 * t29;
         let minus_g2_vx_leg1 = t23 * t29;
         let rate_2_leg1 = g2_vy_leg1 * t215 - minus_g2_vx_leg1 * t213;
         let t225 = rate_2_leg1 - rate_1_leg1;
         let t226 = rate_1_leg1 + t225;
-        let t229 = rate_1_leg1 * (t16 * rate_1_leg1) + t226 * (t17 * t226);
-        let t236 = rate_1_leg1 * (t20 * rate_1_leg1) + t226 * (t21 * t226);
-        let t237 = rate_3_leg1 * t212;
-        let rate_dot_1_leg1 = g1_vx_leg1 * (t203 + t229) + g1_vy_leg1 * (t236 - t237);
-        let t241 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let t227 = t226 * t226;
+        let t229 = t16 * t218 + t17 * t227;
+        let t234 = t20 * t218 + t21 * t227;
+        let t235 = rate_3_leg1 * t212;
+        let rate_dot_1_leg1 = g1_vx_leg1 * (t203 + t229) + g1_vy_leg1 * (t234 - t235);
+        let t239 = actuator_accelerations[0] - rate_dot_1_leg1;
         let rate_1_leg2 = g1_vx_leg2 * t213 + g1_vy_leg2 * t215;
+        let t244 = rate_1_leg2 * rate_1_leg2;
         let g2_vy_leg2 = t49 * t52;
         let minus_g2_vx_leg2 = t46 * t52;
         let rate_2_leg2 = g2_vy_leg2 * t215 - minus_g2_vx_leg2 * t213;
-        let t253 = rate_2_leg2 - rate_1_leg2;
-        let t254 = rate_1_leg2 + t253;
-        let t257 = rate_1_leg2 * (t40 * rate_1_leg2) + t254 * (t41 * t254);
-        let t264 = rate_1_leg2 * (t43 * rate_1_leg2) + t254 * (t44 * t254);
-        let rate_dot_1_leg2 = g1_vx_leg2 * (t203 + t257) + g1_vy_leg2 * (t264 - t237);
-        let t268 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let t271 = t211 + t212;
-        let t273 = t207 + t202;
-        let rate_1_leg3 = g1_vx_leg3 * t271 + g1_vy_leg3 * t273;
+        let t251 = rate_2_leg2 - rate_1_leg2;
+        let t252 = rate_1_leg2 + t251;
+        let t253 = t252 * t252;
+        let t255 = t40 * t244 + t41 * t253;
+        let t260 = t43 * t244 + t44 * t253;
+        let rate_dot_1_leg2 = g1_vx_leg2 * (t203 + t255) + g1_vy_leg2 * (t260 - t235);
+        let t264 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let t267 = t211 + t212;
+        let t269 = t207 + t202;
+        let rate_1_leg3 = g1_vx_leg3 * t267 + g1_vy_leg3 * t269;
+        let t272 = rate_1_leg3 * rate_1_leg3;
         let g2_vy_leg3 = t78 * t81;
         let minus_g2_vx_leg3 = t75 * t81;
-        let rate_2_leg3 = g2_vy_leg3 * t273 - minus_g2_vx_leg3 * t271;
-        let t283 = rate_2_leg3 - rate_1_leg3;
-        let t284 = rate_1_leg3 + t283;
-        let t287 = rate_1_leg3 * (t68 * rate_1_leg3) + t284 * (t69 * t284);
-        let t294 = rate_1_leg3 * (t72 * rate_1_leg3) + t284 * (t73 * t284);
-        let rate_dot_1_leg3 = g1_vx_leg3 * (t287 - t203) + g1_vy_leg3 * (t237 + t294);
-        let t298 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let rate_1_leg4 = g1_vx_leg4 * t271 + g1_vy_leg4 * t273;
+        let rate_2_leg3 = g2_vy_leg3 * t269 - minus_g2_vx_leg3 * t267;
+        let t279 = rate_2_leg3 - rate_1_leg3;
+        let t280 = rate_1_leg3 + t279;
+        let t281 = t280 * t280;
+        let t283 = t68 * t272 + t69 * t281;
+        let t288 = t72 * t272 + t73 * t281;
+        let rate_dot_1_leg3 = g1_vx_leg3 * (t283 - t203) + g1_vy_leg3 * (t235 + t288);
+        let t292 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let rate_1_leg4 = g1_vx_leg4 * t267 + g1_vy_leg4 * t269;
+        let t298 = rate_1_leg4 * rate_1_leg4;
         let g2_vy_leg4 = t102 * t105;
         let minus_g2_vx_leg4 = t99 * t105;
-        let rate_2_leg4 = g2_vy_leg4 * t273 - minus_g2_vx_leg4 * t271;
-        let t311 = rate_2_leg4 - rate_1_leg4;
-        let t312 = rate_1_leg4 + t311;
-        let t315 = rate_1_leg4 * (t93 * rate_1_leg4) + t312 * (t94 * t312);
-        let t322 = rate_1_leg4 * (t96 * rate_1_leg4) + t312 * (t97 * t312);
-        let rate_dot_1_leg4 = g1_vx_leg4 * (t315 - t203) + g1_vy_leg4 * (t237 + t322);
-        let t326 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t328 = g1_vx_leg1 * t241 + g1_vx_leg2 * t268 + g1_vx_leg3 * t298
-            + g1_vx_leg4 * t326;
-        let t338 = g1_vy_leg1 * t241 + g1_vy_leg2 * t268 + g1_vy_leg3 * t298
-            + g1_vy_leg4 * t326 - t166 * t328;
-        let t350 = g1_wz_leg3 * t298
-            - (minus_g1_wz_leg1 * t241 + minus_g1_wz_leg2 * t268) + g1_wz_leg4 * t326
-            - t140 * t328 - t170 * t338;
-        let rate_dot_3_leg1 = t173 * t350;
-        let t353 = t169 * t338 - t170 * rate_dot_3_leg1;
-        let t357 = t109 * t328 - t166 * t353 - t140 * rate_dot_3_leg1;
-        let t358 = t6 * rate_dot_3_leg1;
-        let t360 = t357 - t358 + t203;
-        let t361 = t360 + t229;
-        let t363 = t2 * rate_dot_3_leg1;
-        let t365 = t353 - t363 - t237;
-        let t366 = t365 + t236;
-        let rate_dot_1_leg1_2 = g1_vx_leg1 * t361 + g1_vy_leg1 * t366;
-        let t369 = g1_vx_leg1 * rate_dot_1_leg1_2;
-        let t370 = g1_vy_leg1 * rate_dot_1_leg1_2;
-        let t371 = minus_g1_wz_leg1 * rate_dot_1_leg1_2;
-        let rate_dot_2_leg1 = g2_vy_leg1 * t366 - minus_g2_vx_leg1 * t361;
-        let t382 = rate_dot_1_leg1_2 + rate_dot_2_leg1 - rate_dot_1_leg1_2;
+        let rate_2_leg4 = g2_vy_leg4 * t269 - minus_g2_vx_leg4 * t267;
+        let t305 = rate_2_leg4 - rate_1_leg4;
+        let t306 = rate_1_leg4 + t305;
+        let t307 = t306 * t306;
+        let t309 = t93 * t298 + t94 * t307;
+        let t314 = t96 * t298 + t97 * t307;
+        let rate_dot_1_leg4 = g1_vx_leg4 * (t309 - t203) + g1_vy_leg4 * (t235 + t314);
+        let t318 = actuator_accelerations[3] - rate_dot_1_leg4;
+        let t320 = g1_vx_leg1 * t239 + g1_vx_leg2 * t264 + g1_vx_leg3 * t292
+            + g1_vx_leg4 * t318;
+        let t330 = g1_vy_leg1 * t239 + g1_vy_leg2 * t264 + g1_vy_leg3 * t292
+            + g1_vy_leg4 * t318 - t166 * t320;
+        let t342 = g1_wz_leg3 * t292
+            - (minus_g1_wz_leg1 * t239 + minus_g1_wz_leg2 * t264) + g1_wz_leg4 * t318
+            - t140 * t320 - t170 * t330;
+        let rate_dot_3_leg1 = t173 * t342;
+        let t345 = t169 * t330 - t170 * rate_dot_3_leg1;
+        let t349 = t109 * t320 - t166 * t345 - t140 * rate_dot_3_leg1;
+        let t350 = t6 * rate_dot_3_leg1;
+        let t352 = t349 - t350 + t203;
+        let t353 = t352 + t229;
+        let t355 = t2 * rate_dot_3_leg1;
+        let t357 = t345 - t355 - t235;
+        let t358 = t357 + t234;
+        let rate_dot_1_leg1_2 = g1_vx_leg1 * t353 + g1_vy_leg1 * t358;
+        let t361 = g1_vx_leg1 * rate_dot_1_leg1_2;
+        let t362 = g1_vy_leg1 * rate_dot_1_leg1_2;
+        let t363 = minus_g1_wz_leg1 * rate_dot_1_leg1_2;
+        let rate_dot_2_leg1 = g2_vy_leg1 * t358 - minus_g2_vx_leg1 * t353;
+        let t374 = rate_dot_1_leg1_2 + rate_dot_2_leg1 - rate_dot_1_leg1_2;
         let g2_wz_leg1 = t6 * minus_g2_vx_leg1 - t2 * g2_vy_leg1;
-        let t389 = t11 - 0.1568;
-        let t390 = 1.7857142857142858 * t389;
-        let t392 = t11 * t14;
-        let t393 = 3.5714285714285716 * t392;
-        let t394 = t226 * t226;
-        let t396 = t390 * t382 - t393 * t394;
-        let t398 = rate_1_leg1 * rate_1_leg1;
-        let t403 = 3.5714285714285716 * (t392 * t398)
-            + 1.7857142857142858 * (t389 * rate_dot_1_leg1_2);
-        let t416 = 3.5714285714285716 * (t392 * rate_dot_1_leg1_2)
-            - 1.7857142857142858 * (t389 * t398);
-        let t420 = t393 * t382 + t390 * t394;
-        let t431 = t393 * t416 + t390 * t403;
-        let t435 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t437 = g2_vy_leg1 - g1_vy_leg1;
-        let t439 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t444 = rate_3_leg1 - rate_2_leg1;
-        let t447 = 1.0 - g2_wz_leg1;
-        let t452 = t360 + t257;
-        let t454 = t365 + t264;
-        let rate_dot_1_leg2_2 = g1_vx_leg2 * t452 + g1_vy_leg2 * t454;
-        let t457 = g1_vx_leg2 * rate_dot_1_leg2_2;
-        let t458 = g1_vy_leg2 * rate_dot_1_leg2_2;
-        let t459 = minus_g1_wz_leg2 * rate_dot_1_leg2_2;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t454 - minus_g2_vx_leg2 * t452;
-        let t470 = rate_dot_1_leg2_2 + rate_dot_2_leg2 - rate_dot_1_leg2_2;
+        let t381 = t11 - 0.1568;
+        let t382 = 1.7857142857142858 * t381;
+        let t384 = t11 * t14;
+        let t385 = 3.5714285714285716 * t384;
+        let t387 = t382 * t374 - t227 * t385;
+        let t393 = 3.5714285714285716 * (t384 * t218)
+            + 1.7857142857142858 * (t381 * rate_dot_1_leg1_2);
+        let t406 = 3.5714285714285716 * (t384 * rate_dot_1_leg1_2)
+            - 1.7857142857142858 * (t381 * t218);
+        let t410 = t385 * t374 + t227 * t382;
+        let t421 = t385 * t406 + t382 * t393;
+        let t425 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let t427 = g2_vy_leg1 - g1_vy_leg1;
+        let t429 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t434 = rate_3_leg1 - rate_2_leg1;
+        let t437 = 1.0 - g2_wz_leg1;
+        let t442 = t352 + t255;
+        let t444 = t357 + t260;
+        let rate_dot_1_leg2_2 = g1_vx_leg2 * t442 + g1_vy_leg2 * t444;
+        let t447 = g1_vx_leg2 * rate_dot_1_leg2_2;
+        let t448 = g1_vy_leg2 * rate_dot_1_leg2_2;
+        let t449 = minus_g1_wz_leg2 * rate_dot_1_leg2_2;
+        let rate_dot_2_leg2 = g2_vy_leg2 * t444 - minus_g2_vx_leg2 * t442;
+        let t460 = rate_dot_1_leg2_2 + rate_dot_2_leg2 - rate_dot_1_leg2_2;
         let g2_wz_leg2 = t6 * minus_g2_vx_leg2 - t2 * g2_vy_leg2;
-        let t477 = t35 * t38;
-        let t478 = 3.5714285714285716 * t477;
-        let t479 = t254 * t254;
-        let t481 = t35 - 0.1568;
-        let t482 = 1.7857142857142858 * t481;
-        let t484 = t478 * t479 + t482 * t470;
-        let t488 = rate_1_leg2 * rate_1_leg2;
-        let t491 = 1.7857142857142858 * (t481 * rate_dot_1_leg2_2)
-            - 3.5714285714285716 * (t477 * t488);
-        let t502 = t478 * t470 - t482 * t479;
-        let t508 = 1.7857142857142858 * (t481 * t488)
-            + 3.5714285714285716 * (t477 * rate_dot_1_leg2_2);
-        let t519 = t478 * t508 + t482 * t491;
-        let t523 = g1_vx_leg2 + minus_g2_vx_leg2;
-        let t525 = g2_vy_leg2 - g1_vy_leg2;
-        let t527 = minus_g1_wz_leg2 + g2_wz_leg2;
-        let t532 = rate_3_leg1 - rate_2_leg2;
-        let t535 = 1.0 - g2_wz_leg2;
-        let t541 = t357 + t358 - t203;
-        let t542 = t541 + t287;
-        let t545 = t353 + t363 + t237;
-        let t546 = t545 + t294;
-        let rate_dot_1_leg3_2 = g1_vx_leg3 * t542 + g1_vy_leg3 * t546;
-        let t549 = g1_vx_leg3 * rate_dot_1_leg3_2;
-        let t550 = g1_vy_leg3 * rate_dot_1_leg3_2;
-        let t551 = g1_wz_leg3 * rate_dot_1_leg3_2;
-        let rate_dot_2_leg3 = g2_vy_leg3 * t546 - minus_g2_vx_leg3 * t542;
-        let t562 = rate_dot_1_leg3_2 + rate_dot_2_leg3 - rate_dot_1_leg3_2;
+        let t467 = t35 * t38;
+        let t468 = 3.5714285714285716 * t467;
+        let t470 = t35 - 0.1568;
+        let t471 = 1.7857142857142858 * t470;
+        let t473 = t253 * t468 + t471 * t460;
+        let t479 = 1.7857142857142858 * (t470 * rate_dot_1_leg2_2)
+            - 3.5714285714285716 * (t467 * t244);
+        let t490 = t468 * t460 - t253 * t471;
+        let t496 = 1.7857142857142858 * (t470 * t244)
+            + 3.5714285714285716 * (t467 * rate_dot_1_leg2_2);
+        let t507 = t468 * t496 + t471 * t479;
+        let t511 = g1_vx_leg2 + minus_g2_vx_leg2;
+        let t513 = g2_vy_leg2 - g1_vy_leg2;
+        let t515 = minus_g1_wz_leg2 + g2_wz_leg2;
+        let t520 = rate_3_leg1 - rate_2_leg2;
+        let t523 = 1.0 - g2_wz_leg2;
+        let t529 = t349 + t350 - t203;
+        let t530 = t529 + t283;
+        let t533 = t345 + t355 + t235;
+        let t534 = t533 + t288;
+        let rate_dot_1_leg3_2 = g1_vx_leg3 * t530 + g1_vy_leg3 * t534;
+        let t537 = g1_vx_leg3 * rate_dot_1_leg3_2;
+        let t538 = g1_vy_leg3 * rate_dot_1_leg3_2;
+        let t539 = g1_wz_leg3 * rate_dot_1_leg3_2;
+        let rate_dot_2_leg3 = g2_vy_leg3 * t534 - minus_g2_vx_leg3 * t530;
+        let t550 = rate_dot_1_leg3_2 + rate_dot_2_leg3 - rate_dot_1_leg3_2;
         let g2_wz_leg3 = t2 * g2_vy_leg3 - t6 * minus_g2_vx_leg3;
-        let t569 = t63 - 0.1568;
-        let t570 = 1.7857142857142858 * t569;
-        let t572 = t63 * t66;
-        let t573 = 3.5714285714285716 * t572;
-        let t574 = t284 * t284;
-        let t576 = t570 * t562 - t573 * t574;
-        let t578 = rate_1_leg3 * rate_1_leg3;
-        let t583 = 3.5714285714285716 * (t572 * t578)
-            + 1.7857142857142858 * (t569 * rate_dot_1_leg3_2);
-        let t596 = 3.5714285714285716 * (t572 * rate_dot_1_leg3_2)
-            - 1.7857142857142858 * (t569 * t578);
-        let t600 = t573 * t562 + t570 * t574;
-        let t611 = t573 * t596 + t570 * t583;
-        let t615 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t617 = g2_vy_leg3 - g1_vy_leg3;
-        let t619 = g2_wz_leg3 - g1_wz_leg3;
-        let t624 = rate_3_leg1 - rate_2_leg3;
-        let t627 = 1.0 - g2_wz_leg3;
-        let t632 = t541 + t315;
-        let t634 = t545 + t322;
-        let rate_dot_1_leg4_2 = g1_vx_leg4 * t632 + g1_vy_leg4 * t634;
-        let t637 = g1_vx_leg4 * rate_dot_1_leg4_2;
-        let t638 = g1_vy_leg4 * rate_dot_1_leg4_2;
-        let t639 = g1_wz_leg4 * rate_dot_1_leg4_2;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t634 - minus_g2_vx_leg4 * t632;
-        let t650 = rate_dot_1_leg4_2 + rate_dot_2_leg4 - rate_dot_1_leg4_2;
+        let t557 = t63 - 0.1568;
+        let t558 = 1.7857142857142858 * t557;
+        let t560 = t63 * t66;
+        let t561 = 3.5714285714285716 * t560;
+        let t563 = t558 * t550 - t281 * t561;
+        let t569 = 3.5714285714285716 * (t560 * t272)
+            + 1.7857142857142858 * (t557 * rate_dot_1_leg3_2);
+        let t582 = 3.5714285714285716 * (t560 * rate_dot_1_leg3_2)
+            - 1.7857142857142858 * (t557 * t272);
+        let t586 = t561 * t550 + t281 * t558;
+        let t597 = t561 * t582 + t558 * t569;
+        let t601 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t603 = g2_vy_leg3 - g1_vy_leg3;
+        let t605 = g2_wz_leg3 - g1_wz_leg3;
+        let t610 = rate_3_leg1 - rate_2_leg3;
+        let t613 = 1.0 - g2_wz_leg3;
+        let t618 = t529 + t309;
+        let t620 = t533 + t314;
+        let rate_dot_1_leg4_2 = g1_vx_leg4 * t618 + g1_vy_leg4 * t620;
+        let t623 = g1_vx_leg4 * rate_dot_1_leg4_2;
+        let t624 = g1_vy_leg4 * rate_dot_1_leg4_2;
+        let t625 = g1_wz_leg4 * rate_dot_1_leg4_2;
+        let rate_dot_2_leg4 = g2_vy_leg4 * t620 - minus_g2_vx_leg4 * t618;
+        let t636 = rate_dot_1_leg4_2 + rate_dot_2_leg4 - rate_dot_1_leg4_2;
         let g2_wz_leg4 = t2 * g2_vy_leg4 - t6 * minus_g2_vx_leg4;
-        let t657 = t88 * t91;
-        let t658 = 3.5714285714285716 * t657;
-        let t659 = t312 * t312;
-        let t661 = t88 - 0.1568;
-        let t662 = 1.7857142857142858 * t661;
-        let t664 = t658 * t659 + t662 * t650;
-        let t668 = rate_1_leg4 * rate_1_leg4;
-        let t671 = 1.7857142857142858 * (t661 * rate_dot_1_leg4_2)
-            - 3.5714285714285716 * (t657 * t668);
-        let t682 = t658 * t650 - t662 * t659;
-        let t688 = 1.7857142857142858 * (t661 * t668)
-            + 3.5714285714285716 * (t657 * rate_dot_1_leg4_2);
-        let t699 = t658 * t688 + t662 * t671;
-        let t703 = g1_vx_leg4 + minus_g2_vx_leg4;
-        let t705 = g2_vy_leg4 - g1_vy_leg4;
-        let t707 = g2_wz_leg4 - g1_wz_leg4;
-        let t712 = rate_3_leg1 - rate_2_leg4;
-        let t715 = 1.0 - g2_wz_leg4;
-        let t720 = rate_3_leg1 * rate_3_leg1;
-        let t721 = c_phi * t720;
-        let t722 = s_phi * rate_dot_3_leg1;
-        let t724 = c_phi * rate_dot_3_leg1;
-        let t725 = s_phi * t720;
-        let t729 = c_phi * t353 - s_phi * t357;
-        let t734 = c_phi * t357 + s_phi * t353;
+        let t643 = t88 * t91;
+        let t644 = 3.5714285714285716 * t643;
+        let t646 = t88 - 0.1568;
+        let t647 = 1.7857142857142858 * t646;
+        let t649 = t307 * t644 + t647 * t636;
+        let t655 = 1.7857142857142858 * (t646 * rate_dot_1_leg4_2)
+            - 3.5714285714285716 * (t643 * t298);
+        let t666 = t644 * t636 - t307 * t647;
+        let t672 = 1.7857142857142858 * (t646 * t298)
+            + 3.5714285714285716 * (t643 * rate_dot_1_leg4_2);
+        let t683 = t644 * t672 + t647 * t655;
+        let t687 = g1_vx_leg4 + minus_g2_vx_leg4;
+        let t689 = g2_vy_leg4 - g1_vy_leg4;
+        let t691 = g2_wz_leg4 - g1_wz_leg4;
+        let t696 = rate_3_leg1 - rate_2_leg4;
+        let t699 = 1.0 - g2_wz_leg4;
+        let t704 = rate_3_leg1 * rate_3_leg1;
+        let t705 = c_phi * t704;
+        let t706 = s_phi * rate_dot_3_leg1;
+        let t708 = c_phi * rate_dot_3_leg1;
+        let t709 = s_phi * t704;
+        let t713 = c_phi * t345 - s_phi * t349;
+        let t718 = c_phi * t349 + s_phi * t345;
         Ok([
             [
-                t369, t369, g1_vx_leg1 * rate_1_leg1,
+                t361, t361, g1_vx_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1,
-                -(minus_g2_vx_leg1 * t382), g1_vx_leg1 * t396 - minus_g2_vx_leg1 * t403,
-                minus_g2_vx_leg1 * t416 - g1_vx_leg1 * t420, g1_vx_leg1 * t431, -(t435 * t225),
-                -::overact::math::signed(t435, t225), -t435, minus_g2_vx_leg1 * t444,
-                ::overact::math::signed(minus_g2_vx_leg1, t444), minus_g2_vx_leg1, t457, t457,
+                -(minus_g2_vx_leg1 * t374), g1_vx_leg1 * t387 - minus_g2_vx_leg1 * t393,
+                minus_g2_vx_leg1 * t406 - g1_vx_leg1 * t410, g1_vx_leg1 * t421, -(t425 * t225),
+                -::overact::math::signed(t425, t225), -t425, minus_g2_vx_leg1 * t434,
+                ::overact::math::signed(minus_g2_vx_leg1, t434), minus_g2_vx_leg1, t447, t447,
                 g1_vx_leg2 * rate_1_leg2, ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
-                g1_vx_leg2, -(minus_g2_vx_leg2 * t470), g1_vx_leg2 * t484 - minus_g2_vx_leg2 * t491,
-                g1_vx_leg2 * t502 - minus_g2_vx_leg2 * t508, g1_vx_leg2 * t519, -(t523 * t253),
-                -::overact::math::signed(t523, t253), -t523, minus_g2_vx_leg2 * t532,
-                ::overact::math::signed(minus_g2_vx_leg2, t532), minus_g2_vx_leg2, t549, t549,
+                g1_vx_leg2, -(minus_g2_vx_leg2 * t460), g1_vx_leg2 * t473 - minus_g2_vx_leg2 * t479,
+                g1_vx_leg2 * t490 - minus_g2_vx_leg2 * t496, g1_vx_leg2 * t507, -(t511 * t251),
+                -::overact::math::signed(t511, t251), -t511, minus_g2_vx_leg2 * t520,
+                ::overact::math::signed(minus_g2_vx_leg2, t520), minus_g2_vx_leg2, t537, t537,
                 g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                g1_vx_leg3, -(minus_g2_vx_leg3 * t562), g1_vx_leg3 * t576 - minus_g2_vx_leg3 * t583,
-                minus_g2_vx_leg3 * t596 - g1_vx_leg3 * t600, g1_vx_leg3 * t611, -(t615 * t283),
-                -::overact::math::signed(t615, t283), -t615, minus_g2_vx_leg3 * t624,
-                ::overact::math::signed(minus_g2_vx_leg3, t624), minus_g2_vx_leg3, t637, t637,
+                g1_vx_leg3, -(minus_g2_vx_leg3 * t550), g1_vx_leg3 * t563 - minus_g2_vx_leg3 * t569,
+                minus_g2_vx_leg3 * t582 - g1_vx_leg3 * t586, g1_vx_leg3 * t597, -(t601 * t279),
+                -::overact::math::signed(t601, t279), -t601, minus_g2_vx_leg3 * t610,
+                ::overact::math::signed(minus_g2_vx_leg3, t610), minus_g2_vx_leg3, t623, t623,
                 g1_vx_leg4 * rate_1_leg4, ::overact::math::signed(g1_vx_leg4, rate_1_leg4),
-                g1_vx_leg4, -(minus_g2_vx_leg4 * t650), g1_vx_leg4 * t664 - minus_g2_vx_leg4 * t671,
-                g1_vx_leg4 * t682 - minus_g2_vx_leg4 * t688, g1_vx_leg4 * t699, -(t703 * t311),
-                -::overact::math::signed(t703, t311), -t703, minus_g2_vx_leg4 * t712,
-                ::overact::math::signed(minus_g2_vx_leg4, t712), minus_g2_vx_leg4, 0.0,
-                -(t721 + t722), t725 - t724, c_phi * t734 - s_phi * t729,
+                g1_vx_leg4, -(minus_g2_vx_leg4 * t636), g1_vx_leg4 * t649 - minus_g2_vx_leg4 * t655,
+                g1_vx_leg4 * t666 - minus_g2_vx_leg4 * t672, g1_vx_leg4 * t683, -(t687 * t305),
+                -::overact::math::signed(t687, t305), -t687, minus_g2_vx_leg4 * t696,
+                ::overact::math::signed(minus_g2_vx_leg4, t696), minus_g2_vx_leg4, 0.0,
+                -(t705 + t706), t709 - t708, c_phi * t718 - s_phi * t713,
             ],
             [
-                t370, t370, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, g2_vy_leg1 * t382,
-                g1_vy_leg1 * t396 + g2_vy_leg1 * t403, -(g1_vy_leg1 * t420 + g2_vy_leg1 * t416),
-                g1_vy_leg1 * t431, t437 * t225, ::overact::math::signed(t437, t225), t437,
-                -(g2_vy_leg1 * t444), -::overact::math::signed(g2_vy_leg1, t444), -g2_vy_leg1, t458,
-                t458, g1_vy_leg2 * rate_1_leg2, ::overact::math::signed(g1_vy_leg2, rate_1_leg2),
-                g1_vy_leg2, g2_vy_leg2 * t470, g1_vy_leg2 * t484 + g2_vy_leg2 * t491,
-                g1_vy_leg2 * t502 + g2_vy_leg2 * t508, g1_vy_leg2 * t519, t525 * t253,
-                ::overact::math::signed(t525, t253), t525, -(g2_vy_leg2 * t532),
-                -::overact::math::signed(g2_vy_leg2, t532), -g2_vy_leg2, t550, t550,
+                t362, t362, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, g2_vy_leg1 * t374,
+                g1_vy_leg1 * t387 + g2_vy_leg1 * t393, -(g1_vy_leg1 * t410 + g2_vy_leg1 * t406),
+                g1_vy_leg1 * t421, t427 * t225, ::overact::math::signed(t427, t225), t427,
+                -(g2_vy_leg1 * t434), -::overact::math::signed(g2_vy_leg1, t434), -g2_vy_leg1, t448,
+                t448, g1_vy_leg2 * rate_1_leg2, ::overact::math::signed(g1_vy_leg2, rate_1_leg2),
+                g1_vy_leg2, g2_vy_leg2 * t460, g1_vy_leg2 * t473 + g2_vy_leg2 * t479,
+                g1_vy_leg2 * t490 + g2_vy_leg2 * t496, g1_vy_leg2 * t507, t513 * t251,
+                ::overact::math::signed(t513, t251), t513, -(g2_vy_leg2 * t520),
+                -::overact::math::signed(g2_vy_leg2, t520), -g2_vy_leg2, t538, t538,
                 g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
-                g1_vy_leg3, g2_vy_leg3 * t562, g1_vy_leg3 * t576 + g2_vy_leg3 * t583,
-                -(g1_vy_leg3 * t600 + g2_vy_leg3 * t596), g1_vy_leg3 * t611, t617 * t283,
-                ::overact::math::signed(t617, t283), t617, -(g2_vy_leg3 * t624),
-                -::overact::math::signed(g2_vy_leg3, t624), -g2_vy_leg3, t638, t638,
+                g1_vy_leg3, g2_vy_leg3 * t550, g1_vy_leg3 * t563 + g2_vy_leg3 * t569,
+                -(g1_vy_leg3 * t586 + g2_vy_leg3 * t582), g1_vy_leg3 * t597, t603 * t279,
+                ::overact::math::signed(t603, t279), t603, -(g2_vy_leg3 * t610),
+                -::overact::math::signed(g2_vy_leg3, t610), -g2_vy_leg3, t624, t624,
                 g1_vy_leg4 * rate_1_leg4, ::overact::math::signed(g1_vy_leg4, rate_1_leg4),
-                g1_vy_leg4, g2_vy_leg4 * t650, g1_vy_leg4 * t664 + g2_vy_leg4 * t671,
-                g1_vy_leg4 * t682 + g2_vy_leg4 * t688, g1_vy_leg4 * t699, t705 * t311,
-                ::overact::math::signed(t705, t311), t705, -(g2_vy_leg4 * t712),
-                -::overact::math::signed(g2_vy_leg4, t712), -g2_vy_leg4, 0.0, t724 - t725,
-                -(t722 + t721), s_phi * t734 + c_phi * t729,
+                g1_vy_leg4, g2_vy_leg4 * t636, g1_vy_leg4 * t649 + g2_vy_leg4 * t655,
+                g1_vy_leg4 * t666 + g2_vy_leg4 * t672, g1_vy_leg4 * t683, t689 * t305,
+                ::overact::math::signed(t689, t305), t689, -(g2_vy_leg4 * t696),
+                -::overact::math::signed(g2_vy_leg4, t696), -g2_vy_leg4, 0.0, t708 - t709,
+                -(t706 + t705), s_phi * t718 + c_phi * t713,
             ],
             [
-                -t371, -t371, -(minus_g1_wz_leg1 * rate_1_leg1),
+                -t363, -t363, -(minus_g1_wz_leg1 * rate_1_leg1),
                 -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1,
-                g2_wz_leg1 * t382, g2_wz_leg1 * t403 - minus_g1_wz_leg1 * t396,
-                minus_g1_wz_leg1 * t420 - g2_wz_leg1 * t416, -(minus_g1_wz_leg1 * t431),
-                t439 * t225, ::overact::math::signed(t439, t225), t439, t447 * t444,
-                ::overact::math::signed(t447, t444), t447, -t459, -t459,
+                g2_wz_leg1 * t374, g2_wz_leg1 * t393 - minus_g1_wz_leg1 * t387,
+                minus_g1_wz_leg1 * t410 - g2_wz_leg1 * t406, -(minus_g1_wz_leg1 * t421),
+                t429 * t225, ::overact::math::signed(t429, t225), t429, t437 * t434,
+                ::overact::math::signed(t437, t434), t437, -t449, -t449,
                 -(minus_g1_wz_leg2 * rate_1_leg2),
                 -::overact::math::signed(minus_g1_wz_leg2, rate_1_leg2), -minus_g1_wz_leg2,
-                g2_wz_leg2 * t470, g2_wz_leg2 * t491 - minus_g1_wz_leg2 * t484,
-                g2_wz_leg2 * t508 - minus_g1_wz_leg2 * t502, -(minus_g1_wz_leg2 * t519),
-                t527 * t253, ::overact::math::signed(t527, t253), t527, t535 * t532,
-                ::overact::math::signed(t535, t532), t535, t551, t551, g1_wz_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_wz_leg3, rate_1_leg3), g1_wz_leg3, g2_wz_leg3 * t562,
-                g1_wz_leg3 * t576 + g2_wz_leg3 * t583, -(g1_wz_leg3 * t600 + g2_wz_leg3 * t596),
-                g1_wz_leg3 * t611, t619 * t283, ::overact::math::signed(t619, t283), t619,
-                t627 * t624, ::overact::math::signed(t627, t624), t627, t639, t639,
+                g2_wz_leg2 * t460, g2_wz_leg2 * t479 - minus_g1_wz_leg2 * t473,
+                g2_wz_leg2 * t496 - minus_g1_wz_leg2 * t490, -(minus_g1_wz_leg2 * t507),
+                t515 * t251, ::overact::math::signed(t515, t251), t515, t523 * t520,
+                ::overact::math::signed(t523, t520), t523, t539, t539, g1_wz_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_wz_leg3, rate_1_leg3), g1_wz_leg3, g2_wz_leg3 * t550,
+                g1_wz_leg3 * t563 + g2_wz_leg3 * t569, -(g1_wz_leg3 * t586 + g2_wz_leg3 * t582),
+                g1_wz_leg3 * t597, t605 * t279, ::overact::math::signed(t605, t279), t605,
+                t613 * t610, ::overact::math::signed(t613, t610), t613, t625, t625,
                 g1_wz_leg4 * rate_1_leg4, ::overact::math::signed(g1_wz_leg4, rate_1_leg4),
-                g1_wz_leg4, g2_wz_leg4 * t650, g1_wz_leg4 * t664 + g2_wz_leg4 * t671,
-                g1_wz_leg4 * t682 + g2_wz_leg4 * t688, g1_wz_leg4 * t699, t707 * t311,
-                ::overact::math::signed(t707, t311), t707, t715 * t712,
-                ::overact::math::signed(t715, t712), t715, rate_dot_3_leg1, t729, -t734, 0.0,
+                g1_wz_leg4, g2_wz_leg4 * t636, g1_wz_leg4 * t649 + g2_wz_leg4 * t655,
+                g1_wz_leg4 * t666 + g2_wz_leg4 * t672, g1_wz_leg4 * t683, t691 * t305,
+                ::overact::math::signed(t691, t305), t691, t699 * t696,
+                ::overact::math::signed(t699, t696), t699, rate_dot_3_leg1, t713, -t718, 0.0,
             ],
         ])
     }
@@ -2421,7 +2418,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 620 operations (234 additions, 377 multiplications, 9 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 520 intermediates.
+    /// 604 operations (234 additions, 361 multiplications, 9 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 504 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2461,268 +2458,268 @@ impl DualV {
         let g1_vy_leg1 = t21 * t29;
         let t40 = twist[1] - t33;
         let rate_1_leg1 = g1_vx_leg1 * t37 + g1_vy_leg1 * t40;
+        let t43 = rate_1_leg1 * rate_1_leg1;
         let g2_vy_leg1 = t26 * t29;
         let minus_g2_vx_leg1 = t23 * t29;
         let rate_2_leg1 = g2_vy_leg1 * t40 - minus_g2_vx_leg1 * t37;
         let t50 = rate_2_leg1 - rate_1_leg1;
         let t51 = rate_1_leg1 + t50;
-        let t55 = t35 + rate_1_leg1 * (t16 * rate_1_leg1) + t51 * (t17 * t51);
+        let t52 = t51 * t51;
+        let t55 = t35 + t16 * t43 + t17 * t52;
         let t57 = t2 * acceleration[2];
         let t59 = twist[2] * t36;
         let t60 = acceleration[1] - t57 - t59;
-        let t66 = t60 + rate_1_leg1 * (t20 * rate_1_leg1) + t51 * (t21 * t51);
-        let rate_dot_1_leg1 = g1_vx_leg1 * t55 + g1_vy_leg1 * t66;
-        let t70 = t3 + 0.3950502153918333;
-        let t72 = t70 * t70 + t10;
-        let t74 = 0.0784 / t72 - 0.25;
-        ::overact::guard::reach(t74, "leg2")?;
-        let t75 = ::overact::math::sqrt(t74);
-        let t77 = t18 + t70 * t75;
-        let t78 = t8 - t77;
-        let t81 = 0.5 * t70 - t8 * t75;
-        let t82 = t70 - t81;
-        let t84 = t81 + t82 - t82;
-        let t87 = t78 - (t77 + t78);
-        let t89 = t78 * t84 + t82 * t87;
-        ::overact::guard::leg(t89, 0.078399138102973, "leg2")?;
-        let t90 = 1.0 / t89;
-        let g1_vy_leg2 = t78 * t90;
-        let g1_vx_leg2 = t82 * t90;
+        let t64 = t60 + t20 * t43 + t21 * t52;
+        let rate_dot_1_leg1 = g1_vx_leg1 * t55 + g1_vy_leg1 * t64;
+        let t68 = t3 + 0.3950502153918333;
+        let t70 = t68 * t68 + t10;
+        let t72 = 0.0784 / t70 - 0.25;
+        ::overact::guard::reach(t72, "leg2")?;
+        let t73 = ::overact::math::sqrt(t72);
+        let t75 = t18 + t68 * t73;
+        let t76 = t8 - t75;
+        let t79 = 0.5 * t68 - t8 * t73;
+        let t80 = t68 - t79;
+        let t82 = t79 + t80 - t80;
+        let t85 = t76 - (t75 + t76);
+        let t87 = t76 * t82 + t80 * t85;
+        ::overact::guard::leg(t87, 0.078399138102973, "leg2")?;
+        let t88 = 1.0 / t87;
+        let g1_vy_leg2 = t76 * t88;
+        let g1_vx_leg2 = t80 * t88;
         let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t6 * g1_vx_leg2;
-        let t97 = pose[1] - t6 + 0.10970563941232059;
-        let t98 = 0.5 * t97;
-        let t99 = pose[0] + t2;
-        let t100 = t99 + 0.3950502153918333;
-        let t102 = t97 * t97;
-        let t103 = t100 * t100 + t102;
-        let t105 = 0.0784 / t103 - 0.25;
-        ::overact::guard::reach(t105, "leg3")?;
-        let t106 = ::overact::math::sqrt(t105);
-        let t108 = t98 - t100 * t106;
-        let t109 = t97 - t108;
-        let t112 = 0.5 * t100 + t97 * t106;
-        let t113 = t100 - t112;
-        let t115 = t112 + t113 - t113;
-        let t118 = t109 - (t108 + t109);
-        let t120 = t109 * t115 + t113 * t118;
-        ::overact::guard::leg(t120, 0.078399138102973, "leg3")?;
-        let t121 = 1.0 / t120;
-        let g1_vy_leg3 = t109 * t121;
-        let g1_vx_leg3 = t113 * t121;
+        let t95 = pose[1] - t6 + 0.10970563941232059;
+        let t96 = 0.5 * t95;
+        let t97 = pose[0] + t2;
+        let t98 = t97 + 0.3950502153918333;
+        let t100 = t95 * t95;
+        let t101 = t98 * t98 + t100;
+        let t103 = 0.0784 / t101 - 0.25;
+        ::overact::guard::reach(t103, "leg3")?;
+        let t104 = ::overact::math::sqrt(t103);
+        let t106 = t96 - t98 * t104;
+        let t107 = t95 - t106;
+        let t110 = 0.5 * t98 + t95 * t104;
+        let t111 = t98 - t110;
+        let t113 = t110 + t111 - t111;
+        let t116 = t107 - (t106 + t107);
+        let t118 = t107 * t113 + t111 * t116;
+        ::overact::guard::leg(t118, 0.078399138102973, "leg3")?;
+        let t119 = 1.0 / t118;
+        let g1_vy_leg3 = t107 * t119;
+        let g1_vx_leg3 = t111 * t119;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let t135 = g1_vy_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vy_leg2;
-        let t139 = g1_vx_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vx_leg2;
-        let t144 = g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2;
-        let t146 = g1_vx_leg3 * t135 - g1_vy_leg3 * t139 + g1_wz_leg3 * t144;
-        ::overact::guard::platform(t146, 7.075383197258382, "kept actuators")?;
-        ::overact::guard::platform(t146, 7.075383197258382, "kept actuators")?;
-        ::overact::guard::platform(t146, 7.075383197258382, "kept actuators")?;
-        let t147 = 1.0 / t146;
-        let t148 = (minus_g1_wz_leg2 * g1_vy_leg3 + g1_vy_leg2 * g1_wz_leg3) * t147;
-        let t153 = (minus_g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * g1_wz_leg3) * t147;
+        let t133 = g1_vy_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vy_leg2;
+        let t137 = g1_vx_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vx_leg2;
+        let t142 = g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2;
+        let t144 = g1_vx_leg3 * t133 - g1_vy_leg3 * t137 + g1_wz_leg3 * t142;
+        ::overact::guard::platform(t144, 7.075383197258382, "kept actuators")?;
+        ::overact::guard::platform(t144, 7.075383197258382, "kept actuators")?;
+        ::overact::guard::platform(t144, 7.075383197258382, "kept actuators")?;
+        let t145 = 1.0 / t144;
+        let t146 = (minus_g1_wz_leg2 * g1_vy_leg3 + g1_vy_leg2 * g1_wz_leg3) * t145;
+        let t151 = (minus_g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * g1_wz_leg3) * t145;
         let g2_wz_leg1 = t6 * minus_g2_vx_leg1 - t2 * g2_vy_leg1;
-        let t162 = (g1_vy_leg2 * g1_vx_leg3 - g1_vx_leg2 * g1_vy_leg3) * t147;
-        let t164 = minus_g2_vx_leg1 * t148 + g2_vy_leg1 * t153 + g2_wz_leg1 * t162;
-        let rate_dot_2_leg1 = g2_vy_leg1 * t66 - minus_g2_vx_leg1 * t55;
-        let t169 = rate_dot_1_leg1 + rate_dot_2_leg1 - rate_dot_1_leg1;
-        let t174 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t147;
-        let t179 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t147;
-        let t185 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t147;
-        let t187 = minus_g2_vx_leg1 * t174 + g2_vy_leg1 * t179 + g2_wz_leg1 * t185;
-        let t189 = t11 - 0.1568;
-        let t190 = 1.7857142857142858 * t189;
-        let t192 = t11 * t14;
-        let t193 = 3.5714285714285716 * t192;
-        let t194 = t51 * t51;
-        let t197 = rate_1_leg1 * rate_1_leg1;
-        let t202 = 3.5714285714285716 * (t192 * t197)
-            + 1.7857142857142858 * (t189 * rate_dot_1_leg1);
-        let t213 = 3.5714285714285716 * (t192 * rate_dot_1_leg1)
-            - 1.7857142857142858 * (t189 * t197);
-        let t220 = t164 - 1.0;
-        let t225 = twist[2] - rate_2_leg1;
-        let t226 = t162 - t164;
-        let t228 = t187 - t185;
-        let t230 = t144 * t147;
+        let t160 = (g1_vy_leg2 * g1_vx_leg3 - g1_vx_leg2 * g1_vy_leg3) * t145;
+        let t162 = minus_g2_vx_leg1 * t146 + g2_vy_leg1 * t151 + g2_wz_leg1 * t160;
+        let rate_dot_2_leg1 = g2_vy_leg1 * t64 - minus_g2_vx_leg1 * t55;
+        let t167 = rate_dot_1_leg1 + rate_dot_2_leg1 - rate_dot_1_leg1;
+        let t172 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t145;
+        let t177 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t145;
+        let t183 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t145;
+        let t185 = minus_g2_vx_leg1 * t172 + g2_vy_leg1 * t177 + g2_wz_leg1 * t183;
+        let t187 = t11 - 0.1568;
+        let t188 = 1.7857142857142858 * t187;
+        let t190 = t11 * t14;
+        let t191 = 3.5714285714285716 * t190;
+        let t198 = 3.5714285714285716 * (t190 * t43)
+            + 1.7857142857142858 * (t187 * rate_dot_1_leg1);
+        let t209 = 3.5714285714285716 * (t190 * rate_dot_1_leg1)
+            - 1.7857142857142858 * (t187 * t43);
+        let t216 = t162 - 1.0;
+        let t221 = twist[2] - rate_2_leg1;
+        let t222 = t160 - t162;
+        let t224 = t185 - t183;
+        let t226 = t142 * t145;
         let rate_1_leg2 = g1_vx_leg2 * t37 + g1_vy_leg2 * t40;
-        let g2_vy_leg2 = t87 * t90;
-        let minus_g2_vx_leg2 = t84 * t90;
+        let t234 = rate_1_leg2 * rate_1_leg2;
+        let g2_vy_leg2 = t85 * t88;
+        let minus_g2_vx_leg2 = t82 * t88;
         let rate_2_leg2 = g2_vy_leg2 * t40 - minus_g2_vx_leg2 * t37;
-        let t245 = rate_2_leg2 - rate_1_leg2;
-        let t246 = rate_1_leg2 + t245;
-        let t250 = t35 + rate_1_leg2 * (t81 * rate_1_leg2) + t246 * (t82 * t246);
-        let t257 = t60 + rate_1_leg2 * (t77 * rate_1_leg2) + t246 * (t78 * t246);
-        let rate_dot_1_leg2 = g1_vx_leg2 * t250 + g1_vy_leg2 * t257;
+        let t241 = rate_2_leg2 - rate_1_leg2;
+        let t242 = rate_1_leg2 + t241;
+        let t243 = t242 * t242;
+        let t246 = t35 + t79 * t234 + t80 * t243;
+        let t251 = t60 + t75 * t234 + t76 * t243;
+        let rate_dot_1_leg2 = g1_vx_leg2 * t246 + g1_vy_leg2 * t251;
         let g2_wz_leg2 = t6 * minus_g2_vx_leg2 - t2 * g2_vy_leg2;
-        let t268 = minus_g2_vx_leg2 * t148 + g2_vy_leg2 * t153 + g2_wz_leg2 * t162;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t257 - minus_g2_vx_leg2 * t250;
-        let t273 = rate_dot_1_leg2 + rate_dot_2_leg2 - rate_dot_1_leg2;
-        let t279 = minus_g2_vx_leg2 * t174 + g2_vy_leg2 * t179 + g2_wz_leg2 * t185;
-        let t281 = t72 - 0.1568;
-        let t284 = t72 * t75;
-        let t285 = rate_1_leg2 * rate_1_leg2;
-        let t288 = 1.7857142857142858 * (t281 * rate_dot_1_leg2)
-            - 3.5714285714285716 * (t284 * t285);
-        let t290 = 3.5714285714285716 * t284;
-        let t291 = t246 * t246;
-        let t293 = 1.7857142857142858 * t281;
-        let t302 = 1.7857142857142858 * (t281 * t285)
-            + 3.5714285714285716 * (t284 * rate_dot_1_leg2);
-        let t313 = 1.0 + t279;
-        let t317 = twist[2] - rate_2_leg2;
-        let t318 = t162 - t268;
-        let t320 = t279 - t185;
-        let t327 = acceleration[0] + t31 - t34;
-        let t328 = twist[0] + t36;
-        let t330 = twist[1] + t33;
-        let rate_1_leg3 = g1_vx_leg3 * t328 + g1_vy_leg3 * t330;
-        let g2_vy_leg3 = t118 * t121;
-        let minus_g2_vx_leg3 = t115 * t121;
-        let rate_2_leg3 = g2_vy_leg3 * t330 - minus_g2_vx_leg3 * t328;
-        let t340 = rate_2_leg3 - rate_1_leg3;
-        let t341 = rate_1_leg3 + t340;
-        let t345 = t327 + rate_1_leg3 * (t112 * rate_1_leg3) + t341 * (t113 * t341);
-        let t348 = acceleration[1] + t57 + t59;
-        let t354 = t348 + rate_1_leg3 * (t108 * rate_1_leg3) + t341 * (t109 * t341);
-        let rate_dot_1_leg3 = g1_vx_leg3 * t345 + g1_vy_leg3 * t354;
+        let t262 = minus_g2_vx_leg2 * t146 + g2_vy_leg2 * t151 + g2_wz_leg2 * t160;
+        let rate_dot_2_leg2 = g2_vy_leg2 * t251 - minus_g2_vx_leg2 * t246;
+        let t267 = rate_dot_1_leg2 + rate_dot_2_leg2 - rate_dot_1_leg2;
+        let t273 = minus_g2_vx_leg2 * t172 + g2_vy_leg2 * t177 + g2_wz_leg2 * t183;
+        let t275 = t70 - 0.1568;
+        let t278 = t70 * t73;
+        let t281 = 1.7857142857142858 * (t275 * rate_dot_1_leg2)
+            - 3.5714285714285716 * (t278 * t234);
+        let t283 = 3.5714285714285716 * t278;
+        let t285 = 1.7857142857142858 * t275;
+        let t294 = 1.7857142857142858 * (t275 * t234)
+            + 3.5714285714285716 * (t278 * rate_dot_1_leg2);
+        let t305 = 1.0 + t273;
+        let t309 = twist[2] - rate_2_leg2;
+        let t310 = t160 - t262;
+        let t312 = t273 - t183;
+        let t319 = acceleration[0] + t31 - t34;
+        let t320 = twist[0] + t36;
+        let t322 = twist[1] + t33;
+        let rate_1_leg3 = g1_vx_leg3 * t320 + g1_vy_leg3 * t322;
+        let t325 = rate_1_leg3 * rate_1_leg3;
+        let g2_vy_leg3 = t116 * t119;
+        let minus_g2_vx_leg3 = t113 * t119;
+        let rate_2_leg3 = g2_vy_leg3 * t322 - minus_g2_vx_leg3 * t320;
+        let t332 = rate_2_leg3 - rate_1_leg3;
+        let t333 = rate_1_leg3 + t332;
+        let t334 = t333 * t333;
+        let t337 = t319 + t110 * t325 + t111 * t334;
+        let t340 = acceleration[1] + t57 + t59;
+        let t344 = t340 + t106 * t325 + t107 * t334;
+        let rate_dot_1_leg3 = g1_vx_leg3 * t337 + g1_vy_leg3 * t344;
         let g2_wz_leg3 = t2 * g2_vy_leg3 - t6 * minus_g2_vx_leg3;
-        let t365 = minus_g2_vx_leg3 * t148 + g2_vy_leg3 * t153 + g2_wz_leg3 * t162;
-        let rate_dot_2_leg3 = g2_vy_leg3 * t354 - minus_g2_vx_leg3 * t345;
-        let t370 = rate_dot_1_leg3 + rate_dot_2_leg3 - rate_dot_1_leg3;
-        let t376 = minus_g2_vx_leg3 * t174 + g2_vy_leg3 * t179 + g2_wz_leg3 * t185;
-        let t379 = t135 * t147;
-        let t381 = t139 * t147;
-        let t384 = g2_wz_leg3 * t230 - (minus_g2_vx_leg3 * t379 + g2_vy_leg3 * t381);
-        let t386 = t103 * t106;
-        let t387 = rate_1_leg3 * rate_1_leg3;
-        let t390 = t103 - 0.1568;
-        let t393 = 3.5714285714285716 * (t386 * t387)
-            + 1.7857142857142858 * (t390 * rate_dot_1_leg3);
-        let t396 = 1.7857142857142858 * t390;
-        let t398 = 3.5714285714285716 * t386;
-        let t399 = t341 * t341;
-        let t408 = 3.5714285714285716 * (t386 * rate_dot_1_leg3)
-            - 1.7857142857142858 * (t390 * t387);
-        let t421 = t384 - 1.0;
-        let t426 = twist[2] - rate_2_leg3;
-        let t427 = t162 - t365;
-        let t429 = t376 - t185;
-        let t431 = t230 - t384;
-        let t436 = t99 - 0.3950502153918333;
-        let t438 = t436 * t436 + t102;
-        let t440 = 0.0784 / t438 - 0.25;
-        ::overact::guard::reach(t440, "leg4")?;
-        let t441 = ::overact::math::sqrt(t440);
-        let t443 = t98 + t436 * t441;
-        let t444 = t97 - t443;
-        let t447 = 0.5 * t436 - t97 * t441;
-        let t448 = t436 - t447;
-        let t450 = t447 + t448 - t448;
-        let t453 = t444 - (t443 + t444);
-        let t455 = t444 * t450 + t448 * t453;
-        ::overact::guard::leg(t455, 0.078399138102973, "leg4")?;
-        let t456 = 1.0 / t455;
-        let g1_vy_leg4 = t444 * t456;
-        let g1_vx_leg4 = t448 * t456;
+        let t355 = minus_g2_vx_leg3 * t146 + g2_vy_leg3 * t151 + g2_wz_leg3 * t160;
+        let rate_dot_2_leg3 = g2_vy_leg3 * t344 - minus_g2_vx_leg3 * t337;
+        let t360 = rate_dot_1_leg3 + rate_dot_2_leg3 - rate_dot_1_leg3;
+        let t366 = minus_g2_vx_leg3 * t172 + g2_vy_leg3 * t177 + g2_wz_leg3 * t183;
+        let t369 = t133 * t145;
+        let t371 = t137 * t145;
+        let t374 = g2_wz_leg3 * t226 - (minus_g2_vx_leg3 * t369 + g2_vy_leg3 * t371);
+        let t376 = t101 * t104;
+        let t379 = t101 - 0.1568;
+        let t382 = 3.5714285714285716 * (t376 * t325)
+            + 1.7857142857142858 * (t379 * rate_dot_1_leg3);
+        let t385 = 1.7857142857142858 * t379;
+        let t387 = 3.5714285714285716 * t376;
+        let t396 = 3.5714285714285716 * (t376 * rate_dot_1_leg3)
+            - 1.7857142857142858 * (t379 * t325);
+        let t409 = t374 - 1.0;
+        let t414 = twist[2] - rate_2_leg3;
+        let t415 = t160 - t355;
+        let t417 = t366 - t183;
+        let t419 = t226 - t374;
+        let t424 = t97 - 0.3950502153918333;
+        let t426 = t424 * t424 + t100;
+        let t428 = 0.0784 / t426 - 0.25;
+        ::overact::guard::reach(t428, "leg4")?;
+        let t429 = ::overact::math::sqrt(t428);
+        let t431 = t96 + t424 * t429;
+        let t432 = t95 - t431;
+        let t435 = 0.5 * t424 - t95 * t429;
+        let t436 = t424 - t435;
+        let t438 = t435 + t436 - t436;
+        let t441 = t432 - (t431 + t432);
+        let t443 = t432 * t438 + t436 * t441;
+        ::overact::guard::leg(t443, 0.078399138102973, "leg4")?;
+        let t444 = 1.0 / t443;
+        let g1_vy_leg4 = t432 * t444;
+        let g1_vx_leg4 = t436 * t444;
         let g1_wz_leg4 = t2 * g1_vy_leg4 + t6 * g1_vx_leg4;
-        let t466 = g1_vy_leg4 * t153 - g1_vx_leg4 * t148 + g1_wz_leg4 * t162;
-        let rate_1_leg4 = g1_vx_leg4 * t328 + g1_vy_leg4 * t330;
-        let g2_vy_leg4 = t453 * t456;
-        let minus_g2_vx_leg4 = t450 * t456;
-        let rate_2_leg4 = g2_vy_leg4 * t330 - minus_g2_vx_leg4 * t328;
-        let t477 = rate_2_leg4 - rate_1_leg4;
-        let t478 = rate_1_leg4 + t477;
-        let t482 = t327 + rate_1_leg4 * (t447 * rate_1_leg4) + t478 * (t448 * t478);
-        let t489 = t348 + rate_1_leg4 * (t443 * rate_1_leg4) + t478 * (t444 * t478);
-        let rate_dot_1_leg4 = g1_vx_leg4 * t482 + g1_vy_leg4 * t489;
-        let t492 = t466 * rate_dot_1_leg4;
-        let t497 = g1_vx_leg4 * t174 - g1_vy_leg4 * t179 - g1_wz_leg4 * t185;
-        let t498 = t497 * rate_dot_1_leg4;
-        let t503 = g1_vx_leg4 * t379 - g1_vy_leg4 * t381 + g1_wz_leg4 * t230;
-        let t504 = t503 * rate_dot_1_leg4;
+        let t454 = g1_vy_leg4 * t151 - g1_vx_leg4 * t146 + g1_wz_leg4 * t160;
+        let rate_1_leg4 = g1_vx_leg4 * t320 + g1_vy_leg4 * t322;
+        let t458 = rate_1_leg4 * rate_1_leg4;
+        let g2_vy_leg4 = t441 * t444;
+        let minus_g2_vx_leg4 = t438 * t444;
+        let rate_2_leg4 = g2_vy_leg4 * t322 - minus_g2_vx_leg4 * t320;
+        let t465 = rate_2_leg4 - rate_1_leg4;
+        let t466 = rate_1_leg4 + t465;
+        let t467 = t466 * t466;
+        let t470 = t319 + t435 * t458 + t436 * t467;
+        let t475 = t340 + t431 * t458 + t432 * t467;
+        let rate_dot_1_leg4 = g1_vx_leg4 * t470 + g1_vy_leg4 * t475;
+        let t478 = t454 * rate_dot_1_leg4;
+        let t483 = g1_vx_leg4 * t172 - g1_vy_leg4 * t177 - g1_wz_leg4 * t183;
+        let t484 = t483 * rate_dot_1_leg4;
+        let t489 = g1_vx_leg4 * t369 - g1_vy_leg4 * t371 + g1_wz_leg4 * t226;
+        let t490 = t489 * rate_dot_1_leg4;
         let g2_wz_leg4 = t2 * g2_vy_leg4 - t6 * minus_g2_vx_leg4;
-        let t518 = minus_g2_vx_leg4 * t148 + g2_vy_leg4 * t153 + g2_wz_leg4 * t162;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t489 - minus_g2_vx_leg4 * t482;
-        let t523 = rate_dot_1_leg4 + rate_dot_2_leg4 - rate_dot_1_leg4;
-        let t529 = minus_g2_vx_leg4 * t174 + g2_vy_leg4 * t179 + g2_wz_leg4 * t185;
-        let t535 = g2_wz_leg4 * t230 - (minus_g2_vx_leg4 * t379 + g2_vy_leg4 * t381);
-        let t537 = t438 * t441;
-        let t538 = 3.5714285714285716 * t537;
-        let t539 = t478 * t478;
-        let t541 = t438 - 0.1568;
-        let t542 = 1.7857142857142858 * t541;
-        let t544 = t538 * t539 + t523 * t542;
-        let t548 = rate_1_leg4 * rate_1_leg4;
-        let t551 = 1.7857142857142858 * (t541 * rate_dot_1_leg4)
-            - 3.5714285714285716 * (t537 * t548);
-        let t562 = t523 * t538 - t542 * t539;
-        let t568 = 1.7857142857142858 * (t541 * t548)
-            + 3.5714285714285716 * (t537 * rate_dot_1_leg4);
-        let t579 = t568 * t538 + t551 * t542;
-        let t583 = t518 - t466;
-        let t585 = t497 + t529;
-        let t587 = t535 - t503;
-        let t592 = twist[2] - rate_2_leg4;
-        let t593 = t162 - t518;
-        let t595 = t529 - t185;
-        let t597 = t230 - t535;
-        let t606 = 9.090909090909092 * (t59 + t57);
-        let t609 = 9.090909090909092 * (t31 - t34);
-        let t614 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t632 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t504 = minus_g2_vx_leg4 * t146 + g2_vy_leg4 * t151 + g2_wz_leg4 * t160;
+        let rate_dot_2_leg4 = g2_vy_leg4 * t475 - minus_g2_vx_leg4 * t470;
+        let t509 = rate_dot_1_leg4 + rate_dot_2_leg4 - rate_dot_1_leg4;
+        let t515 = minus_g2_vx_leg4 * t172 + g2_vy_leg4 * t177 + g2_wz_leg4 * t183;
+        let t521 = g2_wz_leg4 * t226 - (minus_g2_vx_leg4 * t369 + g2_vy_leg4 * t371);
+        let t523 = t426 * t429;
+        let t524 = 3.5714285714285716 * t523;
+        let t526 = t426 - 0.1568;
+        let t527 = 1.7857142857142858 * t526;
+        let t529 = t467 * t524 + t509 * t527;
+        let t535 = 1.7857142857142858 * (t526 * rate_dot_1_leg4)
+            - 3.5714285714285716 * (t523 * t458);
+        let t546 = t509 * t524 - t467 * t527;
+        let t552 = 1.7857142857142858 * (t526 * t458)
+            + 3.5714285714285716 * (t523 * rate_dot_1_leg4);
+        let t563 = t552 * t524 + t535 * t527;
+        let t567 = t504 - t454;
+        let t569 = t483 + t515;
+        let t571 = t521 - t489;
+        let t576 = twist[2] - rate_2_leg4;
+        let t577 = t160 - t504;
+        let t579 = t515 - t183;
+        let t581 = t226 - t521;
+        let t590 = 9.090909090909092 * (t59 + t57);
+        let t593 = 9.090909090909092 * (t31 - t34);
+        let t598 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t616 = c_phi * acceleration[0] + s_phi * acceleration[1];
         Ok([
             [
                 rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
-                1.0, t164 * t169, t169 * t190 - t193 * t194 + t164 * t202,
-                -(t169 * t193 + t190 * t194 + t164 * t213), t213 * t193 + t202 * t190, t50 * t220,
-                ::overact::math::signed(t220, t50), t220, t225 * t226,
-                ::overact::math::signed(t226, t225), t226, 0.0, 0.0, 0.0, 0.0, 0.0, t268 * t273,
-                t268 * t288, t268 * t302, 0.0, t268 * t245, ::overact::math::signed(t268, t245),
-                t268, t317 * t318, ::overact::math::signed(t318, t317), t318, 0.0, 0.0, 0.0, 0.0,
-                0.0, t365 * t370, t365 * t393, -(t365 * t408), 0.0, t365 * t340,
-                ::overact::math::signed(t365, t340), t365, t426 * t427,
-                ::overact::math::signed(t427, t426), t427, t492, t492, t466 * rate_1_leg4,
-                ::overact::math::signed(t466, rate_1_leg4), t466, t518 * t523,
-                t466 * t544 + t518 * t551, t466 * t562 + t518 * t568, t466 * t579, t477 * t583,
-                ::overact::math::signed(t583, t477), t583, t592 * t593,
-                ::overact::math::signed(t593, t592), t593, t162 * acceleration[2],
-                t148 * t606 + t153 * t609 + t162 * t614, t148 * t609 - t153 * t606 - t162 * t632,
-                t153 * acceleration[1] - t148 * acceleration[0],
+                1.0, t162 * t167, t167 * t188 - t52 * t191 + t162 * t198,
+                -(t167 * t191 + t52 * t188 + t162 * t209), t209 * t191 + t198 * t188, t50 * t216,
+                ::overact::math::signed(t216, t50), t216, t221 * t222,
+                ::overact::math::signed(t222, t221), t222, 0.0, 0.0, 0.0, 0.0, 0.0, t262 * t267,
+                t262 * t281, t262 * t294, 0.0, t262 * t241, ::overact::math::signed(t262, t241),
+                t262, t309 * t310, ::overact::math::signed(t310, t309), t310, 0.0, 0.0, 0.0, 0.0,
+                0.0, t355 * t360, t355 * t382, -(t355 * t396), 0.0, t355 * t332,
+                ::overact::math::signed(t355, t332), t355, t414 * t415,
+                ::overact::math::signed(t415, t414), t415, t478, t478, t454 * rate_1_leg4,
+                ::overact::math::signed(t454, rate_1_leg4), t454, t504 * t509,
+                t454 * t529 + t504 * t535, t454 * t546 + t504 * t552, t454 * t563, t465 * t567,
+                ::overact::math::signed(t567, t465), t567, t576 * t577,
+                ::overact::math::signed(t577, t576), t577, t160 * acceleration[2],
+                t146 * t590 + t151 * t593 + t160 * t598, t146 * t593 - t151 * t590 - t160 * t616,
+                t151 * acceleration[1] - t146 * acceleration[0],
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -(t187 * t169), -(t187 * t202), t187 * t213, 0.0,
-                -(t187 * t50), -::overact::math::signed(t187, t50), -t187, t225 * t228,
-                ::overact::math::signed(t228, t225), t228, rate_dot_1_leg2, rate_dot_1_leg2,
-                rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0, -(t279 * t273),
-                t290 * t291 + t273 * t293 - t279 * t288, t273 * t290 - t293 * t291 - t279 * t302,
-                t302 * t290 + t288 * t293, -(t245 * t313), -::overact::math::signed(t313, t245),
-                -t313, t317 * t320, ::overact::math::signed(t320, t317), t320, 0.0, 0.0, 0.0, 0.0,
-                0.0, -(t376 * t370), -(t376 * t393), t376 * t408, 0.0, -(t376 * t340),
-                -::overact::math::signed(t376, t340), -t376, t426 * t429,
-                ::overact::math::signed(t429, t426), t429, t498, t498, t497 * rate_1_leg4,
-                ::overact::math::signed(t497, rate_1_leg4), t497, -(t529 * t523),
-                t497 * t544 - t529 * t551, t497 * t562 - t529 * t568, t497 * t579, -(t477 * t585),
-                -::overact::math::signed(t585, t477), -t585, t592 * t595,
-                ::overact::math::signed(t595, t592), t595, -(t185 * acceleration[2]),
-                -(t174 * t606 + t179 * t609 + t185 * t614), t179 * t606 - t174 * t609 + t185 * t632,
-                t174 * acceleration[0] - t179 * acceleration[1],
+                0.0, 0.0, 0.0, 0.0, 0.0, -(t185 * t167), -(t185 * t198), t185 * t209, 0.0,
+                -(t185 * t50), -::overact::math::signed(t185, t50), -t185, t221 * t224,
+                ::overact::math::signed(t224, t221), t224, rate_dot_1_leg2, rate_dot_1_leg2,
+                rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0, -(t273 * t267),
+                t243 * t283 + t267 * t285 - t273 * t281, t267 * t283 - t243 * t285 - t273 * t294,
+                t294 * t283 + t281 * t285, -(t241 * t305), -::overact::math::signed(t305, t241),
+                -t305, t309 * t312, ::overact::math::signed(t312, t309), t312, 0.0, 0.0, 0.0, 0.0,
+                0.0, -(t366 * t360), -(t366 * t382), t366 * t396, 0.0, -(t366 * t332),
+                -::overact::math::signed(t366, t332), -t366, t414 * t417,
+                ::overact::math::signed(t417, t414), t417, t484, t484, t483 * rate_1_leg4,
+                ::overact::math::signed(t483, rate_1_leg4), t483, -(t515 * t509),
+                t483 * t529 - t515 * t535, t483 * t546 - t515 * t552, t483 * t563, -(t465 * t569),
+                -::overact::math::signed(t569, t465), -t569, t576 * t579,
+                ::overact::math::signed(t579, t576), t579, -(t183 * acceleration[2]),
+                -(t172 * t590 + t177 * t593 + t183 * t598), t177 * t590 - t172 * t593 + t183 * t616,
+                t172 * acceleration[0] - t177 * acceleration[1],
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t230 * t225,
-                ::overact::math::signed(t230, t225), t230, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, t230 * t317, ::overact::math::signed(t230, t317), t230,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t226 * t221,
+                ::overact::math::signed(t226, t221), t226, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, t226 * t309, ::overact::math::signed(t226, t309), t226,
                 rate_dot_1_leg3, rate_dot_1_leg3, rate_1_leg3, ::overact::math::sign(rate_1_leg3),
-                1.0, t384 * t370, t370 * t396 - t398 * t399 + t384 * t393,
-                -(t370 * t398 + t396 * t399 + t384 * t408), t408 * t398 + t393 * t396, t340 * t421,
-                ::overact::math::signed(t421, t340), t421, t426 * t431,
-                ::overact::math::signed(t431, t426), t431, t504, t504, t503 * rate_1_leg4,
-                ::overact::math::signed(t503, rate_1_leg4), t503, t535 * t523,
-                t503 * t544 + t535 * t551, t503 * t562 + t535 * t568, t503 * t579, t477 * t587,
-                ::overact::math::signed(t587, t477), t587, t592 * t597,
-                ::overact::math::signed(t597, t592), t597, t230 * acceleration[2],
-                t230 * t614 - (t379 * t606 + t381 * t609), t381 * t606 - t379 * t609 - t230 * t632,
-                t379 * acceleration[0] - t381 * acceleration[1],
+                1.0, t374 * t360, t360 * t385 - t334 * t387 + t374 * t382,
+                -(t360 * t387 + t334 * t385 + t374 * t396), t396 * t387 + t382 * t385, t332 * t409,
+                ::overact::math::signed(t409, t332), t409, t414 * t419,
+                ::overact::math::signed(t419, t414), t419, t490, t490, t489 * rate_1_leg4,
+                ::overact::math::signed(t489, rate_1_leg4), t489, t521 * t509,
+                t489 * t529 + t521 * t535, t489 * t546 + t521 * t552, t489 * t563, t465 * t571,
+                ::overact::math::signed(t571, t465), t571, t576 * t581,
+                ::overact::math::signed(t581, t576), t581, t226 * acceleration[2],
+                t226 * t598 - (t369 * t590 + t371 * t593), t371 * t590 - t369 * t593 - t226 * t616,
+                t369 * acceleration[0] - t371 * acceleration[1],
             ],
         ])
     }
@@ -2737,7 +2734,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 531 operations (163 additions, 363 multiplications, 5 divisions), 0 square roots, 9 trigonometric pairs, 28 signs, 443 intermediates.
+    /// 471 operations (165 additions, 301 multiplications, 5 divisions), 0 square roots, 9 trigonometric pairs, 28 signs, 383 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2747,256 +2744,252 @@ impl DualV {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 64]; 3], ::overact::Error> {
-        let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(joints[0]);
         let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
+        ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
+        let t2 = 3.5714285714285716 / s2_leg1;
+        let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(joints[0]);
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
-        let t10 = 3.5714285714285716 / s2_leg1;
-        let g1_vx_leg1 = c12_leg1 * t10;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t14 = 0.11 * c_phi;
-        let t15 = t14 * acceleration[2];
-        let t17 = 0.11 * s_phi;
-        let t18 = t17 * twist[2];
-        let t19 = twist[2] * t18;
-        let t20 = acceleration[0] - t15 + t19;
-        let t21 = t14 * twist[2];
-        let t22 = twist[0] - t21;
-        let g1_vy_leg1 = s12_leg1 * t10;
-        let t25 = twist[1] - t18;
-        let rate_1_leg1 = g1_vx_leg1 * t22 + g1_vy_leg1 * t25;
-        let minus_g2_vx_leg1 = c1_leg1 * t10;
-        let minus_g2_vy_leg1 = s1_leg1 * t10;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t22 + minus_g2_vy_leg1 * t25;
-        let t40 = t20 + rate_1_leg1 * (0.28 * c1_leg1 * rate_1_leg1)
-            + minus_rate_2_leg1 * (0.28 * c12_leg1 * minus_rate_2_leg1);
-        let t42 = t17 * acceleration[2];
-        let t44 = twist[2] * t21;
-        let t45 = acceleration[1] - t42 - t44;
-        let t53 = t45 + rate_1_leg1 * (0.28 * s1_leg1 * rate_1_leg1)
-            + minus_rate_2_leg1 * (0.28 * s12_leg1 * minus_rate_2_leg1);
-        let rate_dot_1_leg1 = g1_vx_leg1 * t40 + g1_vy_leg1 * t53;
+        let t13 = 0.11 * c_phi;
+        let t14 = t13 * acceleration[2];
+        let t16 = 0.11 * s_phi;
+        let t17 = t16 * twist[2];
+        let t18 = twist[2] * t17;
+        let t19 = acceleration[0] - t14 + t18;
+        let t21 = t16 * acceleration[2];
+        let t23 = t13 * twist[2];
+        let t24 = twist[2] * t23;
+        let t25 = acceleration[1] - t21 - t24;
+        let minus_g2_vx_leg1 = c1_leg1 * t2;
+        let t29 = twist[0] - t23;
+        let minus_g2_vy_leg1 = s1_leg1 * t2;
+        let t32 = twist[1] - t17;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t29 + minus_g2_vy_leg1 * t32;
+        let t35 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t37 = c12_leg1 * t19 + s12_leg1 * t25 + 0.28 * t35;
+        let g1_vx_leg1 = c12_leg1 * t2;
+        let g1_vy_leg1 = s12_leg1 * t2;
+        let rate_1_leg1 = g1_vx_leg1 * t29 + g1_vy_leg1 * t32;
+        let t43 = rate_1_leg1 * rate_1_leg1;
+        let t44 = 0.28 * c2_leg1;
+        let rate_dot_1_leg1 = t2 * (t37 + t43 * t44);
         let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(joints[3]);
         let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
+        ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let t67 = 3.5714285714285716 / s2_leg2;
-        let g1_vx_leg2 = c12_leg2 * t67;
+        let t59 = 3.5714285714285716 / s2_leg2;
+        let g1_vx_leg2 = c12_leg2 * t59;
         let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(joints[6]);
         let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
+        ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let t79 = 3.5714285714285716 / s2_leg3;
-        let g1_vy_leg3 = s12_leg3 * t79;
-        let g1_vx_leg3 = c12_leg3 * t79;
-        let g1_wz_leg3 = t17 * g1_vy_leg3 + t14 * g1_vx_leg3;
-        let g1_vy_leg2 = s12_leg2 * t67;
-        let minus_g1_wz_leg2 = t17 * g1_vy_leg2 + t14 * g1_vx_leg2;
-        let minus_g1_wz_leg1 = g1_vy_leg1 * t17 + g1_vx_leg1 * t14;
-        let t97 = minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3;
-        let t101 = minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
-        let t106 = g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3;
-        let t108 = g1_vy_leg2 * t97 - g1_vx_leg2 * t101 - minus_g1_wz_leg2 * t106;
-        ::overact::guard::platform(t108, 7.075383197161306, "kept actuators")?;
-        ::overact::guard::platform(t108, 7.075383197161306, "kept actuators")?;
-        ::overact::guard::platform(t108, 7.075383197161306, "kept actuators")?;
-        let t109 = 1.0 / t108;
-        let t110 = (g1_vx_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vx_leg3) * t109;
-        let t115 = (g1_vy_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vy_leg3) * t109;
-        let g2_wz_leg1 = minus_g2_vy_leg1 * t17 + minus_g2_vx_leg1 * t14;
-        let t124 = (g1_vx_leg2 * g1_vy_leg3 - g1_vy_leg2 * g1_vx_leg3) * t109;
-        let t126 = minus_g2_vy_leg1 * t110 - minus_g2_vx_leg1 * t115 + g2_wz_leg1 * t124;
-        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * t40 + minus_g2_vy_leg1 * t53;
-        let t131 = t101 * t109;
-        let t133 = t97 * t109;
-        let t136 = t106 * t109;
-        let t138 = minus_g2_vx_leg1 * t131 - minus_g2_vy_leg1 * t133 + g2_wz_leg1 * t136;
-        let t141 = 0.28 * (rate_1_leg1 * rate_1_leg1);
-        let t143 = 0.28 * rate_dot_1_leg1;
-        let t145 = s2_leg1 * t141 + c2_leg1 * t143;
-        let t147 = 0.28 * s2_leg1;
-        let t148 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t150 = 0.28 * c2_leg1;
-        let t160 = s2_leg1 * t143 - c2_leg1 * t141;
-        let t165 = rate_1_leg1 + minus_rate_2_leg1;
-        let t166 = t126 - 1.0;
-        let t171 = minus_rate_2_leg1 + twist[2];
-        let t172 = t124 - t126;
-        let t174 = t136 - t138;
-        let t179 = (g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2) * t109;
-        let rate_1_leg2 = g1_vx_leg2 * t22 + g1_vy_leg2 * t25;
-        let minus_g2_vx_leg2 = c1_leg2 * t67;
-        let minus_g2_vy_leg2 = s1_leg2 * t67;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t22 + minus_g2_vy_leg2 * t25;
-        let t199 = t20 + rate_1_leg2 * (0.28 * c1_leg2 * rate_1_leg2)
-            + minus_rate_2_leg2 * (0.28 * c12_leg2 * minus_rate_2_leg2);
-        let t208 = t45 + rate_1_leg2 * (0.28 * s1_leg2 * rate_1_leg2)
-            + minus_rate_2_leg2 * (0.28 * s12_leg2 * minus_rate_2_leg2);
-        let rate_dot_1_leg2 = g1_vx_leg2 * t199 + g1_vy_leg2 * t208;
-        let g2_wz_leg2 = t17 * minus_g2_vy_leg2 + t14 * minus_g2_vx_leg2;
-        let t219 = minus_g2_vy_leg2 * t110 - minus_g2_vx_leg2 * t115 + g2_wz_leg2 * t124;
-        let minus_rate_dot_2_leg2 = minus_g2_vx_leg2 * t199 + minus_g2_vy_leg2 * t208;
-        let t228 = minus_g2_vx_leg2 * t131 - minus_g2_vy_leg2 * t133 + g2_wz_leg2 * t136;
-        let t231 = 0.28 * (rate_1_leg2 * rate_1_leg2);
-        let t233 = 0.28 * rate_dot_1_leg2;
-        let t235 = s2_leg2 * t231 + c2_leg2 * t233;
-        let t238 = 0.28 * s2_leg2;
-        let t239 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t241 = 0.28 * c2_leg2;
-        let t247 = s2_leg2 * t233 - c2_leg2 * t231;
-        let t255 = rate_1_leg2 + minus_rate_2_leg2;
-        let t257 = t228 - 1.0;
-        let t261 = minus_rate_2_leg2 + twist[2];
-        let t262 = t124 - t219;
-        let t264 = t136 - t228;
-        let t271 = acceleration[0] + t15 - t19;
-        let t272 = twist[0] + t21;
-        let t274 = twist[1] + t18;
-        let rate_1_leg3 = g1_vx_leg3 * t272 + g1_vy_leg3 * t274;
-        let minus_g2_vx_leg3 = c1_leg3 * t79;
-        let minus_g2_vy_leg3 = s1_leg3 * t79;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t272 + minus_g2_vy_leg3 * t274;
-        let t289 = t271 + rate_1_leg3 * (0.28 * c1_leg3 * rate_1_leg3)
-            + minus_rate_2_leg3 * (0.28 * c12_leg3 * minus_rate_2_leg3);
-        let t292 = acceleration[1] + t42 + t44;
-        let t300 = t292 + rate_1_leg3 * (0.28 * s1_leg3 * rate_1_leg3)
-            + minus_rate_2_leg3 * (0.28 * s12_leg3 * minus_rate_2_leg3);
-        let rate_dot_1_leg3 = g1_vx_leg3 * t289 + g1_vy_leg3 * t300;
-        let minus_g2_wz_leg3 = t17 * minus_g2_vy_leg3 + t14 * minus_g2_vx_leg3;
-        let t311 = minus_g2_vy_leg3 * t110 - minus_g2_vx_leg3 * t115
-            - minus_g2_wz_leg3 * t124;
-        let minus_rate_dot_2_leg3 = minus_g2_vx_leg3 * t289 + minus_g2_vy_leg3 * t300;
-        let t320 = minus_g2_vx_leg3 * t131 - minus_g2_vy_leg3 * t133
-            - minus_g2_wz_leg3 * t136;
-        let t325 = (g1_vy_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vy_leg2)
-            * t109;
-        let t330 = (g1_vx_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vx_leg2)
-            * t109;
-        let t333 = 2.0 * (minus_g2_vx_leg3 * t325 - minus_g2_vy_leg3 * t330);
-        let t336 = 0.28 * (rate_1_leg3 * rate_1_leg3);
-        let t338 = 0.28 * rate_dot_1_leg3;
-        let t340 = s2_leg3 * t336 + c2_leg3 * t338;
-        let t344 = 0.28 * s2_leg3;
-        let t345 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t347 = 0.28 * c2_leg3;
-        let t353 = s2_leg3 * t338 - c2_leg3 * t336;
-        let t362 = rate_1_leg3 + minus_rate_2_leg3;
-        let t365 = t333 - 1.0;
-        let t370 = minus_rate_2_leg3 + twist[2];
-        let t371 = t124 - t311;
-        let t373 = t136 - t320;
-        let t375 = t333 + t179;
+        let t71 = 3.5714285714285716 / s2_leg3;
+        let g1_vy_leg3 = s12_leg3 * t71;
+        let g1_vx_leg3 = c12_leg3 * t71;
+        let g1_wz_leg3 = t16 * g1_vy_leg3 + t13 * g1_vx_leg3;
+        let g1_vy_leg2 = s12_leg2 * t59;
+        let minus_g1_wz_leg2 = t16 * g1_vy_leg2 + t13 * g1_vx_leg2;
+        let minus_g1_wz_leg1 = g1_vy_leg1 * t16 + g1_vx_leg1 * t13;
+        let t89 = minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3;
+        let t93 = minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
+        let t98 = g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3;
+        let t100 = g1_vy_leg2 * t89 - g1_vx_leg2 * t93 - minus_g1_wz_leg2 * t98;
+        ::overact::guard::platform(t100, 7.075383197161306, "kept actuators")?;
+        ::overact::guard::platform(t100, 7.075383197161306, "kept actuators")?;
+        ::overact::guard::platform(t100, 7.075383197161306, "kept actuators")?;
+        let t101 = 1.0 / t100;
+        let t102 = (g1_vx_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vx_leg3) * t101;
+        let t107 = (g1_vy_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vy_leg3) * t101;
+        let g2_wz_leg1 = minus_g2_vy_leg1 * t16 + minus_g2_vx_leg1 * t13;
+        let t116 = (g1_vx_leg2 * g1_vy_leg3 - g1_vy_leg2 * g1_vx_leg3) * t101;
+        let t118 = minus_g2_vy_leg1 * t102 - minus_g2_vx_leg1 * t107 + g2_wz_leg1 * t116;
+        let t123 = c1_leg1 * t19 + s1_leg1 * t25 + 0.28 * t43;
+        let minus_rate_dot_2_leg1 = t2 * (t123 + t35 * t44);
+        let t127 = t118 * minus_rate_dot_2_leg1;
+        let t128 = t93 * t101;
+        let t130 = t89 * t101;
+        let t133 = t98 * t101;
+        let t135 = minus_g2_vx_leg1 * t128 - minus_g2_vy_leg1 * t130 + g2_wz_leg1 * t133;
+        let t136 = t135 * minus_rate_dot_2_leg1;
+        let t137 = t116 * acceleration[2];
+        let t139 = 9.090909090909092 * (t24 + t21);
+        let t142 = 9.090909090909092 * (t14 - t18);
+        let t147 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t149 = t102 * t139 - t107 * t142 - t116 * t147;
+        let t150 = 9.090909090909092 * t149;
+        let t154 = t107 * acceleration[0] - t102 * acceleration[1];
+        let t155 = 82.64462809917356 * t154;
+        let t157 = 0.04321428571428571 * (t137 + t150 + t155);
+        let t161 = t133 * acceleration[2];
+        let t166 = t128 * t142 - t130 * t139 - t133 * t147;
+        let t167 = 9.090909090909092 * t166;
+        let t171 = t130 * acceleration[1] - t128 * acceleration[0];
+        let t172 = 82.64462809917356 * t171;
+        let t174 = 0.04321428571428571 * (t161 + t167 + t172);
+        let t181 = rate_1_leg1 + minus_rate_2_leg1;
+        let t182 = t118 - 1.0;
+        let t187 = minus_rate_2_leg1 + twist[2];
+        let t188 = t116 - t118;
+        let t190 = t133 - t135;
+        let t195 = (g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2) * t101;
+        let minus_g2_vx_leg2 = c1_leg2 * t59;
+        let minus_g2_vy_leg2 = s1_leg2 * t59;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t29 + minus_g2_vy_leg2 * t32;
+        let t208 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t210 = c12_leg2 * t19 + s12_leg2 * t25 + 0.28 * t208;
+        let rate_1_leg2 = g1_vx_leg2 * t29 + g1_vy_leg2 * t32;
+        let t214 = rate_1_leg2 * rate_1_leg2;
+        let t215 = 0.28 * c2_leg2;
+        let rate_dot_1_leg2 = t59 * (t210 + t214 * t215);
+        let g2_wz_leg2 = t16 * minus_g2_vy_leg2 + t13 * minus_g2_vx_leg2;
+        let t227 = minus_g2_vy_leg2 * t102 - minus_g2_vx_leg2 * t107 + g2_wz_leg2 * t116;
+        let t232 = c1_leg2 * t19 + s1_leg2 * t25 + 0.28 * t214;
+        let minus_rate_dot_2_leg2 = t59 * (t232 + t208 * t215);
+        let t236 = t227 * minus_rate_dot_2_leg2;
+        let t241 = minus_g2_vx_leg2 * t128 - minus_g2_vy_leg2 * t130 + g2_wz_leg2 * t133;
+        let t242 = t241 * minus_rate_dot_2_leg2;
+        let t252 = rate_1_leg2 + minus_rate_2_leg2;
+        let t254 = t241 - 1.0;
+        let t258 = minus_rate_2_leg2 + twist[2];
+        let t259 = t116 - t227;
+        let t261 = t133 - t241;
+        let t268 = acceleration[0] + t14 - t18;
+        let t271 = acceleration[1] + t21 + t24;
+        let minus_g2_vx_leg3 = c1_leg3 * t71;
+        let t275 = twist[0] + t23;
+        let minus_g2_vy_leg3 = s1_leg3 * t71;
+        let t278 = twist[1] + t17;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t275 + minus_g2_vy_leg3 * t278;
+        let t281 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t283 = c12_leg3 * t268 + s12_leg3 * t271 + 0.28 * t281;
+        let rate_1_leg3 = g1_vx_leg3 * t275 + g1_vy_leg3 * t278;
+        let t287 = rate_1_leg3 * rate_1_leg3;
+        let t288 = 0.28 * c2_leg3;
+        let rate_dot_1_leg3 = t71 * (t283 + t287 * t288);
+        let minus_g2_wz_leg3 = t16 * minus_g2_vy_leg3 + t13 * minus_g2_vx_leg3;
+        let t300 = minus_g2_vy_leg3 * t102 - minus_g2_vx_leg3 * t107
+            - minus_g2_wz_leg3 * t116;
+        let t305 = c1_leg3 * t268 + s1_leg3 * t271 + 0.28 * t287;
+        let minus_rate_dot_2_leg3 = t71 * (t305 + t281 * t288);
+        let t309 = t300 * minus_rate_dot_2_leg3;
+        let t314 = minus_g2_vx_leg3 * t128 - minus_g2_vy_leg3 * t130
+            - minus_g2_wz_leg3 * t133;
+        let t315 = t314 * minus_rate_dot_2_leg3;
+        let t319 = (g1_vy_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vy_leg2)
+            * t101;
+        let t324 = (g1_vx_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vx_leg2)
+            * t101;
+        let t327 = 2.0 * (minus_g2_vx_leg3 * t319 - minus_g2_vy_leg3 * t324);
+        let t328 = t327 * minus_rate_dot_2_leg3;
+        let t331 = 0.04321428571428571 * (t137 - t150 + t155);
+        let t336 = 0.04321428571428571 * (t161 - t167 + t172);
+        let t339 = t195 * acceleration[2];
+        let t341 = t195 * t147;
+        let t342 = 0.11 * t339 + t341;
+        let t343 = 0.7857142857142857 * t342;
+        let t352 = rate_1_leg3 + minus_rate_2_leg3;
+        let t355 = t327 - 1.0;
+        let t360 = minus_rate_2_leg3 + twist[2];
+        let t361 = t116 - t300;
+        let t363 = t133 - t314;
+        let t365 = t327 + t195;
         let (s1_leg4, c1_leg4) = ::overact::math::sin_cos(joints[9]);
         let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
+        ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
         let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
-        let t390 = 3.5714285714285716 / s2_leg4;
-        let g1_vx_leg4 = c12_leg4 * t390;
-        let g1_vy_leg4 = s12_leg4 * t390;
-        let g1_wz_leg4 = t17 * g1_vy_leg4 + t14 * g1_vx_leg4;
-        let t400 = g1_vx_leg4 * t115 - g1_vy_leg4 * t110 + g1_wz_leg4 * t124;
-        let rate_1_leg4 = g1_vx_leg4 * t272 + g1_vy_leg4 * t274;
-        let minus_g2_vx_leg4 = c1_leg4 * t390;
-        let minus_g2_vy_leg4 = s1_leg4 * t390;
-        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t272 + minus_g2_vy_leg4 * t274;
-        let t416 = t271 + rate_1_leg4 * (0.28 * c1_leg4 * rate_1_leg4)
-            + minus_rate_2_leg4 * (0.28 * c12_leg4 * minus_rate_2_leg4);
-        let t425 = t292 + rate_1_leg4 * (0.28 * s1_leg4 * rate_1_leg4)
-            + minus_rate_2_leg4 * (0.28 * s12_leg4 * minus_rate_2_leg4);
-        let rate_dot_1_leg4 = g1_vx_leg4 * t416 + g1_vy_leg4 * t425;
-        let t428 = t400 * rate_dot_1_leg4;
-        let t433 = g1_vy_leg4 * t133 - g1_vx_leg4 * t131 + g1_wz_leg4 * t136;
-        let t434 = t433 * rate_dot_1_leg4;
-        let t437 = g1_vy_leg4 * t330 - g1_vx_leg4 * t325;
-        let t438 = 2.0 * t437;
-        let t439 = t438 * rate_dot_1_leg4;
-        let minus_g2_wz_leg4 = t17 * minus_g2_vy_leg4 + t14 * minus_g2_vx_leg4;
-        let t453 = minus_g2_vy_leg4 * t110 - minus_g2_vx_leg4 * t115
-            - minus_g2_wz_leg4 * t124;
-        let minus_rate_dot_2_leg4 = minus_g2_vx_leg4 * t416 + minus_g2_vy_leg4 * t425;
-        let t462 = minus_g2_vx_leg4 * t131 - minus_g2_vy_leg4 * t133
-            - minus_g2_wz_leg4 * t136;
-        let t466 = minus_g2_vx_leg4 * t325 - minus_g2_vy_leg4 * t330;
-        let t467 = 2.0 * t466;
-        let t470 = 0.28 * (rate_1_leg4 * rate_1_leg4);
-        let t472 = 0.28 * rate_dot_1_leg4;
-        let t474 = s2_leg4 * t470 + c2_leg4 * t472;
-        let t476 = 0.28 * s2_leg4;
-        let t477 = minus_rate_2_leg4 * minus_rate_2_leg4;
-        let t479 = 0.28 * c2_leg4;
-        let t481 = t476 * t477 + minus_rate_dot_2_leg4 * t479;
-        let t492 = minus_rate_dot_2_leg4 * t476 - t479 * t477;
-        let t496 = s2_leg4 * t472 - c2_leg4 * t470;
-        let t508 = rate_1_leg4 + minus_rate_2_leg4;
-        let t509 = t453 - t400;
-        let t511 = t462 - t433;
-        let t514 = 2.0 * (t466 - t437);
-        let t519 = minus_rate_2_leg4 + twist[2];
-        let t520 = t124 - t453;
-        let t522 = t136 - t462;
-        let t524 = t467 + t179;
-        let t531 = t179 * acceleration[2];
-        let t534 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t537 = 9.090909090909092 * (t44 + t42);
-        let t540 = 9.090909090909092 * (t15 - t19);
-        let t559 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t568 = t179 * t559;
+        let t380 = 3.5714285714285716 / s2_leg4;
+        let g1_vx_leg4 = c12_leg4 * t380;
+        let g1_vy_leg4 = s12_leg4 * t380;
+        let g1_wz_leg4 = t16 * g1_vy_leg4 + t13 * g1_vx_leg4;
+        let t390 = g1_vx_leg4 * t107 - g1_vy_leg4 * t102 + g1_wz_leg4 * t116;
+        let minus_g2_vx_leg4 = c1_leg4 * t380;
+        let minus_g2_vy_leg4 = s1_leg4 * t380;
+        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t275 + minus_g2_vy_leg4 * t278;
+        let t399 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let t401 = c12_leg4 * t268 + s12_leg4 * t271 + 0.28 * t399;
+        let rate_1_leg4 = g1_vx_leg4 * t275 + g1_vy_leg4 * t278;
+        let t405 = rate_1_leg4 * rate_1_leg4;
+        let t406 = 0.28 * c2_leg4;
+        let rate_dot_1_leg4 = t380 * (t401 + t405 * t406);
+        let t410 = t390 * rate_dot_1_leg4;
+        let t415 = g1_vy_leg4 * t130 - g1_vx_leg4 * t128 + g1_wz_leg4 * t133;
+        let t416 = t415 * rate_dot_1_leg4;
+        let t419 = g1_vy_leg4 * t324 - g1_vx_leg4 * t319;
+        let t420 = 2.0 * t419;
+        let t421 = t420 * rate_dot_1_leg4;
+        let minus_g2_wz_leg4 = t16 * minus_g2_vy_leg4 + t13 * minus_g2_vx_leg4;
+        let t435 = minus_g2_vy_leg4 * t102 - minus_g2_vx_leg4 * t107
+            - minus_g2_wz_leg4 * t116;
+        let t440 = c1_leg4 * t268 + s1_leg4 * t271 + 0.28 * t405;
+        let minus_rate_dot_2_leg4 = t380 * (t440 + t399 * t406);
+        let t444 = t435 * minus_rate_dot_2_leg4;
+        let t449 = minus_g2_vx_leg4 * t128 - minus_g2_vy_leg4 * t130
+            - minus_g2_wz_leg4 * t133;
+        let t450 = t449 * minus_rate_dot_2_leg4;
+        let t453 = minus_g2_vx_leg4 * t319 - minus_g2_vy_leg4 * t324;
+        let t454 = 2.0 * t453;
+        let t455 = t454 * minus_rate_dot_2_leg4;
+        let t477 = rate_1_leg4 + minus_rate_2_leg4;
+        let t478 = t435 - t390;
+        let t480 = t449 - t415;
+        let t483 = 2.0 * (t453 - t419);
+        let t488 = minus_rate_2_leg4 + twist[2];
+        let t489 = t116 - t435;
+        let t491 = t133 - t449;
+        let t493 = t454 + t195;
+        let t500 = c_phi * acceleration[1] - s_phi * acceleration[0];
         Ok([
             [
                 rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
-                1.0, -(t126 * minus_rate_dot_2_leg1),
-                t126 * t145 - (t147 * t148 + minus_rate_dot_2_leg1 * t150),
-                minus_rate_dot_2_leg1 * t147 - t150 * t148 - t126 * t160, 0.0784 * rate_dot_1_leg1,
-                -(t165 * t166), -::overact::math::signed(t166, t165), t166, t171 * t172,
-                ::overact::math::signed(t172, t171), t172, 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t219 * minus_rate_dot_2_leg2), t219 * t235, -(t219 * t247), 0.0, -(t219 * t255),
-                -::overact::math::signed(t219, t255), t219, t261 * t262,
-                ::overact::math::signed(t262, t261), t262, 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t311 * minus_rate_dot_2_leg3), t311 * t340, -(t311 * t353), 0.0, -(t311 * t362),
-                -::overact::math::signed(t311, t362), t311, t370 * t371,
-                ::overact::math::signed(t371, t370), t371, t428, t428, t400 * rate_1_leg4,
-                ::overact::math::signed(t400, rate_1_leg4), t400, -(t453 * minus_rate_dot_2_leg4),
-                t453 * t474 - t400 * t481, t400 * t492 - t453 * t496, 0.0784 * t428, -(t508 * t509),
-                -::overact::math::signed(t509, t508), t509, t519 * t520,
-                ::overact::math::signed(t520, t519), t520, t124 * acceleration[2],
-                t124 * t534 - (t115 * t537 + t110 * t540), t110 * t537 - t115 * t540 - t124 * t559,
-                t115 * acceleration[0] - t110 * acceleration[1],
+                1.0, -t127, t157 - 0.28 * (rate_dot_1_leg1 - t127), t123 - t118 * t37,
+                0.0784 * rate_dot_1_leg1, -(t181 * t182), -::overact::math::signed(t182, t181),
+                t182, t187 * t188, ::overact::math::signed(t188, t187), t188, 0.0, 0.0, 0.0, 0.0,
+                0.0, -t236, t157 + 0.28 * t236, -(t227 * t210), 0.0, -(t227 * t252),
+                -::overact::math::signed(t227, t252), t227, t258 * t259,
+                ::overact::math::signed(t259, t258), t259, 0.0, 0.0, 0.0, 0.0, 0.0, -t309,
+                t331 + 0.28 * t309, -(t300 * t283), 0.0, -(t300 * t352),
+                -::overact::math::signed(t300, t352), t300, t360 * t361,
+                ::overact::math::signed(t361, t360), t361, t410, t410, t390 * rate_1_leg4,
+                ::overact::math::signed(t390, rate_1_leg4), t390, -t444,
+                t331 - 0.28 * (t410 - t444), t390 * t440 - t435 * t401, 0.0784 * t410,
+                -(t477 * t478), -::overact::math::signed(t478, t477), t478, t488 * t489,
+                ::overact::math::signed(t489, t488), t489, t137,
+                t116 * t500 - (t107 * t139 + t102 * t142), t149, t154,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -(t138 * minus_rate_dot_2_leg1), t138 * t145,
-                -(t138 * t160), 0.0, -(t138 * t165), -::overact::math::signed(t138, t165), t138,
-                t171 * t174, ::overact::math::signed(t174, t171), t174, rate_dot_1_leg2,
-                rate_dot_1_leg2, rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0,
-                -(t228 * minus_rate_dot_2_leg2),
-                t228 * t235 - (t238 * t239 + minus_rate_dot_2_leg2 * t241),
-                minus_rate_dot_2_leg2 * t238 - t241 * t239 - t228 * t247, 0.0784 * rate_dot_1_leg2,
-                -(t255 * t257), -::overact::math::signed(t257, t255), t257, t261 * t264,
-                ::overact::math::signed(t264, t261), t264, 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t320 * minus_rate_dot_2_leg3), t320 * t340, -(t320 * t353), 0.0, -(t320 * t362),
-                -::overact::math::signed(t320, t362), t320, t370 * t373,
-                ::overact::math::signed(t373, t370), t373, t434, t434, t433 * rate_1_leg4,
-                ::overact::math::signed(t433, rate_1_leg4), t433, -(t462 * minus_rate_dot_2_leg4),
-                t462 * t474 - t433 * t481, t433 * t492 - t462 * t496, 0.0784 * t434, -(t508 * t511),
-                -::overact::math::signed(t511, t508), t511, t519 * t522,
-                ::overact::math::signed(t522, t519), t522, t136 * acceleration[2],
-                t131 * t537 + t133 * t540 + t136 * t534, t131 * t540 - t133 * t537 - t136 * t559,
-                t133 * acceleration[1] - t131 * acceleration[0],
+                0.0, 0.0, 0.0, 0.0, 0.0, -t136, t174 + 0.28 * t136, -(t135 * t37), 0.0,
+                -(t135 * t181), -::overact::math::signed(t135, t181), t135, t187 * t190,
+                ::overact::math::signed(t190, t187), t190, rate_dot_1_leg2, rate_dot_1_leg2,
+                rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0, -t242,
+                t174 - 0.28 * (rate_dot_1_leg2 - t242), t232 - t241 * t210,
+                0.0784 * rate_dot_1_leg2, -(t252 * t254), -::overact::math::signed(t254, t252),
+                t254, t258 * t261, ::overact::math::signed(t261, t258), t261, 0.0, 0.0, 0.0, 0.0,
+                0.0, -t315, t336 + 0.28 * t315, -(t314 * t283), 0.0, -(t314 * t352),
+                -::overact::math::signed(t314, t352), t314, t360 * t363,
+                ::overact::math::signed(t363, t360), t363, t416, t416, t415 * rate_1_leg4,
+                ::overact::math::signed(t415, rate_1_leg4), t415, -t450,
+                t336 - 0.28 * (t416 - t450), t415 * t440 - t449 * t401, 0.0784 * t416,
+                -(t477 * t480), -::overact::math::signed(t480, t477), t480, t488 * t491,
+                ::overact::math::signed(t491, t488), t491, t161,
+                t128 * t139 + t130 * t142 + t133 * t500, t166, t171,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t179 * t171),
-                -::overact::math::signed(t179, t171), -t179, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, -(t179 * t261), -::overact::math::signed(t179, t261), -t179,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t195 * t187),
+                -::overact::math::signed(t195, t187), -t195, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, -(t195 * t258), -::overact::math::signed(t195, t258), -t195,
                 rate_dot_1_leg3, rate_dot_1_leg3, rate_1_leg3, ::overact::math::sign(rate_1_leg3),
-                1.0, -(t333 * minus_rate_dot_2_leg3),
-                t333 * t340 - (t344 * t345 + minus_rate_dot_2_leg3 * t347),
-                minus_rate_dot_2_leg3 * t344 - t347 * t345 - t333 * t353, 0.0784 * rate_dot_1_leg3,
-                -(t362 * t365), -::overact::math::signed(t365, t362), t365, -(t370 * t375),
-                -::overact::math::signed(t375, t370), -t375, t439, t439, t438 * rate_1_leg4,
-                ::overact::math::signed(t438, rate_1_leg4), t438, -(t467 * minus_rate_dot_2_leg4),
-                t467 * t474 - t438 * t481, t438 * t492 - t467 * t496, 0.0784 * t439, -(t508 * t514),
-                -::overact::math::signed(t514, t508), t514, -(t519 * t524),
-                -::overact::math::signed(t524, t519), -t524, -t531,
-                t325 * t537 + t330 * t540 - t179 * t534, 0.11 * t531 + t568, -(0.11 * t568),
+                1.0, -t328, -(t343 + 0.28 * (rate_dot_1_leg3 - t328)), t305 - t327 * t283,
+                0.0784 * rate_dot_1_leg3, -(t352 * t355), -::overact::math::signed(t355, t352),
+                t355, -(t360 * t365), -::overact::math::signed(t365, t360), -t365, t421, t421,
+                t420 * rate_1_leg4, ::overact::math::signed(t420, rate_1_leg4), t420, -t455,
+                -(t343 + 0.28 * (t421 - t455)), t420 * t440 - t454 * t401, 0.0784 * t421,
+                -(t477 * t483), -::overact::math::signed(t483, t477), t483, -(t488 * t493),
+                -::overact::math::signed(t493, t488), -t493, -t339,
+                t319 * t139 + t324 * t142 - t195 * t500, t342, -(0.11 * t341),
             ],
         ])
     }
@@ -3009,7 +3002,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 783 operations (306 additions, 465 multiplications, 12 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 683 intermediates.
+    /// 767 operations (306 additions, 449 multiplications, 12 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 667 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3108,8 +3101,8 @@ impl DualV {
             - (g1_vx_leg1 * minus_g1_wz_leg1 + g1_vx_leg2 * minus_g1_wz_leg2)
             + g1_vx_leg4 * g1_wz_leg4;
         let t140 = t139 * t109;
-        let t156 = g1_vy_leg1 * g1_vx_leg1 + g1_vy_leg2 * g1_vx_leg2
-            + g1_vy_leg3 * g1_vx_leg3 + g1_vy_leg4 * g1_vx_leg4;
+        let t156 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
         let t158 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
             + g1_vy_leg4 * g1_wz_leg4 - t156 * t140;
@@ -3145,249 +3138,249 @@ impl DualV {
         let t213 = t211 - t212;
         let t215 = t207 - t202;
         let rate_1_leg1 = g1_vx_leg1 * t213 + g1_vy_leg1 * t215;
+        let t218 = rate_1_leg1 * rate_1_leg1;
         let g2_vy_leg1 = t26 * t29;
         let minus_g2_vx_leg1 = t23 * t29;
         let rate_2_leg1 = g2_vy_leg1 * t215 - minus_g2_vx_leg1 * t213;
         let t225 = rate_2_leg1 - rate_1_leg1;
         let t226 = rate_1_leg1 + t225;
-        let t229 = rate_1_leg1 * (t16 * rate_1_leg1) + t226 * (t17 * t226);
-        let t236 = rate_1_leg1 * (t20 * rate_1_leg1) + t226 * (t21 * t226);
-        let t237 = rate_3_leg1 * t212;
-        let rate_dot_1_leg1 = g1_vx_leg1 * (t203 + t229) + g1_vy_leg1 * (t236 - t237);
-        let t241 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let t227 = t226 * t226;
+        let t229 = t16 * t218 + t17 * t227;
+        let t234 = t20 * t218 + t21 * t227;
+        let t235 = rate_3_leg1 * t212;
+        let rate_dot_1_leg1 = g1_vx_leg1 * (t203 + t229) + g1_vy_leg1 * (t234 - t235);
+        let t239 = actuator_accelerations[0] - rate_dot_1_leg1;
         let rate_1_leg2 = g1_vx_leg2 * t213 + g1_vy_leg2 * t215;
+        let t244 = rate_1_leg2 * rate_1_leg2;
         let g2_vy_leg2 = t49 * t52;
         let minus_g2_vx_leg2 = t46 * t52;
         let rate_2_leg2 = g2_vy_leg2 * t215 - minus_g2_vx_leg2 * t213;
-        let t253 = rate_2_leg2 - rate_1_leg2;
-        let t254 = rate_1_leg2 + t253;
-        let t257 = rate_1_leg2 * (t40 * rate_1_leg2) + t254 * (t41 * t254);
-        let t264 = rate_1_leg2 * (t43 * rate_1_leg2) + t254 * (t44 * t254);
-        let rate_dot_1_leg2 = g1_vx_leg2 * (t203 + t257) + g1_vy_leg2 * (t264 - t237);
-        let t268 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let t271 = t211 + t212;
-        let t273 = t207 + t202;
-        let rate_1_leg3 = g1_vx_leg3 * t271 + g1_vy_leg3 * t273;
+        let t251 = rate_2_leg2 - rate_1_leg2;
+        let t252 = rate_1_leg2 + t251;
+        let t253 = t252 * t252;
+        let t255 = t40 * t244 + t41 * t253;
+        let t260 = t43 * t244 + t44 * t253;
+        let rate_dot_1_leg2 = g1_vx_leg2 * (t203 + t255) + g1_vy_leg2 * (t260 - t235);
+        let t264 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let t267 = t211 + t212;
+        let t269 = t207 + t202;
+        let rate_1_leg3 = g1_vx_leg3 * t267 + g1_vy_leg3 * t269;
+        let t272 = rate_1_leg3 * rate_1_leg3;
         let g2_vy_leg3 = t78 * t81;
         let minus_g2_vx_leg3 = t75 * t81;
-        let rate_2_leg3 = g2_vy_leg3 * t273 - minus_g2_vx_leg3 * t271;
-        let t283 = rate_2_leg3 - rate_1_leg3;
-        let t284 = rate_1_leg3 + t283;
-        let t287 = rate_1_leg3 * (t68 * rate_1_leg3) + t284 * (t69 * t284);
-        let t294 = rate_1_leg3 * (t72 * rate_1_leg3) + t284 * (t73 * t284);
-        let rate_dot_1_leg3 = g1_vx_leg3 * (t287 - t203) + g1_vy_leg3 * (t237 + t294);
-        let t298 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let rate_1_leg4 = g1_vx_leg4 * t271 + g1_vy_leg4 * t273;
+        let rate_2_leg3 = g2_vy_leg3 * t269 - minus_g2_vx_leg3 * t267;
+        let t279 = rate_2_leg3 - rate_1_leg3;
+        let t280 = rate_1_leg3 + t279;
+        let t281 = t280 * t280;
+        let t283 = t68 * t272 + t69 * t281;
+        let t288 = t72 * t272 + t73 * t281;
+        let rate_dot_1_leg3 = g1_vx_leg3 * (t283 - t203) + g1_vy_leg3 * (t235 + t288);
+        let t292 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let rate_1_leg4 = g1_vx_leg4 * t267 + g1_vy_leg4 * t269;
+        let t298 = rate_1_leg4 * rate_1_leg4;
         let g2_vy_leg4 = t102 * t105;
         let minus_g2_vx_leg4 = t99 * t105;
-        let rate_2_leg4 = g2_vy_leg4 * t273 - minus_g2_vx_leg4 * t271;
-        let t311 = rate_2_leg4 - rate_1_leg4;
-        let t312 = rate_1_leg4 + t311;
-        let t315 = rate_1_leg4 * (t93 * rate_1_leg4) + t312 * (t94 * t312);
-        let t322 = rate_1_leg4 * (t96 * rate_1_leg4) + t312 * (t97 * t312);
-        let rate_dot_1_leg4 = g1_vx_leg4 * (t315 - t203) + g1_vy_leg4 * (t237 + t322);
-        let t326 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t328 = g1_vx_leg1 * t241 + g1_vx_leg2 * t268 + g1_vx_leg3 * t298
-            + g1_vx_leg4 * t326;
-        let t338 = g1_vy_leg1 * t241 + g1_vy_leg2 * t268 + g1_vy_leg3 * t298
-            + g1_vy_leg4 * t326 - t166 * t328;
-        let t350 = g1_wz_leg3 * t298
-            - (minus_g1_wz_leg1 * t241 + minus_g1_wz_leg2 * t268) + g1_wz_leg4 * t326
-            - t140 * t328 - t170 * t338;
-        let rate_dot_3_leg1 = t173 * t350;
-        let t353 = t169 * t338 - t170 * rate_dot_3_leg1;
-        let t357 = t109 * t328 - t166 * t353 - t140 * rate_dot_3_leg1;
-        let t358 = t6 * rate_dot_3_leg1;
-        let t360 = t357 - t358 + t203;
-        let t361 = t360 + t229;
-        let t363 = t2 * rate_dot_3_leg1;
-        let t365 = t353 - t363 - t237;
-        let t366 = t365 + t236;
-        let rate_dot_1_leg1_2 = g1_vx_leg1 * t361 + g1_vy_leg1 * t366;
-        let t375 = g1_vy_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vy_leg2;
-        let t379 = g1_vx_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vx_leg2;
-        let t384 = g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2;
-        let t386 = g1_vx_leg3 * t375 - g1_vy_leg3 * t379 + g1_wz_leg3 * t384;
-        ::overact::guard::platform(t386, 7.075383197258382, "kept actuators")?;
-        ::overact::guard::platform(t386, 7.075383197258382, "kept actuators")?;
-        ::overact::guard::platform(t386, 7.075383197258382, "kept actuators")?;
-        let t387 = 1.0 / t386;
-        let t388 = (minus_g1_wz_leg2 * g1_vy_leg3 + g1_vy_leg2 * g1_wz_leg3) * t387;
-        let t393 = (minus_g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * g1_wz_leg3) * t387;
+        let rate_2_leg4 = g2_vy_leg4 * t269 - minus_g2_vx_leg4 * t267;
+        let t305 = rate_2_leg4 - rate_1_leg4;
+        let t306 = rate_1_leg4 + t305;
+        let t307 = t306 * t306;
+        let t309 = t93 * t298 + t94 * t307;
+        let t314 = t96 * t298 + t97 * t307;
+        let rate_dot_1_leg4 = g1_vx_leg4 * (t309 - t203) + g1_vy_leg4 * (t235 + t314);
+        let t318 = actuator_accelerations[3] - rate_dot_1_leg4;
+        let t320 = g1_vx_leg1 * t239 + g1_vx_leg2 * t264 + g1_vx_leg3 * t292
+            + g1_vx_leg4 * t318;
+        let t330 = g1_vy_leg1 * t239 + g1_vy_leg2 * t264 + g1_vy_leg3 * t292
+            + g1_vy_leg4 * t318 - t166 * t320;
+        let t342 = g1_wz_leg3 * t292
+            - (minus_g1_wz_leg1 * t239 + minus_g1_wz_leg2 * t264) + g1_wz_leg4 * t318
+            - t140 * t320 - t170 * t330;
+        let rate_dot_3_leg1 = t173 * t342;
+        let t345 = t169 * t330 - t170 * rate_dot_3_leg1;
+        let t349 = t109 * t320 - t166 * t345 - t140 * rate_dot_3_leg1;
+        let t350 = t6 * rate_dot_3_leg1;
+        let t352 = t349 - t350 + t203;
+        let t353 = t352 + t229;
+        let t355 = t2 * rate_dot_3_leg1;
+        let t357 = t345 - t355 - t235;
+        let t358 = t357 + t234;
+        let rate_dot_1_leg1_2 = g1_vx_leg1 * t353 + g1_vy_leg1 * t358;
+        let t367 = g1_vy_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vy_leg2;
+        let t371 = g1_vx_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vx_leg2;
+        let t376 = g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2;
+        let t378 = g1_vx_leg3 * t367 - g1_vy_leg3 * t371 + g1_wz_leg3 * t376;
+        ::overact::guard::platform(t378, 7.075383197258382, "kept actuators")?;
+        ::overact::guard::platform(t378, 7.075383197258382, "kept actuators")?;
+        ::overact::guard::platform(t378, 7.075383197258382, "kept actuators")?;
+        let t379 = 1.0 / t378;
+        let t380 = (minus_g1_wz_leg2 * g1_vy_leg3 + g1_vy_leg2 * g1_wz_leg3) * t379;
+        let t385 = (minus_g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * g1_wz_leg3) * t379;
         let g2_wz_leg1 = t6 * minus_g2_vx_leg1 - t2 * g2_vy_leg1;
-        let t402 = (g1_vy_leg2 * g1_vx_leg3 - g1_vx_leg2 * g1_vy_leg3) * t387;
-        let t404 = minus_g2_vx_leg1 * t388 + g2_vy_leg1 * t393 + g2_wz_leg1 * t402;
-        let rate_dot_2_leg1 = g2_vy_leg1 * t366 - minus_g2_vx_leg1 * t361;
-        let t409 = rate_dot_1_leg1_2 + rate_dot_2_leg1 - rate_dot_1_leg1_2;
-        let t414 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t387;
-        let t419 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t387;
-        let t425 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t387;
-        let t427 = minus_g2_vx_leg1 * t414 + g2_vy_leg1 * t419 + g2_wz_leg1 * t425;
-        let t429 = t11 - 0.1568;
-        let t430 = 1.7857142857142858 * t429;
-        let t432 = t11 * t14;
-        let t433 = 3.5714285714285716 * t432;
-        let t434 = t226 * t226;
-        let t437 = rate_1_leg1 * rate_1_leg1;
-        let t442 = 3.5714285714285716 * (t432 * t437)
-            + 1.7857142857142858 * (t429 * rate_dot_1_leg1_2);
-        let t453 = 3.5714285714285716 * (t432 * rate_dot_1_leg1_2)
-            - 1.7857142857142858 * (t429 * t437);
-        let t460 = t404 - 1.0;
-        let t465 = rate_3_leg1 - rate_2_leg1;
-        let t466 = t402 - t404;
-        let t468 = t427 - t425;
-        let t470 = t384 * t387;
-        let t475 = t360 + t257;
-        let t477 = t365 + t264;
-        let rate_dot_1_leg2_2 = g1_vx_leg2 * t475 + g1_vy_leg2 * t477;
+        let t394 = (g1_vy_leg2 * g1_vx_leg3 - g1_vx_leg2 * g1_vy_leg3) * t379;
+        let t396 = minus_g2_vx_leg1 * t380 + g2_vy_leg1 * t385 + g2_wz_leg1 * t394;
+        let rate_dot_2_leg1 = g2_vy_leg1 * t358 - minus_g2_vx_leg1 * t353;
+        let t401 = rate_dot_1_leg1_2 + rate_dot_2_leg1 - rate_dot_1_leg1_2;
+        let t406 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t379;
+        let t411 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t379;
+        let t417 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t379;
+        let t419 = minus_g2_vx_leg1 * t406 + g2_vy_leg1 * t411 + g2_wz_leg1 * t417;
+        let t421 = t11 - 0.1568;
+        let t422 = 1.7857142857142858 * t421;
+        let t424 = t11 * t14;
+        let t425 = 3.5714285714285716 * t424;
+        let t432 = 3.5714285714285716 * (t424 * t218)
+            + 1.7857142857142858 * (t421 * rate_dot_1_leg1_2);
+        let t443 = 3.5714285714285716 * (t424 * rate_dot_1_leg1_2)
+            - 1.7857142857142858 * (t421 * t218);
+        let t450 = t396 - 1.0;
+        let t455 = rate_3_leg1 - rate_2_leg1;
+        let t456 = t394 - t396;
+        let t458 = t419 - t417;
+        let t460 = t376 * t379;
+        let t465 = t352 + t255;
+        let t467 = t357 + t260;
+        let rate_dot_1_leg2_2 = g1_vx_leg2 * t465 + g1_vy_leg2 * t467;
         let g2_wz_leg2 = t6 * minus_g2_vx_leg2 - t2 * g2_vy_leg2;
-        let t488 = minus_g2_vx_leg2 * t388 + g2_vy_leg2 * t393 + g2_wz_leg2 * t402;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t477 - minus_g2_vx_leg2 * t475;
-        let t493 = rate_dot_1_leg2_2 + rate_dot_2_leg2 - rate_dot_1_leg2_2;
-        let t499 = minus_g2_vx_leg2 * t414 + g2_vy_leg2 * t419 + g2_wz_leg2 * t425;
-        let t501 = t35 - 0.1568;
-        let t504 = t35 * t38;
-        let t505 = rate_1_leg2 * rate_1_leg2;
-        let t508 = 1.7857142857142858 * (t501 * rate_dot_1_leg2_2)
-            - 3.5714285714285716 * (t504 * t505);
-        let t510 = 3.5714285714285716 * t504;
-        let t511 = t254 * t254;
-        let t513 = 1.7857142857142858 * t501;
-        let t522 = 1.7857142857142858 * (t501 * t505)
-            + 3.5714285714285716 * (t504 * rate_dot_1_leg2_2);
-        let t533 = 1.0 + t499;
-        let t537 = rate_3_leg1 - rate_2_leg2;
-        let t538 = t402 - t488;
-        let t540 = t499 - t425;
-        let t547 = t357 + t358 - t203;
-        let t548 = t547 + t287;
-        let t551 = t353 + t363 + t237;
-        let t552 = t551 + t294;
-        let rate_dot_1_leg3_2 = g1_vx_leg3 * t548 + g1_vy_leg3 * t552;
+        let t478 = minus_g2_vx_leg2 * t380 + g2_vy_leg2 * t385 + g2_wz_leg2 * t394;
+        let rate_dot_2_leg2 = g2_vy_leg2 * t467 - minus_g2_vx_leg2 * t465;
+        let t483 = rate_dot_1_leg2_2 + rate_dot_2_leg2 - rate_dot_1_leg2_2;
+        let t489 = minus_g2_vx_leg2 * t406 + g2_vy_leg2 * t411 + g2_wz_leg2 * t417;
+        let t491 = t35 - 0.1568;
+        let t494 = t35 * t38;
+        let t497 = 1.7857142857142858 * (t491 * rate_dot_1_leg2_2)
+            - 3.5714285714285716 * (t494 * t244);
+        let t499 = 3.5714285714285716 * t494;
+        let t501 = 1.7857142857142858 * t491;
+        let t510 = 1.7857142857142858 * (t491 * t244)
+            + 3.5714285714285716 * (t494 * rate_dot_1_leg2_2);
+        let t521 = 1.0 + t489;
+        let t525 = rate_3_leg1 - rate_2_leg2;
+        let t526 = t394 - t478;
+        let t528 = t489 - t417;
+        let t535 = t349 + t350 - t203;
+        let t536 = t535 + t283;
+        let t539 = t345 + t355 + t235;
+        let t540 = t539 + t288;
+        let rate_dot_1_leg3_2 = g1_vx_leg3 * t536 + g1_vy_leg3 * t540;
         let g2_wz_leg3 = t2 * g2_vy_leg3 - t6 * minus_g2_vx_leg3;
-        let t563 = minus_g2_vx_leg3 * t388 + g2_vy_leg3 * t393 + g2_wz_leg3 * t402;
-        let rate_dot_2_leg3 = g2_vy_leg3 * t552 - minus_g2_vx_leg3 * t548;
-        let t568 = rate_dot_1_leg3_2 + rate_dot_2_leg3 - rate_dot_1_leg3_2;
-        let t574 = minus_g2_vx_leg3 * t414 + g2_vy_leg3 * t419 + g2_wz_leg3 * t425;
-        let t577 = t375 * t387;
-        let t579 = t379 * t387;
-        let t582 = g2_wz_leg3 * t470 - (minus_g2_vx_leg3 * t577 + g2_vy_leg3 * t579);
-        let t584 = t63 * t66;
-        let t585 = rate_1_leg3 * rate_1_leg3;
-        let t588 = t63 - 0.1568;
-        let t591 = 3.5714285714285716 * (t584 * t585)
-            + 1.7857142857142858 * (t588 * rate_dot_1_leg3_2);
-        let t594 = 1.7857142857142858 * t588;
-        let t596 = 3.5714285714285716 * t584;
-        let t597 = t284 * t284;
-        let t606 = 3.5714285714285716 * (t584 * rate_dot_1_leg3_2)
-            - 1.7857142857142858 * (t588 * t585);
-        let t619 = t582 - 1.0;
-        let t624 = rate_3_leg1 - rate_2_leg3;
-        let t625 = t402 - t563;
-        let t627 = t574 - t425;
-        let t629 = t470 - t582;
-        let t638 = g1_vy_leg4 * t393 - g1_vx_leg4 * t388 + g1_wz_leg4 * t402;
-        let t639 = t547 + t315;
-        let t641 = t551 + t322;
-        let rate_dot_1_leg4_2 = g1_vx_leg4 * t639 + g1_vy_leg4 * t641;
-        let t644 = t638 * rate_dot_1_leg4_2;
-        let t649 = g1_vx_leg4 * t414 - g1_vy_leg4 * t419 - g1_wz_leg4 * t425;
-        let t650 = t649 * rate_dot_1_leg4_2;
-        let t655 = g1_vx_leg4 * t577 - g1_vy_leg4 * t579 + g1_wz_leg4 * t470;
-        let t656 = t655 * rate_dot_1_leg4_2;
+        let t551 = minus_g2_vx_leg3 * t380 + g2_vy_leg3 * t385 + g2_wz_leg3 * t394;
+        let rate_dot_2_leg3 = g2_vy_leg3 * t540 - minus_g2_vx_leg3 * t536;
+        let t556 = rate_dot_1_leg3_2 + rate_dot_2_leg3 - rate_dot_1_leg3_2;
+        let t562 = minus_g2_vx_leg3 * t406 + g2_vy_leg3 * t411 + g2_wz_leg3 * t417;
+        let t565 = t367 * t379;
+        let t567 = t371 * t379;
+        let t570 = g2_wz_leg3 * t460 - (minus_g2_vx_leg3 * t565 + g2_vy_leg3 * t567);
+        let t572 = t63 * t66;
+        let t575 = t63 - 0.1568;
+        let t578 = 3.5714285714285716 * (t572 * t272)
+            + 1.7857142857142858 * (t575 * rate_dot_1_leg3_2);
+        let t581 = 1.7857142857142858 * t575;
+        let t583 = 3.5714285714285716 * t572;
+        let t592 = 3.5714285714285716 * (t572 * rate_dot_1_leg3_2)
+            - 1.7857142857142858 * (t575 * t272);
+        let t605 = t570 - 1.0;
+        let t610 = rate_3_leg1 - rate_2_leg3;
+        let t611 = t394 - t551;
+        let t613 = t562 - t417;
+        let t615 = t460 - t570;
+        let t624 = g1_vy_leg4 * t385 - g1_vx_leg4 * t380 + g1_wz_leg4 * t394;
+        let t625 = t535 + t309;
+        let t627 = t539 + t314;
+        let rate_dot_1_leg4_2 = g1_vx_leg4 * t625 + g1_vy_leg4 * t627;
+        let t630 = t624 * rate_dot_1_leg4_2;
+        let t635 = g1_vx_leg4 * t406 - g1_vy_leg4 * t411 - g1_wz_leg4 * t417;
+        let t636 = t635 * rate_dot_1_leg4_2;
+        let t641 = g1_vx_leg4 * t565 - g1_vy_leg4 * t567 + g1_wz_leg4 * t460;
+        let t642 = t641 * rate_dot_1_leg4_2;
         let g2_wz_leg4 = t2 * g2_vy_leg4 - t6 * minus_g2_vx_leg4;
-        let t670 = minus_g2_vx_leg4 * t388 + g2_vy_leg4 * t393 + g2_wz_leg4 * t402;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t641 - minus_g2_vx_leg4 * t639;
-        let t675 = rate_dot_1_leg4_2 + rate_dot_2_leg4 - rate_dot_1_leg4_2;
-        let t681 = minus_g2_vx_leg4 * t414 + g2_vy_leg4 * t419 + g2_wz_leg4 * t425;
-        let t687 = g2_wz_leg4 * t470 - (minus_g2_vx_leg4 * t577 + g2_vy_leg4 * t579);
-        let t689 = t88 * t91;
-        let t690 = 3.5714285714285716 * t689;
-        let t691 = t312 * t312;
-        let t693 = t88 - 0.1568;
-        let t694 = 1.7857142857142858 * t693;
-        let t696 = t690 * t691 + t694 * t675;
-        let t700 = rate_1_leg4 * rate_1_leg4;
-        let t703 = 1.7857142857142858 * (t693 * rate_dot_1_leg4_2)
-            - 3.5714285714285716 * (t689 * t700);
-        let t714 = t690 * t675 - t694 * t691;
-        let t720 = 1.7857142857142858 * (t693 * t700)
-            + 3.5714285714285716 * (t689 * rate_dot_1_leg4_2);
-        let t731 = t690 * t720 + t694 * t703;
-        let t735 = t670 - t638;
-        let t737 = t649 + t681;
-        let t739 = t687 - t655;
-        let t744 = rate_3_leg1 - rate_2_leg4;
-        let t745 = t402 - t670;
-        let t747 = t681 - t425;
-        let t749 = t470 - t687;
-        let t757 = rate_3_leg1 * rate_3_leg1;
-        let t758 = c_phi * t757;
-        let t759 = s_phi * rate_dot_3_leg1;
-        let t760 = t758 + t759;
-        let t762 = c_phi * rate_dot_3_leg1;
-        let t763 = s_phi * t757;
-        let t764 = t762 - t763;
-        let t769 = c_phi * t353 - s_phi * t357;
-        let t782 = t763 - t762;
-        let t784 = t759 + t758;
-        let t789 = c_phi * t357 + s_phi * t353;
-        let t804 = s_phi * t789 + c_phi * t769;
-        let t808 = c_phi * t789 - s_phi * t769;
+        let t656 = minus_g2_vx_leg4 * t380 + g2_vy_leg4 * t385 + g2_wz_leg4 * t394;
+        let rate_dot_2_leg4 = g2_vy_leg4 * t627 - minus_g2_vx_leg4 * t625;
+        let t661 = rate_dot_1_leg4_2 + rate_dot_2_leg4 - rate_dot_1_leg4_2;
+        let t667 = minus_g2_vx_leg4 * t406 + g2_vy_leg4 * t411 + g2_wz_leg4 * t417;
+        let t673 = g2_wz_leg4 * t460 - (minus_g2_vx_leg4 * t565 + g2_vy_leg4 * t567);
+        let t675 = t88 * t91;
+        let t676 = 3.5714285714285716 * t675;
+        let t678 = t88 - 0.1568;
+        let t679 = 1.7857142857142858 * t678;
+        let t681 = t307 * t676 + t679 * t661;
+        let t687 = 1.7857142857142858 * (t678 * rate_dot_1_leg4_2)
+            - 3.5714285714285716 * (t675 * t298);
+        let t698 = t676 * t661 - t307 * t679;
+        let t704 = 1.7857142857142858 * (t678 * t298)
+            + 3.5714285714285716 * (t675 * rate_dot_1_leg4_2);
+        let t715 = t676 * t704 + t679 * t687;
+        let t719 = t656 - t624;
+        let t721 = t635 + t667;
+        let t723 = t673 - t641;
+        let t728 = rate_3_leg1 - rate_2_leg4;
+        let t729 = t394 - t656;
+        let t731 = t667 - t417;
+        let t733 = t460 - t673;
+        let t741 = rate_3_leg1 * rate_3_leg1;
+        let t742 = c_phi * t741;
+        let t743 = s_phi * rate_dot_3_leg1;
+        let t744 = t742 + t743;
+        let t746 = c_phi * rate_dot_3_leg1;
+        let t747 = s_phi * t741;
+        let t748 = t746 - t747;
+        let t753 = c_phi * t345 - s_phi * t349;
+        let t766 = t747 - t746;
+        let t768 = t743 + t742;
+        let t773 = c_phi * t349 + s_phi * t345;
+        let t788 = s_phi * t773 + c_phi * t753;
+        let t792 = c_phi * t773 - s_phi * t753;
         Ok([
             [
                 rate_dot_1_leg1_2, rate_dot_1_leg1_2, rate_1_leg1,
-                ::overact::math::sign(rate_1_leg1), 1.0, t404 * t409,
-                t430 * t409 - t433 * t434 + t404 * t442, -(t433 * t409 + t430 * t434 + t404 * t453),
-                t433 * t453 + t430 * t442, t225 * t460, ::overact::math::signed(t460, t225), t460,
-                t465 * t466, ::overact::math::signed(t466, t465), t466, 0.0, 0.0, 0.0, 0.0, 0.0,
-                t488 * t493, t488 * t508, t488 * t522, 0.0, t488 * t253,
-                ::overact::math::signed(t488, t253), t488, t537 * t538,
-                ::overact::math::signed(t538, t537), t538, 0.0, 0.0, 0.0, 0.0, 0.0, t563 * t568,
-                t563 * t591, -(t563 * t606), 0.0, t563 * t283, ::overact::math::signed(t563, t283),
-                t563, t624 * t625, ::overact::math::signed(t625, t624), t625, t644, t644,
-                t638 * rate_1_leg4, ::overact::math::signed(t638, rate_1_leg4), t638, t670 * t675,
-                t638 * t696 + t670 * t703, t638 * t714 + t670 * t720, t638 * t731, t311 * t735,
-                ::overact::math::signed(t735, t311), t735, t744 * t745,
-                ::overact::math::signed(t745, t744), t745, t402 * rate_dot_3_leg1,
-                t388 * t760 + t393 * t764 + t402 * t769, -(t388 * t782 + t393 * t784 + t402 * t789),
-                t393 * t804 - t388 * t808,
+                ::overact::math::sign(rate_1_leg1), 1.0, t396 * t401,
+                t422 * t401 - t227 * t425 + t396 * t432, -(t425 * t401 + t227 * t422 + t396 * t443),
+                t425 * t443 + t422 * t432, t225 * t450, ::overact::math::signed(t450, t225), t450,
+                t455 * t456, ::overact::math::signed(t456, t455), t456, 0.0, 0.0, 0.0, 0.0, 0.0,
+                t478 * t483, t478 * t497, t478 * t510, 0.0, t478 * t251,
+                ::overact::math::signed(t478, t251), t478, t525 * t526,
+                ::overact::math::signed(t526, t525), t526, 0.0, 0.0, 0.0, 0.0, 0.0, t551 * t556,
+                t551 * t578, -(t551 * t592), 0.0, t551 * t279, ::overact::math::signed(t551, t279),
+                t551, t610 * t611, ::overact::math::signed(t611, t610), t611, t630, t630,
+                t624 * rate_1_leg4, ::overact::math::signed(t624, rate_1_leg4), t624, t656 * t661,
+                t624 * t681 + t656 * t687, t624 * t698 + t656 * t704, t624 * t715, t305 * t719,
+                ::overact::math::signed(t719, t305), t719, t728 * t729,
+                ::overact::math::signed(t729, t728), t729, t394 * rate_dot_3_leg1,
+                t380 * t744 + t385 * t748 + t394 * t753, -(t380 * t766 + t385 * t768 + t394 * t773),
+                t385 * t788 - t380 * t792,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -(t427 * t409), -(t427 * t442), t427 * t453, 0.0,
-                -(t427 * t225), -::overact::math::signed(t427, t225), -t427, t465 * t468,
-                ::overact::math::signed(t468, t465), t468, rate_dot_1_leg2_2, rate_dot_1_leg2_2,
-                rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0, -(t499 * t493),
-                t510 * t511 + t513 * t493 - t499 * t508, t510 * t493 - t513 * t511 - t499 * t522,
-                t510 * t522 + t513 * t508, -(t253 * t533), -::overact::math::signed(t533, t253),
-                -t533, t537 * t540, ::overact::math::signed(t540, t537), t540, 0.0, 0.0, 0.0, 0.0,
-                0.0, -(t574 * t568), -(t574 * t591), t574 * t606, 0.0, -(t574 * t283),
-                -::overact::math::signed(t574, t283), -t574, t624 * t627,
-                ::overact::math::signed(t627, t624), t627, t650, t650, t649 * rate_1_leg4,
-                ::overact::math::signed(t649, rate_1_leg4), t649, -(t681 * t675),
-                t649 * t696 - t681 * t703, t649 * t714 - t681 * t720, t649 * t731, -(t311 * t737),
-                -::overact::math::signed(t737, t311), -t737, t744 * t747,
-                ::overact::math::signed(t747, t744), t747, -(t425 * rate_dot_3_leg1),
-                -(t414 * t760 + t419 * t764 + t425 * t769), t414 * t782 + t419 * t784 + t425 * t789,
-                t414 * t808 - t419 * t804,
+                0.0, 0.0, 0.0, 0.0, 0.0, -(t419 * t401), -(t419 * t432), t419 * t443, 0.0,
+                -(t419 * t225), -::overact::math::signed(t419, t225), -t419, t455 * t458,
+                ::overact::math::signed(t458, t455), t458, rate_dot_1_leg2_2, rate_dot_1_leg2_2,
+                rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0, -(t489 * t483),
+                t253 * t499 + t501 * t483 - t489 * t497, t499 * t483 - t253 * t501 - t489 * t510,
+                t499 * t510 + t501 * t497, -(t251 * t521), -::overact::math::signed(t521, t251),
+                -t521, t525 * t528, ::overact::math::signed(t528, t525), t528, 0.0, 0.0, 0.0, 0.0,
+                0.0, -(t562 * t556), -(t562 * t578), t562 * t592, 0.0, -(t562 * t279),
+                -::overact::math::signed(t562, t279), -t562, t610 * t613,
+                ::overact::math::signed(t613, t610), t613, t636, t636, t635 * rate_1_leg4,
+                ::overact::math::signed(t635, rate_1_leg4), t635, -(t667 * t661),
+                t635 * t681 - t667 * t687, t635 * t698 - t667 * t704, t635 * t715, -(t305 * t721),
+                -::overact::math::signed(t721, t305), -t721, t728 * t731,
+                ::overact::math::signed(t731, t728), t731, -(t417 * rate_dot_3_leg1),
+                -(t406 * t744 + t411 * t748 + t417 * t753), t406 * t766 + t411 * t768 + t417 * t773,
+                t406 * t792 - t411 * t788,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t470 * t465,
-                ::overact::math::signed(t470, t465), t470, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, t470 * t537, ::overact::math::signed(t470, t537), t470,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t460 * t455,
+                ::overact::math::signed(t460, t455), t460, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, t460 * t525, ::overact::math::signed(t460, t525), t460,
                 rate_dot_1_leg3_2, rate_dot_1_leg3_2, rate_1_leg3,
-                ::overact::math::sign(rate_1_leg3), 1.0, t582 * t568,
-                t594 * t568 - t596 * t597 + t582 * t591, -(t596 * t568 + t594 * t597 + t582 * t606),
-                t596 * t606 + t594 * t591, t283 * t619, ::overact::math::signed(t619, t283), t619,
-                t624 * t629, ::overact::math::signed(t629, t624), t629, t656, t656,
-                t655 * rate_1_leg4, ::overact::math::signed(t655, rate_1_leg4), t655, t687 * t675,
-                t655 * t696 + t687 * t703, t655 * t714 + t687 * t720, t655 * t731, t311 * t739,
-                ::overact::math::signed(t739, t311), t739, t744 * t749,
-                ::overact::math::signed(t749, t744), t749, t470 * rate_dot_3_leg1,
-                t470 * t769 - (t577 * t760 + t579 * t764), t577 * t782 + t579 * t784 - t470 * t789,
-                t577 * t808 - t579 * t804,
+                ::overact::math::sign(rate_1_leg3), 1.0, t570 * t556,
+                t581 * t556 - t281 * t583 + t570 * t578, -(t583 * t556 + t281 * t581 + t570 * t592),
+                t583 * t592 + t581 * t578, t279 * t605, ::overact::math::signed(t605, t279), t605,
+                t610 * t615, ::overact::math::signed(t615, t610), t615, t642, t642,
+                t641 * rate_1_leg4, ::overact::math::signed(t641, rate_1_leg4), t641, t673 * t661,
+                t641 * t681 + t673 * t687, t641 * t698 + t673 * t704, t641 * t715, t305 * t723,
+                ::overact::math::signed(t723, t305), t723, t728 * t733,
+                ::overact::math::signed(t733, t728), t733, t460 * rate_dot_3_leg1,
+                t460 * t753 - (t565 * t744 + t567 * t748), t565 * t766 + t567 * t768 - t460 * t773,
+                t565 * t792 - t567 * t788,
             ],
         ])
     }
@@ -3401,7 +3394,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 444 operations (170 additions, 266 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 347 intermediates.
+    /// 428 operations (170 additions, 250 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 331 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3445,158 +3438,166 @@ impl DualV {
         let g1_vy_leg1 = t37 * t45;
         let t52 = twist[1] - t10;
         let rate_1_leg1 = g1_vx_leg1 * t49 + g1_vy_leg1 * t52;
+        let t55 = rate_1_leg1 * rate_1_leg1;
         let g2_vy_leg1 = t42 * t45;
         let minus_g2_vx_leg1 = t39 * t45;
         let rate_2_leg1 = g2_vy_leg1 * t52 - minus_g2_vx_leg1 * t49;
         let t62 = rate_2_leg1 - rate_1_leg1;
         let t63 = rate_1_leg1 + t62;
-        let t67 = t48 + rate_1_leg1 * (t32 * rate_1_leg1) + t63 * (t33 * t63);
+        let t64 = t63 * t63;
+        let t67 = t48 + t32 * t55 + t33 * t64;
         let t70 = acceleration[1] - t6 - t4;
-        let t76 = t70 + rate_1_leg1 * (t36 * rate_1_leg1) + t63 * (t37 * t63);
-        let rate_dot_1_leg1 = g1_vx_leg1 * t67 + g1_vy_leg1 * t76;
+        let t74 = t70 + t36 * t55 + t37 * t64;
+        let rate_dot_1_leg1 = g1_vx_leg1 * t67 + g1_vy_leg1 * t74;
         let minus_g1_wz_leg1 = t5 * g1_vy_leg1 + t2 * g1_vx_leg1;
-        let t85 = t20 + 0.3950502153918333;
-        let t88 = t85 * t85 + t26;
-        let t90 = 0.0784 / t88 - 0.25;
-        ::overact::guard::reach(t90, "leg2")?;
-        let t91 = ::overact::math::sqrt(t90);
-        let t93 = 0.5 * t85 - t24 * t91;
-        let t94 = t85 - t93;
-        let t96 = t34 + t85 * t91;
-        let t97 = t24 - t96;
-        let t99 = t93 + t94 - t94;
-        let t102 = t97 - (t96 + t97);
-        let t104 = t97 * t99 + t94 * t102;
-        ::overact::guard::leg(t104, 0.078399138102973, "leg2")?;
-        let t105 = 1.0 / t104;
-        let g1_vx_leg2 = t94 * t105;
-        let g1_vy_leg2 = t97 * t105;
+        let t83 = t20 + 0.3950502153918333;
+        let t86 = t83 * t83 + t26;
+        let t88 = 0.0784 / t86 - 0.25;
+        ::overact::guard::reach(t88, "leg2")?;
+        let t89 = ::overact::math::sqrt(t88);
+        let t91 = 0.5 * t83 - t24 * t89;
+        let t92 = t83 - t91;
+        let t94 = t34 + t83 * t89;
+        let t95 = t24 - t94;
+        let t97 = t91 + t92 - t92;
+        let t100 = t95 - (t94 + t95);
+        let t102 = t95 * t97 + t92 * t100;
+        ::overact::guard::leg(t102, 0.078399138102973, "leg2")?;
+        let t103 = 1.0 / t102;
+        let g1_vx_leg2 = t92 * t103;
+        let g1_vy_leg2 = t95 * t103;
         let rate_1_leg2 = g1_vx_leg2 * t49 + g1_vy_leg2 * t52;
-        let g2_vy_leg2 = t102 * t105;
-        let minus_g2_vx_leg2 = t99 * t105;
+        let t109 = rate_1_leg2 * rate_1_leg2;
+        let g2_vy_leg2 = t100 * t103;
+        let minus_g2_vx_leg2 = t97 * t103;
         let rate_2_leg2 = g2_vy_leg2 * t52 - minus_g2_vx_leg2 * t49;
-        let t118 = rate_2_leg2 - rate_1_leg2;
-        let t119 = rate_1_leg2 + t118;
-        let t123 = t48 + rate_1_leg2 * (t93 * rate_1_leg2) + t119 * (t94 * t119);
-        let t130 = t70 + rate_1_leg2 * (t96 * rate_1_leg2) + t119 * (t97 * t119);
-        let rate_dot_1_leg2 = g1_vx_leg2 * t123 + g1_vy_leg2 * t130;
+        let t116 = rate_2_leg2 - rate_1_leg2;
+        let t117 = rate_1_leg2 + t116;
+        let t118 = t117 * t117;
+        let t121 = t48 + t91 * t109 + t92 * t118;
+        let t126 = t70 + t94 * t109 + t95 * t118;
+        let rate_dot_1_leg2 = g1_vx_leg2 * t121 + g1_vy_leg2 * t126;
         let minus_g1_wz_leg2 = t5 * g1_vy_leg2 + t2 * g1_vx_leg2;
-        let t139 = pose[0] + t5;
-        let t140 = t139 + 0.3950502153918333;
-        let t143 = pose[1] - t2 + 0.10970563941232059;
-        let t145 = t143 * t143;
-        let t146 = t140 * t140 + t145;
-        let t148 = 0.0784 / t146 - 0.25;
-        ::overact::guard::reach(t148, "leg3")?;
-        let t149 = ::overact::math::sqrt(t148);
-        let t151 = 0.5 * t140 + t143 * t149;
-        let t152 = t140 - t151;
-        let t153 = 0.5 * t143;
-        let t155 = t153 - t140 * t149;
-        let t156 = t143 - t155;
-        let t158 = t151 + t152 - t152;
-        let t161 = t156 - (t155 + t156);
-        let t163 = t156 * t158 + t152 * t161;
-        ::overact::guard::leg(t163, 0.078399138102973, "leg3")?;
-        let t164 = 1.0 / t163;
-        let g1_vx_leg3 = t152 * t164;
-        let t167 = acceleration[0] + t9 - t11;
-        let t168 = twist[0] + t3;
-        let g1_vy_leg3 = t156 * t164;
-        let t171 = twist[1] + t10;
-        let rate_1_leg3 = g1_vx_leg3 * t168 + g1_vy_leg3 * t171;
-        let g2_vy_leg3 = t161 * t164;
-        let minus_g2_vx_leg3 = t158 * t164;
-        let rate_2_leg3 = g2_vy_leg3 * t171 - minus_g2_vx_leg3 * t168;
-        let t181 = rate_2_leg3 - rate_1_leg3;
-        let t182 = rate_1_leg3 + t181;
-        let t186 = t167 + rate_1_leg3 * (t151 * rate_1_leg3) + t182 * (t152 * t182);
-        let t189 = acceleration[1] + t6 + t4;
-        let t195 = t189 + rate_1_leg3 * (t155 * rate_1_leg3) + t182 * (t156 * t182);
-        let rate_dot_1_leg3 = g1_vx_leg3 * t186 + g1_vy_leg3 * t195;
+        let t135 = pose[0] + t5;
+        let t136 = t135 + 0.3950502153918333;
+        let t139 = pose[1] - t2 + 0.10970563941232059;
+        let t141 = t139 * t139;
+        let t142 = t136 * t136 + t141;
+        let t144 = 0.0784 / t142 - 0.25;
+        ::overact::guard::reach(t144, "leg3")?;
+        let t145 = ::overact::math::sqrt(t144);
+        let t147 = 0.5 * t136 + t139 * t145;
+        let t148 = t136 - t147;
+        let t149 = 0.5 * t139;
+        let t151 = t149 - t136 * t145;
+        let t152 = t139 - t151;
+        let t154 = t147 + t148 - t148;
+        let t157 = t152 - (t151 + t152);
+        let t159 = t152 * t154 + t148 * t157;
+        ::overact::guard::leg(t159, 0.078399138102973, "leg3")?;
+        let t160 = 1.0 / t159;
+        let g1_vx_leg3 = t148 * t160;
+        let t163 = acceleration[0] + t9 - t11;
+        let t164 = twist[0] + t3;
+        let g1_vy_leg3 = t152 * t160;
+        let t167 = twist[1] + t10;
+        let rate_1_leg3 = g1_vx_leg3 * t164 + g1_vy_leg3 * t167;
+        let t170 = rate_1_leg3 * rate_1_leg3;
+        let g2_vy_leg3 = t157 * t160;
+        let minus_g2_vx_leg3 = t154 * t160;
+        let rate_2_leg3 = g2_vy_leg3 * t167 - minus_g2_vx_leg3 * t164;
+        let t177 = rate_2_leg3 - rate_1_leg3;
+        let t178 = rate_1_leg3 + t177;
+        let t179 = t178 * t178;
+        let t182 = t163 + t147 * t170 + t148 * t179;
+        let t185 = acceleration[1] + t6 + t4;
+        let t189 = t185 + t151 * t170 + t152 * t179;
+        let rate_dot_1_leg3 = g1_vx_leg3 * t182 + g1_vy_leg3 * t189;
         let g1_wz_leg3 = t5 * g1_vy_leg3 + t2 * g1_vx_leg3;
-        let t204 = t139 - 0.3950502153918333;
-        let t207 = t204 * t204 + t145;
-        let t209 = 0.0784 / t207 - 0.25;
-        ::overact::guard::reach(t209, "leg4")?;
-        let t210 = ::overact::math::sqrt(t209);
-        let t212 = 0.5 * t204 - t143 * t210;
-        let t213 = t204 - t212;
-        let t215 = t153 + t204 * t210;
-        let t216 = t143 - t215;
-        let t218 = t212 + t213 - t213;
-        let t221 = t216 - (t215 + t216);
-        let t223 = t216 * t218 + t213 * t221;
-        ::overact::guard::leg(t223, 0.078399138102973, "leg4")?;
-        let t224 = 1.0 / t223;
-        let g1_vx_leg4 = t213 * t224;
-        let g1_vy_leg4 = t216 * t224;
-        let rate_1_leg4 = g1_vx_leg4 * t168 + g1_vy_leg4 * t171;
-        let g2_vy_leg4 = t221 * t224;
-        let minus_g2_vx_leg4 = t218 * t224;
-        let rate_2_leg4 = g2_vy_leg4 * t171 - minus_g2_vx_leg4 * t168;
-        let t237 = rate_2_leg4 - rate_1_leg4;
-        let t238 = rate_1_leg4 + t237;
-        let t242 = t167 + rate_1_leg4 * (t212 * rate_1_leg4) + t238 * (t213 * t238);
-        let t249 = t189 + rate_1_leg4 * (t215 * rate_1_leg4) + t238 * (t216 * t238);
-        let rate_dot_1_leg4 = g1_vx_leg4 * t242 + g1_vy_leg4 * t249;
+        let t198 = t135 - 0.3950502153918333;
+        let t201 = t198 * t198 + t141;
+        let t203 = 0.0784 / t201 - 0.25;
+        ::overact::guard::reach(t203, "leg4")?;
+        let t204 = ::overact::math::sqrt(t203);
+        let t206 = 0.5 * t198 - t139 * t204;
+        let t207 = t198 - t206;
+        let t209 = t149 + t198 * t204;
+        let t210 = t139 - t209;
+        let t212 = t206 + t207 - t207;
+        let t215 = t210 - (t209 + t210);
+        let t217 = t210 * t212 + t207 * t215;
+        ::overact::guard::leg(t217, 0.078399138102973, "leg4")?;
+        let t218 = 1.0 / t217;
+        let g1_vx_leg4 = t207 * t218;
+        let g1_vy_leg4 = t210 * t218;
+        let rate_1_leg4 = g1_vx_leg4 * t164 + g1_vy_leg4 * t167;
+        let t224 = rate_1_leg4 * rate_1_leg4;
+        let g2_vy_leg4 = t215 * t218;
+        let minus_g2_vx_leg4 = t212 * t218;
+        let rate_2_leg4 = g2_vy_leg4 * t167 - minus_g2_vx_leg4 * t164;
+        let t231 = rate_2_leg4 - rate_1_leg4;
+        let t232 = rate_1_leg4 + t231;
+        let t233 = t232 * t232;
+        let t236 = t163 + t206 * t224 + t207 * t233;
+        let t241 = t185 + t209 * t224 + t210 * t233;
+        let rate_dot_1_leg4 = g1_vx_leg4 * t236 + g1_vy_leg4 * t241;
         let g1_wz_leg4 = t5 * g1_vy_leg4 + t2 * g1_vx_leg4;
-        let rate_dot_2_leg1 = g2_vy_leg1 * t76 - minus_g2_vx_leg1 * t67;
-        let t286 = rate_dot_1_leg1 + rate_dot_2_leg1 - rate_dot_1_leg1;
+        let rate_dot_2_leg1 = g2_vy_leg1 * t74 - minus_g2_vx_leg1 * t67;
+        let t278 = rate_dot_1_leg1 + rate_dot_2_leg1 - rate_dot_1_leg1;
         let g2_wz_leg1 = t2 * minus_g2_vx_leg1 - t5 * g2_vy_leg1;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t130 - minus_g2_vx_leg2 * t123;
-        let t297 = rate_dot_1_leg2 + rate_dot_2_leg2 - rate_dot_1_leg2;
+        let rate_dot_2_leg2 = g2_vy_leg2 * t126 - minus_g2_vx_leg2 * t121;
+        let t289 = rate_dot_1_leg2 + rate_dot_2_leg2 - rate_dot_1_leg2;
         let g2_wz_leg2 = t2 * minus_g2_vx_leg2 - t5 * g2_vy_leg2;
-        let rate_dot_2_leg3 = g2_vy_leg3 * t195 - minus_g2_vx_leg3 * t186;
-        let t308 = rate_dot_1_leg3 + rate_dot_2_leg3 - rate_dot_1_leg3;
+        let rate_dot_2_leg3 = g2_vy_leg3 * t189 - minus_g2_vx_leg3 * t182;
+        let t300 = rate_dot_1_leg3 + rate_dot_2_leg3 - rate_dot_1_leg3;
         let g2_wz_leg3 = t5 * g2_vy_leg3 - t2 * minus_g2_vx_leg3;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t249 - minus_g2_vx_leg4 * t242;
-        let t319 = rate_dot_1_leg4 + rate_dot_2_leg4 - rate_dot_1_leg4;
+        let rate_dot_2_leg4 = g2_vy_leg4 * t241 - minus_g2_vx_leg4 * t236;
+        let t311 = rate_dot_1_leg4 + rate_dot_2_leg4 - rate_dot_1_leg4;
         let g2_wz_leg4 = t5 * g2_vy_leg4 - t2 * minus_g2_vx_leg4;
-        let t326 = t27 * t30;
-        let t329 = t27 - 0.1568;
-        let t333 = 3.5714285714285716 * (t326 * rate_dot_1_leg1)
-            - 1.7857142857142858 * (t329 * (rate_1_leg1 * rate_1_leg1));
-        let t340 = t286 * (3.5714285714285716 * t326)
-            + 1.7857142857142858 * t329 * (t63 * t63);
-        let t349 = t88 * t91;
-        let t352 = t88 - 0.1568;
-        let t356 = t297 * (3.5714285714285716 * t349)
-            - 1.7857142857142858 * t352 * (t119 * t119);
-        let t363 = 1.7857142857142858 * (t352 * (rate_1_leg2 * rate_1_leg2))
-            + 3.5714285714285716 * (t349 * rate_dot_1_leg2);
-        let t372 = t146 * t149;
-        let t375 = t146 - 0.1568;
-        let t379 = 3.5714285714285716 * (t372 * rate_dot_1_leg3)
-            - 1.7857142857142858 * (t375 * (rate_1_leg3 * rate_1_leg3));
-        let t386 = t308 * (3.5714285714285716 * t372)
-            + 1.7857142857142858 * t375 * (t182 * t182);
-        let t395 = t207 * t210;
-        let t398 = t207 - 0.1568;
-        let t402 = t319 * (3.5714285714285716 * t395)
-            - 1.7857142857142858 * t398 * (t238 * t238);
-        let t409 = 1.7857142857142858 * (t398 * (rate_1_leg4 * rate_1_leg4))
-            + 3.5714285714285716 * (t395 * rate_dot_1_leg4);
-        let t418 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t420 = g2_vy_leg1 - g1_vy_leg1;
-        let t422 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t424 = g1_vx_leg2 + minus_g2_vx_leg2;
-        let t426 = g2_vy_leg2 - g1_vy_leg2;
-        let t428 = minus_g1_wz_leg2 + g2_wz_leg2;
-        let t430 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t432 = g2_vy_leg3 - g1_vy_leg3;
-        let t434 = g2_wz_leg3 - g1_wz_leg3;
-        let t436 = g1_vx_leg4 + minus_g2_vx_leg4;
-        let t438 = g2_vy_leg4 - g1_vy_leg4;
-        let t440 = g2_wz_leg4 - g1_wz_leg4;
-        let t454 = twist[2] - rate_2_leg1;
-        let t457 = 1.0 - g2_wz_leg1;
-        let t459 = twist[2] - rate_2_leg2;
-        let t462 = 1.0 - g2_wz_leg2;
-        let t464 = twist[2] - rate_2_leg3;
-        let t467 = 1.0 - g2_wz_leg3;
-        let t469 = twist[2] - rate_2_leg4;
-        let t472 = 1.0 - g2_wz_leg4;
+        let t318 = t27 * t30;
+        let t321 = t27 - 0.1568;
+        let t324 = 3.5714285714285716 * (t318 * rate_dot_1_leg1)
+            - 1.7857142857142858 * (t321 * t55);
+        let t330 = t278 * (3.5714285714285716 * t318)
+            + t64 * (1.7857142857142858 * t321);
+        let t339 = t86 * t89;
+        let t342 = t86 - 0.1568;
+        let t345 = t289 * (3.5714285714285716 * t339)
+            - t118 * (1.7857142857142858 * t342);
+        let t351 = 1.7857142857142858 * (t342 * t109)
+            + 3.5714285714285716 * (t339 * rate_dot_1_leg2);
+        let t360 = t142 * t145;
+        let t363 = t142 - 0.1568;
+        let t366 = 3.5714285714285716 * (t360 * rate_dot_1_leg3)
+            - 1.7857142857142858 * (t363 * t170);
+        let t372 = t300 * (3.5714285714285716 * t360)
+            + t179 * (1.7857142857142858 * t363);
+        let t381 = t201 * t204;
+        let t384 = t201 - 0.1568;
+        let t387 = t311 * (3.5714285714285716 * t381)
+            - t233 * (1.7857142857142858 * t384);
+        let t393 = 1.7857142857142858 * (t384 * t224)
+            + 3.5714285714285716 * (t381 * rate_dot_1_leg4);
+        let t402 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let t404 = g2_vy_leg1 - g1_vy_leg1;
+        let t406 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t408 = g1_vx_leg2 + minus_g2_vx_leg2;
+        let t410 = g2_vy_leg2 - g1_vy_leg2;
+        let t412 = minus_g1_wz_leg2 + g2_wz_leg2;
+        let t414 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t416 = g2_vy_leg3 - g1_vy_leg3;
+        let t418 = g2_wz_leg3 - g1_wz_leg3;
+        let t420 = g1_vx_leg4 + minus_g2_vx_leg4;
+        let t422 = g2_vy_leg4 - g1_vy_leg4;
+        let t424 = g2_wz_leg4 - g1_wz_leg4;
+        let t438 = twist[2] - rate_2_leg1;
+        let t441 = 1.0 - g2_wz_leg1;
+        let t443 = twist[2] - rate_2_leg2;
+        let t446 = 1.0 - g2_wz_leg2;
+        let t448 = twist[2] - rate_2_leg3;
+        let t451 = 1.0 - g2_wz_leg3;
+        let t453 = twist[2] - rate_2_leg4;
+        let t456 = 1.0 - g2_wz_leg4;
         Ok([
             [
                 0.0, -t8, -t13, acceleration[0], g1_vx_leg1 * rate_dot_1_leg1,
@@ -3607,20 +3608,20 @@ impl DualV {
                 ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
                 ::overact::math::signed(g1_vx_leg4, rate_1_leg4), g1_vx_leg1, g1_vx_leg2,
-                g1_vx_leg3, g1_vx_leg4, -(minus_g2_vx_leg1 * t286), -(minus_g2_vx_leg2 * t297),
-                -(minus_g2_vx_leg3 * t308), -(minus_g2_vx_leg4 * t319),
-                minus_g2_vx_leg1 * t333 - g1_vx_leg1 * t340,
-                g1_vx_leg2 * t356 - minus_g2_vx_leg2 * t363,
-                minus_g2_vx_leg3 * t379 - g1_vx_leg3 * t386,
-                g1_vx_leg4 * t402 - minus_g2_vx_leg4 * t409, -(t62 * t418), -(t118 * t424),
-                -(t181 * t430), -(t237 * t436), -::overact::math::signed(t418, t62),
-                -::overact::math::signed(t424, t118), -::overact::math::signed(t430, t181),
-                -::overact::math::signed(t436, t237), -t418, -t424, -t430, -t436,
-                minus_g2_vx_leg1 * t454, minus_g2_vx_leg2 * t459, minus_g2_vx_leg3 * t464,
-                minus_g2_vx_leg4 * t469, ::overact::math::signed(minus_g2_vx_leg1, t454),
-                ::overact::math::signed(minus_g2_vx_leg2, t459),
-                ::overact::math::signed(minus_g2_vx_leg3, t464),
-                ::overact::math::signed(minus_g2_vx_leg4, t469), minus_g2_vx_leg1,
+                g1_vx_leg3, g1_vx_leg4, -(minus_g2_vx_leg1 * t278), -(minus_g2_vx_leg2 * t289),
+                -(minus_g2_vx_leg3 * t300), -(minus_g2_vx_leg4 * t311),
+                minus_g2_vx_leg1 * t324 - g1_vx_leg1 * t330,
+                g1_vx_leg2 * t345 - minus_g2_vx_leg2 * t351,
+                minus_g2_vx_leg3 * t366 - g1_vx_leg3 * t372,
+                g1_vx_leg4 * t387 - minus_g2_vx_leg4 * t393, -(t62 * t402), -(t116 * t408),
+                -(t177 * t414), -(t231 * t420), -::overact::math::signed(t402, t62),
+                -::overact::math::signed(t408, t116), -::overact::math::signed(t414, t177),
+                -::overact::math::signed(t420, t231), -t402, -t408, -t414, -t420,
+                minus_g2_vx_leg1 * t438, minus_g2_vx_leg2 * t443, minus_g2_vx_leg3 * t448,
+                minus_g2_vx_leg4 * t453, ::overact::math::signed(minus_g2_vx_leg1, t438),
+                ::overact::math::signed(minus_g2_vx_leg2, t443),
+                ::overact::math::signed(minus_g2_vx_leg3, t448),
+                ::overact::math::signed(minus_g2_vx_leg4, t453), minus_g2_vx_leg1,
             ],
             [
                 0.0, t13, -t8, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
@@ -3631,18 +3632,18 @@ impl DualV {
                 ::overact::math::signed(g1_vy_leg2, rate_1_leg2),
                 ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
                 ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg1, g1_vy_leg2,
-                g1_vy_leg3, g1_vy_leg4, g2_vy_leg1 * t286, g2_vy_leg2 * t297, g2_vy_leg3 * t308,
-                g2_vy_leg4 * t319, -(g1_vy_leg1 * t340 + g2_vy_leg1 * t333),
-                g1_vy_leg2 * t356 + g2_vy_leg2 * t363, -(g1_vy_leg3 * t386 + g2_vy_leg3 * t379),
-                g1_vy_leg4 * t402 + g2_vy_leg4 * t409, t62 * t420, t118 * t426, t181 * t432,
-                t237 * t438, ::overact::math::signed(t420, t62),
-                ::overact::math::signed(t426, t118), ::overact::math::signed(t432, t181),
-                ::overact::math::signed(t438, t237), t420, t426, t432, t438, -(g2_vy_leg1 * t454),
-                -(g2_vy_leg2 * t459), -(g2_vy_leg3 * t464), -(g2_vy_leg4 * t469),
-                -::overact::math::signed(g2_vy_leg1, t454),
-                -::overact::math::signed(g2_vy_leg2, t459),
-                -::overact::math::signed(g2_vy_leg3, t464),
-                -::overact::math::signed(g2_vy_leg4, t469), -g2_vy_leg1,
+                g1_vy_leg3, g1_vy_leg4, g2_vy_leg1 * t278, g2_vy_leg2 * t289, g2_vy_leg3 * t300,
+                g2_vy_leg4 * t311, -(g1_vy_leg1 * t330 + g2_vy_leg1 * t324),
+                g1_vy_leg2 * t345 + g2_vy_leg2 * t351, -(g1_vy_leg3 * t372 + g2_vy_leg3 * t366),
+                g1_vy_leg4 * t387 + g2_vy_leg4 * t393, t62 * t404, t116 * t410, t177 * t416,
+                t231 * t422, ::overact::math::signed(t404, t62),
+                ::overact::math::signed(t410, t116), ::overact::math::signed(t416, t177),
+                ::overact::math::signed(t422, t231), t404, t410, t416, t422, -(g2_vy_leg1 * t438),
+                -(g2_vy_leg2 * t443), -(g2_vy_leg3 * t448), -(g2_vy_leg4 * t453),
+                -::overact::math::signed(g2_vy_leg1, t438),
+                -::overact::math::signed(g2_vy_leg2, t443),
+                -::overact::math::signed(g2_vy_leg3, t448),
+                -::overact::math::signed(g2_vy_leg4, t453), -g2_vy_leg1,
             ],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
@@ -3655,16 +3656,16 @@ impl DualV {
                 -::overact::math::signed(minus_g1_wz_leg2, rate_1_leg2),
                 ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
                 ::overact::math::signed(g1_wz_leg4, rate_1_leg4), -minus_g1_wz_leg1,
-                -minus_g1_wz_leg2, g1_wz_leg3, g1_wz_leg4, g2_wz_leg1 * t286, g2_wz_leg2 * t297,
-                g2_wz_leg3 * t308, g2_wz_leg4 * t319, minus_g1_wz_leg1 * t340 - g2_wz_leg1 * t333,
-                g2_wz_leg2 * t363 - minus_g1_wz_leg2 * t356,
-                -(g1_wz_leg3 * t386 + g2_wz_leg3 * t379), g1_wz_leg4 * t402 + g2_wz_leg4 * t409,
-                t62 * t422, t118 * t428, t181 * t434, t237 * t440,
-                ::overact::math::signed(t422, t62), ::overact::math::signed(t428, t118),
-                ::overact::math::signed(t434, t181), ::overact::math::signed(t440, t237), t422,
-                t428, t434, t440, t454 * t457, t459 * t462, t464 * t467, t469 * t472,
-                ::overact::math::signed(t457, t454), ::overact::math::signed(t462, t459),
-                ::overact::math::signed(t467, t464), ::overact::math::signed(t472, t469), t457,
+                -minus_g1_wz_leg2, g1_wz_leg3, g1_wz_leg4, g2_wz_leg1 * t278, g2_wz_leg2 * t289,
+                g2_wz_leg3 * t300, g2_wz_leg4 * t311, minus_g1_wz_leg1 * t330 - g2_wz_leg1 * t324,
+                g2_wz_leg2 * t351 - minus_g1_wz_leg2 * t345,
+                -(g1_wz_leg3 * t372 + g2_wz_leg3 * t366), g1_wz_leg4 * t387 + g2_wz_leg4 * t393,
+                t62 * t406, t116 * t412, t177 * t418, t231 * t424,
+                ::overact::math::signed(t406, t62), ::overact::math::signed(t412, t116),
+                ::overact::math::signed(t418, t177), ::overact::math::signed(t424, t231), t406,
+                t412, t418, t424, t438 * t441, t443 * t446, t448 * t451, t453 * t456,
+                ::overact::math::signed(t441, t438), ::overact::math::signed(t446, t443),
+                ::overact::math::signed(t451, t448), ::overact::math::signed(t456, t453), t441,
             ],
         ])
     }
@@ -3679,7 +3680,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 378 operations (108 additions, 266 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 36 signs, 293 intermediates.
+    /// 318 operations (100 additions, 214 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 36 signs, 233 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3702,128 +3703,120 @@ impl DualV {
         let t13 = 9.090909090909092 * (t9 - t11);
         let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(joints[0]);
         let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
+        ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
         let t30 = 3.5714285714285716 / s2_leg1;
         let g1_vx_leg1 = c12_leg1 * t30;
         let t33 = acceleration[0] - t9 + t11;
-        let t34 = twist[0] - t3;
-        let g1_vy_leg1 = s12_leg1 * t30;
-        let t37 = twist[1] - t10;
-        let rate_1_leg1 = g1_vx_leg1 * t34 + g1_vy_leg1 * t37;
+        let t36 = acceleration[1] - t6 - t4;
         let minus_g2_vx_leg1 = c1_leg1 * t30;
+        let t40 = twist[0] - t3;
         let minus_g2_vy_leg1 = s1_leg1 * t30;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t34 + minus_g2_vy_leg1 * t37;
-        let t52 = t33 + rate_1_leg1 * (0.28 * c1_leg1 * rate_1_leg1)
-            + minus_rate_2_leg1 * (0.28 * c12_leg1 * minus_rate_2_leg1);
-        let t55 = acceleration[1] - t6 - t4;
-        let t63 = t55 + rate_1_leg1 * (0.28 * s1_leg1 * rate_1_leg1)
-            + minus_rate_2_leg1 * (0.28 * s12_leg1 * minus_rate_2_leg1);
-        let rate_dot_1_leg1 = g1_vx_leg1 * t52 + g1_vy_leg1 * t63;
+        let t43 = twist[1] - t10;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t40 + minus_g2_vy_leg1 * t43;
+        let t46 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t48 = c12_leg1 * t33 + s12_leg1 * t36 + 0.28 * t46;
+        let g1_vy_leg1 = s12_leg1 * t30;
+        let rate_1_leg1 = g1_vx_leg1 * t40 + g1_vy_leg1 * t43;
+        let t53 = rate_1_leg1 * rate_1_leg1;
+        let t54 = 0.28 * c2_leg1;
+        let rate_dot_1_leg1 = t30 * (t48 + t53 * t54);
         let minus_g1_wz_leg1 = g1_vy_leg1 * t5 + g1_vx_leg1 * t2;
         let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(joints[3]);
         let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
+        ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let t82 = 3.5714285714285716 / s2_leg2;
-        let g1_vx_leg2 = c12_leg2 * t82;
-        let g1_vy_leg2 = s12_leg2 * t82;
-        let rate_1_leg2 = g1_vx_leg2 * t34 + g1_vy_leg2 * t37;
-        let minus_g2_vx_leg2 = c1_leg2 * t82;
-        let minus_g2_vy_leg2 = s1_leg2 * t82;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t34 + minus_g2_vy_leg2 * t37;
-        let t100 = t33 + rate_1_leg2 * (0.28 * c1_leg2 * rate_1_leg2)
-            + minus_rate_2_leg2 * (0.28 * c12_leg2 * minus_rate_2_leg2);
-        let t109 = t55 + rate_1_leg2 * (0.28 * s1_leg2 * rate_1_leg2)
-            + minus_rate_2_leg2 * (0.28 * s12_leg2 * minus_rate_2_leg2);
-        let rate_dot_1_leg2 = g1_vx_leg2 * t100 + g1_vy_leg2 * t109;
+        let t74 = 3.5714285714285716 / s2_leg2;
+        let g1_vx_leg2 = c12_leg2 * t74;
+        let minus_g2_vx_leg2 = c1_leg2 * t74;
+        let minus_g2_vy_leg2 = s1_leg2 * t74;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t40 + minus_g2_vy_leg2 * t43;
+        let t84 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t86 = c12_leg2 * t33 + s12_leg2 * t36 + 0.28 * t84;
+        let g1_vy_leg2 = s12_leg2 * t74;
+        let rate_1_leg2 = g1_vx_leg2 * t40 + g1_vy_leg2 * t43;
+        let t91 = rate_1_leg2 * rate_1_leg2;
+        let t92 = 0.28 * c2_leg2;
+        let rate_dot_1_leg2 = t74 * (t86 + t91 * t92);
         let minus_g1_wz_leg2 = t5 * g1_vy_leg2 + t2 * g1_vx_leg2;
         let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(joints[6]);
         let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
+        ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let t128 = 3.5714285714285716 / s2_leg3;
-        let g1_vx_leg3 = c12_leg3 * t128;
-        let t131 = acceleration[0] + t9 - t11;
-        let t132 = twist[0] + t3;
-        let g1_vy_leg3 = s12_leg3 * t128;
-        let t135 = twist[1] + t10;
-        let rate_1_leg3 = g1_vx_leg3 * t132 + g1_vy_leg3 * t135;
-        let minus_g2_vx_leg3 = c1_leg3 * t128;
-        let minus_g2_vy_leg3 = s1_leg3 * t128;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t132 + minus_g2_vy_leg3 * t135;
-        let t150 = t131 + rate_1_leg3 * (0.28 * c1_leg3 * rate_1_leg3)
-            + minus_rate_2_leg3 * (0.28 * c12_leg3 * minus_rate_2_leg3);
-        let t153 = acceleration[1] + t6 + t4;
-        let t161 = t153 + rate_1_leg3 * (0.28 * s1_leg3 * rate_1_leg3)
-            + minus_rate_2_leg3 * (0.28 * s12_leg3 * minus_rate_2_leg3);
-        let rate_dot_1_leg3 = g1_vx_leg3 * t150 + g1_vy_leg3 * t161;
+        let t112 = 3.5714285714285716 / s2_leg3;
+        let g1_vx_leg3 = c12_leg3 * t112;
+        let t115 = acceleration[0] + t9 - t11;
+        let t118 = acceleration[1] + t6 + t4;
+        let minus_g2_vx_leg3 = c1_leg3 * t112;
+        let t122 = twist[0] + t3;
+        let minus_g2_vy_leg3 = s1_leg3 * t112;
+        let t125 = twist[1] + t10;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t122 + minus_g2_vy_leg3 * t125;
+        let t128 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t130 = c12_leg3 * t115 + s12_leg3 * t118 + 0.28 * t128;
+        let g1_vy_leg3 = s12_leg3 * t112;
+        let rate_1_leg3 = g1_vx_leg3 * t122 + g1_vy_leg3 * t125;
+        let t135 = rate_1_leg3 * rate_1_leg3;
+        let t136 = 0.28 * c2_leg3;
+        let rate_dot_1_leg3 = t112 * (t130 + t135 * t136);
         let g1_wz_leg3 = t5 * g1_vy_leg3 + t2 * g1_vx_leg3;
         let (s1_leg4, c1_leg4) = ::overact::math::sin_cos(joints[9]);
         let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
+        ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
         let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
-        let t180 = 3.5714285714285716 / s2_leg4;
-        let g1_vx_leg4 = c12_leg4 * t180;
-        let g1_vy_leg4 = s12_leg4 * t180;
-        let rate_1_leg4 = g1_vx_leg4 * t132 + g1_vy_leg4 * t135;
-        let minus_g2_vx_leg4 = c1_leg4 * t180;
-        let minus_g2_vy_leg4 = s1_leg4 * t180;
-        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t132 + minus_g2_vy_leg4 * t135;
-        let t198 = t131 + rate_1_leg4 * (0.28 * c1_leg4 * rate_1_leg4)
-            + minus_rate_2_leg4 * (0.28 * c12_leg4 * minus_rate_2_leg4);
-        let t207 = t153 + rate_1_leg4 * (0.28 * s1_leg4 * rate_1_leg4)
-            + minus_rate_2_leg4 * (0.28 * s12_leg4 * minus_rate_2_leg4);
-        let rate_dot_1_leg4 = g1_vx_leg4 * t198 + g1_vy_leg4 * t207;
+        let t156 = 3.5714285714285716 / s2_leg4;
+        let g1_vx_leg4 = c12_leg4 * t156;
+        let minus_g2_vx_leg4 = c1_leg4 * t156;
+        let minus_g2_vy_leg4 = s1_leg4 * t156;
+        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t122 + minus_g2_vy_leg4 * t125;
+        let t166 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let t168 = c12_leg4 * t115 + s12_leg4 * t118 + 0.28 * t166;
+        let g1_vy_leg4 = s12_leg4 * t156;
+        let rate_1_leg4 = g1_vx_leg4 * t122 + g1_vy_leg4 * t125;
+        let t173 = rate_1_leg4 * rate_1_leg4;
+        let t174 = 0.28 * c2_leg4;
+        let rate_dot_1_leg4 = t156 * (t168 + t173 * t174);
         let g1_wz_leg4 = t5 * g1_vy_leg4 + t2 * g1_vx_leg4;
-        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * t52 + minus_g2_vy_leg1 * t63;
+        let t212 = c1_leg1 * t33 + s1_leg1 * t36 + 0.28 * t53;
+        let minus_rate_dot_2_leg1 = t30 * (t212 + t46 * t54);
         let g2_wz_leg1 = minus_g2_vy_leg1 * t5 + minus_g2_vx_leg1 * t2;
-        let minus_rate_dot_2_leg2 = minus_g2_vx_leg2 * t100 + minus_g2_vy_leg2 * t109;
+        let t226 = c1_leg2 * t33 + s1_leg2 * t36 + 0.28 * t91;
+        let minus_rate_dot_2_leg2 = t74 * (t226 + t84 * t92);
         let g2_wz_leg2 = t5 * minus_g2_vy_leg2 + t2 * minus_g2_vx_leg2;
-        let minus_rate_dot_2_leg3 = minus_g2_vx_leg3 * t150 + minus_g2_vy_leg3 * t161;
+        let t240 = c1_leg3 * t115 + s1_leg3 * t118 + 0.28 * t135;
+        let minus_rate_dot_2_leg3 = t112 * (t240 + t128 * t136);
         let minus_g2_wz_leg3 = t5 * minus_g2_vy_leg3 + t2 * minus_g2_vx_leg3;
-        let minus_rate_dot_2_leg4 = minus_g2_vx_leg4 * t198 + minus_g2_vy_leg4 * t207;
+        let t254 = c1_leg4 * t115 + s1_leg4 * t118 + 0.28 * t173;
+        let minus_rate_dot_2_leg4 = t156 * (t254 + t166 * t174);
         let minus_g2_wz_leg4 = t5 * minus_g2_vy_leg4 + t2 * minus_g2_vx_leg4;
-        let t281 = minus_rate_dot_2_leg1 * (0.28 * s2_leg1)
-            - 0.28 * c2_leg1 * (minus_rate_2_leg1 * minus_rate_2_leg1);
-        let t288 = s2_leg1 * (0.28 * rate_dot_1_leg1)
-            - c2_leg1 * (0.28 * (rate_1_leg1 * rate_1_leg1));
-        let t302 = minus_rate_dot_2_leg2 * (0.28 * s2_leg2)
-            - 0.28 * c2_leg2 * (minus_rate_2_leg2 * minus_rate_2_leg2);
-        let t309 = s2_leg2 * (0.28 * rate_dot_1_leg2)
-            - c2_leg2 * (0.28 * (rate_1_leg2 * rate_1_leg2));
-        let t323 = minus_rate_dot_2_leg3 * (0.28 * s2_leg3)
-            - 0.28 * c2_leg3 * (minus_rate_2_leg3 * minus_rate_2_leg3);
-        let t330 = s2_leg3 * (0.28 * rate_dot_1_leg3)
-            - c2_leg3 * (0.28 * (rate_1_leg3 * rate_1_leg3));
-        let t344 = minus_rate_dot_2_leg4 * (0.28 * s2_leg4)
-            - 0.28 * c2_leg4 * (minus_rate_2_leg4 * minus_rate_2_leg4);
-        let t351 = s2_leg4 * (0.28 * rate_dot_1_leg4)
-            - c2_leg4 * (0.28 * (rate_1_leg4 * rate_1_leg4));
-        let t360 = rate_1_leg1 + minus_rate_2_leg1;
-        let t361 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t363 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let t365 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t367 = rate_1_leg2 + minus_rate_2_leg2;
-        let t368 = g1_vx_leg2 + minus_g2_vx_leg2;
-        let t370 = g1_vy_leg2 + minus_g2_vy_leg2;
-        let t372 = minus_g1_wz_leg2 + g2_wz_leg2;
-        let t374 = rate_1_leg3 + minus_rate_2_leg3;
-        let t375 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t377 = g1_vy_leg3 + minus_g2_vy_leg3;
-        let t379 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let t381 = rate_1_leg4 + minus_rate_2_leg4;
-        let t382 = g1_vx_leg4 + minus_g2_vx_leg4;
-        let t384 = g1_vy_leg4 + minus_g2_vy_leg4;
-        let t386 = g1_wz_leg4 + minus_g2_wz_leg4;
-        let t400 = minus_rate_2_leg1 + twist[2];
-        let t403 = 1.0 - g2_wz_leg1;
-        let t405 = minus_rate_2_leg2 + twist[2];
-        let t408 = 1.0 - g2_wz_leg2;
-        let t410 = minus_rate_2_leg3 + twist[2];
-        let t413 = minus_g2_wz_leg3 + 1.0;
-        let t415 = minus_rate_2_leg4 + twist[2];
-        let t418 = minus_g2_wz_leg4 + 1.0;
+        let t300 = rate_1_leg1 + minus_rate_2_leg1;
+        let t301 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let t303 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let t305 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t307 = rate_1_leg2 + minus_rate_2_leg2;
+        let t308 = g1_vx_leg2 + minus_g2_vx_leg2;
+        let t310 = g1_vy_leg2 + minus_g2_vy_leg2;
+        let t312 = minus_g1_wz_leg2 + g2_wz_leg2;
+        let t314 = rate_1_leg3 + minus_rate_2_leg3;
+        let t315 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t317 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let t319 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let t321 = rate_1_leg4 + minus_rate_2_leg4;
+        let t322 = g1_vx_leg4 + minus_g2_vx_leg4;
+        let t324 = g1_vy_leg4 + minus_g2_vy_leg4;
+        let t326 = g1_wz_leg4 + minus_g2_wz_leg4;
+        let t340 = minus_rate_2_leg1 + twist[2];
+        let t343 = 1.0 - g2_wz_leg1;
+        let t345 = minus_rate_2_leg2 + twist[2];
+        let t348 = 1.0 - g2_wz_leg2;
+        let t350 = minus_rate_2_leg3 + twist[2];
+        let t353 = minus_g2_wz_leg3 + 1.0;
+        let t355 = minus_rate_2_leg4 + twist[2];
+        let t358 = minus_g2_wz_leg4 + 1.0;
         Ok([
             [
                 0.0, -t8, -t13, acceleration[0], g1_vx_leg1 * rate_dot_1_leg1,
@@ -3837,18 +3830,18 @@ impl DualV {
                 g1_vx_leg3, g1_vx_leg4, minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
                 minus_g2_vx_leg2 * minus_rate_dot_2_leg2, minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
                 minus_g2_vx_leg4 * minus_rate_dot_2_leg4,
-                g1_vx_leg1 * t281 + minus_g2_vx_leg1 * t288,
-                g1_vx_leg2 * t302 + minus_g2_vx_leg2 * t309,
-                g1_vx_leg3 * t323 + minus_g2_vx_leg3 * t330,
-                g1_vx_leg4 * t344 + minus_g2_vx_leg4 * t351, t360 * t361, t367 * t368, t374 * t375,
-                t381 * t382, ::overact::math::signed(t361, t360),
-                ::overact::math::signed(t368, t367), ::overact::math::signed(t375, t374),
-                ::overact::math::signed(t382, t381), -t361, -t368, -t375, -t382,
-                minus_g2_vx_leg1 * t400, minus_g2_vx_leg2 * t405, minus_g2_vx_leg3 * t410,
-                minus_g2_vx_leg4 * t415, ::overact::math::signed(minus_g2_vx_leg1, t400),
-                ::overact::math::signed(minus_g2_vx_leg2, t405),
-                ::overact::math::signed(minus_g2_vx_leg3, t410),
-                ::overact::math::signed(minus_g2_vx_leg4, t415), minus_g2_vx_leg1,
+                g1_vx_leg1 * t212 + minus_g2_vx_leg1 * t48,
+                g1_vx_leg2 * t226 + minus_g2_vx_leg2 * t86,
+                g1_vx_leg3 * t240 + minus_g2_vx_leg3 * t130,
+                g1_vx_leg4 * t254 + minus_g2_vx_leg4 * t168, t300 * t301, t307 * t308, t314 * t315,
+                t321 * t322, ::overact::math::signed(t301, t300),
+                ::overact::math::signed(t308, t307), ::overact::math::signed(t315, t314),
+                ::overact::math::signed(t322, t321), -t301, -t308, -t315, -t322,
+                minus_g2_vx_leg1 * t340, minus_g2_vx_leg2 * t345, minus_g2_vx_leg3 * t350,
+                minus_g2_vx_leg4 * t355, ::overact::math::signed(minus_g2_vx_leg1, t340),
+                ::overact::math::signed(minus_g2_vx_leg2, t345),
+                ::overact::math::signed(minus_g2_vx_leg3, t350),
+                ::overact::math::signed(minus_g2_vx_leg4, t355), minus_g2_vx_leg1,
             ],
             [
                 0.0, t13, -t8, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
@@ -3862,18 +3855,18 @@ impl DualV {
                 g1_vy_leg3, g1_vy_leg4, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
                 minus_g2_vy_leg2 * minus_rate_dot_2_leg2, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
                 minus_g2_vy_leg4 * minus_rate_dot_2_leg4,
-                g1_vy_leg1 * t281 + minus_g2_vy_leg1 * t288,
-                g1_vy_leg2 * t302 + minus_g2_vy_leg2 * t309,
-                g1_vy_leg3 * t323 + minus_g2_vy_leg3 * t330,
-                g1_vy_leg4 * t344 + minus_g2_vy_leg4 * t351, t360 * t363, t367 * t370, t374 * t377,
-                t381 * t384, ::overact::math::signed(t363, t360),
-                ::overact::math::signed(t370, t367), ::overact::math::signed(t377, t374),
-                ::overact::math::signed(t384, t381), -t363, -t370, -t377, -t384,
-                minus_g2_vy_leg1 * t400, minus_g2_vy_leg2 * t405, minus_g2_vy_leg3 * t410,
-                minus_g2_vy_leg4 * t415, ::overact::math::signed(minus_g2_vy_leg1, t400),
-                ::overact::math::signed(minus_g2_vy_leg2, t405),
-                ::overact::math::signed(minus_g2_vy_leg3, t410),
-                ::overact::math::signed(minus_g2_vy_leg4, t415), minus_g2_vy_leg1,
+                g1_vy_leg1 * t212 + minus_g2_vy_leg1 * t48,
+                g1_vy_leg2 * t226 + minus_g2_vy_leg2 * t86,
+                g1_vy_leg3 * t240 + minus_g2_vy_leg3 * t130,
+                g1_vy_leg4 * t254 + minus_g2_vy_leg4 * t168, t300 * t303, t307 * t310, t314 * t317,
+                t321 * t324, ::overact::math::signed(t303, t300),
+                ::overact::math::signed(t310, t307), ::overact::math::signed(t317, t314),
+                ::overact::math::signed(t324, t321), -t303, -t310, -t317, -t324,
+                minus_g2_vy_leg1 * t340, minus_g2_vy_leg2 * t345, minus_g2_vy_leg3 * t350,
+                minus_g2_vy_leg4 * t355, ::overact::math::signed(minus_g2_vy_leg1, t340),
+                ::overact::math::signed(minus_g2_vy_leg2, t345),
+                ::overact::math::signed(minus_g2_vy_leg3, t350),
+                ::overact::math::signed(minus_g2_vy_leg4, t355), minus_g2_vy_leg1,
             ],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
@@ -3889,16 +3882,16 @@ impl DualV {
                 -minus_g1_wz_leg2, g1_wz_leg3, g1_wz_leg4, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
                 -(g2_wz_leg2 * minus_rate_dot_2_leg2), minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
                 minus_g2_wz_leg4 * minus_rate_dot_2_leg4,
-                -(minus_g1_wz_leg1 * t281 + g2_wz_leg1 * t288),
-                -(minus_g1_wz_leg2 * t302 + g2_wz_leg2 * t309),
-                g1_wz_leg3 * t323 + minus_g2_wz_leg3 * t330,
-                g1_wz_leg4 * t344 + minus_g2_wz_leg4 * t351, -(t360 * t365), -(t367 * t372),
-                t374 * t379, t381 * t386, -::overact::math::signed(t365, t360),
-                -::overact::math::signed(t372, t367), ::overact::math::signed(t379, t374),
-                ::overact::math::signed(t386, t381), t365, t372, -t379, -t386, t400 * t403,
-                t405 * t408, t410 * t413, t415 * t418, ::overact::math::signed(t403, t400),
-                ::overact::math::signed(t408, t405), ::overact::math::signed(t413, t410),
-                ::overact::math::signed(t418, t415), t403,
+                -(minus_g1_wz_leg1 * t212 + g2_wz_leg1 * t48),
+                -(minus_g1_wz_leg2 * t226 + g2_wz_leg2 * t86),
+                g1_wz_leg3 * t240 + minus_g2_wz_leg3 * t130,
+                g1_wz_leg4 * t254 + minus_g2_wz_leg4 * t168, -(t300 * t305), -(t307 * t312),
+                t314 * t319, t321 * t326, -::overact::math::signed(t305, t300),
+                -::overact::math::signed(t312, t307), ::overact::math::signed(t319, t314),
+                ::overact::math::signed(t326, t321), t305, t312, -t319, -t326, t340 * t343,
+                t345 * t348, t350 * t353, t355 * t358, ::overact::math::signed(t343, t340),
+                ::overact::math::signed(t348, t345), ::overact::math::signed(t353, t350),
+                ::overact::math::signed(t358, t355), t343,
             ],
         ])
     }
@@ -3911,7 +3904,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 607 operations (242 additions, 354 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 505 intermediates.
+    /// 591 operations (242 additions, 338 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 489 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4010,8 +4003,8 @@ impl DualV {
         ::overact::guard::platform(t138, 25.429161076750646, "actuators")?;
         let t139 = 1.0 / t138;
         let t140 = t131 * t139;
-        let t156 = g1_vy_leg1 * g1_vx_leg1 + g1_vy_leg2 * g1_vx_leg2
-            + g1_vy_leg3 * g1_vx_leg3 + g1_vy_leg4 * g1_vx_leg4;
+        let t156 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
         let t158 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
             + g1_vy_leg4 * g1_wz_leg4 - t156 * t140;
@@ -4046,143 +4039,147 @@ impl DualV {
         let t213 = t2 * rate_3_leg1;
         let t214 = t205 + t213;
         let rate_1_leg3 = g1_vx_leg3 * t211 + g1_vy_leg3 * t214;
+        let t217 = rate_1_leg3 * rate_1_leg3;
         let g2_vy_leg3 = t86 * t89;
         let minus_g2_vx_leg3 = t83 * t89;
         let rate_2_leg3 = g2_vy_leg3 * t214 - minus_g2_vx_leg3 * t211;
         let t224 = rate_2_leg3 - rate_1_leg3;
         let t225 = rate_1_leg3 + t224;
-        let t228 = rate_1_leg3 * (t80 * rate_1_leg3) + t225 * (t81 * t225);
+        let t226 = t225 * t225;
+        let t228 = t80 * t217 + t81 * t226;
         let t229 = rate_3_leg1 * t213;
         let t232 = rate_3_leg1 * t210;
-        let t237 = rate_1_leg3 * (t76 * rate_1_leg3) + t225 * (t77 * t225);
-        let rate_dot_1_leg3 = g1_vx_leg3 * (t228 - t229) + g1_vy_leg3 * (t232 + t237);
-        let t241 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t243 = t209 - t210;
-        let t245 = t205 - t213;
-        let rate_1_leg1 = g1_vx_leg1 * t243 + g1_vy_leg1 * t245;
+        let t235 = t76 * t217 + t77 * t226;
+        let rate_dot_1_leg3 = g1_vx_leg3 * (t228 - t229) + g1_vy_leg3 * (t232 + t235);
+        let t239 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let t241 = t209 - t210;
+        let t243 = t205 - t213;
+        let rate_1_leg1 = g1_vx_leg1 * t241 + g1_vy_leg1 * t243;
+        let t246 = rate_1_leg1 * rate_1_leg1;
         let g2_vy_leg1 = t26 * t29;
         let minus_g2_vx_leg1 = t23 * t29;
-        let rate_2_leg1 = g2_vy_leg1 * t245 - minus_g2_vx_leg1 * t243;
-        let t255 = rate_2_leg1 - rate_1_leg1;
-        let t256 = rate_1_leg1 + t255;
-        let t259 = rate_1_leg1 * (t20 * rate_1_leg1) + t256 * (t21 * t256);
-        let t266 = rate_1_leg1 * (t16 * rate_1_leg1) + t256 * (t17 * t256);
-        let rate_dot_1_leg1 = g1_vx_leg1 * (t229 + t259) + g1_vy_leg1 * (t266 - t232);
-        let t270 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let rate_1_leg2 = g1_vx_leg2 * t243 + g1_vy_leg2 * t245;
+        let rate_2_leg1 = g2_vy_leg1 * t243 - minus_g2_vx_leg1 * t241;
+        let t253 = rate_2_leg1 - rate_1_leg1;
+        let t254 = rate_1_leg1 + t253;
+        let t255 = t254 * t254;
+        let t257 = t20 * t246 + t21 * t255;
+        let t262 = t16 * t246 + t17 * t255;
+        let rate_dot_1_leg1 = g1_vx_leg1 * (t229 + t257) + g1_vy_leg1 * (t262 - t232);
+        let t266 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let rate_1_leg2 = g1_vx_leg2 * t241 + g1_vy_leg2 * t243;
+        let t271 = rate_1_leg2 * rate_1_leg2;
         let g2_vy_leg2 = t53 * t56;
         let minus_g2_vx_leg2 = t50 * t56;
-        let rate_2_leg2 = g2_vy_leg2 * t245 - minus_g2_vx_leg2 * t243;
-        let t282 = rate_2_leg2 - rate_1_leg2;
-        let t283 = rate_1_leg2 + t282;
-        let t286 = rate_1_leg2 * (t47 * rate_1_leg2) + t283 * (t48 * t283);
-        let t293 = rate_1_leg2 * (t43 * rate_1_leg2) + t283 * (t44 * t283);
-        let rate_dot_1_leg2 = g1_vx_leg2 * (t229 + t286) + g1_vy_leg2 * (t293 - t232);
-        let t297 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let rate_2_leg2 = g2_vy_leg2 * t243 - minus_g2_vx_leg2 * t241;
+        let t278 = rate_2_leg2 - rate_1_leg2;
+        let t279 = rate_1_leg2 + t278;
+        let t280 = t279 * t279;
+        let t282 = t47 * t271 + t48 * t280;
+        let t287 = t43 * t271 + t44 * t280;
+        let rate_dot_1_leg2 = g1_vx_leg2 * (t229 + t282) + g1_vy_leg2 * (t287 - t232);
+        let t291 = actuator_accelerations[1] - rate_dot_1_leg2;
         let rate_1_leg4 = g1_vx_leg4 * t211 + g1_vy_leg4 * t214;
+        let t298 = rate_1_leg4 * rate_1_leg4;
         let g2_vy_leg4 = t114 * t117;
         let minus_g2_vx_leg4 = t111 * t117;
         let rate_2_leg4 = g2_vy_leg4 * t214 - minus_g2_vx_leg4 * t211;
-        let t311 = rate_2_leg4 - rate_1_leg4;
-        let t312 = rate_1_leg4 + t311;
-        let t315 = rate_1_leg4 * (t108 * rate_1_leg4) + t312 * (t109 * t312);
-        let t322 = rate_1_leg4 * (t104 * rate_1_leg4) + t312 * (t105 * t312);
-        let rate_dot_1_leg4 = g1_vx_leg4 * (t315 - t229) + g1_vy_leg4 * (t232 + t322);
-        let t326 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t335 = g1_vx_leg1 * t270 + g1_vx_leg2 * t297 + g1_vx_leg3 * t241
-            + g1_vx_leg4 * t326;
-        let t346 = g1_vy_leg1 * t270 + g1_vy_leg2 * t297 + g1_vy_leg3 * t241
-            + g1_vy_leg4 * t326 - t166 * t335;
-        let t348 = g1_wz_leg3 * t241
-            - (minus_g1_wz_leg1 * t270 + minus_g1_wz_leg2 * t297) + g1_wz_leg4 * t326
-            - t140 * t335 - t170 * t346;
-        let rate_dot_3_leg1 = t173 * t348;
-        let t350 = rate_3_leg1 * rate_3_leg1;
-        let t351 = c_phi * t350;
-        let t352 = s_phi * rate_dot_3_leg1;
-        let t354 = c_phi * rate_dot_3_leg1;
-        let t355 = s_phi * t350;
-        let t359 = t169 * t346 - t170 * rate_dot_3_leg1;
-        let t365 = t139 * t335 - t166 * t359 - t140 * rate_dot_3_leg1;
-        let t367 = c_phi * t359 - s_phi * t365;
-        let t372 = c_phi * t365 + s_phi * t359;
-        let t379 = t3 * rate_dot_3_leg1;
-        let t381 = t365 - t379 + t229;
-        let t382 = t381 + t259;
-        let t384 = t2 * rate_dot_3_leg1;
-        let t386 = t359 - t384 - t232;
-        let t387 = t386 + t266;
-        let rate_dot_1_leg1_2 = g1_vx_leg1 * t382 + g1_vy_leg1 * t387;
-        let t393 = t381 + t286;
-        let t395 = t386 + t293;
-        let rate_dot_1_leg2_2 = g1_vx_leg2 * t393 + g1_vy_leg2 * t395;
-        let t402 = t365 + t379 - t229;
-        let t403 = t402 + t228;
-        let t406 = t359 + t384 + t232;
-        let t407 = t406 + t237;
-        let rate_dot_1_leg3_2 = g1_vx_leg3 * t403 + g1_vy_leg3 * t407;
-        let t413 = t402 + t315;
-        let t415 = t406 + t322;
-        let rate_dot_1_leg4_2 = g1_vx_leg4 * t413 + g1_vy_leg4 * t415;
-        let rate_dot_2_leg1 = g2_vy_leg1 * t387 - minus_g2_vx_leg1 * t382;
-        let t449 = rate_dot_1_leg1_2 + rate_dot_2_leg1 - rate_dot_1_leg1_2;
+        let t305 = rate_2_leg4 - rate_1_leg4;
+        let t306 = rate_1_leg4 + t305;
+        let t307 = t306 * t306;
+        let t309 = t108 * t298 + t109 * t307;
+        let t314 = t104 * t298 + t105 * t307;
+        let rate_dot_1_leg4 = g1_vx_leg4 * (t309 - t229) + g1_vy_leg4 * (t232 + t314);
+        let t318 = actuator_accelerations[3] - rate_dot_1_leg4;
+        let t327 = g1_vx_leg1 * t266 + g1_vx_leg2 * t291 + g1_vx_leg3 * t239
+            + g1_vx_leg4 * t318;
+        let t338 = g1_vy_leg1 * t266 + g1_vy_leg2 * t291 + g1_vy_leg3 * t239
+            + g1_vy_leg4 * t318 - t166 * t327;
+        let t340 = g1_wz_leg3 * t239
+            - (minus_g1_wz_leg1 * t266 + minus_g1_wz_leg2 * t291) + g1_wz_leg4 * t318
+            - t140 * t327 - t170 * t338;
+        let rate_dot_3_leg1 = t173 * t340;
+        let t342 = rate_3_leg1 * rate_3_leg1;
+        let t343 = c_phi * t342;
+        let t344 = s_phi * rate_dot_3_leg1;
+        let t346 = c_phi * rate_dot_3_leg1;
+        let t347 = s_phi * t342;
+        let t351 = t169 * t338 - t170 * rate_dot_3_leg1;
+        let t357 = t139 * t327 - t166 * t351 - t140 * rate_dot_3_leg1;
+        let t359 = c_phi * t351 - s_phi * t357;
+        let t364 = c_phi * t357 + s_phi * t351;
+        let t371 = t3 * rate_dot_3_leg1;
+        let t373 = t357 - t371 + t229;
+        let t374 = t373 + t257;
+        let t376 = t2 * rate_dot_3_leg1;
+        let t378 = t351 - t376 - t232;
+        let t379 = t378 + t262;
+        let rate_dot_1_leg1_2 = g1_vx_leg1 * t374 + g1_vy_leg1 * t379;
+        let t385 = t373 + t282;
+        let t387 = t378 + t287;
+        let rate_dot_1_leg2_2 = g1_vx_leg2 * t385 + g1_vy_leg2 * t387;
+        let t394 = t357 + t371 - t229;
+        let t395 = t394 + t228;
+        let t398 = t351 + t376 + t232;
+        let t399 = t398 + t235;
+        let rate_dot_1_leg3_2 = g1_vx_leg3 * t395 + g1_vy_leg3 * t399;
+        let t405 = t394 + t309;
+        let t407 = t398 + t314;
+        let rate_dot_1_leg4_2 = g1_vx_leg4 * t405 + g1_vy_leg4 * t407;
+        let rate_dot_2_leg1 = g2_vy_leg1 * t379 - minus_g2_vx_leg1 * t374;
+        let t441 = rate_dot_1_leg1_2 + rate_dot_2_leg1 - rate_dot_1_leg1_2;
         let g2_wz_leg1 = t3 * minus_g2_vx_leg1 - t2 * g2_vy_leg1;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t395 - minus_g2_vx_leg2 * t393;
-        let t460 = rate_dot_1_leg2_2 + rate_dot_2_leg2 - rate_dot_1_leg2_2;
+        let rate_dot_2_leg2 = g2_vy_leg2 * t387 - minus_g2_vx_leg2 * t385;
+        let t452 = rate_dot_1_leg2_2 + rate_dot_2_leg2 - rate_dot_1_leg2_2;
         let g2_wz_leg2 = t3 * minus_g2_vx_leg2 - t2 * g2_vy_leg2;
-        let rate_dot_2_leg3 = g2_vy_leg3 * t407 - minus_g2_vx_leg3 * t403;
-        let t471 = rate_dot_1_leg3_2 + rate_dot_2_leg3 - rate_dot_1_leg3_2;
+        let rate_dot_2_leg3 = g2_vy_leg3 * t399 - minus_g2_vx_leg3 * t395;
+        let t463 = rate_dot_1_leg3_2 + rate_dot_2_leg3 - rate_dot_1_leg3_2;
         let g2_wz_leg3 = t2 * g2_vy_leg3 - t3 * minus_g2_vx_leg3;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t415 - minus_g2_vx_leg4 * t413;
-        let t482 = rate_dot_1_leg4_2 + rate_dot_2_leg4 - rate_dot_1_leg4_2;
+        let rate_dot_2_leg4 = g2_vy_leg4 * t407 - minus_g2_vx_leg4 * t405;
+        let t474 = rate_dot_1_leg4_2 + rate_dot_2_leg4 - rate_dot_1_leg4_2;
         let g2_wz_leg4 = t2 * g2_vy_leg4 - t3 * minus_g2_vx_leg4;
-        let t489 = t11 * t14;
-        let t492 = t11 - 0.1568;
-        let t496 = 3.5714285714285716 * (t489 * rate_dot_1_leg1_2)
-            - 1.7857142857142858 * (t492 * (rate_1_leg1 * rate_1_leg1));
-        let t503 = 3.5714285714285716 * t489 * t449
-            + 1.7857142857142858 * t492 * (t256 * t256);
-        let t512 = t38 * t41;
-        let t515 = t38 - 0.1568;
-        let t519 = 3.5714285714285716 * t512 * t460
-            - 1.7857142857142858 * t515 * (t283 * t283);
-        let t526 = 1.7857142857142858 * (t515 * (rate_1_leg2 * rate_1_leg2))
-            + 3.5714285714285716 * (t512 * rate_dot_1_leg2_2);
-        let t535 = t71 * t74;
-        let t538 = t71 - 0.1568;
-        let t542 = 3.5714285714285716 * (t535 * rate_dot_1_leg3_2)
-            - 1.7857142857142858 * (t538 * (rate_1_leg3 * rate_1_leg3));
-        let t549 = 3.5714285714285716 * t535 * t471
-            + 1.7857142857142858 * t538 * (t225 * t225);
-        let t558 = t99 * t102;
-        let t561 = t99 - 0.1568;
-        let t565 = 3.5714285714285716 * t558 * t482
-            - 1.7857142857142858 * t561 * (t312 * t312);
-        let t572 = 1.7857142857142858 * (t561 * (rate_1_leg4 * rate_1_leg4))
-            + 3.5714285714285716 * (t558 * rate_dot_1_leg4_2);
-        let t581 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t583 = g2_vy_leg1 - g1_vy_leg1;
-        let t585 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t587 = g1_vx_leg2 + minus_g2_vx_leg2;
-        let t589 = g2_vy_leg2 - g1_vy_leg2;
-        let t591 = minus_g1_wz_leg2 + g2_wz_leg2;
-        let t593 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t595 = g2_vy_leg3 - g1_vy_leg3;
-        let t597 = g2_wz_leg3 - g1_wz_leg3;
-        let t599 = g1_vx_leg4 + minus_g2_vx_leg4;
-        let t601 = g2_vy_leg4 - g1_vy_leg4;
-        let t603 = g2_wz_leg4 - g1_wz_leg4;
-        let t617 = rate_3_leg1 - rate_2_leg1;
-        let t620 = 1.0 - g2_wz_leg1;
-        let t622 = rate_3_leg1 - rate_2_leg2;
-        let t625 = 1.0 - g2_wz_leg2;
-        let t627 = rate_3_leg1 - rate_2_leg3;
-        let t630 = 1.0 - g2_wz_leg3;
-        let t632 = rate_3_leg1 - rate_2_leg4;
-        let t635 = 1.0 - g2_wz_leg4;
+        let t481 = t11 * t14;
+        let t484 = t11 - 0.1568;
+        let t487 = 3.5714285714285716 * (t481 * rate_dot_1_leg1_2)
+            - 1.7857142857142858 * (t484 * t246);
+        let t493 = 3.5714285714285716 * t481 * t441 + t255 * (1.7857142857142858 * t484);
+        let t502 = t38 * t41;
+        let t505 = t38 - 0.1568;
+        let t508 = 3.5714285714285716 * t502 * t452 - t280 * (1.7857142857142858 * t505);
+        let t514 = 1.7857142857142858 * (t505 * t271)
+            + 3.5714285714285716 * (t502 * rate_dot_1_leg2_2);
+        let t523 = t71 * t74;
+        let t526 = t71 - 0.1568;
+        let t529 = 3.5714285714285716 * (t523 * rate_dot_1_leg3_2)
+            - 1.7857142857142858 * (t526 * t217);
+        let t535 = 3.5714285714285716 * t523 * t463 + t226 * (1.7857142857142858 * t526);
+        let t544 = t99 * t102;
+        let t547 = t99 - 0.1568;
+        let t550 = 3.5714285714285716 * t544 * t474 - t307 * (1.7857142857142858 * t547);
+        let t556 = 1.7857142857142858 * (t547 * t298)
+            + 3.5714285714285716 * (t544 * rate_dot_1_leg4_2);
+        let t565 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let t567 = g2_vy_leg1 - g1_vy_leg1;
+        let t569 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t571 = g1_vx_leg2 + minus_g2_vx_leg2;
+        let t573 = g2_vy_leg2 - g1_vy_leg2;
+        let t575 = minus_g1_wz_leg2 + g2_wz_leg2;
+        let t577 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t579 = g2_vy_leg3 - g1_vy_leg3;
+        let t581 = g2_wz_leg3 - g1_wz_leg3;
+        let t583 = g1_vx_leg4 + minus_g2_vx_leg4;
+        let t585 = g2_vy_leg4 - g1_vy_leg4;
+        let t587 = g2_wz_leg4 - g1_wz_leg4;
+        let t601 = rate_3_leg1 - rate_2_leg1;
+        let t604 = 1.0 - g2_wz_leg1;
+        let t606 = rate_3_leg1 - rate_2_leg2;
+        let t609 = 1.0 - g2_wz_leg2;
+        let t611 = rate_3_leg1 - rate_2_leg3;
+        let t614 = 1.0 - g2_wz_leg3;
+        let t616 = rate_3_leg1 - rate_2_leg4;
+        let t619 = 1.0 - g2_wz_leg4;
         Ok([
             [
-                0.0, -(t351 + t352), t355 - t354, c_phi * t372 - s_phi * t367,
+                0.0, -(t343 + t344), t347 - t346, c_phi * t364 - s_phi * t359,
                 g1_vx_leg1 * rate_dot_1_leg1_2, g1_vx_leg2 * rate_dot_1_leg2_2,
                 g1_vx_leg3 * rate_dot_1_leg3_2, g1_vx_leg4 * rate_dot_1_leg4_2,
                 g1_vx_leg1 * rate_1_leg1, g1_vx_leg2 * rate_1_leg2, g1_vx_leg3 * rate_1_leg3,
@@ -4190,23 +4187,23 @@ impl DualV {
                 ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
                 ::overact::math::signed(g1_vx_leg4, rate_1_leg4), g1_vx_leg1, g1_vx_leg2,
-                g1_vx_leg3, g1_vx_leg4, -(minus_g2_vx_leg1 * t449), -(minus_g2_vx_leg2 * t460),
-                -(minus_g2_vx_leg3 * t471), -(minus_g2_vx_leg4 * t482),
-                minus_g2_vx_leg1 * t496 - g1_vx_leg1 * t503,
-                g1_vx_leg2 * t519 - minus_g2_vx_leg2 * t526,
-                minus_g2_vx_leg3 * t542 - g1_vx_leg3 * t549,
-                g1_vx_leg4 * t565 - minus_g2_vx_leg4 * t572, -(t581 * t255), -(t587 * t282),
-                -(t593 * t224), -(t599 * t311), -::overact::math::signed(t581, t255),
-                -::overact::math::signed(t587, t282), -::overact::math::signed(t593, t224),
-                -::overact::math::signed(t599, t311), -t581, -t587, -t593, -t599,
-                minus_g2_vx_leg1 * t617, minus_g2_vx_leg2 * t622, minus_g2_vx_leg3 * t627,
-                minus_g2_vx_leg4 * t632, ::overact::math::signed(minus_g2_vx_leg1, t617),
-                ::overact::math::signed(minus_g2_vx_leg2, t622),
-                ::overact::math::signed(minus_g2_vx_leg3, t627),
-                ::overact::math::signed(minus_g2_vx_leg4, t632), minus_g2_vx_leg1,
+                g1_vx_leg3, g1_vx_leg4, -(minus_g2_vx_leg1 * t441), -(minus_g2_vx_leg2 * t452),
+                -(minus_g2_vx_leg3 * t463), -(minus_g2_vx_leg4 * t474),
+                minus_g2_vx_leg1 * t487 - g1_vx_leg1 * t493,
+                g1_vx_leg2 * t508 - minus_g2_vx_leg2 * t514,
+                minus_g2_vx_leg3 * t529 - g1_vx_leg3 * t535,
+                g1_vx_leg4 * t550 - minus_g2_vx_leg4 * t556, -(t565 * t253), -(t571 * t278),
+                -(t577 * t224), -(t583 * t305), -::overact::math::signed(t565, t253),
+                -::overact::math::signed(t571, t278), -::overact::math::signed(t577, t224),
+                -::overact::math::signed(t583, t305), -t565, -t571, -t577, -t583,
+                minus_g2_vx_leg1 * t601, minus_g2_vx_leg2 * t606, minus_g2_vx_leg3 * t611,
+                minus_g2_vx_leg4 * t616, ::overact::math::signed(minus_g2_vx_leg1, t601),
+                ::overact::math::signed(minus_g2_vx_leg2, t606),
+                ::overact::math::signed(minus_g2_vx_leg3, t611),
+                ::overact::math::signed(minus_g2_vx_leg4, t616), minus_g2_vx_leg1,
             ],
             [
-                0.0, t354 - t355, -(t352 + t351), s_phi * t372 + c_phi * t367,
+                0.0, t346 - t347, -(t344 + t343), s_phi * t364 + c_phi * t359,
                 g1_vy_leg1 * rate_dot_1_leg1_2, g1_vy_leg2 * rate_dot_1_leg2_2,
                 g1_vy_leg3 * rate_dot_1_leg3_2, g1_vy_leg4 * rate_dot_1_leg4_2,
                 g1_vy_leg1 * rate_1_leg1, g1_vy_leg2 * rate_1_leg2, g1_vy_leg3 * rate_1_leg3,
@@ -4214,21 +4211,21 @@ impl DualV {
                 ::overact::math::signed(g1_vy_leg2, rate_1_leg2),
                 ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
                 ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg1, g1_vy_leg2,
-                g1_vy_leg3, g1_vy_leg4, g2_vy_leg1 * t449, g2_vy_leg2 * t460, g2_vy_leg3 * t471,
-                g2_vy_leg4 * t482, -(g1_vy_leg1 * t503 + g2_vy_leg1 * t496),
-                g1_vy_leg2 * t519 + g2_vy_leg2 * t526, -(g1_vy_leg3 * t549 + g2_vy_leg3 * t542),
-                g1_vy_leg4 * t565 + g2_vy_leg4 * t572, t583 * t255, t589 * t282, t595 * t224,
-                t601 * t311, ::overact::math::signed(t583, t255),
-                ::overact::math::signed(t589, t282), ::overact::math::signed(t595, t224),
-                ::overact::math::signed(t601, t311), t583, t589, t595, t601, -(g2_vy_leg1 * t617),
-                -(g2_vy_leg2 * t622), -(g2_vy_leg3 * t627), -(g2_vy_leg4 * t632),
-                -::overact::math::signed(g2_vy_leg1, t617),
-                -::overact::math::signed(g2_vy_leg2, t622),
-                -::overact::math::signed(g2_vy_leg3, t627),
-                -::overact::math::signed(g2_vy_leg4, t632), -g2_vy_leg1,
+                g1_vy_leg3, g1_vy_leg4, g2_vy_leg1 * t441, g2_vy_leg2 * t452, g2_vy_leg3 * t463,
+                g2_vy_leg4 * t474, -(g1_vy_leg1 * t493 + g2_vy_leg1 * t487),
+                g1_vy_leg2 * t508 + g2_vy_leg2 * t514, -(g1_vy_leg3 * t535 + g2_vy_leg3 * t529),
+                g1_vy_leg4 * t550 + g2_vy_leg4 * t556, t567 * t253, t573 * t278, t579 * t224,
+                t585 * t305, ::overact::math::signed(t567, t253),
+                ::overact::math::signed(t573, t278), ::overact::math::signed(t579, t224),
+                ::overact::math::signed(t585, t305), t567, t573, t579, t585, -(g2_vy_leg1 * t601),
+                -(g2_vy_leg2 * t606), -(g2_vy_leg3 * t611), -(g2_vy_leg4 * t616),
+                -::overact::math::signed(g2_vy_leg1, t601),
+                -::overact::math::signed(g2_vy_leg2, t606),
+                -::overact::math::signed(g2_vy_leg3, t611),
+                -::overact::math::signed(g2_vy_leg4, t616), -g2_vy_leg1,
             ],
             [
-                rate_dot_3_leg1, t367, -t372, 0.0, -(minus_g1_wz_leg1 * rate_dot_1_leg1_2),
+                rate_dot_3_leg1, t359, -t364, 0.0, -(minus_g1_wz_leg1 * rate_dot_1_leg1_2),
                 -(minus_g1_wz_leg2 * rate_dot_1_leg2_2), g1_wz_leg3 * rate_dot_1_leg3_2,
                 g1_wz_leg4 * rate_dot_1_leg4_2, -(minus_g1_wz_leg1 * rate_1_leg1),
                 -(minus_g1_wz_leg2 * rate_1_leg2), g1_wz_leg3 * rate_1_leg3,
@@ -4236,16 +4233,16 @@ impl DualV {
                 -::overact::math::signed(minus_g1_wz_leg2, rate_1_leg2),
                 ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
                 ::overact::math::signed(g1_wz_leg4, rate_1_leg4), -minus_g1_wz_leg1,
-                -minus_g1_wz_leg2, g1_wz_leg3, g1_wz_leg4, g2_wz_leg1 * t449, g2_wz_leg2 * t460,
-                g2_wz_leg3 * t471, g2_wz_leg4 * t482, minus_g1_wz_leg1 * t503 - g2_wz_leg1 * t496,
-                g2_wz_leg2 * t526 - minus_g1_wz_leg2 * t519,
-                -(g1_wz_leg3 * t549 + g2_wz_leg3 * t542), g1_wz_leg4 * t565 + g2_wz_leg4 * t572,
-                t585 * t255, t591 * t282, t597 * t224, t603 * t311,
-                ::overact::math::signed(t585, t255), ::overact::math::signed(t591, t282),
-                ::overact::math::signed(t597, t224), ::overact::math::signed(t603, t311), t585,
-                t591, t597, t603, t620 * t617, t625 * t622, t630 * t627, t635 * t632,
-                ::overact::math::signed(t620, t617), ::overact::math::signed(t625, t622),
-                ::overact::math::signed(t630, t627), ::overact::math::signed(t635, t632), t620,
+                -minus_g1_wz_leg2, g1_wz_leg3, g1_wz_leg4, g2_wz_leg1 * t441, g2_wz_leg2 * t452,
+                g2_wz_leg3 * t463, g2_wz_leg4 * t474, minus_g1_wz_leg1 * t493 - g2_wz_leg1 * t487,
+                g2_wz_leg2 * t514 - minus_g1_wz_leg2 * t508,
+                -(g1_wz_leg3 * t535 + g2_wz_leg3 * t529), g1_wz_leg4 * t550 + g2_wz_leg4 * t556,
+                t569 * t253, t575 * t278, t581 * t224, t587 * t305,
+                ::overact::math::signed(t569, t253), ::overact::math::signed(t575, t278),
+                ::overact::math::signed(t581, t224), ::overact::math::signed(t587, t305), t569,
+                t575, t581, t587, t604 * t601, t609 * t606, t614 * t611, t619 * t616,
+                ::overact::math::signed(t604, t601), ::overact::math::signed(t609, t606),
+                ::overact::math::signed(t614, t611), ::overact::math::signed(t619, t616), t604,
             ],
         ])
     }
@@ -4259,7 +4256,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 554 operations (216 additions, 329 multiplications, 9 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 478 intermediates.
+    /// 538 operations (216 additions, 313 multiplications, 9 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 462 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4361,226 +4358,234 @@ impl DualV {
         let t194 = twist[0] - t123;
         let t196 = twist[1] - t134;
         let rate_1_leg1 = g1_vx_leg1 * t194 + g1_vy_leg1 * t196;
+        let t199 = rate_1_leg1 * rate_1_leg1;
         let g2_vy_leg1 = t80 * t83;
         let minus_g2_vx_leg1 = t77 * t83;
         let rate_2_leg1 = g2_vy_leg1 * t196 - minus_g2_vx_leg1 * t194;
         let t206 = rate_2_leg1 - rate_1_leg1;
         let t207 = rate_1_leg1 + t206;
-        let t211 = t193 + rate_1_leg1 * (t74 * rate_1_leg1) + t207 * (t75 * t207);
+        let t208 = t207 * t207;
+        let t211 = t193 + t74 * t199 + t75 * t208;
         let t214 = acceleration[1] - t125 - t124;
-        let t220 = t214 + rate_1_leg1 * (t70 * rate_1_leg1) + t207 * (t71 * t207);
-        let rate_dot_1_leg1 = g1_vx_leg1 * t211 + g1_vy_leg1 * t220;
+        let t218 = t214 + t70 * t199 + t71 * t208;
+        let rate_dot_1_leg1 = g1_vx_leg1 * t211 + g1_vy_leg1 * t218;
         let rate_1_leg2 = g1_vx_leg2 * t194 + g1_vy_leg2 * t196;
+        let t224 = rate_1_leg2 * rate_1_leg2;
         let g2_vy_leg2 = t26 * t29;
         let minus_g2_vx_leg2 = t23 * t29;
         let rate_2_leg2 = g2_vy_leg2 * t196 - minus_g2_vx_leg2 * t194;
-        let t233 = rate_2_leg2 - rate_1_leg2;
-        let t234 = rate_1_leg2 + t233;
-        let t238 = t193 + rate_1_leg2 * (t20 * rate_1_leg2) + t234 * (t21 * t234);
-        let t245 = t214 + rate_1_leg2 * (t16 * rate_1_leg2) + t234 * (t17 * t234);
-        let rate_dot_1_leg2 = g1_vx_leg2 * t238 + g1_vy_leg2 * t245;
-        let t249 = acceleration[0] + t133 - t135;
-        let t250 = twist[0] + t123;
-        let t252 = twist[1] + t134;
-        let rate_1_leg3 = g1_vx_leg3 * t250 + g1_vy_leg3 * t252;
+        let t231 = rate_2_leg2 - rate_1_leg2;
+        let t232 = rate_1_leg2 + t231;
+        let t233 = t232 * t232;
+        let t236 = t193 + t20 * t224 + t21 * t233;
+        let t241 = t214 + t16 * t224 + t17 * t233;
+        let rate_dot_1_leg2 = g1_vx_leg2 * t236 + g1_vy_leg2 * t241;
+        let t245 = acceleration[0] + t133 - t135;
+        let t246 = twist[0] + t123;
+        let t248 = twist[1] + t134;
+        let rate_1_leg3 = g1_vx_leg3 * t246 + g1_vy_leg3 * t248;
+        let t251 = rate_1_leg3 * rate_1_leg3;
         let g2_vy_leg3 = t53 * t56;
         let minus_g2_vx_leg3 = t50 * t56;
-        let rate_2_leg3 = g2_vy_leg3 * t252 - minus_g2_vx_leg3 * t250;
-        let t262 = rate_2_leg3 - rate_1_leg3;
-        let t263 = rate_1_leg3 + t262;
-        let t267 = t249 + rate_1_leg3 * (t43 * rate_1_leg3) + t263 * (t44 * t263);
-        let t270 = acceleration[1] + t125 + t124;
-        let t276 = t270 + rate_1_leg3 * (t47 * rate_1_leg3) + t263 * (t48 * t263);
-        let rate_dot_1_leg3 = g1_vx_leg3 * t267 + g1_vy_leg3 * t276;
-        let t279 = t31 - 0.3950502153918333;
-        let t281 = t279 * t279 + t37;
-        let t283 = 0.0784 / t281 - 0.25;
-        ::overact::guard::reach(t283, "leg4")?;
-        let t284 = ::overact::math::sqrt(t283);
-        let t286 = t45 + t279 * t284;
-        let t287 = t35 - t286;
-        let t290 = 0.5 * t279 - t35 * t284;
-        let t291 = t279 - t290;
-        let t293 = t290 + t291 - t291;
-        let t296 = t287 - (t286 + t287);
-        let t298 = t287 * t293 + t291 * t296;
-        ::overact::guard::leg(t298, 0.078399138102973, "leg4")?;
-        let t299 = 1.0 / t298;
-        let g1_vy_leg4 = t287 * t299;
-        let g1_vx_leg4 = t291 * t299;
+        let rate_2_leg3 = g2_vy_leg3 * t248 - minus_g2_vx_leg3 * t246;
+        let t258 = rate_2_leg3 - rate_1_leg3;
+        let t259 = rate_1_leg3 + t258;
+        let t260 = t259 * t259;
+        let t263 = t245 + t43 * t251 + t44 * t260;
+        let t266 = acceleration[1] + t125 + t124;
+        let t270 = t266 + t47 * t251 + t48 * t260;
+        let rate_dot_1_leg3 = g1_vx_leg3 * t263 + g1_vy_leg3 * t270;
+        let t273 = t31 - 0.3950502153918333;
+        let t275 = t273 * t273 + t37;
+        let t277 = 0.0784 / t275 - 0.25;
+        ::overact::guard::reach(t277, "leg4")?;
+        let t278 = ::overact::math::sqrt(t277);
+        let t280 = t45 + t273 * t278;
+        let t281 = t35 - t280;
+        let t284 = 0.5 * t273 - t35 * t278;
+        let t285 = t273 - t284;
+        let t287 = t284 + t285 - t285;
+        let t290 = t281 - (t280 + t281);
+        let t292 = t281 * t287 + t285 * t290;
+        ::overact::guard::leg(t292, 0.078399138102973, "leg4")?;
+        let t293 = 1.0 / t292;
+        let g1_vy_leg4 = t281 * t293;
+        let g1_vx_leg4 = t285 * t293;
         let g1_wz_leg4 = t6 * g1_vy_leg4 + t2 * g1_vx_leg4;
-        let t309 = g1_vy_leg4 * t132 - g1_vx_leg4 * t122 + g1_wz_leg4 * t110;
-        let rate_1_leg4 = g1_vx_leg4 * t250 + g1_vy_leg4 * t252;
-        let g2_vy_leg4 = t296 * t299;
-        let minus_g2_vx_leg4 = t293 * t299;
-        let rate_2_leg4 = g2_vy_leg4 * t252 - minus_g2_vx_leg4 * t250;
-        let t320 = rate_2_leg4 - rate_1_leg4;
-        let t321 = rate_1_leg4 + t320;
-        let t325 = t249 + rate_1_leg4 * (t290 * rate_1_leg4) + t321 * (t291 * t321);
-        let t332 = t270 + rate_1_leg4 * (t286 * rate_1_leg4) + t321 * (t287 * t321);
-        let rate_dot_1_leg4 = g1_vx_leg4 * t325 + g1_vy_leg4 * t332;
-        let t340 = g1_vx_leg4 * t148 - g1_vy_leg4 * t153 - g1_wz_leg4 * t115;
-        let t346 = g1_vx_leg4 * t159 - g1_vy_leg4 * t161 + g1_wz_leg4 * t117;
+        let t303 = g1_vy_leg4 * t132 - g1_vx_leg4 * t122 + g1_wz_leg4 * t110;
+        let rate_1_leg4 = g1_vx_leg4 * t246 + g1_vy_leg4 * t248;
+        let t307 = rate_1_leg4 * rate_1_leg4;
+        let g2_vy_leg4 = t290 * t293;
+        let minus_g2_vx_leg4 = t287 * t293;
+        let rate_2_leg4 = g2_vy_leg4 * t248 - minus_g2_vx_leg4 * t246;
+        let t314 = rate_2_leg4 - rate_1_leg4;
+        let t315 = rate_1_leg4 + t314;
+        let t316 = t315 * t315;
+        let t319 = t245 + t284 * t307 + t285 * t316;
+        let t324 = t266 + t280 * t307 + t281 * t316;
+        let rate_dot_1_leg4 = g1_vx_leg4 * t319 + g1_vy_leg4 * t324;
+        let t332 = g1_vx_leg4 * t148 - g1_vy_leg4 * t153 - g1_wz_leg4 * t115;
+        let t338 = g1_vx_leg4 * t159 - g1_vy_leg4 * t161 + g1_wz_leg4 * t117;
         let g2_wz_leg1 = t2 * minus_g2_vx_leg1 - t6 * g2_vy_leg1;
-        let t364 = minus_g2_vx_leg1 * t122 + g2_vy_leg1 * t132 + g2_wz_leg1 * t110;
-        let rate_dot_2_leg1 = g2_vy_leg1 * t220 - minus_g2_vx_leg1 * t211;
-        let t369 = rate_dot_1_leg1 + rate_dot_2_leg1 - rate_dot_1_leg1;
-        let t375 = minus_g2_vx_leg1 * t148 + g2_vy_leg1 * t153 + g2_wz_leg1 * t115;
+        let t356 = minus_g2_vx_leg1 * t122 + g2_vy_leg1 * t132 + g2_wz_leg1 * t110;
+        let rate_dot_2_leg1 = g2_vy_leg1 * t218 - minus_g2_vx_leg1 * t211;
+        let t361 = rate_dot_1_leg1 + rate_dot_2_leg1 - rate_dot_1_leg1;
+        let t367 = minus_g2_vx_leg1 * t148 + g2_vy_leg1 * t153 + g2_wz_leg1 * t115;
         let g2_wz_leg2 = t2 * minus_g2_vx_leg2 - t6 * g2_vy_leg2;
-        let t384 = minus_g2_vx_leg2 * t122 + g2_vy_leg2 * t132 + g2_wz_leg2 * t110;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t245 - minus_g2_vx_leg2 * t238;
-        let t389 = rate_dot_1_leg2 + rate_dot_2_leg2 - rate_dot_1_leg2;
-        let t395 = minus_g2_vx_leg2 * t148 + g2_vy_leg2 * t153 + g2_wz_leg2 * t115;
+        let t376 = minus_g2_vx_leg2 * t122 + g2_vy_leg2 * t132 + g2_wz_leg2 * t110;
+        let rate_dot_2_leg2 = g2_vy_leg2 * t241 - minus_g2_vx_leg2 * t236;
+        let t381 = rate_dot_1_leg2 + rate_dot_2_leg2 - rate_dot_1_leg2;
+        let t387 = minus_g2_vx_leg2 * t148 + g2_vy_leg2 * t153 + g2_wz_leg2 * t115;
         let g2_wz_leg3 = t6 * g2_vy_leg3 - t2 * minus_g2_vx_leg3;
-        let t404 = minus_g2_vx_leg3 * t122 + g2_vy_leg3 * t132 + g2_wz_leg3 * t110;
-        let rate_dot_2_leg3 = g2_vy_leg3 * t276 - minus_g2_vx_leg3 * t267;
-        let t409 = rate_dot_1_leg3 + rate_dot_2_leg3 - rate_dot_1_leg3;
-        let t415 = minus_g2_vx_leg3 * t148 + g2_vy_leg3 * t153 + g2_wz_leg3 * t115;
-        let t421 = g2_wz_leg3 * t117 - (minus_g2_vx_leg3 * t159 + g2_vy_leg3 * t161);
+        let t396 = minus_g2_vx_leg3 * t122 + g2_vy_leg3 * t132 + g2_wz_leg3 * t110;
+        let rate_dot_2_leg3 = g2_vy_leg3 * t270 - minus_g2_vx_leg3 * t263;
+        let t401 = rate_dot_1_leg3 + rate_dot_2_leg3 - rate_dot_1_leg3;
+        let t407 = minus_g2_vx_leg3 * t148 + g2_vy_leg3 * t153 + g2_wz_leg3 * t115;
+        let t413 = g2_wz_leg3 * t117 - (minus_g2_vx_leg3 * t159 + g2_vy_leg3 * t161);
         let g2_wz_leg4 = t6 * g2_vy_leg4 - t2 * minus_g2_vx_leg4;
-        let t430 = minus_g2_vx_leg4 * t122 + g2_vy_leg4 * t132 + g2_wz_leg4 * t110;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t332 - minus_g2_vx_leg4 * t325;
-        let t435 = rate_dot_1_leg4 + rate_dot_2_leg4 - rate_dot_1_leg4;
-        let t441 = minus_g2_vx_leg4 * t148 + g2_vy_leg4 * t153 + g2_wz_leg4 * t115;
-        let t447 = g2_wz_leg4 * t117 - (minus_g2_vx_leg4 * t159 + g2_vy_leg4 * t161);
-        let t449 = t65 * t68;
-        let t452 = t65 - 0.1568;
-        let t462 = 3.5714285714285716 * (t449 * rate_dot_1_leg1)
-            - 1.7857142857142858 * (t452 * (rate_1_leg1 * rate_1_leg1));
-        let t466 = t11 - 0.1568;
-        let t470 = t11 * t14;
-        let t473 = 1.7857142857142858 * (t466 * (rate_1_leg2 * rate_1_leg2))
-            + 3.5714285714285716 * (t470 * rate_dot_1_leg2);
-        let t483 = t38 * t41;
-        let t486 = t38 - 0.1568;
-        let t490 = 3.5714285714285716 * (t483 * rate_dot_1_leg3)
-            - 1.7857142857142858 * (t486 * (rate_1_leg3 * rate_1_leg3));
-        let t501 = t281 * t284;
-        let t504 = t281 - 0.1568;
-        let t508 = t435 * (3.5714285714285716 * t501)
-            - 1.7857142857142858 * t504 * (t321 * t321);
-        let t515 = 1.7857142857142858 * (t504 * (rate_1_leg4 * rate_1_leg4))
-            + 3.5714285714285716 * (t501 * rate_dot_1_leg4);
-        let t524 = t364 - 1.0;
-        let t528 = 1.0 + t395;
-        let t532 = t421 - 1.0;
-        let t534 = t430 - t309;
-        let t536 = t340 + t441;
-        let t538 = t447 - t346;
-        let t550 = twist[2] - rate_2_leg1;
-        let t551 = t110 - t364;
-        let t553 = t375 - t115;
-        let t556 = twist[2] - rate_2_leg2;
-        let t557 = t110 - t384;
-        let t559 = t395 - t115;
-        let t562 = twist[2] - rate_2_leg3;
-        let t563 = t110 - t404;
-        let t565 = t415 - t115;
-        let t567 = t117 - t421;
-        let t569 = twist[2] - rate_2_leg4;
-        let t570 = t110 - t430;
-        let t572 = t441 - t115;
-        let t574 = t117 - t447;
+        let t422 = minus_g2_vx_leg4 * t122 + g2_vy_leg4 * t132 + g2_wz_leg4 * t110;
+        let rate_dot_2_leg4 = g2_vy_leg4 * t324 - minus_g2_vx_leg4 * t319;
+        let t427 = rate_dot_1_leg4 + rate_dot_2_leg4 - rate_dot_1_leg4;
+        let t433 = minus_g2_vx_leg4 * t148 + g2_vy_leg4 * t153 + g2_wz_leg4 * t115;
+        let t439 = g2_wz_leg4 * t117 - (minus_g2_vx_leg4 * t159 + g2_vy_leg4 * t161);
+        let t441 = t65 * t68;
+        let t444 = t65 - 0.1568;
+        let t452 = 3.5714285714285716 * (t441 * rate_dot_1_leg1)
+            - 1.7857142857142858 * (t444 * t199);
+        let t456 = t11 - 0.1568;
+        let t459 = t11 * t14;
+        let t462 = 1.7857142857142858 * (t456 * t224)
+            + 3.5714285714285716 * (t459 * rate_dot_1_leg2);
+        let t471 = t38 * t41;
+        let t474 = t38 - 0.1568;
+        let t477 = 3.5714285714285716 * (t471 * rate_dot_1_leg3)
+            - 1.7857142857142858 * (t474 * t251);
+        let t487 = t275 * t278;
+        let t490 = t275 - 0.1568;
+        let t493 = t427 * (3.5714285714285716 * t487)
+            - t316 * (1.7857142857142858 * t490);
+        let t499 = 1.7857142857142858 * (t490 * t307)
+            + 3.5714285714285716 * (t487 * rate_dot_1_leg4);
+        let t508 = t356 - 1.0;
+        let t512 = 1.0 + t387;
+        let t516 = t413 - 1.0;
+        let t518 = t422 - t303;
+        let t520 = t332 + t433;
+        let t522 = t439 - t338;
+        let t534 = twist[2] - rate_2_leg1;
+        let t535 = t110 - t356;
+        let t537 = t367 - t115;
+        let t540 = twist[2] - rate_2_leg2;
+        let t541 = t110 - t376;
+        let t543 = t387 - t115;
+        let t546 = twist[2] - rate_2_leg3;
+        let t547 = t110 - t396;
+        let t549 = t407 - t115;
+        let t551 = t117 - t413;
+        let t553 = twist[2] - rate_2_leg4;
+        let t554 = t110 - t422;
+        let t556 = t433 - t115;
+        let t558 = t117 - t439;
         Ok([
             [
                 t110 * acceleration[2], t122 * t127 + t132 * t137 + t110 * t142,
                 t122 * t137 - t132 * t127 - t110 * t170,
                 t132 * acceleration[1] - t122 * acceleration[0], rate_dot_1_leg1, 0.0, 0.0,
-                t309 * rate_dot_1_leg4, rate_1_leg1, 0.0, 0.0, t309 * rate_1_leg4,
+                t303 * rate_dot_1_leg4, rate_1_leg1, 0.0, 0.0, t303 * rate_1_leg4,
                 ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
-                ::overact::math::signed(t309, rate_1_leg4), 1.0, 0.0, 0.0, t309, t364 * t369,
-                t384 * t389, t404 * t409, t430 * t435,
-                -(t369 * (3.5714285714285716 * t449)
-                    + 1.7857142857142858 * t452 * (t207 * t207) + t364 * t462),
-                t384 * t473,
-                -(t404 * t490),
-                t309 * t508 + t430 * t515,
-                t206 * t524,
-                t384 * t233,
-                t404 * t262,
-                t320 * t534,
-                ::overact::math::signed(t524, t206),
-                ::overact::math::signed(t384, t233),
-                ::overact::math::signed(t404, t262),
-                ::overact::math::signed(t534, t320),
-                t524,
-                t384,
-                t404,
-                t534,
-                t550 * t551,
-                t556 * t557,
-                t562 * t563,
-                t569 * t570,
-                ::overact::math::signed(t551, t550),
-                ::overact::math::signed(t557, t556),
-                ::overact::math::signed(t563, t562),
-                ::overact::math::signed(t570, t569),
-                t551,
+                ::overact::math::signed(t303, rate_1_leg4), 1.0, 0.0, 0.0, t303, t356 * t361,
+                t376 * t381, t396 * t401, t422 * t427,
+                -(t361 * (3.5714285714285716 * t441) + t208 * (1.7857142857142858 * t444)
+                    + t356 * t452),
+                t376 * t462,
+                -(t396 * t477),
+                t303 * t493 + t422 * t499,
+                t206 * t508,
+                t376 * t231,
+                t396 * t258,
+                t314 * t518,
+                ::overact::math::signed(t508, t206),
+                ::overact::math::signed(t376, t231),
+                ::overact::math::signed(t396, t258),
+                ::overact::math::signed(t518, t314),
+                t508,
+                t376,
+                t396,
+                t518,
+                t534 * t535,
+                t540 * t541,
+                t546 * t547,
+                t553 * t554,
+                ::overact::math::signed(t535, t534),
+                ::overact::math::signed(t541, t540),
+                ::overact::math::signed(t547, t546),
+                ::overact::math::signed(t554, t553),
+                t535,
             ],
             [
                 -(t115 * acceleration[2]), -(t148 * t127 + t153 * t137 + t115 * t142),
                 t153 * t127 - t148 * t137 + t115 * t170,
                 t148 * acceleration[0] - t153 * acceleration[1], 0.0, rate_dot_1_leg2, 0.0,
-                t340 * rate_dot_1_leg4, 0.0, rate_1_leg2, 0.0, t340 * rate_1_leg4, 0.0,
-                ::overact::math::sign(rate_1_leg2), 0.0, ::overact::math::signed(t340, rate_1_leg4),
-                0.0, 1.0, 0.0, t340, -(t375 * t369), -(t395 * t389), -(t415 * t409), -(t441 * t435),
-                t375 * t462,
-                t389 * (3.5714285714285716 * t470)
-                    - 1.7857142857142858 * t466 * (t234 * t234) - t395 * t473,
-                t415 * t490,
-                t340 * t508 - t441 * t515,
-                -(t375 * t206),
-                -(t233 * t528),
-                -(t415 * t262),
-                -(t320 * t536),
-                -::overact::math::signed(t375, t206),
-                -::overact::math::signed(t528, t233),
-                -::overact::math::signed(t415, t262),
-                -::overact::math::signed(t536, t320),
-                -t375,
-                -t528,
-                -t415,
-                -t536,
-                t550 * t553,
-                t556 * t559,
-                t562 * t565,
-                t569 * t572,
-                ::overact::math::signed(t553, t550),
-                ::overact::math::signed(t559, t556),
-                ::overact::math::signed(t565, t562),
-                ::overact::math::signed(t572, t569),
-                t553,
+                t332 * rate_dot_1_leg4, 0.0, rate_1_leg2, 0.0, t332 * rate_1_leg4, 0.0,
+                ::overact::math::sign(rate_1_leg2), 0.0, ::overact::math::signed(t332, rate_1_leg4),
+                0.0, 1.0, 0.0, t332, -(t367 * t361), -(t387 * t381), -(t407 * t401), -(t433 * t427),
+                t367 * t452,
+                t381 * (3.5714285714285716 * t459) - t233 * (1.7857142857142858 * t456)
+                    - t387 * t462,
+                t407 * t477,
+                t332 * t493 - t433 * t499,
+                -(t367 * t206),
+                -(t231 * t512),
+                -(t407 * t258),
+                -(t314 * t520),
+                -::overact::math::signed(t367, t206),
+                -::overact::math::signed(t512, t231),
+                -::overact::math::signed(t407, t258),
+                -::overact::math::signed(t520, t314),
+                -t367,
+                -t512,
+                -t407,
+                -t520,
+                t534 * t537,
+                t540 * t543,
+                t546 * t549,
+                t553 * t556,
+                ::overact::math::signed(t537, t534),
+                ::overact::math::signed(t543, t540),
+                ::overact::math::signed(t549, t546),
+                ::overact::math::signed(t556, t553),
+                t537,
             ],
             [
                 t117 * acceleration[2], t117 * t142 - (t159 * t127 + t161 * t137),
                 t161 * t127 - t159 * t137 - t117 * t170,
                 t159 * acceleration[0] - t161 * acceleration[1], 0.0, 0.0, rate_dot_1_leg3,
-                t346 * rate_dot_1_leg4, 0.0, 0.0, rate_1_leg3, t346 * rate_1_leg4, 0.0, 0.0,
-                ::overact::math::sign(rate_1_leg3), ::overact::math::signed(t346, rate_1_leg4), 0.0,
-                0.0, 1.0, t346, 0.0, 0.0, t421 * t409, t447 * t435, 0.0, 0.0,
-                -(t409 * (3.5714285714285716 * t483)
-                    + 1.7857142857142858 * t486 * (t263 * t263) + t421 * t490),
-                t346 * t508 + t447 * t515,
+                t338 * rate_dot_1_leg4, 0.0, 0.0, rate_1_leg3, t338 * rate_1_leg4, 0.0, 0.0,
+                ::overact::math::sign(rate_1_leg3), ::overact::math::signed(t338, rate_1_leg4), 0.0,
+                0.0, 1.0, t338, 0.0, 0.0, t413 * t401, t439 * t427, 0.0, 0.0,
+                -(t401 * (3.5714285714285716 * t471) + t260 * (1.7857142857142858 * t474)
+                    + t413 * t477),
+                t338 * t493 + t439 * t499,
                 0.0,
                 0.0,
-                t262 * t532,
-                t320 * t538,
+                t258 * t516,
+                t314 * t522,
                 0.0,
                 0.0,
-                ::overact::math::signed(t532, t262),
-                ::overact::math::signed(t538, t320),
+                ::overact::math::signed(t516, t258),
+                ::overact::math::signed(t522, t314),
                 0.0,
                 0.0,
-                t532,
-                t538,
-                t117 * t550,
-                t117 * t556,
-                t562 * t567,
-                t569 * t574,
-                ::overact::math::signed(t117, t550),
-                ::overact::math::signed(t117, t556),
-                ::overact::math::signed(t567, t562),
-                ::overact::math::signed(t574, t569),
+                t516,
+                t522,
+                t117 * t534,
+                t117 * t540,
+                t546 * t551,
+                t553 * t558,
+                ::overact::math::signed(t117, t534),
+                ::overact::math::signed(t117, t540),
+                ::overact::math::signed(t551, t546),
+                ::overact::math::signed(t558, t553),
                 t117,
             ],
         ])
@@ -4596,7 +4601,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 482 operations (149 additions, 328 multiplications, 5 divisions), 0 square roots, 9 trigonometric pairs, 28 signs, 418 intermediates.
+    /// 422 operations (141 additions, 276 multiplications, 5 divisions), 0 square roots, 9 trigonometric pairs, 28 signs, 358 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4608,12 +4613,14 @@ impl DualV {
     ) -> Result<[[f64; 49]; 3], ::overact::Error> {
         let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(joints[3]);
         let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
+        ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
         let t10 = 3.5714285714285716 / s2_leg2;
         let g1_vx_leg2 = c12_leg2 * t10;
         let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(joints[6]);
         let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
+        ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
         let t22 = 3.5714285714285716 / s2_leg3;
@@ -4622,6 +4629,7 @@ impl DualV {
         let g1_vx_leg3 = c12_leg3 * t22;
         let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(joints[0]);
         let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
+        ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
         let t39 = 3.5714285714285716 / s2_leg1;
@@ -4663,222 +4671,159 @@ impl DualV {
         let t130 = c_phi * acceleration[0] + s_phi * acceleration[1];
         let t139 = t77 * t130;
         let t149 = acceleration[0] - t97 + t99;
-        let t150 = twist[0] - t87;
-        let t152 = twist[1] - t98;
-        let rate_1_leg1 = g1_vx_leg1 * t150 + g1_vy_leg1 * t152;
+        let t152 = acceleration[1] - t89 - t88;
         let minus_g2_vx_leg1 = c1_leg1 * t39;
+        let t156 = twist[0] - t87;
         let minus_g2_vy_leg1 = s1_leg1 * t39;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t150 + minus_g2_vy_leg1 * t152;
-        let t167 = t149 + rate_1_leg1 * (0.28 * c1_leg1 * rate_1_leg1)
-            + minus_rate_2_leg1 * (0.28 * c12_leg1 * minus_rate_2_leg1);
-        let t170 = acceleration[1] - t89 - t88;
-        let t178 = t170 + rate_1_leg1 * (0.28 * s1_leg1 * rate_1_leg1)
-            + minus_rate_2_leg1 * (0.28 * s12_leg1 * minus_rate_2_leg1);
-        let rate_dot_1_leg1 = g1_vx_leg1 * t167 + g1_vy_leg1 * t178;
-        let rate_1_leg2 = g1_vx_leg2 * t150 + g1_vy_leg2 * t152;
+        let t159 = twist[1] - t98;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t156 + minus_g2_vy_leg1 * t159;
+        let t162 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t164 = c12_leg1 * t149 + s12_leg1 * t152 + 0.28 * t162;
+        let rate_1_leg1 = g1_vx_leg1 * t156 + g1_vy_leg1 * t159;
+        let t168 = rate_1_leg1 * rate_1_leg1;
+        let t169 = 0.28 * c2_leg1;
+        let rate_dot_1_leg1 = t39 * (t164 + t168 * t169);
         let minus_g2_vx_leg2 = c1_leg2 * t10;
         let minus_g2_vy_leg2 = s1_leg2 * t10;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t150 + minus_g2_vy_leg2 * t152;
-        let t196 = t149 + rate_1_leg2 * (0.28 * c1_leg2 * rate_1_leg2)
-            + minus_rate_2_leg2 * (0.28 * c12_leg2 * minus_rate_2_leg2);
-        let t205 = t170 + rate_1_leg2 * (0.28 * s1_leg2 * rate_1_leg2)
-            + minus_rate_2_leg2 * (0.28 * s12_leg2 * minus_rate_2_leg2);
-        let rate_dot_1_leg2 = g1_vx_leg2 * t196 + g1_vy_leg2 * t205;
-        let t209 = acceleration[0] + t97 - t99;
-        let t210 = twist[0] + t87;
-        let t212 = twist[1] + t98;
-        let rate_1_leg3 = g1_vx_leg3 * t210 + g1_vy_leg3 * t212;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t156 + minus_g2_vy_leg2 * t159;
+        let t181 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t183 = c12_leg2 * t149 + s12_leg2 * t152 + 0.28 * t181;
+        let rate_1_leg2 = g1_vx_leg2 * t156 + g1_vy_leg2 * t159;
+        let t187 = rate_1_leg2 * rate_1_leg2;
+        let t188 = 0.28 * c2_leg2;
+        let rate_dot_1_leg2 = t10 * (t183 + t187 * t188);
+        let t193 = acceleration[0] + t97 - t99;
+        let t196 = acceleration[1] + t89 + t88;
         let minus_g2_vx_leg3 = c1_leg3 * t22;
+        let t200 = twist[0] + t87;
         let minus_g2_vy_leg3 = s1_leg3 * t22;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t210 + minus_g2_vy_leg3 * t212;
-        let t227 = t209 + rate_1_leg3 * (0.28 * c1_leg3 * rate_1_leg3)
-            + minus_rate_2_leg3 * (0.28 * c12_leg3 * minus_rate_2_leg3);
-        let t230 = acceleration[1] + t89 + t88;
-        let t238 = t230 + rate_1_leg3 * (0.28 * s1_leg3 * rate_1_leg3)
-            + minus_rate_2_leg3 * (0.28 * s12_leg3 * minus_rate_2_leg3);
-        let rate_dot_1_leg3 = g1_vx_leg3 * t227 + g1_vy_leg3 * t238;
+        let t203 = twist[1] + t98;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t200 + minus_g2_vy_leg3 * t203;
+        let t206 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t208 = c12_leg3 * t193 + s12_leg3 * t196 + 0.28 * t206;
+        let rate_1_leg3 = g1_vx_leg3 * t200 + g1_vy_leg3 * t203;
+        let t212 = rate_1_leg3 * rate_1_leg3;
+        let t213 = 0.28 * c2_leg3;
+        let rate_dot_1_leg3 = t22 * (t208 + t212 * t213);
         let (s1_leg4, c1_leg4) = ::overact::math::sin_cos(joints[9]);
         let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
+        ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
         let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
-        let t251 = 3.5714285714285716 / s2_leg4;
-        let g1_vx_leg4 = c12_leg4 * t251;
-        let g1_vy_leg4 = s12_leg4 * t251;
+        let t227 = 3.5714285714285716 / s2_leg4;
+        let g1_vx_leg4 = c12_leg4 * t227;
+        let g1_vy_leg4 = s12_leg4 * t227;
         let g1_wz_leg4 = t43 * g1_vy_leg4 + t46 * g1_vx_leg4;
-        let t261 = g1_vx_leg4 * t86 - g1_vy_leg4 * t96 + g1_wz_leg4 * t70;
-        let rate_1_leg4 = g1_vx_leg4 * t210 + g1_vy_leg4 * t212;
-        let minus_g2_vx_leg4 = c1_leg4 * t251;
-        let minus_g2_vy_leg4 = s1_leg4 * t251;
-        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t210 + minus_g2_vy_leg4 * t212;
-        let t277 = t209 + rate_1_leg4 * (0.28 * c1_leg4 * rate_1_leg4)
-            + minus_rate_2_leg4 * (0.28 * c12_leg4 * minus_rate_2_leg4);
-        let t286 = t230 + rate_1_leg4 * (0.28 * s1_leg4 * rate_1_leg4)
-            + minus_rate_2_leg4 * (0.28 * s12_leg4 * minus_rate_2_leg4);
-        let rate_dot_1_leg4 = g1_vx_leg4 * t277 + g1_vy_leg4 * t286;
-        let t294 = g1_vy_leg4 * t107 - g1_vx_leg4 * t105 + g1_wz_leg4 * t72;
-        let t298 = g1_vy_leg4 * t120 - g1_vx_leg4 * t115;
-        let t299 = 2.0 * t298;
+        let t237 = g1_vx_leg4 * t86 - g1_vy_leg4 * t96 + g1_wz_leg4 * t70;
+        let minus_g2_vx_leg4 = c1_leg4 * t227;
+        let minus_g2_vy_leg4 = s1_leg4 * t227;
+        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t200 + minus_g2_vy_leg4 * t203;
+        let t246 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let t248 = c12_leg4 * t193 + s12_leg4 * t196 + 0.28 * t246;
+        let rate_1_leg4 = g1_vx_leg4 * t200 + g1_vy_leg4 * t203;
+        let t252 = rate_1_leg4 * rate_1_leg4;
+        let t253 = 0.28 * c2_leg4;
+        let rate_dot_1_leg4 = t227 * (t248 + t252 * t253);
+        let t262 = g1_vy_leg4 * t107 - g1_vx_leg4 * t105 + g1_wz_leg4 * t72;
+        let t266 = g1_vy_leg4 * t120 - g1_vx_leg4 * t115;
+        let t267 = 2.0 * t266;
         let g2_wz_leg1 = minus_g2_vy_leg1 * t43 + minus_g2_vx_leg1 * t46;
-        let t317 = minus_g2_vy_leg1 * t96 - minus_g2_vx_leg1 * t86 + g2_wz_leg1 * t70;
-        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * t167 + minus_g2_vy_leg1 * t178;
-        let t326 = minus_g2_vx_leg1 * t105 - minus_g2_vy_leg1 * t107 + g2_wz_leg1 * t72;
+        let t285 = minus_g2_vy_leg1 * t96 - minus_g2_vx_leg1 * t86 + g2_wz_leg1 * t70;
+        let t290 = c1_leg1 * t149 + s1_leg1 * t152 + 0.28 * t168;
+        let minus_rate_dot_2_leg1 = t39 * (t290 + t162 * t169);
+        let t299 = minus_g2_vx_leg1 * t105 - minus_g2_vy_leg1 * t107 + g2_wz_leg1 * t72;
         let g2_wz_leg2 = t43 * minus_g2_vy_leg2 + t46 * minus_g2_vx_leg2;
-        let t335 = minus_g2_vy_leg2 * t96 - minus_g2_vx_leg2 * t86 + g2_wz_leg2 * t70;
-        let minus_rate_dot_2_leg2 = minus_g2_vx_leg2 * t196 + minus_g2_vy_leg2 * t205;
-        let t344 = minus_g2_vx_leg2 * t105 - minus_g2_vy_leg2 * t107 + g2_wz_leg2 * t72;
+        let t308 = minus_g2_vy_leg2 * t96 - minus_g2_vx_leg2 * t86 + g2_wz_leg2 * t70;
+        let t313 = c1_leg2 * t149 + s1_leg2 * t152 + 0.28 * t187;
+        let minus_rate_dot_2_leg2 = t10 * (t313 + t181 * t188);
+        let t322 = minus_g2_vx_leg2 * t105 - minus_g2_vy_leg2 * t107 + g2_wz_leg2 * t72;
         let minus_g2_wz_leg3 = t43 * minus_g2_vy_leg3 + t46 * minus_g2_vx_leg3;
-        let t353 = minus_g2_vy_leg3 * t96 - minus_g2_vx_leg3 * t86
+        let t331 = minus_g2_vy_leg3 * t96 - minus_g2_vx_leg3 * t86
             - minus_g2_wz_leg3 * t70;
-        let minus_rate_dot_2_leg3 = minus_g2_vx_leg3 * t227 + minus_g2_vy_leg3 * t238;
-        let t362 = minus_g2_vx_leg3 * t105 - minus_g2_vy_leg3 * t107
+        let t336 = c1_leg3 * t193 + s1_leg3 * t196 + 0.28 * t212;
+        let minus_rate_dot_2_leg3 = t22 * (t336 + t206 * t213);
+        let t345 = minus_g2_vx_leg3 * t105 - minus_g2_vy_leg3 * t107
             - minus_g2_wz_leg3 * t72;
-        let t367 = 2.0 * (minus_g2_vx_leg3 * t115 - minus_g2_vy_leg3 * t120);
+        let t350 = 2.0 * (minus_g2_vx_leg3 * t115 - minus_g2_vy_leg3 * t120);
         let minus_g2_wz_leg4 = t43 * minus_g2_vy_leg4 + t46 * minus_g2_vx_leg4;
-        let t376 = minus_g2_vy_leg4 * t96 - minus_g2_vx_leg4 * t86
+        let t359 = minus_g2_vy_leg4 * t96 - minus_g2_vx_leg4 * t86
             - minus_g2_wz_leg4 * t70;
-        let minus_rate_dot_2_leg4 = minus_g2_vx_leg4 * t277 + minus_g2_vy_leg4 * t286;
-        let t385 = minus_g2_vx_leg4 * t105 - minus_g2_vy_leg4 * t107
+        let t364 = c1_leg4 * t193 + s1_leg4 * t196 + 0.28 * t252;
+        let minus_rate_dot_2_leg4 = t227 * (t364 + t246 * t253);
+        let t373 = minus_g2_vx_leg4 * t105 - minus_g2_vy_leg4 * t107
             - minus_g2_wz_leg4 * t72;
-        let t389 = minus_g2_vx_leg4 * t115 - minus_g2_vy_leg4 * t120;
-        let t390 = 2.0 * t389;
-        let t403 = s2_leg1 * (0.28 * rate_dot_1_leg1)
-            - c2_leg1 * (0.28 * (rate_1_leg1 * rate_1_leg1));
-        let t412 = s2_leg2 * (0.28 * rate_dot_1_leg2)
-            - c2_leg2 * (0.28 * (rate_1_leg2 * rate_1_leg2));
-        let t427 = s2_leg3 * (0.28 * rate_dot_1_leg3)
-            - c2_leg3 * (0.28 * (rate_1_leg3 * rate_1_leg3));
-        let t443 = minus_rate_dot_2_leg4 * (0.28 * s2_leg4)
-            - 0.28 * c2_leg4 * (minus_rate_2_leg4 * minus_rate_2_leg4);
-        let t450 = s2_leg4 * (0.28 * rate_dot_1_leg4)
-            - c2_leg4 * (0.28 * (rate_1_leg4 * rate_1_leg4));
-        let t459 = rate_1_leg1 + minus_rate_2_leg1;
-        let t460 = t317 - 1.0;
-        let t463 = rate_1_leg2 + minus_rate_2_leg2;
-        let t465 = t344 - 1.0;
-        let t467 = rate_1_leg3 + minus_rate_2_leg3;
-        let t470 = t367 - 1.0;
-        let t472 = rate_1_leg4 + minus_rate_2_leg4;
-        let t473 = t376 - t261;
-        let t475 = t385 - t294;
-        let t478 = 2.0 * (t389 - t298);
-        let t490 = minus_rate_2_leg1 + twist[2];
-        let t491 = t70 - t317;
-        let t493 = t72 - t326;
-        let t496 = minus_rate_2_leg2 + twist[2];
-        let t497 = t70 - t335;
-        let t499 = t72 - t344;
-        let t502 = minus_rate_2_leg3 + twist[2];
-        let t503 = t70 - t353;
-        let t505 = t72 - t362;
-        let t507 = t367 + t77;
-        let t509 = minus_rate_2_leg4 + twist[2];
-        let t510 = t70 - t376;
-        let t512 = t72 - t385;
-        let t514 = t390 + t77;
+        let t377 = minus_g2_vx_leg4 * t115 - minus_g2_vy_leg4 * t120;
+        let t378 = 2.0 * t377;
+        let t399 = rate_1_leg1 + minus_rate_2_leg1;
+        let t400 = t285 - 1.0;
+        let t403 = rate_1_leg2 + minus_rate_2_leg2;
+        let t405 = t322 - 1.0;
+        let t407 = rate_1_leg3 + minus_rate_2_leg3;
+        let t410 = t350 - 1.0;
+        let t412 = rate_1_leg4 + minus_rate_2_leg4;
+        let t413 = t359 - t237;
+        let t415 = t373 - t262;
+        let t418 = 2.0 * (t377 - t266);
+        let t430 = minus_rate_2_leg1 + twist[2];
+        let t431 = t70 - t285;
+        let t433 = t72 - t299;
+        let t436 = minus_rate_2_leg2 + twist[2];
+        let t437 = t70 - t308;
+        let t439 = t72 - t322;
+        let t442 = minus_rate_2_leg3 + twist[2];
+        let t443 = t70 - t331;
+        let t445 = t72 - t345;
+        let t447 = t350 + t77;
+        let t449 = minus_rate_2_leg4 + twist[2];
+        let t450 = t70 - t359;
+        let t452 = t72 - t373;
+        let t454 = t378 + t77;
         Ok([
             [
                 t70 * acceleration[2], t70 * t81 - (t86 * t91 + t96 * t101),
                 t96 * t91 - t86 * t101 - t70 * t130, t86 * acceleration[0] - t96 * acceleration[1],
-                rate_dot_1_leg1, 0.0, 0.0, t261 * rate_dot_1_leg4, rate_1_leg1, 0.0, 0.0,
-                t261 * rate_1_leg4, ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
-                ::overact::math::signed(t261, rate_1_leg4), 1.0, 0.0, 0.0, t261,
-                -(t317 * minus_rate_dot_2_leg1), -(t335 * minus_rate_dot_2_leg2),
-                -(t353 * minus_rate_dot_2_leg3), -(t376 * minus_rate_dot_2_leg4),
-                minus_rate_dot_2_leg1 * (0.28 * s2_leg1)
-                    - 0.28 * c2_leg1 * (minus_rate_2_leg1 * minus_rate_2_leg1)
-                    - t317 * t403,
-                -(t335 * t412),
-                -(t353 * t427),
-                t261 * t443 - t376 * t450,
-                -(t459 * t460),
-                -(t335 * t463),
-                -(t353 * t467),
-                -(t472 * t473),
-                -::overact::math::signed(t460, t459),
-                -::overact::math::signed(t335, t463),
-                -::overact::math::signed(t353, t467),
-                -::overact::math::signed(t473, t472),
-                t460,
-                t335,
-                t353,
-                t473,
-                t490 * t491,
-                t496 * t497,
-                t502 * t503,
-                t509 * t510,
-                ::overact::math::signed(t491, t490),
-                ::overact::math::signed(t497, t496),
-                ::overact::math::signed(t503, t502),
-                ::overact::math::signed(t510, t509),
-                t491,
+                rate_dot_1_leg1, 0.0, 0.0, t237 * rate_dot_1_leg4, rate_1_leg1, 0.0, 0.0,
+                t237 * rate_1_leg4, ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
+                ::overact::math::signed(t237, rate_1_leg4), 1.0, 0.0, 0.0, t237,
+                -(t285 * minus_rate_dot_2_leg1), -(t308 * minus_rate_dot_2_leg2),
+                -(t331 * minus_rate_dot_2_leg3), -(t359 * minus_rate_dot_2_leg4),
+                t290 - t285 * t164, -(t308 * t183), -(t331 * t208), t237 * t364 - t359 * t248,
+                -(t399 * t400), -(t308 * t403), -(t331 * t407), -(t412 * t413),
+                -::overact::math::signed(t400, t399), -::overact::math::signed(t308, t403),
+                -::overact::math::signed(t331, t407), -::overact::math::signed(t413, t412), t400,
+                t308, t331, t413, t430 * t431, t436 * t437, t442 * t443, t449 * t450,
+                ::overact::math::signed(t431, t430), ::overact::math::signed(t437, t436),
+                ::overact::math::signed(t443, t442), ::overact::math::signed(t450, t449), t431,
             ],
             [
                 t72 * acceleration[2], t105 * t91 + t107 * t101 + t72 * t81,
                 t105 * t101 - t107 * t91 - t72 * t130,
                 t107 * acceleration[1] - t105 * acceleration[0], 0.0, rate_dot_1_leg2, 0.0,
-                t294 * rate_dot_1_leg4, 0.0, rate_1_leg2, 0.0, t294 * rate_1_leg4, 0.0,
-                ::overact::math::sign(rate_1_leg2), 0.0, ::overact::math::signed(t294, rate_1_leg4),
-                0.0, 1.0, 0.0, t294, -(t326 * minus_rate_dot_2_leg1),
-                -(t344 * minus_rate_dot_2_leg2), -(t362 * minus_rate_dot_2_leg3),
-                -(t385 * minus_rate_dot_2_leg4), -(t326 * t403),
-                minus_rate_dot_2_leg2 * (0.28 * s2_leg2)
-                    - 0.28 * c2_leg2 * (minus_rate_2_leg2 * minus_rate_2_leg2)
-                    - t344 * t412,
-                -(t362 * t427),
-                t294 * t443 - t385 * t450,
-                -(t326 * t459),
-                -(t463 * t465),
-                -(t362 * t467),
-                -(t472 * t475),
-                -::overact::math::signed(t326, t459),
-                -::overact::math::signed(t465, t463),
-                -::overact::math::signed(t362, t467),
-                -::overact::math::signed(t475, t472),
-                t326,
-                t465,
-                t362,
-                t475,
-                t490 * t493,
-                t496 * t499,
-                t502 * t505,
-                t509 * t512,
-                ::overact::math::signed(t493, t490),
-                ::overact::math::signed(t499, t496),
-                ::overact::math::signed(t505, t502),
-                ::overact::math::signed(t512, t509),
-                t493,
+                t262 * rate_dot_1_leg4, 0.0, rate_1_leg2, 0.0, t262 * rate_1_leg4, 0.0,
+                ::overact::math::sign(rate_1_leg2), 0.0, ::overact::math::signed(t262, rate_1_leg4),
+                0.0, 1.0, 0.0, t262, -(t299 * minus_rate_dot_2_leg1),
+                -(t322 * minus_rate_dot_2_leg2), -(t345 * minus_rate_dot_2_leg3),
+                -(t373 * minus_rate_dot_2_leg4), -(t299 * t164), t313 - t322 * t183, -(t345 * t208),
+                t262 * t364 - t373 * t248, -(t299 * t399), -(t403 * t405), -(t345 * t407),
+                -(t412 * t415), -::overact::math::signed(t299, t399),
+                -::overact::math::signed(t405, t403), -::overact::math::signed(t345, t407),
+                -::overact::math::signed(t415, t412), t299, t405, t345, t415, t430 * t433,
+                t436 * t439, t442 * t445, t449 * t452, ::overact::math::signed(t433, t430),
+                ::overact::math::signed(t439, t436), ::overact::math::signed(t445, t442),
+                ::overact::math::signed(t452, t449), t433,
             ],
             [
                 -t78, t115 * t91 + t120 * t101 - t77 * t81, 0.11 * t78 + t139, -(0.11 * t139), 0.0,
-                0.0, rate_dot_1_leg3, t299 * rate_dot_1_leg4, 0.0, 0.0, rate_1_leg3,
-                t299 * rate_1_leg4, 0.0, 0.0, ::overact::math::sign(rate_1_leg3),
-                ::overact::math::signed(t299, rate_1_leg4), 0.0, 0.0, 1.0, t299, 0.0, 0.0,
-                -(t367 * minus_rate_dot_2_leg3), -(t390 * minus_rate_dot_2_leg4), 0.0, 0.0,
-                minus_rate_dot_2_leg3 * (0.28 * s2_leg3)
-                    - 0.28 * c2_leg3 * (minus_rate_2_leg3 * minus_rate_2_leg3)
-                    - t367 * t427,
-                t299 * t443 - t390 * t450,
-                0.0,
-                0.0,
-                -(t467 * t470),
-                -(t472 * t478),
-                0.0,
-                0.0,
-                -::overact::math::signed(t470, t467),
-                -::overact::math::signed(t478, t472),
-                0.0,
-                0.0,
-                t470,
-                t478,
-                -(t77 * t490),
-                -(t77 * t496),
-                -(t502 * t507),
-                -(t509 * t514),
-                -::overact::math::signed(t77, t490),
-                -::overact::math::signed(t77, t496),
-                -::overact::math::signed(t507, t502),
-                -::overact::math::signed(t514, t509),
-                -t77,
+                0.0, rate_dot_1_leg3, t267 * rate_dot_1_leg4, 0.0, 0.0, rate_1_leg3,
+                t267 * rate_1_leg4, 0.0, 0.0, ::overact::math::sign(rate_1_leg3),
+                ::overact::math::signed(t267, rate_1_leg4), 0.0, 0.0, 1.0, t267, 0.0, 0.0,
+                -(t350 * minus_rate_dot_2_leg3), -(t378 * minus_rate_dot_2_leg4), 0.0, 0.0,
+                t336 - t350 * t208, t267 * t364 - t378 * t248, 0.0, 0.0, -(t407 * t410),
+                -(t412 * t418), 0.0, 0.0, -::overact::math::signed(t410, t407),
+                -::overact::math::signed(t418, t412), 0.0, 0.0, t410, t418, -(t77 * t430),
+                -(t77 * t436), -(t442 * t447), -(t449 * t454), -::overact::math::signed(t77, t430),
+                -::overact::math::signed(t77, t436), -::overact::math::signed(t447, t442),
+                -::overact::math::signed(t454, t449), -t77,
             ],
         ])
     }
@@ -4891,7 +4836,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 717 operations (288 additions, 417 multiplications, 12 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 641 intermediates.
+    /// 701 operations (288 additions, 401 multiplications, 12 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 625 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4999,8 +4944,8 @@ impl DualV {
         ::overact::guard::platform(t157, 25.429161076750646, "actuators")?;
         let t158 = 1.0 / t157;
         let t159 = t150 * t158;
-        let t175 = g1_vy_leg1 * g1_vx_leg1 + g1_vy_leg2 * g1_vx_leg2
-            + g1_vy_leg3 * g1_vx_leg3 + g1_vy_leg4 * g1_vx_leg4;
+        let t175 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
         let t177 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
             + g1_vy_leg4 * g1_wz_leg4 - t175 * t159;
@@ -5035,260 +4980,267 @@ impl DualV {
         let t232 = t6 * rate_3_leg1;
         let t233 = t224 + t232;
         let rate_1_leg3 = g1_vx_leg3 * t230 + g1_vy_leg3 * t233;
+        let t236 = rate_1_leg3 * rate_1_leg3;
         let g2_vy_leg3 = t53 * t56;
         let minus_g2_vx_leg3 = t50 * t56;
         let rate_2_leg3 = g2_vy_leg3 * t233 - minus_g2_vx_leg3 * t230;
         let t243 = rate_2_leg3 - rate_1_leg3;
         let t244 = rate_1_leg3 + t243;
-        let t247 = rate_1_leg3 * (t43 * rate_1_leg3) + t244 * (t44 * t244);
+        let t245 = t244 * t244;
+        let t247 = t43 * t236 + t44 * t245;
         let t248 = rate_3_leg1 * t232;
         let t251 = rate_3_leg1 * t229;
-        let t256 = rate_1_leg3 * (t47 * rate_1_leg3) + t244 * (t48 * t244);
-        let rate_dot_1_leg3 = g1_vx_leg3 * (t247 - t248) + g1_vy_leg3 * (t251 + t256);
-        let t260 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t262 = t228 - t229;
-        let t264 = t224 - t232;
-        let rate_1_leg1 = g1_vx_leg1 * t262 + g1_vy_leg1 * t264;
+        let t254 = t47 * t236 + t48 * t245;
+        let rate_dot_1_leg3 = g1_vx_leg3 * (t247 - t248) + g1_vy_leg3 * (t251 + t254);
+        let t258 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let t260 = t228 - t229;
+        let t262 = t224 - t232;
+        let rate_1_leg1 = g1_vx_leg1 * t260 + g1_vy_leg1 * t262;
+        let t265 = rate_1_leg1 * rate_1_leg1;
         let g2_vy_leg1 = t80 * t83;
         let minus_g2_vx_leg1 = t77 * t83;
-        let rate_2_leg1 = g2_vy_leg1 * t264 - minus_g2_vx_leg1 * t262;
-        let t274 = rate_2_leg1 - rate_1_leg1;
-        let t275 = rate_1_leg1 + t274;
-        let t278 = rate_1_leg1 * (t74 * rate_1_leg1) + t275 * (t75 * t275);
-        let t285 = rate_1_leg1 * (t70 * rate_1_leg1) + t275 * (t71 * t275);
-        let rate_dot_1_leg1 = g1_vx_leg1 * (t248 + t278) + g1_vy_leg1 * (t285 - t251);
-        let t289 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let rate_1_leg2 = g1_vx_leg2 * t262 + g1_vy_leg2 * t264;
+        let rate_2_leg1 = g2_vy_leg1 * t262 - minus_g2_vx_leg1 * t260;
+        let t272 = rate_2_leg1 - rate_1_leg1;
+        let t273 = rate_1_leg1 + t272;
+        let t274 = t273 * t273;
+        let t276 = t74 * t265 + t75 * t274;
+        let t281 = t70 * t265 + t71 * t274;
+        let rate_dot_1_leg1 = g1_vx_leg1 * (t248 + t276) + g1_vy_leg1 * (t281 - t251);
+        let t285 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let rate_1_leg2 = g1_vx_leg2 * t260 + g1_vy_leg2 * t262;
+        let t290 = rate_1_leg2 * rate_1_leg2;
         let g2_vy_leg2 = t26 * t29;
         let minus_g2_vx_leg2 = t23 * t29;
-        let rate_2_leg2 = g2_vy_leg2 * t264 - minus_g2_vx_leg2 * t262;
-        let t301 = rate_2_leg2 - rate_1_leg2;
-        let t302 = rate_1_leg2 + t301;
-        let t305 = rate_1_leg2 * (t20 * rate_1_leg2) + t302 * (t21 * t302);
-        let t312 = rate_1_leg2 * (t16 * rate_1_leg2) + t302 * (t17 * t302);
-        let rate_dot_1_leg2 = g1_vx_leg2 * (t248 + t305) + g1_vy_leg2 * (t312 - t251);
-        let t316 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let rate_2_leg2 = g2_vy_leg2 * t262 - minus_g2_vx_leg2 * t260;
+        let t297 = rate_2_leg2 - rate_1_leg2;
+        let t298 = rate_1_leg2 + t297;
+        let t299 = t298 * t298;
+        let t301 = t20 * t290 + t21 * t299;
+        let t306 = t16 * t290 + t17 * t299;
+        let rate_dot_1_leg2 = g1_vx_leg2 * (t248 + t301) + g1_vy_leg2 * (t306 - t251);
+        let t310 = actuator_accelerations[1] - rate_dot_1_leg2;
         let rate_1_leg4 = g1_vx_leg4 * t230 + g1_vy_leg4 * t233;
+        let t317 = rate_1_leg4 * rate_1_leg4;
         let g2_vy_leg4 = t133 * t136;
         let minus_g2_vx_leg4 = t130 * t136;
         let rate_2_leg4 = g2_vy_leg4 * t233 - minus_g2_vx_leg4 * t230;
-        let t330 = rate_2_leg4 - rate_1_leg4;
-        let t331 = rate_1_leg4 + t330;
-        let t334 = rate_1_leg4 * (t127 * rate_1_leg4) + t331 * (t128 * t331);
-        let t341 = rate_1_leg4 * (t123 * rate_1_leg4) + t331 * (t124 * t331);
-        let rate_dot_1_leg4 = g1_vx_leg4 * (t334 - t248) + g1_vy_leg4 * (t251 + t341);
-        let t345 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t354 = g1_vx_leg1 * t289 + g1_vx_leg2 * t316 + g1_vx_leg3 * t260
-            + g1_vx_leg4 * t345;
-        let t365 = g1_vy_leg1 * t289 + g1_vy_leg2 * t316 + g1_vy_leg3 * t260
-            + g1_vy_leg4 * t345 - t185 * t354;
-        let t367 = g1_wz_leg3 * t260
-            - (minus_g1_wz_leg1 * t289 + minus_g1_wz_leg2 * t316) + g1_wz_leg4 * t345
-            - t159 * t354 - t189 * t365;
-        let rate_dot_3_leg1 = t192 * t367;
-        let t373 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t109;
-        let t375 = t106 * t109;
-        let t380 = (minus_g1_wz_leg2 * g1_vy_leg3 + g1_vy_leg2 * g1_wz_leg3) * t109;
-        let t381 = rate_3_leg1 * rate_3_leg1;
-        let t382 = c_phi * t381;
-        let t383 = s_phi * rate_dot_3_leg1;
-        let t384 = t382 + t383;
-        let t389 = (minus_g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * g1_wz_leg3) * t109;
-        let t390 = c_phi * rate_dot_3_leg1;
-        let t391 = s_phi * t381;
-        let t392 = t390 - t391;
-        let t397 = t188 * t365 - t189 * rate_dot_3_leg1;
-        let t403 = t158 * t354 - t185 * t397 - t159 * rate_dot_3_leg1;
-        let t405 = c_phi * t397 - s_phi * t403;
-        let t411 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t109;
-        let t416 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t109;
-        let t422 = t94 * t109;
-        let t424 = t98 * t109;
-        let t428 = t391 - t390;
-        let t430 = t383 + t382;
-        let t435 = c_phi * t403 + s_phi * t397;
-        let t450 = s_phi * t435 + c_phi * t405;
-        let t454 = c_phi * t435 - s_phi * t405;
-        let t463 = t2 * rate_dot_3_leg1;
-        let t465 = t403 - t463 + t248;
-        let t466 = t465 + t278;
-        let t468 = t6 * rate_dot_3_leg1;
-        let t470 = t397 - t468 - t251;
-        let t471 = t470 + t285;
-        let rate_dot_1_leg1_2 = g1_vx_leg1 * t466 + g1_vy_leg1 * t471;
-        let t474 = t465 + t305;
-        let t476 = t470 + t312;
-        let rate_dot_1_leg2_2 = g1_vx_leg2 * t474 + g1_vy_leg2 * t476;
-        let t480 = t403 + t463 - t248;
-        let t481 = t480 + t247;
-        let t484 = t397 + t468 + t251;
-        let t485 = t484 + t256;
-        let rate_dot_1_leg3_2 = g1_vx_leg3 * t481 + g1_vy_leg3 * t485;
-        let t492 = g1_vy_leg4 * t389 - g1_vx_leg4 * t380 + g1_wz_leg4 * t110;
-        let t493 = t480 + t334;
-        let t495 = t484 + t341;
-        let rate_dot_1_leg4_2 = g1_vx_leg4 * t493 + g1_vy_leg4 * t495;
-        let t503 = g1_vx_leg4 * t411 - g1_vy_leg4 * t416 - g1_wz_leg4 * t373;
-        let t509 = g1_vx_leg4 * t422 - g1_vy_leg4 * t424 + g1_wz_leg4 * t375;
+        let t324 = rate_2_leg4 - rate_1_leg4;
+        let t325 = rate_1_leg4 + t324;
+        let t326 = t325 * t325;
+        let t328 = t127 * t317 + t128 * t326;
+        let t333 = t123 * t317 + t124 * t326;
+        let rate_dot_1_leg4 = g1_vx_leg4 * (t328 - t248) + g1_vy_leg4 * (t251 + t333);
+        let t337 = actuator_accelerations[3] - rate_dot_1_leg4;
+        let t346 = g1_vx_leg1 * t285 + g1_vx_leg2 * t310 + g1_vx_leg3 * t258
+            + g1_vx_leg4 * t337;
+        let t357 = g1_vy_leg1 * t285 + g1_vy_leg2 * t310 + g1_vy_leg3 * t258
+            + g1_vy_leg4 * t337 - t185 * t346;
+        let t359 = g1_wz_leg3 * t258
+            - (minus_g1_wz_leg1 * t285 + minus_g1_wz_leg2 * t310) + g1_wz_leg4 * t337
+            - t159 * t346 - t189 * t357;
+        let rate_dot_3_leg1 = t192 * t359;
+        let t365 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t109;
+        let t367 = t106 * t109;
+        let t372 = (minus_g1_wz_leg2 * g1_vy_leg3 + g1_vy_leg2 * g1_wz_leg3) * t109;
+        let t373 = rate_3_leg1 * rate_3_leg1;
+        let t374 = c_phi * t373;
+        let t375 = s_phi * rate_dot_3_leg1;
+        let t376 = t374 + t375;
+        let t381 = (minus_g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * g1_wz_leg3) * t109;
+        let t382 = c_phi * rate_dot_3_leg1;
+        let t383 = s_phi * t373;
+        let t384 = t382 - t383;
+        let t389 = t188 * t357 - t189 * rate_dot_3_leg1;
+        let t395 = t158 * t346 - t185 * t389 - t159 * rate_dot_3_leg1;
+        let t397 = c_phi * t389 - s_phi * t395;
+        let t403 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t109;
+        let t408 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t109;
+        let t414 = t94 * t109;
+        let t416 = t98 * t109;
+        let t420 = t383 - t382;
+        let t422 = t375 + t374;
+        let t427 = c_phi * t395 + s_phi * t389;
+        let t442 = s_phi * t427 + c_phi * t397;
+        let t446 = c_phi * t427 - s_phi * t397;
+        let t455 = t2 * rate_dot_3_leg1;
+        let t457 = t395 - t455 + t248;
+        let t458 = t457 + t276;
+        let t460 = t6 * rate_dot_3_leg1;
+        let t462 = t389 - t460 - t251;
+        let t463 = t462 + t281;
+        let rate_dot_1_leg1_2 = g1_vx_leg1 * t458 + g1_vy_leg1 * t463;
+        let t466 = t457 + t301;
+        let t468 = t462 + t306;
+        let rate_dot_1_leg2_2 = g1_vx_leg2 * t466 + g1_vy_leg2 * t468;
+        let t472 = t395 + t455 - t248;
+        let t473 = t472 + t247;
+        let t476 = t389 + t460 + t251;
+        let t477 = t476 + t254;
+        let rate_dot_1_leg3_2 = g1_vx_leg3 * t473 + g1_vy_leg3 * t477;
+        let t484 = g1_vy_leg4 * t381 - g1_vx_leg4 * t372 + g1_wz_leg4 * t110;
+        let t485 = t472 + t328;
+        let t487 = t476 + t333;
+        let rate_dot_1_leg4_2 = g1_vx_leg4 * t485 + g1_vy_leg4 * t487;
+        let t495 = g1_vx_leg4 * t403 - g1_vy_leg4 * t408 - g1_wz_leg4 * t365;
+        let t501 = g1_vx_leg4 * t414 - g1_vy_leg4 * t416 + g1_wz_leg4 * t367;
         let g2_wz_leg1 = t2 * minus_g2_vx_leg1 - t6 * g2_vy_leg1;
-        let t527 = minus_g2_vx_leg1 * t380 + g2_vy_leg1 * t389 + g2_wz_leg1 * t110;
-        let rate_dot_2_leg1 = g2_vy_leg1 * t471 - minus_g2_vx_leg1 * t466;
-        let t532 = rate_dot_1_leg1_2 + rate_dot_2_leg1 - rate_dot_1_leg1_2;
-        let t538 = minus_g2_vx_leg1 * t411 + g2_vy_leg1 * t416 + g2_wz_leg1 * t373;
+        let t519 = minus_g2_vx_leg1 * t372 + g2_vy_leg1 * t381 + g2_wz_leg1 * t110;
+        let rate_dot_2_leg1 = g2_vy_leg1 * t463 - minus_g2_vx_leg1 * t458;
+        let t524 = rate_dot_1_leg1_2 + rate_dot_2_leg1 - rate_dot_1_leg1_2;
+        let t530 = minus_g2_vx_leg1 * t403 + g2_vy_leg1 * t408 + g2_wz_leg1 * t365;
         let g2_wz_leg2 = t2 * minus_g2_vx_leg2 - t6 * g2_vy_leg2;
-        let t547 = minus_g2_vx_leg2 * t380 + g2_vy_leg2 * t389 + g2_wz_leg2 * t110;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t476 - minus_g2_vx_leg2 * t474;
-        let t552 = rate_dot_1_leg2_2 + rate_dot_2_leg2 - rate_dot_1_leg2_2;
-        let t558 = minus_g2_vx_leg2 * t411 + g2_vy_leg2 * t416 + g2_wz_leg2 * t373;
+        let t539 = minus_g2_vx_leg2 * t372 + g2_vy_leg2 * t381 + g2_wz_leg2 * t110;
+        let rate_dot_2_leg2 = g2_vy_leg2 * t468 - minus_g2_vx_leg2 * t466;
+        let t544 = rate_dot_1_leg2_2 + rate_dot_2_leg2 - rate_dot_1_leg2_2;
+        let t550 = minus_g2_vx_leg2 * t403 + g2_vy_leg2 * t408 + g2_wz_leg2 * t365;
         let g2_wz_leg3 = t6 * g2_vy_leg3 - t2 * minus_g2_vx_leg3;
-        let t567 = minus_g2_vx_leg3 * t380 + g2_vy_leg3 * t389 + g2_wz_leg3 * t110;
-        let rate_dot_2_leg3 = g2_vy_leg3 * t485 - minus_g2_vx_leg3 * t481;
-        let t572 = rate_dot_1_leg3_2 + rate_dot_2_leg3 - rate_dot_1_leg3_2;
-        let t578 = minus_g2_vx_leg3 * t411 + g2_vy_leg3 * t416 + g2_wz_leg3 * t373;
-        let t584 = g2_wz_leg3 * t375 - (minus_g2_vx_leg3 * t422 + g2_vy_leg3 * t424);
+        let t559 = minus_g2_vx_leg3 * t372 + g2_vy_leg3 * t381 + g2_wz_leg3 * t110;
+        let rate_dot_2_leg3 = g2_vy_leg3 * t477 - minus_g2_vx_leg3 * t473;
+        let t564 = rate_dot_1_leg3_2 + rate_dot_2_leg3 - rate_dot_1_leg3_2;
+        let t570 = minus_g2_vx_leg3 * t403 + g2_vy_leg3 * t408 + g2_wz_leg3 * t365;
+        let t576 = g2_wz_leg3 * t367 - (minus_g2_vx_leg3 * t414 + g2_vy_leg3 * t416);
         let g2_wz_leg4 = t6 * g2_vy_leg4 - t2 * minus_g2_vx_leg4;
-        let t593 = minus_g2_vx_leg4 * t380 + g2_vy_leg4 * t389 + g2_wz_leg4 * t110;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t495 - minus_g2_vx_leg4 * t493;
-        let t598 = rate_dot_1_leg4_2 + rate_dot_2_leg4 - rate_dot_1_leg4_2;
-        let t604 = minus_g2_vx_leg4 * t411 + g2_vy_leg4 * t416 + g2_wz_leg4 * t373;
-        let t610 = g2_wz_leg4 * t375 - (minus_g2_vx_leg4 * t422 + g2_vy_leg4 * t424);
-        let t612 = t65 * t68;
-        let t615 = t65 - 0.1568;
-        let t625 = 3.5714285714285716 * (t612 * rate_dot_1_leg1_2)
-            - 1.7857142857142858 * (t615 * (rate_1_leg1 * rate_1_leg1));
-        let t629 = t11 - 0.1568;
-        let t633 = t11 * t14;
-        let t636 = 1.7857142857142858 * (t629 * (rate_1_leg2 * rate_1_leg2))
-            + 3.5714285714285716 * (t633 * rate_dot_1_leg2_2);
-        let t646 = t38 * t41;
-        let t649 = t38 - 0.1568;
-        let t653 = 3.5714285714285716 * (t646 * rate_dot_1_leg3_2)
-            - 1.7857142857142858 * (t649 * (rate_1_leg3 * rate_1_leg3));
-        let t664 = t118 * t121;
-        let t667 = t118 - 0.1568;
-        let t671 = 3.5714285714285716 * t664 * t598
-            - 1.7857142857142858 * t667 * (t331 * t331);
-        let t678 = 1.7857142857142858 * (t667 * (rate_1_leg4 * rate_1_leg4))
-            + 3.5714285714285716 * (t664 * rate_dot_1_leg4_2);
-        let t687 = t527 - 1.0;
-        let t691 = 1.0 + t558;
-        let t695 = t584 - 1.0;
-        let t697 = t593 - t492;
-        let t699 = t503 + t604;
-        let t701 = t610 - t509;
-        let t713 = rate_3_leg1 - rate_2_leg1;
-        let t714 = t110 - t527;
-        let t716 = t538 - t373;
-        let t719 = rate_3_leg1 - rate_2_leg2;
-        let t720 = t110 - t547;
-        let t722 = t558 - t373;
-        let t725 = rate_3_leg1 - rate_2_leg3;
-        let t726 = t110 - t567;
-        let t728 = t578 - t373;
-        let t730 = t375 - t584;
-        let t732 = rate_3_leg1 - rate_2_leg4;
-        let t733 = t110 - t593;
-        let t735 = t604 - t373;
-        let t737 = t375 - t610;
+        let t585 = minus_g2_vx_leg4 * t372 + g2_vy_leg4 * t381 + g2_wz_leg4 * t110;
+        let rate_dot_2_leg4 = g2_vy_leg4 * t487 - minus_g2_vx_leg4 * t485;
+        let t590 = rate_dot_1_leg4_2 + rate_dot_2_leg4 - rate_dot_1_leg4_2;
+        let t596 = minus_g2_vx_leg4 * t403 + g2_vy_leg4 * t408 + g2_wz_leg4 * t365;
+        let t602 = g2_wz_leg4 * t367 - (minus_g2_vx_leg4 * t414 + g2_vy_leg4 * t416);
+        let t604 = t65 * t68;
+        let t607 = t65 - 0.1568;
+        let t615 = 3.5714285714285716 * (t604 * rate_dot_1_leg1_2)
+            - 1.7857142857142858 * (t607 * t265);
+        let t619 = t11 - 0.1568;
+        let t622 = t11 * t14;
+        let t625 = 1.7857142857142858 * (t619 * t290)
+            + 3.5714285714285716 * (t622 * rate_dot_1_leg2_2);
+        let t634 = t38 * t41;
+        let t637 = t38 - 0.1568;
+        let t640 = 3.5714285714285716 * (t634 * rate_dot_1_leg3_2)
+            - 1.7857142857142858 * (t637 * t236);
+        let t650 = t118 * t121;
+        let t653 = t118 - 0.1568;
+        let t656 = 3.5714285714285716 * t650 * t590 - t326 * (1.7857142857142858 * t653);
+        let t662 = 1.7857142857142858 * (t653 * t317)
+            + 3.5714285714285716 * (t650 * rate_dot_1_leg4_2);
+        let t671 = t519 - 1.0;
+        let t675 = 1.0 + t550;
+        let t679 = t576 - 1.0;
+        let t681 = t585 - t484;
+        let t683 = t495 + t596;
+        let t685 = t602 - t501;
+        let t697 = rate_3_leg1 - rate_2_leg1;
+        let t698 = t110 - t519;
+        let t700 = t530 - t365;
+        let t703 = rate_3_leg1 - rate_2_leg2;
+        let t704 = t110 - t539;
+        let t706 = t550 - t365;
+        let t709 = rate_3_leg1 - rate_2_leg3;
+        let t710 = t110 - t559;
+        let t712 = t570 - t365;
+        let t714 = t367 - t576;
+        let t716 = rate_3_leg1 - rate_2_leg4;
+        let t717 = t110 - t585;
+        let t719 = t596 - t365;
+        let t721 = t367 - t602;
         Ok([
             [
-                t110 * rate_dot_3_leg1, t380 * t384 + t389 * t392 + t110 * t405,
-                -(t380 * t428 + t389 * t430 + t110 * t435), t389 * t450 - t380 * t454,
-                rate_dot_1_leg1_2, 0.0, 0.0, t492 * rate_dot_1_leg4_2, rate_1_leg1, 0.0, 0.0,
-                t492 * rate_1_leg4, ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
-                ::overact::math::signed(t492, rate_1_leg4), 1.0, 0.0, 0.0, t492, t527 * t532,
-                t547 * t552, t567 * t572, t593 * t598,
-                -(3.5714285714285716 * t612 * t532
-                    + 1.7857142857142858 * t615 * (t275 * t275) + t527 * t625),
-                t547 * t636,
-                -(t567 * t653),
-                t492 * t671 + t593 * t678,
-                t274 * t687,
-                t547 * t301,
-                t567 * t243,
-                t330 * t697,
-                ::overact::math::signed(t687, t274),
-                ::overact::math::signed(t547, t301),
-                ::overact::math::signed(t567, t243),
-                ::overact::math::signed(t697, t330),
-                t687,
-                t547,
-                t567,
-                t697,
-                t713 * t714,
-                t719 * t720,
-                t725 * t726,
-                t732 * t733,
-                ::overact::math::signed(t714, t713),
-                ::overact::math::signed(t720, t719),
-                ::overact::math::signed(t726, t725),
-                ::overact::math::signed(t733, t732),
-                t714,
+                t110 * rate_dot_3_leg1, t372 * t376 + t381 * t384 + t110 * t397,
+                -(t372 * t420 + t381 * t422 + t110 * t427), t381 * t442 - t372 * t446,
+                rate_dot_1_leg1_2, 0.0, 0.0, t484 * rate_dot_1_leg4_2, rate_1_leg1, 0.0, 0.0,
+                t484 * rate_1_leg4, ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
+                ::overact::math::signed(t484, rate_1_leg4), 1.0, 0.0, 0.0, t484, t519 * t524,
+                t539 * t544, t559 * t564, t585 * t590,
+                -(3.5714285714285716 * t604 * t524 + t274 * (1.7857142857142858 * t607)
+                    + t519 * t615),
+                t539 * t625,
+                -(t559 * t640),
+                t484 * t656 + t585 * t662,
+                t272 * t671,
+                t539 * t297,
+                t559 * t243,
+                t324 * t681,
+                ::overact::math::signed(t671, t272),
+                ::overact::math::signed(t539, t297),
+                ::overact::math::signed(t559, t243),
+                ::overact::math::signed(t681, t324),
+                t671,
+                t539,
+                t559,
+                t681,
+                t697 * t698,
+                t703 * t704,
+                t709 * t710,
+                t716 * t717,
+                ::overact::math::signed(t698, t697),
+                ::overact::math::signed(t704, t703),
+                ::overact::math::signed(t710, t709),
+                ::overact::math::signed(t717, t716),
+                t698,
             ],
             [
-                -(t373 * rate_dot_3_leg1), -(t411 * t384 + t416 * t392 + t373 * t405),
-                t411 * t428 + t416 * t430 + t373 * t435, t411 * t454 - t416 * t450, 0.0,
-                rate_dot_1_leg2_2, 0.0, t503 * rate_dot_1_leg4_2, 0.0, rate_1_leg2, 0.0,
-                t503 * rate_1_leg4, 0.0, ::overact::math::sign(rate_1_leg2), 0.0,
-                ::overact::math::signed(t503, rate_1_leg4), 0.0, 1.0, 0.0, t503, -(t538 * t532),
-                -(t558 * t552), -(t578 * t572), -(t604 * t598), t538 * t625,
-                3.5714285714285716 * t633 * t552
-                    - 1.7857142857142858 * t629 * (t302 * t302) - t558 * t636,
-                t578 * t653,
-                t503 * t671 - t604 * t678,
-                -(t538 * t274),
-                -(t301 * t691),
-                -(t578 * t243),
-                -(t330 * t699),
-                -::overact::math::signed(t538, t274),
-                -::overact::math::signed(t691, t301),
-                -::overact::math::signed(t578, t243),
-                -::overact::math::signed(t699, t330),
-                -t538,
-                -t691,
-                -t578,
-                -t699,
-                t713 * t716,
-                t719 * t722,
-                t725 * t728,
-                t732 * t735,
-                ::overact::math::signed(t716, t713),
-                ::overact::math::signed(t722, t719),
-                ::overact::math::signed(t728, t725),
-                ::overact::math::signed(t735, t732),
-                t716,
+                -(t365 * rate_dot_3_leg1), -(t403 * t376 + t408 * t384 + t365 * t397),
+                t403 * t420 + t408 * t422 + t365 * t427, t403 * t446 - t408 * t442, 0.0,
+                rate_dot_1_leg2_2, 0.0, t495 * rate_dot_1_leg4_2, 0.0, rate_1_leg2, 0.0,
+                t495 * rate_1_leg4, 0.0, ::overact::math::sign(rate_1_leg2), 0.0,
+                ::overact::math::signed(t495, rate_1_leg4), 0.0, 1.0, 0.0, t495, -(t530 * t524),
+                -(t550 * t544), -(t570 * t564), -(t596 * t590), t530 * t615,
+                3.5714285714285716 * t622 * t544 - t299 * (1.7857142857142858 * t619)
+                    - t550 * t625,
+                t570 * t640,
+                t495 * t656 - t596 * t662,
+                -(t530 * t272),
+                -(t297 * t675),
+                -(t570 * t243),
+                -(t324 * t683),
+                -::overact::math::signed(t530, t272),
+                -::overact::math::signed(t675, t297),
+                -::overact::math::signed(t570, t243),
+                -::overact::math::signed(t683, t324),
+                -t530,
+                -t675,
+                -t570,
+                -t683,
+                t697 * t700,
+                t703 * t706,
+                t709 * t712,
+                t716 * t719,
+                ::overact::math::signed(t700, t697),
+                ::overact::math::signed(t706, t703),
+                ::overact::math::signed(t712, t709),
+                ::overact::math::signed(t719, t716),
+                t700,
             ],
             [
-                t375 * rate_dot_3_leg1, t375 * t405 - (t422 * t384 + t424 * t392),
-                t422 * t428 + t424 * t430 - t375 * t435, t422 * t454 - t424 * t450, 0.0, 0.0,
-                rate_dot_1_leg3_2, t509 * rate_dot_1_leg4_2, 0.0, 0.0, rate_1_leg3,
-                t509 * rate_1_leg4, 0.0, 0.0, ::overact::math::sign(rate_1_leg3),
-                ::overact::math::signed(t509, rate_1_leg4), 0.0, 0.0, 1.0, t509, 0.0, 0.0,
-                t584 * t572, t610 * t598, 0.0, 0.0,
-                -(3.5714285714285716 * t646 * t572
-                    + 1.7857142857142858 * t649 * (t244 * t244) + t584 * t653),
-                t509 * t671 + t610 * t678,
+                t367 * rate_dot_3_leg1, t367 * t397 - (t414 * t376 + t416 * t384),
+                t414 * t420 + t416 * t422 - t367 * t427, t414 * t446 - t416 * t442, 0.0, 0.0,
+                rate_dot_1_leg3_2, t501 * rate_dot_1_leg4_2, 0.0, 0.0, rate_1_leg3,
+                t501 * rate_1_leg4, 0.0, 0.0, ::overact::math::sign(rate_1_leg3),
+                ::overact::math::signed(t501, rate_1_leg4), 0.0, 0.0, 1.0, t501, 0.0, 0.0,
+                t576 * t564, t602 * t590, 0.0, 0.0,
+                -(3.5714285714285716 * t634 * t564 + t245 * (1.7857142857142858 * t637)
+                    + t576 * t640),
+                t501 * t656 + t602 * t662,
                 0.0,
                 0.0,
-                t243 * t695,
-                t330 * t701,
+                t243 * t679,
+                t324 * t685,
                 0.0,
                 0.0,
-                ::overact::math::signed(t695, t243),
-                ::overact::math::signed(t701, t330),
+                ::overact::math::signed(t679, t243),
+                ::overact::math::signed(t685, t324),
                 0.0,
                 0.0,
-                t695,
-                t701,
-                t375 * t713,
-                t375 * t719,
-                t725 * t730,
-                t732 * t737,
-                ::overact::math::signed(t375, t713),
-                ::overact::math::signed(t375, t719),
-                ::overact::math::signed(t730, t725),
-                ::overact::math::signed(t737, t732),
-                t375,
+                t679,
+                t685,
+                t367 * t697,
+                t367 * t703,
+                t709 * t714,
+                t716 * t721,
+                ::overact::math::signed(t367, t697),
+                ::overact::math::signed(t367, t703),
+                ::overact::math::signed(t714, t709),
+                ::overact::math::signed(t721, t716),
+                t367,
             ],
         ])
     }
@@ -5365,7 +5317,7 @@ impl DualV {
     /// Output: 3 x 4.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 373 operations (162 additions, 200 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 370 intermediates.
+    /// 365 operations (162 additions, 192 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 362 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5460,8 +5412,8 @@ impl DualV {
         ::overact::guard::platform(t138, 25.429161076750646, "actuators")?;
         let t139 = 1.0 / t138;
         let t140 = t131 * t139;
-        let t156 = g1_vy_leg1 * g1_vx_leg1 + g1_vy_leg2 * g1_vx_leg2
-            + g1_vy_leg3 * g1_vx_leg3 + g1_vy_leg4 * g1_vx_leg4;
+        let t156 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
         let t158 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
             + g1_vy_leg4 * g1_wz_leg4 - t156 * t140;
@@ -5496,70 +5448,70 @@ impl DualV {
         let t213 = t2 * rate_3_leg1;
         let t214 = t205 + t213;
         let rate_1_leg3 = g1_vx_leg3 * t211 + g1_vy_leg3 * t214;
+        let t217 = rate_1_leg3 * rate_1_leg3;
         let g2_vy_leg3 = t86 * t89;
         let minus_g2_vx_leg3 = t83 * t89;
         let rate_2_leg3 = g2_vy_leg3 * t214 - minus_g2_vx_leg3 * t211;
         let t225 = rate_1_leg3 + rate_2_leg3 - rate_1_leg3;
+        let t226 = t225 * t225;
         let t229 = rate_3_leg1 * t213;
         let t232 = rate_3_leg1 * t210;
-        let rate_dot_1_leg3 = g1_vx_leg3
-            * (rate_1_leg3 * (t80 * rate_1_leg3) + t225 * (t81 * t225) - t229)
-            + g1_vy_leg3
-                * (t232 + rate_1_leg3 * (t76 * rate_1_leg3) + t225 * (t77 * t225));
-        let t241 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t243 = t209 - t210;
-        let t245 = t205 - t213;
-        let rate_1_leg1 = g1_vx_leg1 * t243 + g1_vy_leg1 * t245;
+        let rate_dot_1_leg3 = g1_vx_leg3 * (t80 * t217 + t81 * t226 - t229)
+            + g1_vy_leg3 * (t232 + t76 * t217 + t77 * t226);
+        let t239 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let t241 = t209 - t210;
+        let t243 = t205 - t213;
+        let rate_1_leg1 = g1_vx_leg1 * t241 + g1_vy_leg1 * t243;
+        let t246 = rate_1_leg1 * rate_1_leg1;
         let g2_vy_leg1 = t26 * t29;
         let minus_g2_vx_leg1 = t23 * t29;
-        let rate_2_leg1 = g2_vy_leg1 * t245 - minus_g2_vx_leg1 * t243;
-        let t256 = rate_1_leg1 + rate_2_leg1 - rate_1_leg1;
-        let rate_dot_1_leg1 = g1_vx_leg1
-            * (t229 + rate_1_leg1 * (t20 * rate_1_leg1) + t256 * (t21 * t256))
-            + g1_vy_leg1
-                * (rate_1_leg1 * (t16 * rate_1_leg1) + t256 * (t17 * t256) - t232);
-        let t270 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let rate_1_leg2 = g1_vx_leg2 * t243 + g1_vy_leg2 * t245;
+        let rate_2_leg1 = g2_vy_leg1 * t243 - minus_g2_vx_leg1 * t241;
+        let t254 = rate_1_leg1 + rate_2_leg1 - rate_1_leg1;
+        let t255 = t254 * t254;
+        let rate_dot_1_leg1 = g1_vx_leg1 * (t229 + t20 * t246 + t21 * t255)
+            + g1_vy_leg1 * (t16 * t246 + t17 * t255 - t232);
+        let t266 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let rate_1_leg2 = g1_vx_leg2 * t241 + g1_vy_leg2 * t243;
+        let t271 = rate_1_leg2 * rate_1_leg2;
         let g2_vy_leg2 = t53 * t56;
         let minus_g2_vx_leg2 = t50 * t56;
-        let rate_2_leg2 = g2_vy_leg2 * t245 - minus_g2_vx_leg2 * t243;
-        let t283 = rate_1_leg2 + rate_2_leg2 - rate_1_leg2;
-        let rate_dot_1_leg2 = g1_vx_leg2
-            * (t229 + rate_1_leg2 * (t47 * rate_1_leg2) + t283 * (t48 * t283))
-            + g1_vy_leg2
-                * (rate_1_leg2 * (t43 * rate_1_leg2) + t283 * (t44 * t283) - t232);
-        let t297 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let rate_2_leg2 = g2_vy_leg2 * t243 - minus_g2_vx_leg2 * t241;
+        let t279 = rate_1_leg2 + rate_2_leg2 - rate_1_leg2;
+        let t280 = t279 * t279;
+        let rate_dot_1_leg2 = g1_vx_leg2 * (t229 + t47 * t271 + t48 * t280)
+            + g1_vy_leg2 * (t43 * t271 + t44 * t280 - t232);
+        let t291 = actuator_accelerations[1] - rate_dot_1_leg2;
         let rate_1_leg4 = g1_vx_leg4 * t211 + g1_vy_leg4 * t214;
+        let t298 = rate_1_leg4 * rate_1_leg4;
         let g2_vy_leg4 = t114 * t117;
         let minus_g2_vx_leg4 = t111 * t117;
         let rate_2_leg4 = g2_vy_leg4 * t214 - minus_g2_vx_leg4 * t211;
-        let t312 = rate_1_leg4 + rate_2_leg4 - rate_1_leg4;
-        let rate_dot_1_leg4 = g1_vx_leg4
-            * (rate_1_leg4 * (t108 * rate_1_leg4) + t312 * (t109 * t312) - t229)
-            + g1_vy_leg4
-                * (t232 + rate_1_leg4 * (t104 * rate_1_leg4) + t312 * (t105 * t312));
-        let t326 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t335 = g1_vx_leg1 * t270 + g1_vx_leg2 * t297 + g1_vx_leg3 * t241
-            + g1_vx_leg4 * t326;
-        let t346 = g1_vy_leg1 * t270 + g1_vy_leg2 * t297 + g1_vy_leg3 * t241
-            + g1_vy_leg4 * t326 - t166 * t335;
-        let t348 = g1_wz_leg3 * t241
-            - (minus_g1_wz_leg1 * t270 + minus_g1_wz_leg2 * t297) + g1_wz_leg4 * t326
-            - t140 * t335 - t170 * t346;
-        let rate_dot_3_leg1 = t173 * t348;
-        let t350 = rate_3_leg1 * rate_3_leg1;
-        let t351 = c_phi * t350;
-        let t352 = s_phi * rate_dot_3_leg1;
-        let t354 = c_phi * rate_dot_3_leg1;
-        let t355 = s_phi * t350;
-        let t359 = t169 * t346 - t170 * rate_dot_3_leg1;
-        let t365 = t139 * t335 - t166 * t359 - t140 * rate_dot_3_leg1;
-        let t367 = c_phi * t359 - s_phi * t365;
-        let t372 = c_phi * t365 + s_phi * t359;
+        let t306 = rate_1_leg4 + rate_2_leg4 - rate_1_leg4;
+        let t307 = t306 * t306;
+        let rate_dot_1_leg4 = g1_vx_leg4 * (t108 * t298 + t109 * t307 - t229)
+            + g1_vy_leg4 * (t232 + t104 * t298 + t105 * t307);
+        let t318 = actuator_accelerations[3] - rate_dot_1_leg4;
+        let t327 = g1_vx_leg1 * t266 + g1_vx_leg2 * t291 + g1_vx_leg3 * t239
+            + g1_vx_leg4 * t318;
+        let t338 = g1_vy_leg1 * t266 + g1_vy_leg2 * t291 + g1_vy_leg3 * t239
+            + g1_vy_leg4 * t318 - t166 * t327;
+        let t340 = g1_wz_leg3 * t239
+            - (minus_g1_wz_leg1 * t266 + minus_g1_wz_leg2 * t291) + g1_wz_leg4 * t318
+            - t140 * t327 - t170 * t338;
+        let rate_dot_3_leg1 = t173 * t340;
+        let t342 = rate_3_leg1 * rate_3_leg1;
+        let t343 = c_phi * t342;
+        let t344 = s_phi * rate_dot_3_leg1;
+        let t346 = c_phi * rate_dot_3_leg1;
+        let t347 = s_phi * t342;
+        let t351 = t169 * t338 - t170 * rate_dot_3_leg1;
+        let t357 = t139 * t327 - t166 * t351 - t140 * rate_dot_3_leg1;
+        let t359 = c_phi * t351 - s_phi * t357;
+        let t364 = c_phi * t357 + s_phi * t351;
         Ok([
-            [0.0, -(t351 + t352), t355 - t354, c_phi * t372 - s_phi * t367],
-            [0.0, t354 - t355, -(t352 + t351), s_phi * t372 + c_phi * t367],
-            [rate_dot_3_leg1, t367, -t372, 0.0],
+            [0.0, -(t343 + t344), t347 - t346, c_phi * t364 - s_phi * t359],
+            [0.0, t346 - t347, -(t344 + t343), s_phi * t364 + c_phi * t359],
+            [rate_dot_3_leg1, t359, -t364, 0.0],
         ])
     }
     /// The payload's columns of case 2, eq. (38).
@@ -5894,7 +5846,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 658 operations (297 additions, 350 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 672 intermediates.
+    /// 642 operations (297 additions, 334 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 656 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5935,268 +5887,268 @@ impl DualV {
         let g1_vy_leg1 = t21 * t29;
         let t40 = twist[1] - t33;
         let rate_1_leg1 = g1_vx_leg1 * t37 + g1_vy_leg1 * t40;
+        let t43 = rate_1_leg1 * rate_1_leg1;
         let g2_vy_leg1 = t26 * t29;
         let minus_g2_vx_leg1 = t23 * t29;
         let rate_2_leg1 = g2_vy_leg1 * t40 - minus_g2_vx_leg1 * t37;
         let t50 = rate_2_leg1 - rate_1_leg1;
         let t51 = rate_1_leg1 + t50;
-        let t55 = t35 + rate_1_leg1 * (t16 * rate_1_leg1) + t51 * (t17 * t51);
+        let t52 = t51 * t51;
+        let t55 = t35 + t16 * t43 + t17 * t52;
         let t57 = t2 * acceleration[2];
         let t59 = twist[2] * t36;
         let t60 = acceleration[1] - t57 - t59;
-        let t66 = t60 + rate_1_leg1 * (t20 * rate_1_leg1) + t51 * (t21 * t51);
-        let rate_dot_1_leg1 = g1_vx_leg1 * t55 + g1_vy_leg1 * t66;
-        let t77 = t11 * t14;
-        let t81 = t11 - 0.1568;
-        let t82 = rate_1_leg1 * rate_1_leg1;
-        let t85 = 3.5714285714285716 * (t77 * rate_dot_1_leg1)
-            - 1.7857142857142858 * (t81 * t82);
-        let t87 = t51 * t51;
-        let rate_dot_2_leg1 = g2_vy_leg1 * t66 - minus_g2_vx_leg1 * t55;
-        let t93 = rate_dot_1_leg1 + rate_dot_2_leg1 - rate_dot_1_leg1;
-        let t106 = 3.5714285714285716 * (t77 * t82)
-            + 1.7857142857142858 * (t81 * rate_dot_1_leg1);
-        let t110 = 3.5714285714285716 * t77
-            * (parameters[8] * t85 - (parameters[6] * t87 + parameters[7] * t93))
-            + 1.7857142857142858 * t81
-                * (parameters[6] * t93 - parameters[7] * t87 + parameters[8] * t106);
-        let t115 = parameters[9] * t50 + ::overact::math::signed(parameters[10], t50)
+        let t64 = t60 + t20 * t43 + t21 * t52;
+        let rate_dot_1_leg1 = g1_vx_leg1 * t55 + g1_vy_leg1 * t64;
+        let t75 = t11 * t14;
+        let t79 = t11 - 0.1568;
+        let t82 = 3.5714285714285716 * (t75 * rate_dot_1_leg1)
+            - 1.7857142857142858 * (t79 * t43);
+        let rate_dot_2_leg1 = g2_vy_leg1 * t64 - minus_g2_vx_leg1 * t55;
+        let t89 = rate_dot_1_leg1 + rate_dot_2_leg1 - rate_dot_1_leg1;
+        let t102 = 3.5714285714285716 * (t75 * t43)
+            + 1.7857142857142858 * (t79 * rate_dot_1_leg1);
+        let t106 = 3.5714285714285716 * t75
+            * (parameters[8] * t82 - (parameters[6] * t52 + parameters[7] * t89))
+            + 1.7857142857142858 * t79
+                * (parameters[6] * t89 - parameters[7] * t52 + parameters[8] * t102);
+        let t111 = parameters[9] * t50 + ::overact::math::signed(parameters[10], t50)
             + parameters[11];
-        let t116 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
+        let t112 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
             + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t110
-            - t115;
-        let t124 = twist[2] - rate_2_leg1;
-        let t128 = parameters[12] * t124 + ::overact::math::signed(parameters[13], t124)
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t106
+            - t111;
+        let t120 = twist[2] - rate_2_leg1;
+        let t124 = parameters[12] * t120 + ::overact::math::signed(parameters[13], t120)
             + parameters[14];
-        let t129 = parameters[5] * t93 + parameters[6] * t106 - parameters[7] * t85
-            + t115 - t128;
-        let t132 = t3 + 0.3950502153918333;
-        let t135 = t132 * t132 + t10;
-        let t137 = 0.0784 / t135 - 0.25;
-        ::overact::guard::reach(t137, "leg2")?;
-        let t138 = ::overact::math::sqrt(t137);
-        let t140 = 0.5 * t132 - t8 * t138;
-        let t141 = t132 - t140;
-        let t143 = t18 + t132 * t138;
-        let t144 = t8 - t143;
-        let t146 = t140 + t141 - t141;
-        let t149 = t144 - (t143 + t144);
-        let t151 = t144 * t146 + t141 * t149;
-        ::overact::guard::leg(t151, 0.078399138102973, "leg2")?;
-        let t152 = 1.0 / t151;
-        let g1_vx_leg2 = t141 * t152;
-        let g1_vy_leg2 = t144 * t152;
+        let t125 = parameters[5] * t89 + parameters[6] * t102 - parameters[7] * t82
+            + t111 - t124;
+        let t128 = t3 + 0.3950502153918333;
+        let t131 = t128 * t128 + t10;
+        let t133 = 0.0784 / t131 - 0.25;
+        ::overact::guard::reach(t133, "leg2")?;
+        let t134 = ::overact::math::sqrt(t133);
+        let t136 = 0.5 * t128 - t8 * t134;
+        let t137 = t128 - t136;
+        let t139 = t18 + t128 * t134;
+        let t140 = t8 - t139;
+        let t142 = t136 + t137 - t137;
+        let t145 = t140 - (t139 + t140);
+        let t147 = t140 * t142 + t137 * t145;
+        ::overact::guard::leg(t147, 0.078399138102973, "leg2")?;
+        let t148 = 1.0 / t147;
+        let g1_vx_leg2 = t137 * t148;
+        let g1_vy_leg2 = t140 * t148;
         let rate_1_leg2 = g1_vx_leg2 * t37 + g1_vy_leg2 * t40;
-        let g2_vy_leg2 = t149 * t152;
-        let minus_g2_vx_leg2 = t146 * t152;
+        let t154 = rate_1_leg2 * rate_1_leg2;
+        let g2_vy_leg2 = t145 * t148;
+        let minus_g2_vx_leg2 = t142 * t148;
         let rate_2_leg2 = g2_vy_leg2 * t40 - minus_g2_vx_leg2 * t37;
-        let t165 = rate_2_leg2 - rate_1_leg2;
-        let t166 = rate_1_leg2 + t165;
-        let t170 = t35 + rate_1_leg2 * (t140 * rate_1_leg2) + t166 * (t141 * t166);
-        let t177 = t60 + rate_1_leg2 * (t143 * rate_1_leg2) + t166 * (t144 * t166);
-        let rate_dot_1_leg2 = g1_vx_leg2 * t170 + g1_vy_leg2 * t177;
-        let t188 = t135 * t138;
-        let t190 = t166 * t166;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t177 - minus_g2_vx_leg2 * t170;
-        let t196 = rate_dot_1_leg2 + rate_dot_2_leg2 - rate_dot_1_leg2;
-        let t199 = t135 - 0.1568;
-        let t200 = rate_1_leg2 * rate_1_leg2;
-        let t205 = 1.7857142857142858 * (t199 * t200)
-            + 3.5714285714285716 * (t188 * rate_dot_1_leg2);
-        let t217 = 1.7857142857142858 * (t199 * rate_dot_1_leg2)
-            - 3.5714285714285716 * (t188 * t200);
-        let t221 = 3.5714285714285716 * t188
-            * (parameters[21] * t190 + parameters[22] * t196 + parameters[23] * t205)
-            + 1.7857142857142858 * t199
-                * (parameters[21] * t196 - parameters[22] * t190
-                    + parameters[23] * t217);
-        let t226 = parameters[24] * t165 + ::overact::math::signed(parameters[25], t165)
+        let t161 = rate_2_leg2 - rate_1_leg2;
+        let t162 = rate_1_leg2 + t161;
+        let t163 = t162 * t162;
+        let t166 = t35 + t136 * t154 + t137 * t163;
+        let t171 = t60 + t139 * t154 + t140 * t163;
+        let rate_dot_1_leg2 = g1_vx_leg2 * t166 + g1_vy_leg2 * t171;
+        let t182 = t131 * t134;
+        let rate_dot_2_leg2 = g2_vy_leg2 * t171 - minus_g2_vx_leg2 * t166;
+        let t189 = rate_dot_1_leg2 + rate_dot_2_leg2 - rate_dot_1_leg2;
+        let t192 = t131 - 0.1568;
+        let t197 = 1.7857142857142858 * (t192 * t154)
+            + 3.5714285714285716 * (t182 * rate_dot_1_leg2);
+        let t209 = 1.7857142857142858 * (t192 * rate_dot_1_leg2)
+            - 3.5714285714285716 * (t182 * t154);
+        let t213 = 3.5714285714285716 * t182
+            * (parameters[21] * t163 + parameters[22] * t189 + parameters[23] * t197)
+            + 1.7857142857142858 * t192
+                * (parameters[21] * t189 - parameters[22] * t163
+                    + parameters[23] * t209);
+        let t218 = parameters[24] * t161 + ::overact::math::signed(parameters[25], t161)
             + parameters[26];
-        let t227 = parameters[15] * rate_dot_1_leg2 + parameters[16] * rate_dot_1_leg2
+        let t219 = parameters[15] * rate_dot_1_leg2 + parameters[16] * rate_dot_1_leg2
             + parameters[17] * rate_1_leg2
             + ::overact::math::signed(parameters[18], rate_1_leg2) + parameters[19]
-            + t221 - t226;
-        let t235 = twist[2] - rate_2_leg2;
-        let t239 = parameters[27] * t235 + ::overact::math::signed(parameters[28], t235)
+            + t213 - t218;
+        let t227 = twist[2] - rate_2_leg2;
+        let t231 = parameters[27] * t227 + ::overact::math::signed(parameters[28], t227)
             + parameters[29];
-        let t240 = parameters[20] * t196 + parameters[21] * t217 + parameters[22] * t205
-            + t226 - t239;
-        let t244 = pose[0] + t2;
-        let t245 = t244 + 0.3950502153918333;
-        let t248 = pose[1] - t6 + 0.10970563941232059;
-        let t250 = t248 * t248;
-        let t251 = t245 * t245 + t250;
-        let t253 = 0.0784 / t251 - 0.25;
-        ::overact::guard::reach(t253, "leg3")?;
-        let t254 = ::overact::math::sqrt(t253);
-        let t256 = 0.5 * t245 + t248 * t254;
-        let t257 = t245 - t256;
-        let t258 = 0.5 * t248;
-        let t260 = t258 - t245 * t254;
-        let t261 = t248 - t260;
-        let t263 = t256 + t257 - t257;
-        let t266 = t261 - (t260 + t261);
-        let t268 = t261 * t263 + t257 * t266;
-        ::overact::guard::leg(t268, 0.078399138102973, "leg3")?;
-        let t269 = 1.0 / t268;
-        let g1_vx_leg3 = t257 * t269;
-        let t272 = acceleration[0] + t31 - t34;
-        let t273 = twist[0] + t36;
-        let g1_vy_leg3 = t261 * t269;
-        let t276 = twist[1] + t33;
-        let rate_1_leg3 = g1_vx_leg3 * t273 + g1_vy_leg3 * t276;
-        let g2_vy_leg3 = t266 * t269;
-        let minus_g2_vx_leg3 = t263 * t269;
-        let rate_2_leg3 = g2_vy_leg3 * t276 - minus_g2_vx_leg3 * t273;
-        let t286 = rate_2_leg3 - rate_1_leg3;
-        let t287 = rate_1_leg3 + t286;
-        let t291 = t272 + rate_1_leg3 * (t256 * rate_1_leg3) + t287 * (t257 * t287);
-        let t294 = acceleration[1] + t57 + t59;
-        let t300 = t294 + rate_1_leg3 * (t260 * rate_1_leg3) + t287 * (t261 * t287);
-        let rate_dot_1_leg3 = g1_vx_leg3 * t291 + g1_vy_leg3 * t300;
-        let t311 = t251 * t254;
-        let t315 = t251 - 0.1568;
-        let t316 = rate_1_leg3 * rate_1_leg3;
-        let t319 = 3.5714285714285716 * (t311 * rate_dot_1_leg3)
-            - 1.7857142857142858 * (t315 * t316);
-        let t321 = t287 * t287;
-        let rate_dot_2_leg3 = g2_vy_leg3 * t300 - minus_g2_vx_leg3 * t291;
-        let t327 = rate_dot_1_leg3 + rate_dot_2_leg3 - rate_dot_1_leg3;
-        let t340 = 3.5714285714285716 * (t311 * t316)
-            + 1.7857142857142858 * (t315 * rate_dot_1_leg3);
-        let t344 = 3.5714285714285716 * t311
-            * (parameters[38] * t319 - (parameters[36] * t321 + parameters[37] * t327))
-            + 1.7857142857142858 * t315
-                * (parameters[36] * t327 - parameters[37] * t321
-                    + parameters[38] * t340);
-        let t349 = parameters[39] * t286 + ::overact::math::signed(parameters[40], t286)
+        let t232 = parameters[20] * t189 + parameters[21] * t209 + parameters[22] * t197
+            + t218 - t231;
+        let t236 = pose[0] + t2;
+        let t237 = t236 + 0.3950502153918333;
+        let t240 = pose[1] - t6 + 0.10970563941232059;
+        let t242 = t240 * t240;
+        let t243 = t237 * t237 + t242;
+        let t245 = 0.0784 / t243 - 0.25;
+        ::overact::guard::reach(t245, "leg3")?;
+        let t246 = ::overact::math::sqrt(t245);
+        let t248 = 0.5 * t237 + t240 * t246;
+        let t249 = t237 - t248;
+        let t250 = 0.5 * t240;
+        let t252 = t250 - t237 * t246;
+        let t253 = t240 - t252;
+        let t255 = t248 + t249 - t249;
+        let t258 = t253 - (t252 + t253);
+        let t260 = t253 * t255 + t249 * t258;
+        ::overact::guard::leg(t260, 0.078399138102973, "leg3")?;
+        let t261 = 1.0 / t260;
+        let g1_vx_leg3 = t249 * t261;
+        let t264 = acceleration[0] + t31 - t34;
+        let t265 = twist[0] + t36;
+        let g1_vy_leg3 = t253 * t261;
+        let t268 = twist[1] + t33;
+        let rate_1_leg3 = g1_vx_leg3 * t265 + g1_vy_leg3 * t268;
+        let t271 = rate_1_leg3 * rate_1_leg3;
+        let g2_vy_leg3 = t258 * t261;
+        let minus_g2_vx_leg3 = t255 * t261;
+        let rate_2_leg3 = g2_vy_leg3 * t268 - minus_g2_vx_leg3 * t265;
+        let t278 = rate_2_leg3 - rate_1_leg3;
+        let t279 = rate_1_leg3 + t278;
+        let t280 = t279 * t279;
+        let t283 = t264 + t248 * t271 + t249 * t280;
+        let t286 = acceleration[1] + t57 + t59;
+        let t290 = t286 + t252 * t271 + t253 * t280;
+        let rate_dot_1_leg3 = g1_vx_leg3 * t283 + g1_vy_leg3 * t290;
+        let t301 = t243 * t246;
+        let t305 = t243 - 0.1568;
+        let t308 = 3.5714285714285716 * (t301 * rate_dot_1_leg3)
+            - 1.7857142857142858 * (t305 * t271);
+        let rate_dot_2_leg3 = g2_vy_leg3 * t290 - minus_g2_vx_leg3 * t283;
+        let t315 = rate_dot_1_leg3 + rate_dot_2_leg3 - rate_dot_1_leg3;
+        let t328 = 3.5714285714285716 * (t301 * t271)
+            + 1.7857142857142858 * (t305 * rate_dot_1_leg3);
+        let t332 = 3.5714285714285716 * t301
+            * (parameters[38] * t308 - (parameters[36] * t280 + parameters[37] * t315))
+            + 1.7857142857142858 * t305
+                * (parameters[36] * t315 - parameters[37] * t280
+                    + parameters[38] * t328);
+        let t337 = parameters[39] * t278 + ::overact::math::signed(parameters[40], t278)
             + parameters[41];
-        let t350 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
+        let t338 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
             + parameters[32] * rate_1_leg3
             + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34]
-            + t344 - t349;
-        let t358 = twist[2] - rate_2_leg3;
-        let t362 = parameters[42] * t358 + ::overact::math::signed(parameters[43], t358)
+            + t332 - t337;
+        let t346 = twist[2] - rate_2_leg3;
+        let t350 = parameters[42] * t346 + ::overact::math::signed(parameters[43], t346)
             + parameters[44];
-        let t363 = parameters[35] * t327 + parameters[36] * t340 - parameters[37] * t319
-            + t349 - t362;
-        let t366 = g1_vx_leg1 * t116 - minus_g2_vx_leg1 * t129 + g1_vx_leg2 * t227
-            - minus_g2_vx_leg2 * t240 + g1_vx_leg3 * t350 - minus_g2_vx_leg3 * t363;
-        let t367 = t244 - 0.3950502153918333;
-        let t370 = t367 * t367 + t250;
-        let t372 = 0.0784 / t370 - 0.25;
-        ::overact::guard::reach(t372, "leg4")?;
-        let t373 = ::overact::math::sqrt(t372);
-        let t375 = 0.5 * t367 - t248 * t373;
-        let t376 = t367 - t375;
-        let t378 = t258 + t367 * t373;
-        let t379 = t248 - t378;
-        let t381 = t375 + t376 - t376;
-        let t384 = t379 - (t378 + t379);
-        let t386 = t379 * t381 + t376 * t384;
-        ::overact::guard::leg(t386, 0.078399138102973, "leg4")?;
-        let t387 = 1.0 / t386;
-        let g1_vx_leg4 = t376 * t387;
-        let g1_vy_leg4 = t379 * t387;
-        let rate_1_leg4 = g1_vx_leg4 * t273 + g1_vy_leg4 * t276;
-        let g2_vy_leg4 = t384 * t387;
-        let minus_g2_vx_leg4 = t381 * t387;
-        let rate_2_leg4 = g2_vy_leg4 * t276 - minus_g2_vx_leg4 * t273;
-        let t400 = rate_2_leg4 - rate_1_leg4;
-        let t401 = rate_1_leg4 + t400;
-        let t405 = t272 + rate_1_leg4 * (t375 * rate_1_leg4) + t401 * (t376 * t401);
-        let t412 = t294 + rate_1_leg4 * (t378 * rate_1_leg4) + t401 * (t379 * t401);
-        let rate_dot_1_leg4 = g1_vx_leg4 * t405 + g1_vy_leg4 * t412;
-        let t423 = t370 * t373;
-        let t425 = t401 * t401;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t412 - minus_g2_vx_leg4 * t405;
-        let t431 = rate_dot_1_leg4 + rate_dot_2_leg4 - rate_dot_1_leg4;
-        let t434 = t370 - 0.1568;
-        let t435 = rate_1_leg4 * rate_1_leg4;
-        let t440 = 1.7857142857142858 * (t434 * t435)
-            + 3.5714285714285716 * (t423 * rate_dot_1_leg4);
-        let t452 = 1.7857142857142858 * (t434 * rate_dot_1_leg4)
-            - 3.5714285714285716 * (t423 * t435);
-        let t456 = 3.5714285714285716 * t423
-            * (parameters[51] * t425 + parameters[52] * t431 + parameters[53] * t440)
-            + 1.7857142857142858 * t434
-                * (parameters[51] * t431 - parameters[52] * t425
-                    + parameters[53] * t452);
-        let t461 = parameters[54] * t400 + ::overact::math::signed(parameters[55], t400)
+        let t351 = parameters[35] * t315 + parameters[36] * t328 - parameters[37] * t308
+            + t337 - t350;
+        let t354 = g1_vx_leg1 * t112 - minus_g2_vx_leg1 * t125 + g1_vx_leg2 * t219
+            - minus_g2_vx_leg2 * t232 + g1_vx_leg3 * t338 - minus_g2_vx_leg3 * t351;
+        let t355 = t236 - 0.3950502153918333;
+        let t358 = t355 * t355 + t242;
+        let t360 = 0.0784 / t358 - 0.25;
+        ::overact::guard::reach(t360, "leg4")?;
+        let t361 = ::overact::math::sqrt(t360);
+        let t363 = 0.5 * t355 - t240 * t361;
+        let t364 = t355 - t363;
+        let t366 = t250 + t355 * t361;
+        let t367 = t240 - t366;
+        let t369 = t363 + t364 - t364;
+        let t372 = t367 - (t366 + t367);
+        let t374 = t367 * t369 + t364 * t372;
+        ::overact::guard::leg(t374, 0.078399138102973, "leg4")?;
+        let t375 = 1.0 / t374;
+        let g1_vx_leg4 = t364 * t375;
+        let g1_vy_leg4 = t367 * t375;
+        let rate_1_leg4 = g1_vx_leg4 * t265 + g1_vy_leg4 * t268;
+        let t381 = rate_1_leg4 * rate_1_leg4;
+        let g2_vy_leg4 = t372 * t375;
+        let minus_g2_vx_leg4 = t369 * t375;
+        let rate_2_leg4 = g2_vy_leg4 * t268 - minus_g2_vx_leg4 * t265;
+        let t388 = rate_2_leg4 - rate_1_leg4;
+        let t389 = rate_1_leg4 + t388;
+        let t390 = t389 * t389;
+        let t393 = t264 + t363 * t381 + t364 * t390;
+        let t398 = t286 + t366 * t381 + t367 * t390;
+        let rate_dot_1_leg4 = g1_vx_leg4 * t393 + g1_vy_leg4 * t398;
+        let t409 = t358 * t361;
+        let rate_dot_2_leg4 = g2_vy_leg4 * t398 - minus_g2_vx_leg4 * t393;
+        let t416 = rate_dot_1_leg4 + rate_dot_2_leg4 - rate_dot_1_leg4;
+        let t419 = t358 - 0.1568;
+        let t424 = 1.7857142857142858 * (t419 * t381)
+            + 3.5714285714285716 * (t409 * rate_dot_1_leg4);
+        let t436 = 1.7857142857142858 * (t419 * rate_dot_1_leg4)
+            - 3.5714285714285716 * (t409 * t381);
+        let t440 = 3.5714285714285716 * t409
+            * (parameters[51] * t390 + parameters[52] * t416 + parameters[53] * t424)
+            + 1.7857142857142858 * t419
+                * (parameters[51] * t416 - parameters[52] * t390
+                    + parameters[53] * t436);
+        let t445 = parameters[54] * t388 + ::overact::math::signed(parameters[55], t388)
             + parameters[56];
-        let t462 = parameters[45] * rate_dot_1_leg4 + parameters[46] * rate_dot_1_leg4
+        let t446 = parameters[45] * rate_dot_1_leg4 + parameters[46] * rate_dot_1_leg4
             + parameters[47] * rate_1_leg4
             + ::overact::math::signed(parameters[48], rate_1_leg4) + parameters[49]
-            + t456 - t461;
-        let t470 = twist[2] - rate_2_leg4;
-        let t474 = parameters[57] * t470 + ::overact::math::signed(parameters[58], t470)
+            + t440 - t445;
+        let t454 = twist[2] - rate_2_leg4;
+        let t458 = parameters[57] * t454 + ::overact::math::signed(parameters[58], t454)
             + parameters[59];
-        let t475 = parameters[50] * t431 + parameters[51] * t452 + parameters[52] * t440
-            + t461 - t474;
-        let t481 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t483 = twist[2] * twist[2];
-        let t493 = parameters[63] * t481
-            - (parameters[61] * t483 + acceleration[2] * parameters[62])
-            - parameters[65] * t483 - acceleration[2] * parameters[66]
-            + parameters[67] * t481;
-        let t500 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t508 = acceleration[2] * parameters[61] - parameters[62] * t483
-            + parameters[63] * t500 + acceleration[2] * parameters[65]
-            - parameters[66] * t483 + parameters[67] * t500;
-        let t511 = t366 + g1_vx_leg4 * t462 - minus_g2_vx_leg4 * t475 + c_phi * t493
-            - s_phi * t508;
-        let t518 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t459 = parameters[50] * t416 + parameters[51] * t436 + parameters[52] * t424
+            + t445 - t458;
+        let t465 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t467 = twist[2] * twist[2];
+        let t477 = parameters[63] * t465
+            - (parameters[61] * t467 + acceleration[2] * parameters[62])
+            - parameters[65] * t467 - acceleration[2] * parameters[66]
+            + parameters[67] * t465;
+        let t484 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t492 = acceleration[2] * parameters[61] - parameters[62] * t467
+            + parameters[63] * t484 + acceleration[2] * parameters[65]
+            - parameters[66] * t467 + parameters[67] * t484;
+        let t495 = t354 + g1_vx_leg4 * t446 - minus_g2_vx_leg4 * t459 + c_phi * t477
+            - s_phi * t492;
+        let t502 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t518, 25.429161076750646, "actuators")?;
-        let t519 = 1.0 / t518;
-        let t527 = g1_vy_leg1 * g1_vx_leg1 + g1_vy_leg2 * g1_vx_leg2
-            + g1_vy_leg3 * g1_vx_leg3 + g1_vy_leg4 * g1_vx_leg4;
-        let t528 = t527 * t519;
-        let t537 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t527 * t528;
-        ::overact::guard::platform(t537, 25.59236889935335, "actuators")?;
-        let t538 = 1.0 / t537;
-        let t549 = g1_vy_leg1 * t116 + g2_vy_leg1 * t129 + g1_vy_leg2 * t227
-            + g2_vy_leg2 * t240 + g1_vy_leg3 * t350 + g2_vy_leg3 * t363;
-        let t559 = t549 + g1_vy_leg4 * t462 + g2_vy_leg4 * t475 + s_phi * t493
-            + c_phi * t508 - t511 * t528;
+        ::overact::guard::platform(t502, 25.429161076750646, "actuators")?;
+        let t503 = 1.0 / t502;
+        let t511 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
+        let t512 = t511 * t503;
+        let t521 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t511 * t512;
+        ::overact::guard::platform(t521, 25.59236889935335, "actuators")?;
+        let t522 = 1.0 / t521;
+        let t533 = g1_vy_leg1 * t112 + g2_vy_leg1 * t125 + g1_vy_leg2 * t219
+            + g2_vy_leg2 * t232 + g1_vy_leg3 * t338 + g2_vy_leg3 * t351;
+        let t543 = t533 + g1_vy_leg4 * t446 + g2_vy_leg4 * t459 + s_phi * t477
+            + c_phi * t492 - t495 * t512;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
         let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t6 * g1_vx_leg2;
         let g1_wz_leg4 = t2 * g1_vy_leg4 + t6 * g1_vx_leg4;
-        let t586 = g1_vx_leg3 * g1_wz_leg3
+        let t570 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + g1_vx_leg2 * minus_g1_wz_leg2)
             + g1_vx_leg4 * g1_wz_leg4;
-        let t587 = t586 * t519;
-        let t589 = g1_vy_leg3 * g1_wz_leg3
+        let t571 = t570 * t503;
+        let t573 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
-            + g1_vy_leg4 * g1_wz_leg4 - t527 * t587;
-        let t590 = t589 * t538;
-        let t601 = minus_g1_wz_leg1 * minus_g1_wz_leg1
+            + g1_vy_leg4 * g1_wz_leg4 - t511 * t571;
+        let t574 = t573 * t522;
+        let t585 = minus_g1_wz_leg1 * minus_g1_wz_leg1
             + minus_g1_wz_leg2 * minus_g1_wz_leg2 + g1_wz_leg3 * g1_wz_leg3
-            + g1_wz_leg4 * g1_wz_leg4 - t586 * t587 - t589 * t590;
-        ::overact::guard::platform(t601, 0.3076928490286828, "actuators")?;
+            + g1_wz_leg4 * g1_wz_leg4 - t570 * t571 - t573 * t574;
+        ::overact::guard::platform(t585, 0.3076928490286828, "actuators")?;
         let g2_wz_leg1 = t6 * minus_g2_vx_leg1 - t2 * g2_vy_leg1;
         let g2_wz_leg2 = t6 * minus_g2_vx_leg2 - t2 * g2_vy_leg2;
         let g2_wz_leg3 = t2 * g2_vy_leg3 - t6 * minus_g2_vx_leg3;
-        let t624 = g2_wz_leg1 * t129 - minus_g1_wz_leg1 * t116 + t128 + g2_wz_leg2 * t240
-            - minus_g1_wz_leg2 * t227 + t239 + g1_wz_leg3 * t350 + g2_wz_leg3 * t363
-            + t362;
+        let t608 = g2_wz_leg1 * t125 - minus_g1_wz_leg1 * t112 + t124 + g2_wz_leg2 * t232
+            - minus_g1_wz_leg2 * t219 + t231 + g1_wz_leg3 * t338 + g2_wz_leg3 * t351
+            + t350;
         let g2_wz_leg4 = t2 * g2_vy_leg4 - t6 * minus_g2_vx_leg4;
-        let t643 = acceleration[2] * parameters[60] + parameters[61] * t500
-            - parameters[62] * t481 + acceleration[2] * parameters[64]
-            + parameters[65] * t500 - parameters[66] * t481;
-        let t648 = t624 + g1_wz_leg4 * t462 + g2_wz_leg4 * t475 + t474 + t643
-            - t511 * t587 - t590 * t559;
-        let t649 = t648 / t601;
-        let t651 = t538 * t559 - t590 * t649;
-        let t655 = t511 * t519 - t528 * t651 - t587 * t649;
+        let t627 = acceleration[2] * parameters[60] + parameters[61] * t484
+            - parameters[62] * t465 + acceleration[2] * parameters[64]
+            + parameters[65] * t484 - parameters[66] * t465;
+        let t632 = t608 + g1_wz_leg4 * t446 + g2_wz_leg4 * t459 + t458 + t627
+            - t495 * t571 - t574 * t543;
+        let t633 = t632 / t585;
+        let t635 = t522 * t543 - t574 * t633;
+        let t639 = t495 * t503 - t512 * t635 - t571 * t633;
         Ok([
-            g1_vx_leg1 * t655 + g1_vy_leg1 * t651 - minus_g1_wz_leg1 * t649,
-            g1_vx_leg2 * t655 + g1_vy_leg2 * t651 - minus_g1_wz_leg2 * t649,
-            g1_vx_leg3 * t655 + g1_vy_leg3 * t651 + g1_wz_leg3 * t649,
-            g1_vx_leg4 * t655 + g1_vy_leg4 * t651 + g1_wz_leg4 * t649,
+            g1_vx_leg1 * t639 + g1_vy_leg1 * t635 - minus_g1_wz_leg1 * t633,
+            g1_vx_leg2 * t639 + g1_vy_leg2 * t635 - minus_g1_wz_leg2 * t633,
+            g1_vx_leg3 * t639 + g1_vy_leg3 * t635 + g1_wz_leg3 * t633,
+            g1_vx_leg4 * t639 + g1_vy_leg4 * t635 + g1_wz_leg4 * t633,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -6210,7 +6162,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 584 operations (235 additions, 342 multiplications, 7 divisions), 0 square roots, 9 trigonometric pairs, 12 signs, 610 intermediates.
+    /// 544 operations (231 additions, 306 multiplications, 7 divisions), 0 square roots, 9 trigonometric pairs, 12 signs, 570 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6223,6 +6175,7 @@ impl DualV {
     ) -> Result<[f64; 4], ::overact::Error> {
         let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(joints[0]);
         let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
+        ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
         let t10 = 3.5714285714285716 / s2_leg1;
@@ -6234,235 +6187,230 @@ impl DualV {
         let t18 = t17 * twist[2];
         let t19 = twist[2] * t18;
         let t20 = acceleration[0] - t15 + t19;
-        let t21 = t14 * twist[2];
-        let t22 = twist[0] - t21;
-        let g1_vy_leg1 = s12_leg1 * t10;
-        let t25 = twist[1] - t18;
-        let rate_1_leg1 = g1_vx_leg1 * t22 + g1_vy_leg1 * t25;
+        let t22 = t17 * acceleration[2];
+        let t24 = t14 * twist[2];
+        let t25 = twist[2] * t24;
+        let t26 = acceleration[1] - t22 - t25;
         let minus_g2_vx_leg1 = c1_leg1 * t10;
+        let t30 = twist[0] - t24;
         let minus_g2_vy_leg1 = s1_leg1 * t10;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t22 + minus_g2_vy_leg1 * t25;
-        let t40 = t20 + rate_1_leg1 * (0.28 * c1_leg1 * rate_1_leg1)
-            + minus_rate_2_leg1 * (0.28 * c12_leg1 * minus_rate_2_leg1);
-        let t42 = t17 * acceleration[2];
-        let t44 = twist[2] * t21;
-        let t45 = acceleration[1] - t42 - t44;
-        let t53 = t45 + rate_1_leg1 * (0.28 * s1_leg1 * rate_1_leg1)
-            + minus_rate_2_leg1 * (0.28 * s12_leg1 * minus_rate_2_leg1);
-        let rate_dot_1_leg1 = g1_vx_leg1 * t40 + g1_vy_leg1 * t53;
-        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * t40 + minus_g2_vy_leg1 * t53;
-        let t69 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t72 = 0.28 * rate_dot_1_leg1;
-        let t75 = 0.28 * (rate_1_leg1 * rate_1_leg1);
-        let t77 = s2_leg1 * t72 - c2_leg1 * t75;
-        let t84 = s2_leg1 * t75 + c2_leg1 * t72;
-        let t91 = 0.28 * s2_leg1
-            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t69
-                + parameters[8] * t77)
-            + 0.28 * c2_leg1
-                * (parameters[8] * t84
-                    - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t69));
-        let t93 = rate_1_leg1 + minus_rate_2_leg1;
-        let t97 = parameters[11]
-            - (parameters[9] * t93 + ::overact::math::signed(parameters[10], t93));
-        let t98 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
+        let t33 = twist[1] - t18;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t30 + minus_g2_vy_leg1 * t33;
+        let t36 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t38 = c12_leg1 * t20 + s12_leg1 * t26 + 0.28 * t36;
+        let g1_vy_leg1 = s12_leg1 * t10;
+        let rate_1_leg1 = g1_vx_leg1 * t30 + g1_vy_leg1 * t33;
+        let t43 = rate_1_leg1 * rate_1_leg1;
+        let t44 = 0.28 * c2_leg1;
+        let rate_dot_1_leg1 = t10 * (t38 + t43 * t44);
+        let t60 = 0.28 * t43;
+        let minus_rate_dot_2_leg1 = t10
+            * (c1_leg1 * t20 + s1_leg1 * t26 + t60 + t36 * t44);
+        let t74 = s2_leg1 * t60 + c2_leg1 * (0.28 * rate_dot_1_leg1);
+        let t81 = 0.28 * s2_leg1
+            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t36
+                + parameters[8] * t38)
+            + t44
+                * (parameters[8] * t74
+                    - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t36));
+        let t83 = rate_1_leg1 + minus_rate_2_leg1;
+        let t87 = parameters[11]
+            - (parameters[9] * t83 + ::overact::math::signed(parameters[10], t83));
+        let t88 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
             + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t91
-            - t97;
-        let t106 = minus_rate_2_leg1 + twist[2];
-        let t110 = parameters[12] * t106 + ::overact::math::signed(parameters[13], t106)
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t81
+            - t87;
+        let t96 = minus_rate_2_leg1 + twist[2];
+        let t100 = parameters[12] * t96 + ::overact::math::signed(parameters[13], t96)
             + parameters[14];
-        let t111 = parameters[6] * t84 - parameters[5] * minus_rate_dot_2_leg1
-            - parameters[7] * t77 + t97 - t110;
+        let t101 = parameters[6] * t74 - parameters[5] * minus_rate_dot_2_leg1
+            - parameters[7] * t38 + t87 - t100;
         let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(joints[3]);
         let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
+        ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let t124 = 3.5714285714285716 / s2_leg2;
-        let g1_vx_leg2 = c12_leg2 * t124;
-        let g1_vy_leg2 = s12_leg2 * t124;
-        let rate_1_leg2 = g1_vx_leg2 * t22 + g1_vy_leg2 * t25;
-        let minus_g2_vx_leg2 = c1_leg2 * t124;
-        let minus_g2_vy_leg2 = s1_leg2 * t124;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t22 + minus_g2_vy_leg2 * t25;
-        let t142 = t20 + rate_1_leg2 * (0.28 * c1_leg2 * rate_1_leg2)
-            + minus_rate_2_leg2 * (0.28 * c12_leg2 * minus_rate_2_leg2);
-        let t151 = t45 + rate_1_leg2 * (0.28 * s1_leg2 * rate_1_leg2)
-            + minus_rate_2_leg2 * (0.28 * s12_leg2 * minus_rate_2_leg2);
-        let rate_dot_1_leg2 = g1_vx_leg2 * t142 + g1_vy_leg2 * t151;
-        let minus_rate_dot_2_leg2 = minus_g2_vx_leg2 * t142 + minus_g2_vy_leg2 * t151;
-        let t167 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t170 = 0.28 * rate_dot_1_leg2;
-        let t173 = 0.28 * (rate_1_leg2 * rate_1_leg2);
-        let t175 = s2_leg2 * t170 - c2_leg2 * t173;
-        let t182 = s2_leg2 * t173 + c2_leg2 * t170;
-        let t189 = 0.28 * s2_leg2
-            * (parameters[22] * minus_rate_dot_2_leg2 - parameters[21] * t167
-                + parameters[23] * t175)
-            + 0.28 * c2_leg2
-                * (parameters[23] * t182
-                    - (parameters[21] * minus_rate_dot_2_leg2 + parameters[22] * t167));
-        let t191 = rate_1_leg2 + minus_rate_2_leg2;
-        let t195 = parameters[26]
-            - (parameters[24] * t191 + ::overact::math::signed(parameters[25], t191));
-        let t196 = parameters[15] * rate_dot_1_leg2 + parameters[16] * rate_dot_1_leg2
+        let t114 = 3.5714285714285716 / s2_leg2;
+        let g1_vx_leg2 = c12_leg2 * t114;
+        let minus_g2_vx_leg2 = c1_leg2 * t114;
+        let minus_g2_vy_leg2 = s1_leg2 * t114;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t30 + minus_g2_vy_leg2 * t33;
+        let t124 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t126 = c12_leg2 * t20 + s12_leg2 * t26 + 0.28 * t124;
+        let g1_vy_leg2 = s12_leg2 * t114;
+        let rate_1_leg2 = g1_vx_leg2 * t30 + g1_vy_leg2 * t33;
+        let t131 = rate_1_leg2 * rate_1_leg2;
+        let t132 = 0.28 * c2_leg2;
+        let rate_dot_1_leg2 = t114 * (t126 + t131 * t132);
+        let t148 = 0.28 * t131;
+        let minus_rate_dot_2_leg2 = t114
+            * (c1_leg2 * t20 + s1_leg2 * t26 + t148 + t124 * t132);
+        let t162 = s2_leg2 * t148 + c2_leg2 * (0.28 * rate_dot_1_leg2);
+        let t169 = 0.28 * s2_leg2
+            * (parameters[22] * minus_rate_dot_2_leg2 - parameters[21] * t124
+                + parameters[23] * t126)
+            + t132
+                * (parameters[23] * t162
+                    - (parameters[21] * minus_rate_dot_2_leg2 + parameters[22] * t124));
+        let t171 = rate_1_leg2 + minus_rate_2_leg2;
+        let t175 = parameters[26]
+            - (parameters[24] * t171 + ::overact::math::signed(parameters[25], t171));
+        let t176 = parameters[15] * rate_dot_1_leg2 + parameters[16] * rate_dot_1_leg2
             + parameters[17] * rate_1_leg2
             + ::overact::math::signed(parameters[18], rate_1_leg2) + parameters[19]
-            + t189 - t195;
-        let t204 = minus_rate_2_leg2 + twist[2];
-        let t208 = parameters[27] * t204 + ::overact::math::signed(parameters[28], t204)
+            + t169 - t175;
+        let t184 = minus_rate_2_leg2 + twist[2];
+        let t188 = parameters[27] * t184 + ::overact::math::signed(parameters[28], t184)
             + parameters[29];
-        let t209 = parameters[21] * t182 - parameters[20] * minus_rate_dot_2_leg2
-            - parameters[22] * t175 + t195 - t208;
+        let t189 = parameters[21] * t162 - parameters[20] * minus_rate_dot_2_leg2
+            - parameters[22] * t126 + t175 - t188;
         let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(joints[6]);
         let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
+        ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let t223 = 3.5714285714285716 / s2_leg3;
-        let g1_vx_leg3 = c12_leg3 * t223;
-        let t226 = acceleration[0] + t15 - t19;
-        let t227 = twist[0] + t21;
-        let g1_vy_leg3 = s12_leg3 * t223;
-        let t230 = twist[1] + t18;
-        let rate_1_leg3 = g1_vx_leg3 * t227 + g1_vy_leg3 * t230;
-        let minus_g2_vx_leg3 = c1_leg3 * t223;
-        let minus_g2_vy_leg3 = s1_leg3 * t223;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t227 + minus_g2_vy_leg3 * t230;
-        let t245 = t226 + rate_1_leg3 * (0.28 * c1_leg3 * rate_1_leg3)
-            + minus_rate_2_leg3 * (0.28 * c12_leg3 * minus_rate_2_leg3);
-        let t248 = acceleration[1] + t42 + t44;
-        let t256 = t248 + rate_1_leg3 * (0.28 * s1_leg3 * rate_1_leg3)
-            + minus_rate_2_leg3 * (0.28 * s12_leg3 * minus_rate_2_leg3);
-        let rate_dot_1_leg3 = g1_vx_leg3 * t245 + g1_vy_leg3 * t256;
-        let minus_rate_dot_2_leg3 = minus_g2_vx_leg3 * t245 + minus_g2_vy_leg3 * t256;
-        let t272 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t275 = 0.28 * rate_dot_1_leg3;
-        let t278 = 0.28 * (rate_1_leg3 * rate_1_leg3);
-        let t280 = s2_leg3 * t275 - c2_leg3 * t278;
-        let t287 = s2_leg3 * t278 + c2_leg3 * t275;
-        let t294 = 0.28 * s2_leg3
-            * (parameters[37] * minus_rate_dot_2_leg3 - parameters[36] * t272
-                + parameters[38] * t280)
-            + 0.28 * c2_leg3
-                * (parameters[38] * t287
-                    - (parameters[36] * minus_rate_dot_2_leg3 + parameters[37] * t272));
-        let t296 = rate_1_leg3 + minus_rate_2_leg3;
-        let t300 = parameters[41]
-            - (parameters[39] * t296 + ::overact::math::signed(parameters[40], t296));
-        let t301 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
+        let t203 = 3.5714285714285716 / s2_leg3;
+        let g1_vx_leg3 = c12_leg3 * t203;
+        let t206 = acceleration[0] + t15 - t19;
+        let t209 = acceleration[1] + t22 + t25;
+        let minus_g2_vx_leg3 = c1_leg3 * t203;
+        let t213 = twist[0] + t24;
+        let minus_g2_vy_leg3 = s1_leg3 * t203;
+        let t216 = twist[1] + t18;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t213 + minus_g2_vy_leg3 * t216;
+        let t219 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t221 = c12_leg3 * t206 + s12_leg3 * t209 + 0.28 * t219;
+        let g1_vy_leg3 = s12_leg3 * t203;
+        let rate_1_leg3 = g1_vx_leg3 * t213 + g1_vy_leg3 * t216;
+        let t226 = rate_1_leg3 * rate_1_leg3;
+        let t227 = 0.28 * c2_leg3;
+        let rate_dot_1_leg3 = t203 * (t221 + t226 * t227);
+        let t243 = 0.28 * t226;
+        let minus_rate_dot_2_leg3 = t203
+            * (c1_leg3 * t206 + s1_leg3 * t209 + t243 + t219 * t227);
+        let t257 = s2_leg3 * t243 + c2_leg3 * (0.28 * rate_dot_1_leg3);
+        let t264 = 0.28 * s2_leg3
+            * (parameters[37] * minus_rate_dot_2_leg3 - parameters[36] * t219
+                + parameters[38] * t221)
+            + t227
+                * (parameters[38] * t257
+                    - (parameters[36] * minus_rate_dot_2_leg3 + parameters[37] * t219));
+        let t266 = rate_1_leg3 + minus_rate_2_leg3;
+        let t270 = parameters[41]
+            - (parameters[39] * t266 + ::overact::math::signed(parameters[40], t266));
+        let t271 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
             + parameters[32] * rate_1_leg3
             + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34]
-            + t294 - t300;
-        let t309 = minus_rate_2_leg3 + twist[2];
-        let t313 = parameters[42] * t309 + ::overact::math::signed(parameters[43], t309)
+            + t264 - t270;
+        let t279 = minus_rate_2_leg3 + twist[2];
+        let t283 = parameters[42] * t279 + ::overact::math::signed(parameters[43], t279)
             + parameters[44];
-        let t314 = parameters[36] * t287 - parameters[35] * minus_rate_dot_2_leg3
-            - parameters[37] * t280 + t300 - t313;
-        let t317 = g1_vx_leg1 * t98 - minus_g2_vx_leg1 * t111 + g1_vx_leg2 * t196
-            - minus_g2_vx_leg2 * t209 + g1_vx_leg3 * t301 - minus_g2_vx_leg3 * t314;
+        let t284 = parameters[36] * t257 - parameters[35] * minus_rate_dot_2_leg3
+            - parameters[37] * t221 + t270 - t283;
+        let t287 = g1_vx_leg1 * t88 - minus_g2_vx_leg1 * t101 + g1_vx_leg2 * t176
+            - minus_g2_vx_leg2 * t189 + g1_vx_leg3 * t271 - minus_g2_vx_leg3 * t284;
         let (s1_leg4, c1_leg4) = ::overact::math::sin_cos(joints[9]);
         let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
+        ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
         let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
-        let t328 = 3.5714285714285716 / s2_leg4;
-        let g1_vx_leg4 = c12_leg4 * t328;
-        let g1_vy_leg4 = s12_leg4 * t328;
-        let rate_1_leg4 = g1_vx_leg4 * t227 + g1_vy_leg4 * t230;
-        let minus_g2_vx_leg4 = c1_leg4 * t328;
-        let minus_g2_vy_leg4 = s1_leg4 * t328;
-        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t227 + minus_g2_vy_leg4 * t230;
-        let t346 = t226 + rate_1_leg4 * (0.28 * c1_leg4 * rate_1_leg4)
-            + minus_rate_2_leg4 * (0.28 * c12_leg4 * minus_rate_2_leg4);
-        let t355 = t248 + rate_1_leg4 * (0.28 * s1_leg4 * rate_1_leg4)
-            + minus_rate_2_leg4 * (0.28 * s12_leg4 * minus_rate_2_leg4);
-        let rate_dot_1_leg4 = g1_vx_leg4 * t346 + g1_vy_leg4 * t355;
-        let minus_rate_dot_2_leg4 = minus_g2_vx_leg4 * t346 + minus_g2_vy_leg4 * t355;
-        let t371 = minus_rate_2_leg4 * minus_rate_2_leg4;
-        let t374 = 0.28 * rate_dot_1_leg4;
-        let t377 = 0.28 * (rate_1_leg4 * rate_1_leg4);
-        let t379 = s2_leg4 * t374 - c2_leg4 * t377;
-        let t386 = s2_leg4 * t377 + c2_leg4 * t374;
-        let t393 = 0.28 * s2_leg4
-            * (parameters[52] * minus_rate_dot_2_leg4 - parameters[51] * t371
-                + parameters[53] * t379)
-            + 0.28 * c2_leg4
-                * (parameters[53] * t386
-                    - (parameters[51] * minus_rate_dot_2_leg4 + parameters[52] * t371));
-        let t395 = rate_1_leg4 + minus_rate_2_leg4;
-        let t399 = parameters[56]
-            - (parameters[54] * t395 + ::overact::math::signed(parameters[55], t395));
-        let t400 = parameters[45] * rate_dot_1_leg4 + parameters[46] * rate_dot_1_leg4
+        let t298 = 3.5714285714285716 / s2_leg4;
+        let g1_vx_leg4 = c12_leg4 * t298;
+        let minus_g2_vx_leg4 = c1_leg4 * t298;
+        let minus_g2_vy_leg4 = s1_leg4 * t298;
+        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t213 + minus_g2_vy_leg4 * t216;
+        let t308 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let t310 = c12_leg4 * t206 + s12_leg4 * t209 + 0.28 * t308;
+        let g1_vy_leg4 = s12_leg4 * t298;
+        let rate_1_leg4 = g1_vx_leg4 * t213 + g1_vy_leg4 * t216;
+        let t315 = rate_1_leg4 * rate_1_leg4;
+        let t316 = 0.28 * c2_leg4;
+        let rate_dot_1_leg4 = t298 * (t310 + t315 * t316);
+        let t332 = 0.28 * t315;
+        let minus_rate_dot_2_leg4 = t298
+            * (c1_leg4 * t206 + s1_leg4 * t209 + t332 + t308 * t316);
+        let t346 = s2_leg4 * t332 + c2_leg4 * (0.28 * rate_dot_1_leg4);
+        let t353 = 0.28 * s2_leg4
+            * (parameters[52] * minus_rate_dot_2_leg4 - parameters[51] * t308
+                + parameters[53] * t310)
+            + t316
+                * (parameters[53] * t346
+                    - (parameters[51] * minus_rate_dot_2_leg4 + parameters[52] * t308));
+        let t355 = rate_1_leg4 + minus_rate_2_leg4;
+        let t359 = parameters[56]
+            - (parameters[54] * t355 + ::overact::math::signed(parameters[55], t355));
+        let t360 = parameters[45] * rate_dot_1_leg4 + parameters[46] * rate_dot_1_leg4
             + parameters[47] * rate_1_leg4
             + ::overact::math::signed(parameters[48], rate_1_leg4) + parameters[49]
-            + t393 - t399;
-        let t408 = minus_rate_2_leg4 + twist[2];
-        let t412 = parameters[57] * t408 + ::overact::math::signed(parameters[58], t408)
+            + t353 - t359;
+        let t368 = minus_rate_2_leg4 + twist[2];
+        let t372 = parameters[57] * t368 + ::overact::math::signed(parameters[58], t368)
             + parameters[59];
-        let t413 = parameters[51] * t386 - parameters[50] * minus_rate_dot_2_leg4
-            - parameters[52] * t379 + t399 - t412;
-        let t419 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t421 = twist[2] * twist[2];
-        let t431 = parameters[63] * t419
-            - (parameters[61] * t421 + acceleration[2] * parameters[62])
-            - parameters[65] * t421 - acceleration[2] * parameters[66]
-            + parameters[67] * t419;
-        let t438 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t446 = acceleration[2] * parameters[61] - parameters[62] * t421
-            + parameters[63] * t438 + acceleration[2] * parameters[65]
-            - parameters[66] * t421 + parameters[67] * t438;
-        let t449 = t317 + g1_vx_leg4 * t400 - minus_g2_vx_leg4 * t413 + c_phi * t431
-            - s_phi * t446;
-        let t456 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t373 = parameters[51] * t346 - parameters[50] * minus_rate_dot_2_leg4
+            - parameters[52] * t310 + t359 - t372;
+        let t379 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t381 = twist[2] * twist[2];
+        let t391 = parameters[63] * t379
+            - (parameters[61] * t381 + acceleration[2] * parameters[62])
+            - parameters[65] * t381 - acceleration[2] * parameters[66]
+            + parameters[67] * t379;
+        let t398 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t406 = acceleration[2] * parameters[61] - parameters[62] * t381
+            + parameters[63] * t398 + acceleration[2] * parameters[65]
+            - parameters[66] * t381 + parameters[67] * t398;
+        let t409 = t287 + g1_vx_leg4 * t360 - minus_g2_vx_leg4 * t373 + c_phi * t391
+            - s_phi * t406;
+        let t416 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t456, 25.429161076041257, "actuators")?;
-        let t457 = 1.0 / t456;
-        let t465 = g1_vy_leg1 * g1_vx_leg1 + g1_vy_leg2 * g1_vx_leg2
-            + g1_vy_leg3 * g1_vx_leg3 + g1_vy_leg4 * g1_vx_leg4;
-        let t466 = t465 * t457;
-        let t475 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t465 * t466;
-        ::overact::guard::platform(t475, 25.592368900079006, "actuators")?;
-        let t476 = 1.0 / t475;
-        let t487 = g1_vy_leg1 * t98 - minus_g2_vy_leg1 * t111 + g1_vy_leg2 * t196
-            - minus_g2_vy_leg2 * t209 + g1_vy_leg3 * t301 - minus_g2_vy_leg3 * t314;
-        let t497 = t487 + g1_vy_leg4 * t400 - minus_g2_vy_leg4 * t413 + s_phi * t431
-            + c_phi * t446 - t449 * t466;
+        ::overact::guard::platform(t416, 25.429161076041257, "actuators")?;
+        let t417 = 1.0 / t416;
+        let t425 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
+        let t426 = t425 * t417;
+        let t435 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t425 * t426;
+        ::overact::guard::platform(t435, 25.592368900079006, "actuators")?;
+        let t436 = 1.0 / t435;
+        let t447 = g1_vy_leg1 * t88 - minus_g2_vy_leg1 * t101 + g1_vy_leg2 * t176
+            - minus_g2_vy_leg2 * t189 + g1_vy_leg3 * t271 - minus_g2_vy_leg3 * t284;
+        let t457 = t447 + g1_vy_leg4 * t360 - minus_g2_vy_leg4 * t373 + s_phi * t391
+            + c_phi * t406 - t409 * t426;
         let g1_wz_leg3 = t17 * g1_vy_leg3 + t14 * g1_vx_leg3;
         let minus_g1_wz_leg1 = g1_vy_leg1 * t17 + g1_vx_leg1 * t14;
         let minus_g1_wz_leg2 = t17 * g1_vy_leg2 + t14 * g1_vx_leg2;
         let g1_wz_leg4 = t17 * g1_vy_leg4 + t14 * g1_vx_leg4;
-        let t524 = g1_vx_leg3 * g1_wz_leg3
+        let t484 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + g1_vx_leg2 * minus_g1_wz_leg2)
             + g1_vx_leg4 * g1_wz_leg4;
-        let t525 = t524 * t457;
-        let t527 = g1_vy_leg3 * g1_wz_leg3
+        let t485 = t484 * t417;
+        let t487 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
-            + g1_vy_leg4 * g1_wz_leg4 - t465 * t525;
-        let t528 = t527 * t476;
-        let t539 = minus_g1_wz_leg1 * minus_g1_wz_leg1
+            + g1_vy_leg4 * g1_wz_leg4 - t425 * t485;
+        let t488 = t487 * t436;
+        let t499 = minus_g1_wz_leg1 * minus_g1_wz_leg1
             + minus_g1_wz_leg2 * minus_g1_wz_leg2 + g1_wz_leg3 * g1_wz_leg3
-            + g1_wz_leg4 * g1_wz_leg4 - t524 * t525 - t527 * t528;
-        ::overact::guard::platform(t539, 0.30769284902009914, "actuators")?;
+            + g1_wz_leg4 * g1_wz_leg4 - t484 * t485 - t487 * t488;
+        ::overact::guard::platform(t499, 0.30769284902009914, "actuators")?;
         let g2_wz_leg1 = minus_g2_vy_leg1 * t17 + minus_g2_vx_leg1 * t14;
         let g2_wz_leg2 = t17 * minus_g2_vy_leg2 + t14 * minus_g2_vx_leg2;
         let minus_g2_wz_leg3 = t17 * minus_g2_vy_leg3 + t14 * minus_g2_vx_leg3;
-        let t562 = g2_wz_leg1 * t111 - minus_g1_wz_leg1 * t98 + t110 + g2_wz_leg2 * t209
-            - minus_g1_wz_leg2 * t196 + t208 + g1_wz_leg3 * t301
-            - minus_g2_wz_leg3 * t314 + t313;
+        let t522 = g2_wz_leg1 * t101 - minus_g1_wz_leg1 * t88 + t100 + g2_wz_leg2 * t189
+            - minus_g1_wz_leg2 * t176 + t188 + g1_wz_leg3 * t271
+            - minus_g2_wz_leg3 * t284 + t283;
         let minus_g2_wz_leg4 = t17 * minus_g2_vy_leg4 + t14 * minus_g2_vx_leg4;
-        let t581 = acceleration[2] * parameters[60] + parameters[61] * t438
-            - parameters[62] * t419 + acceleration[2] * parameters[64]
-            + parameters[65] * t438 - parameters[66] * t419;
-        let t586 = t562 + g1_wz_leg4 * t400 - minus_g2_wz_leg4 * t413 + t412 + t581
-            - t449 * t525 - t528 * t497;
-        let t587 = t586 / t539;
-        let t589 = t476 * t497 - t528 * t587;
-        let t593 = t449 * t457 - t466 * t589 - t525 * t587;
+        let t541 = acceleration[2] * parameters[60] + parameters[61] * t398
+            - parameters[62] * t379 + acceleration[2] * parameters[64]
+            + parameters[65] * t398 - parameters[66] * t379;
+        let t546 = t522 + g1_wz_leg4 * t360 - minus_g2_wz_leg4 * t373 + t372 + t541
+            - t409 * t485 - t488 * t457;
+        let t547 = t546 / t499;
+        let t549 = t436 * t457 - t488 * t547;
+        let t553 = t409 * t417 - t426 * t549 - t485 * t547;
         Ok([
-            g1_vx_leg1 * t593 + g1_vy_leg1 * t589 - minus_g1_wz_leg1 * t587,
-            g1_vx_leg2 * t593 + g1_vy_leg2 * t589 - minus_g1_wz_leg2 * t587,
-            g1_vx_leg3 * t593 + g1_vy_leg3 * t589 + g1_wz_leg3 * t587,
-            g1_vx_leg4 * t593 + g1_vy_leg4 * t589 + g1_wz_leg4 * t587,
+            g1_vx_leg1 * t553 + g1_vy_leg1 * t549 - minus_g1_wz_leg1 * t547,
+            g1_vx_leg2 * t553 + g1_vy_leg2 * t549 - minus_g1_wz_leg2 * t547,
+            g1_vx_leg3 * t553 + g1_vy_leg3 * t549 + g1_wz_leg3 * t547,
+            g1_vx_leg4 * t553 + g1_vy_leg4 * t549 + g1_wz_leg4 * t547,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -6474,7 +6422,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 755 operations (343 additions, 401 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 769 intermediates.
+    /// 739 operations (343 additions, 385 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 753 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6575,8 +6523,8 @@ impl DualV {
             - (g1_vx_leg1 * minus_g1_wz_leg1 + g1_vx_leg2 * minus_g1_wz_leg2)
             + g1_vx_leg4 * g1_wz_leg4;
         let t140 = t139 * t109;
-        let t156 = g1_vy_leg1 * g1_vx_leg1 + g1_vy_leg2 * g1_vx_leg2
-            + g1_vy_leg3 * g1_vx_leg3 + g1_vy_leg4 * g1_vx_leg4;
+        let t156 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
         let t158 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
             + g1_vy_leg4 * g1_wz_leg4 - t156 * t140;
@@ -6614,217 +6562,217 @@ impl DualV {
         let t213 = t211 - t212;
         let t215 = t207 - t202;
         let rate_1_leg1 = g1_vx_leg1 * t213 + g1_vy_leg1 * t215;
+        let t218 = rate_1_leg1 * rate_1_leg1;
         let g2_vy_leg1 = t26 * t29;
         let minus_g2_vx_leg1 = t23 * t29;
         let rate_2_leg1 = g2_vy_leg1 * t215 - minus_g2_vx_leg1 * t213;
         let t225 = rate_2_leg1 - rate_1_leg1;
         let t226 = rate_1_leg1 + t225;
-        let t229 = rate_1_leg1 * (t16 * rate_1_leg1) + t226 * (t17 * t226);
-        let t236 = rate_1_leg1 * (t20 * rate_1_leg1) + t226 * (t21 * t226);
-        let t237 = rate_3_leg1 * t212;
-        let rate_dot_1_leg1 = g1_vx_leg1 * (t203 + t229) + g1_vy_leg1 * (t236 - t237);
-        let t241 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let t227 = t226 * t226;
+        let t229 = t16 * t218 + t17 * t227;
+        let t234 = t20 * t218 + t21 * t227;
+        let t235 = rate_3_leg1 * t212;
+        let rate_dot_1_leg1 = g1_vx_leg1 * (t203 + t229) + g1_vy_leg1 * (t234 - t235);
+        let t239 = actuator_accelerations[0] - rate_dot_1_leg1;
         let rate_1_leg2 = g1_vx_leg2 * t213 + g1_vy_leg2 * t215;
+        let t244 = rate_1_leg2 * rate_1_leg2;
         let g2_vy_leg2 = t49 * t52;
         let minus_g2_vx_leg2 = t46 * t52;
         let rate_2_leg2 = g2_vy_leg2 * t215 - minus_g2_vx_leg2 * t213;
-        let t253 = rate_2_leg2 - rate_1_leg2;
-        let t254 = rate_1_leg2 + t253;
-        let t257 = rate_1_leg2 * (t40 * rate_1_leg2) + t254 * (t41 * t254);
-        let t264 = rate_1_leg2 * (t43 * rate_1_leg2) + t254 * (t44 * t254);
-        let rate_dot_1_leg2 = g1_vx_leg2 * (t203 + t257) + g1_vy_leg2 * (t264 - t237);
-        let t268 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let t271 = t211 + t212;
-        let t273 = t207 + t202;
-        let rate_1_leg3 = g1_vx_leg3 * t271 + g1_vy_leg3 * t273;
+        let t251 = rate_2_leg2 - rate_1_leg2;
+        let t252 = rate_1_leg2 + t251;
+        let t253 = t252 * t252;
+        let t255 = t40 * t244 + t41 * t253;
+        let t260 = t43 * t244 + t44 * t253;
+        let rate_dot_1_leg2 = g1_vx_leg2 * (t203 + t255) + g1_vy_leg2 * (t260 - t235);
+        let t264 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let t267 = t211 + t212;
+        let t269 = t207 + t202;
+        let rate_1_leg3 = g1_vx_leg3 * t267 + g1_vy_leg3 * t269;
+        let t272 = rate_1_leg3 * rate_1_leg3;
         let g2_vy_leg3 = t78 * t81;
         let minus_g2_vx_leg3 = t75 * t81;
-        let rate_2_leg3 = g2_vy_leg3 * t273 - minus_g2_vx_leg3 * t271;
-        let t283 = rate_2_leg3 - rate_1_leg3;
-        let t284 = rate_1_leg3 + t283;
-        let t287 = rate_1_leg3 * (t68 * rate_1_leg3) + t284 * (t69 * t284);
-        let t294 = rate_1_leg3 * (t72 * rate_1_leg3) + t284 * (t73 * t284);
-        let rate_dot_1_leg3 = g1_vx_leg3 * (t287 - t203) + g1_vy_leg3 * (t237 + t294);
-        let t298 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let rate_1_leg4 = g1_vx_leg4 * t271 + g1_vy_leg4 * t273;
+        let rate_2_leg3 = g2_vy_leg3 * t269 - minus_g2_vx_leg3 * t267;
+        let t279 = rate_2_leg3 - rate_1_leg3;
+        let t280 = rate_1_leg3 + t279;
+        let t281 = t280 * t280;
+        let t283 = t68 * t272 + t69 * t281;
+        let t288 = t72 * t272 + t73 * t281;
+        let rate_dot_1_leg3 = g1_vx_leg3 * (t283 - t203) + g1_vy_leg3 * (t235 + t288);
+        let t292 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let rate_1_leg4 = g1_vx_leg4 * t267 + g1_vy_leg4 * t269;
+        let t298 = rate_1_leg4 * rate_1_leg4;
         let g2_vy_leg4 = t102 * t105;
         let minus_g2_vx_leg4 = t99 * t105;
-        let rate_2_leg4 = g2_vy_leg4 * t273 - minus_g2_vx_leg4 * t271;
-        let t311 = rate_2_leg4 - rate_1_leg4;
-        let t312 = rate_1_leg4 + t311;
-        let t315 = rate_1_leg4 * (t93 * rate_1_leg4) + t312 * (t94 * t312);
-        let t322 = rate_1_leg4 * (t96 * rate_1_leg4) + t312 * (t97 * t312);
-        let rate_dot_1_leg4 = g1_vx_leg4 * (t315 - t203) + g1_vy_leg4 * (t237 + t322);
-        let t326 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t328 = g1_vx_leg1 * t241 + g1_vx_leg2 * t268 + g1_vx_leg3 * t298
-            + g1_vx_leg4 * t326;
-        let t338 = g1_vy_leg1 * t241 + g1_vy_leg2 * t268 + g1_vy_leg3 * t298
-            + g1_vy_leg4 * t326 - t166 * t328;
-        let t350 = g1_wz_leg3 * t298
-            - (minus_g1_wz_leg1 * t241 + minus_g1_wz_leg2 * t268) + g1_wz_leg4 * t326
-            - t140 * t328 - t170 * t338;
-        let rate_dot_3_leg1 = t173 * t350;
-        let t353 = t169 * t338 - t170 * rate_dot_3_leg1;
-        let t357 = t109 * t328 - t166 * t353 - t140 * rate_dot_3_leg1;
-        let t358 = t6 * rate_dot_3_leg1;
-        let t360 = t357 - t358 + t203;
-        let t361 = t360 + t229;
-        let t363 = t2 * rate_dot_3_leg1;
-        let t365 = t353 - t363 - t237;
-        let t366 = t365 + t236;
-        let rate_dot_1_leg1_2 = g1_vx_leg1 * t361 + g1_vy_leg1 * t366;
-        let t377 = t11 * t14;
-        let t381 = t11 - 0.1568;
-        let t382 = rate_1_leg1 * rate_1_leg1;
-        let t385 = 3.5714285714285716 * (t377 * rate_dot_1_leg1_2)
-            - 1.7857142857142858 * (t381 * t382);
-        let t387 = t226 * t226;
-        let rate_dot_2_leg1 = g2_vy_leg1 * t366 - minus_g2_vx_leg1 * t361;
-        let t393 = rate_dot_1_leg1_2 + rate_dot_2_leg1 - rate_dot_1_leg1_2;
-        let t406 = 3.5714285714285716 * (t377 * t382)
-            + 1.7857142857142858 * (t381 * rate_dot_1_leg1_2);
-        let t410 = 3.5714285714285716 * t377
-            * (parameters[8] * t385 - (t387 * parameters[6] + parameters[7] * t393))
-            + 1.7857142857142858 * t381
-                * (parameters[6] * t393 - t387 * parameters[7] + parameters[8] * t406);
-        let t415 = t225 * parameters[9] + ::overact::math::signed(parameters[10], t225)
+        let rate_2_leg4 = g2_vy_leg4 * t269 - minus_g2_vx_leg4 * t267;
+        let t305 = rate_2_leg4 - rate_1_leg4;
+        let t306 = rate_1_leg4 + t305;
+        let t307 = t306 * t306;
+        let t309 = t93 * t298 + t94 * t307;
+        let t314 = t96 * t298 + t97 * t307;
+        let rate_dot_1_leg4 = g1_vx_leg4 * (t309 - t203) + g1_vy_leg4 * (t235 + t314);
+        let t318 = actuator_accelerations[3] - rate_dot_1_leg4;
+        let t320 = g1_vx_leg1 * t239 + g1_vx_leg2 * t264 + g1_vx_leg3 * t292
+            + g1_vx_leg4 * t318;
+        let t330 = g1_vy_leg1 * t239 + g1_vy_leg2 * t264 + g1_vy_leg3 * t292
+            + g1_vy_leg4 * t318 - t166 * t320;
+        let t342 = g1_wz_leg3 * t292
+            - (minus_g1_wz_leg1 * t239 + minus_g1_wz_leg2 * t264) + g1_wz_leg4 * t318
+            - t140 * t320 - t170 * t330;
+        let rate_dot_3_leg1 = t173 * t342;
+        let t345 = t169 * t330 - t170 * rate_dot_3_leg1;
+        let t349 = t109 * t320 - t166 * t345 - t140 * rate_dot_3_leg1;
+        let t350 = t6 * rate_dot_3_leg1;
+        let t352 = t349 - t350 + t203;
+        let t353 = t352 + t229;
+        let t355 = t2 * rate_dot_3_leg1;
+        let t357 = t345 - t355 - t235;
+        let t358 = t357 + t234;
+        let rate_dot_1_leg1_2 = g1_vx_leg1 * t353 + g1_vy_leg1 * t358;
+        let t369 = t11 * t14;
+        let t373 = t11 - 0.1568;
+        let t376 = 3.5714285714285716 * (t369 * rate_dot_1_leg1_2)
+            - 1.7857142857142858 * (t373 * t218);
+        let rate_dot_2_leg1 = g2_vy_leg1 * t358 - minus_g2_vx_leg1 * t353;
+        let t383 = rate_dot_1_leg1_2 + rate_dot_2_leg1 - rate_dot_1_leg1_2;
+        let t396 = 3.5714285714285716 * (t369 * t218)
+            + 1.7857142857142858 * (t373 * rate_dot_1_leg1_2);
+        let t400 = 3.5714285714285716 * t369
+            * (parameters[8] * t376 - (t227 * parameters[6] + parameters[7] * t383))
+            + 1.7857142857142858 * t373
+                * (parameters[6] * t383 - t227 * parameters[7] + parameters[8] * t396);
+        let t405 = t225 * parameters[9] + ::overact::math::signed(parameters[10], t225)
             + parameters[11];
-        let t416 = parameters[0] * rate_dot_1_leg1_2 + parameters[1] * rate_dot_1_leg1_2
+        let t406 = parameters[0] * rate_dot_1_leg1_2 + parameters[1] * rate_dot_1_leg1_2
             + rate_1_leg1 * parameters[2]
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t410
-            - t415;
-        let t424 = rate_3_leg1 - rate_2_leg1;
-        let t428 = t424 * parameters[12] + ::overact::math::signed(parameters[13], t424)
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t400
+            - t405;
+        let t414 = rate_3_leg1 - rate_2_leg1;
+        let t418 = t414 * parameters[12] + ::overact::math::signed(parameters[13], t414)
             + parameters[14];
-        let t429 = parameters[5] * t393 + parameters[6] * t406 - parameters[7] * t385
-            + t415 - t428;
-        let t432 = t360 + t257;
-        let t434 = t365 + t264;
-        let rate_dot_1_leg2_2 = g1_vx_leg2 * t432 + g1_vy_leg2 * t434;
-        let t445 = t35 * t38;
-        let t447 = t254 * t254;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t434 - minus_g2_vx_leg2 * t432;
-        let t453 = rate_dot_1_leg2_2 + rate_dot_2_leg2 - rate_dot_1_leg2_2;
-        let t456 = t35 - 0.1568;
-        let t457 = rate_1_leg2 * rate_1_leg2;
-        let t462 = 1.7857142857142858 * (t456 * t457)
-            + 3.5714285714285716 * (t445 * rate_dot_1_leg2_2);
-        let t474 = 1.7857142857142858 * (t456 * rate_dot_1_leg2_2)
-            - 3.5714285714285716 * (t445 * t457);
-        let t478 = 3.5714285714285716 * t445
-            * (t447 * parameters[21] + parameters[22] * t453 + parameters[23] * t462)
-            + 1.7857142857142858 * t456
-                * (parameters[21] * t453 - t447 * parameters[22]
-                    + parameters[23] * t474);
-        let t483 = t253 * parameters[24] + ::overact::math::signed(parameters[25], t253)
+        let t419 = parameters[5] * t383 + parameters[6] * t396 - parameters[7] * t376
+            + t405 - t418;
+        let t422 = t352 + t255;
+        let t424 = t357 + t260;
+        let rate_dot_1_leg2_2 = g1_vx_leg2 * t422 + g1_vy_leg2 * t424;
+        let t435 = t35 * t38;
+        let rate_dot_2_leg2 = g2_vy_leg2 * t424 - minus_g2_vx_leg2 * t422;
+        let t442 = rate_dot_1_leg2_2 + rate_dot_2_leg2 - rate_dot_1_leg2_2;
+        let t445 = t35 - 0.1568;
+        let t450 = 1.7857142857142858 * (t445 * t244)
+            + 3.5714285714285716 * (t435 * rate_dot_1_leg2_2);
+        let t462 = 1.7857142857142858 * (t445 * rate_dot_1_leg2_2)
+            - 3.5714285714285716 * (t435 * t244);
+        let t466 = 3.5714285714285716 * t435
+            * (t253 * parameters[21] + parameters[22] * t442 + parameters[23] * t450)
+            + 1.7857142857142858 * t445
+                * (parameters[21] * t442 - t253 * parameters[22]
+                    + parameters[23] * t462);
+        let t471 = t251 * parameters[24] + ::overact::math::signed(parameters[25], t251)
             + parameters[26];
-        let t484 = parameters[15] * rate_dot_1_leg2_2
+        let t472 = parameters[15] * rate_dot_1_leg2_2
             + parameters[16] * rate_dot_1_leg2_2 + rate_1_leg2 * parameters[17]
             + ::overact::math::signed(parameters[18], rate_1_leg2) + parameters[19]
-            + t478 - t483;
-        let t492 = rate_3_leg1 - rate_2_leg2;
-        let t496 = t492 * parameters[27] + ::overact::math::signed(parameters[28], t492)
+            + t466 - t471;
+        let t480 = rate_3_leg1 - rate_2_leg2;
+        let t484 = t480 * parameters[27] + ::overact::math::signed(parameters[28], t480)
             + parameters[29];
-        let t497 = parameters[20] * t453 + parameters[21] * t474 + parameters[22] * t462
-            + t483 - t496;
-        let t502 = t357 + t358 - t203;
-        let t503 = t502 + t287;
-        let t506 = t353 + t363 + t237;
-        let t507 = t506 + t294;
-        let rate_dot_1_leg3_2 = g1_vx_leg3 * t503 + g1_vy_leg3 * t507;
-        let t518 = t63 * t66;
-        let t522 = t63 - 0.1568;
-        let t523 = rate_1_leg3 * rate_1_leg3;
-        let t526 = 3.5714285714285716 * (t518 * rate_dot_1_leg3_2)
-            - 1.7857142857142858 * (t522 * t523);
-        let t528 = t284 * t284;
-        let rate_dot_2_leg3 = g2_vy_leg3 * t507 - minus_g2_vx_leg3 * t503;
-        let t534 = rate_dot_1_leg3_2 + rate_dot_2_leg3 - rate_dot_1_leg3_2;
-        let t547 = 3.5714285714285716 * (t518 * t523)
-            + 1.7857142857142858 * (t522 * rate_dot_1_leg3_2);
-        let t551 = 3.5714285714285716 * t518
-            * (parameters[38] * t526 - (t528 * parameters[36] + parameters[37] * t534))
-            + 1.7857142857142858 * t522
-                * (parameters[36] * t534 - t528 * parameters[37]
-                    + parameters[38] * t547);
-        let t556 = t283 * parameters[39] + ::overact::math::signed(parameters[40], t283)
+        let t485 = parameters[20] * t442 + parameters[21] * t462 + parameters[22] * t450
+            + t471 - t484;
+        let t490 = t349 + t350 - t203;
+        let t491 = t490 + t283;
+        let t494 = t345 + t355 + t235;
+        let t495 = t494 + t288;
+        let rate_dot_1_leg3_2 = g1_vx_leg3 * t491 + g1_vy_leg3 * t495;
+        let t506 = t63 * t66;
+        let t510 = t63 - 0.1568;
+        let t513 = 3.5714285714285716 * (t506 * rate_dot_1_leg3_2)
+            - 1.7857142857142858 * (t510 * t272);
+        let rate_dot_2_leg3 = g2_vy_leg3 * t495 - minus_g2_vx_leg3 * t491;
+        let t520 = rate_dot_1_leg3_2 + rate_dot_2_leg3 - rate_dot_1_leg3_2;
+        let t533 = 3.5714285714285716 * (t506 * t272)
+            + 1.7857142857142858 * (t510 * rate_dot_1_leg3_2);
+        let t537 = 3.5714285714285716 * t506
+            * (parameters[38] * t513 - (t281 * parameters[36] + parameters[37] * t520))
+            + 1.7857142857142858 * t510
+                * (parameters[36] * t520 - t281 * parameters[37]
+                    + parameters[38] * t533);
+        let t542 = t279 * parameters[39] + ::overact::math::signed(parameters[40], t279)
             + parameters[41];
-        let t557 = parameters[30] * rate_dot_1_leg3_2
+        let t543 = parameters[30] * rate_dot_1_leg3_2
             + parameters[31] * rate_dot_1_leg3_2 + rate_1_leg3 * parameters[32]
             + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34]
-            + t551 - t556;
-        let t565 = rate_3_leg1 - rate_2_leg3;
-        let t569 = t565 * parameters[42] + ::overact::math::signed(parameters[43], t565)
+            + t537 - t542;
+        let t551 = rate_3_leg1 - rate_2_leg3;
+        let t555 = t551 * parameters[42] + ::overact::math::signed(parameters[43], t551)
             + parameters[44];
-        let t570 = parameters[35] * t534 + parameters[36] * t547 - parameters[37] * t526
-            + t556 - t569;
-        let t573 = g1_vx_leg1 * t416 - minus_g2_vx_leg1 * t429 + g1_vx_leg2 * t484
-            - minus_g2_vx_leg2 * t497 + g1_vx_leg3 * t557 - minus_g2_vx_leg3 * t570;
-        let t574 = t502 + t315;
-        let t576 = t506 + t322;
-        let rate_dot_1_leg4_2 = g1_vx_leg4 * t574 + g1_vy_leg4 * t576;
-        let t587 = t88 * t91;
-        let t589 = t312 * t312;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t576 - minus_g2_vx_leg4 * t574;
-        let t595 = rate_dot_1_leg4_2 + rate_dot_2_leg4 - rate_dot_1_leg4_2;
-        let t598 = t88 - 0.1568;
-        let t599 = rate_1_leg4 * rate_1_leg4;
-        let t604 = 1.7857142857142858 * (t598 * t599)
-            + 3.5714285714285716 * (t587 * rate_dot_1_leg4_2);
-        let t616 = 1.7857142857142858 * (t598 * rate_dot_1_leg4_2)
-            - 3.5714285714285716 * (t587 * t599);
-        let t620 = 3.5714285714285716 * t587
-            * (t589 * parameters[51] + parameters[52] * t595 + parameters[53] * t604)
-            + 1.7857142857142858 * t598
-                * (parameters[51] * t595 - t589 * parameters[52]
-                    + parameters[53] * t616);
-        let t625 = t311 * parameters[54] + ::overact::math::signed(parameters[55], t311)
+        let t556 = parameters[35] * t520 + parameters[36] * t533 - parameters[37] * t513
+            + t542 - t555;
+        let t559 = g1_vx_leg1 * t406 - minus_g2_vx_leg1 * t419 + g1_vx_leg2 * t472
+            - minus_g2_vx_leg2 * t485 + g1_vx_leg3 * t543 - minus_g2_vx_leg3 * t556;
+        let t560 = t490 + t309;
+        let t562 = t494 + t314;
+        let rate_dot_1_leg4_2 = g1_vx_leg4 * t560 + g1_vy_leg4 * t562;
+        let t573 = t88 * t91;
+        let rate_dot_2_leg4 = g2_vy_leg4 * t562 - minus_g2_vx_leg4 * t560;
+        let t580 = rate_dot_1_leg4_2 + rate_dot_2_leg4 - rate_dot_1_leg4_2;
+        let t583 = t88 - 0.1568;
+        let t588 = 1.7857142857142858 * (t583 * t298)
+            + 3.5714285714285716 * (t573 * rate_dot_1_leg4_2);
+        let t600 = 1.7857142857142858 * (t583 * rate_dot_1_leg4_2)
+            - 3.5714285714285716 * (t573 * t298);
+        let t604 = 3.5714285714285716 * t573
+            * (t307 * parameters[51] + parameters[52] * t580 + parameters[53] * t588)
+            + 1.7857142857142858 * t583
+                * (parameters[51] * t580 - t307 * parameters[52]
+                    + parameters[53] * t600);
+        let t609 = t305 * parameters[54] + ::overact::math::signed(parameters[55], t305)
             + parameters[56];
-        let t626 = parameters[45] * rate_dot_1_leg4_2
+        let t610 = parameters[45] * rate_dot_1_leg4_2
             + parameters[46] * rate_dot_1_leg4_2 + rate_1_leg4 * parameters[47]
             + ::overact::math::signed(parameters[48], rate_1_leg4) + parameters[49]
-            + t620 - t625;
-        let t634 = rate_3_leg1 - rate_2_leg4;
-        let t638 = t634 * parameters[57] + ::overact::math::signed(parameters[58], t634)
+            + t604 - t609;
+        let t618 = rate_3_leg1 - rate_2_leg4;
+        let t622 = t618 * parameters[57] + ::overact::math::signed(parameters[58], t618)
             + parameters[59];
-        let t639 = parameters[50] * t595 + parameters[51] * t616 + parameters[52] * t604
-            + t625 - t638;
-        let t645 = c_phi * t357 + s_phi * t353;
-        let t647 = rate_3_leg1 * rate_3_leg1;
-        let t657 = parameters[63] * t645
-            - (t647 * parameters[61] + rate_dot_3_leg1 * parameters[62])
-            - t647 * parameters[65] - rate_dot_3_leg1 * parameters[66]
-            + parameters[67] * t645;
-        let t664 = c_phi * t353 - s_phi * t357;
-        let t672 = rate_dot_3_leg1 * parameters[61] - t647 * parameters[62]
-            + parameters[63] * t664 + rate_dot_3_leg1 * parameters[65]
-            - t647 * parameters[66] + parameters[67] * t664;
-        let t675 = t573 + g1_vx_leg4 * t626 - minus_g2_vx_leg4 * t639 + c_phi * t657
-            - s_phi * t672;
-        let t687 = g1_vy_leg1 * t416 + g2_vy_leg1 * t429 + g1_vy_leg2 * t484
-            + g2_vy_leg2 * t497 + g1_vy_leg3 * t557 + g2_vy_leg3 * t570;
-        let t697 = t687 + g1_vy_leg4 * t626 + g2_vy_leg4 * t639 + s_phi * t657
-            + c_phi * t672 - t166 * t675;
+        let t623 = parameters[50] * t580 + parameters[51] * t600 + parameters[52] * t588
+            + t609 - t622;
+        let t629 = c_phi * t349 + s_phi * t345;
+        let t631 = rate_3_leg1 * rate_3_leg1;
+        let t641 = parameters[63] * t629
+            - (t631 * parameters[61] + rate_dot_3_leg1 * parameters[62])
+            - t631 * parameters[65] - rate_dot_3_leg1 * parameters[66]
+            + parameters[67] * t629;
+        let t648 = c_phi * t345 - s_phi * t349;
+        let t656 = rate_dot_3_leg1 * parameters[61] - t631 * parameters[62]
+            + parameters[63] * t648 + rate_dot_3_leg1 * parameters[65]
+            - t631 * parameters[66] + parameters[67] * t648;
+        let t659 = t559 + g1_vx_leg4 * t610 - minus_g2_vx_leg4 * t623 + c_phi * t641
+            - s_phi * t656;
+        let t671 = g1_vy_leg1 * t406 + g2_vy_leg1 * t419 + g1_vy_leg2 * t472
+            + g2_vy_leg2 * t485 + g1_vy_leg3 * t543 + g2_vy_leg3 * t556;
+        let t681 = t671 + g1_vy_leg4 * t610 + g2_vy_leg4 * t623 + s_phi * t641
+            + c_phi * t656 - t166 * t659;
         let g2_wz_leg1 = t6 * minus_g2_vx_leg1 - t2 * g2_vy_leg1;
         let g2_wz_leg2 = t6 * minus_g2_vx_leg2 - t2 * g2_vy_leg2;
         let g2_wz_leg3 = t2 * g2_vy_leg3 - t6 * minus_g2_vx_leg3;
-        let t721 = g2_wz_leg1 * t429 - minus_g1_wz_leg1 * t416 + t428 + g2_wz_leg2 * t497
-            - minus_g1_wz_leg2 * t484 + t496 + g1_wz_leg3 * t557 + g2_wz_leg3 * t570
-            + t569;
+        let t705 = g2_wz_leg1 * t419 - minus_g1_wz_leg1 * t406 + t418 + g2_wz_leg2 * t485
+            - minus_g1_wz_leg2 * t472 + t484 + g1_wz_leg3 * t543 + g2_wz_leg3 * t556
+            + t555;
         let g2_wz_leg4 = t2 * g2_vy_leg4 - t6 * minus_g2_vx_leg4;
-        let t740 = rate_dot_3_leg1 * parameters[60] + parameters[61] * t664
-            - parameters[62] * t645 + rate_dot_3_leg1 * parameters[64]
-            + parameters[65] * t664 - parameters[66] * t645;
-        let t745 = t721 + g1_wz_leg4 * t626 + g2_wz_leg4 * t639 + t638 + t740
-            - t140 * t675 - t170 * t697;
-        let t746 = t173 * t745;
-        let t748 = t169 * t697 - t170 * t746;
-        let t752 = t109 * t675 - t166 * t748 - t140 * t746;
+        let t724 = rate_dot_3_leg1 * parameters[60] + parameters[61] * t648
+            - parameters[62] * t629 + rate_dot_3_leg1 * parameters[64]
+            + parameters[65] * t648 - parameters[66] * t629;
+        let t729 = t705 + g1_wz_leg4 * t610 + g2_wz_leg4 * t623 + t622 + t724
+            - t140 * t659 - t170 * t681;
+        let t730 = t173 * t729;
+        let t732 = t169 * t681 - t170 * t730;
+        let t736 = t109 * t659 - t166 * t732 - t140 * t730;
         Ok([
-            g1_vx_leg1 * t752 + g1_vy_leg1 * t748 - minus_g1_wz_leg1 * t746,
-            g1_vx_leg2 * t752 + g1_vy_leg2 * t748 - minus_g1_wz_leg2 * t746,
-            g1_vx_leg3 * t752 + g1_vy_leg3 * t748 + g1_wz_leg3 * t746,
-            g1_vx_leg4 * t752 + g1_vy_leg4 * t748 + g1_wz_leg4 * t746,
+            g1_vx_leg1 * t736 + g1_vy_leg1 * t732 - minus_g1_wz_leg1 * t730,
+            g1_vx_leg2 * t736 + g1_vy_leg2 * t732 - minus_g1_wz_leg2 * t730,
+            g1_vx_leg3 * t736 + g1_vy_leg3 * t732 + g1_wz_leg3 * t730,
+            g1_vx_leg4 * t736 + g1_vy_leg4 * t732 + g1_wz_leg4 * t730,
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -6835,7 +6783,7 @@ impl DualV {
     ///
     /// Output: 3 x 3.
     ///
-    /// 592 operations (254 additions, 330 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 589 intermediates.
+    /// 620 operations (258 additions, 354 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 617 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6869,7 +6817,7 @@ impl DualV {
         let t35 = 3.5714285714285716 * t34;
         let t37 = 3.5714285714285716 * (t34 * g1_vx_leg1);
         let minus_g2_vx_leg1 = t23 * t29;
-        let t41 = g1_vx_leg1 - (minus_g2_vx_leg1 + g1_vx_leg1);
+        let t41 = g1_vx_leg1 - (g1_vx_leg1 + minus_g2_vx_leg1);
         let t45 = t11 - 0.1568;
         let t46 = 1.7857142857142858 * t45;
         let t49 = 1.7857142857142858 * (t45 * g1_vx_leg1);
@@ -6895,7 +6843,7 @@ impl DualV {
         let t88 = t66 * t69;
         let t89 = 3.5714285714285716 * t88;
         let minus_g2_vx_leg2 = t77 * t83;
-        let t92 = g1_vx_leg2 - (minus_g2_vx_leg2 + g1_vx_leg2);
+        let t92 = g1_vx_leg2 - (g1_vx_leg2 + minus_g2_vx_leg2);
         let t95 = 3.5714285714285716 * (t88 * g1_vx_leg2);
         let t99 = t66 - 0.1568;
         let t100 = 1.7857142857142858 * t99;
@@ -6927,7 +6875,7 @@ impl DualV {
         let t149 = 3.5714285714285716 * t148;
         let t151 = 3.5714285714285716 * (t148 * g1_vx_leg3);
         let minus_g2_vx_leg3 = t137 * t143;
-        let t155 = g1_vx_leg3 - (minus_g2_vx_leg3 + g1_vx_leg3);
+        let t155 = g1_vx_leg3 - (g1_vx_leg3 + minus_g2_vx_leg3);
         let t159 = t125 - 0.1568;
         let t160 = 1.7857142857142858 * t159;
         let t163 = 1.7857142857142858 * (t159 * g1_vx_leg3);
@@ -6955,7 +6903,7 @@ impl DualV {
         let t203 = t181 * t184;
         let t204 = 3.5714285714285716 * t203;
         let minus_g2_vx_leg4 = t192 * t198;
-        let t207 = g1_vx_leg4 - (minus_g2_vx_leg4 + g1_vx_leg4);
+        let t207 = g1_vx_leg4 - (g1_vx_leg4 + minus_g2_vx_leg4);
         let t210 = 3.5714285714285716 * (t203 * g1_vx_leg4);
         let t214 = t181 - 0.1568;
         let t215 = 1.7857142857142858 * t214;
@@ -6976,34 +6924,26 @@ impl DualV {
         let g1_vy_leg4 = t190 * t198;
         let g2_vy_leg4 = t195 * t198;
         let g2_wz_leg1 = t6 * minus_g2_vx_leg1 - t2 * g2_vy_leg1;
-        let t262 = t2 * g1_vy_leg1;
-        let t263 = t6 * g1_vx_leg1;
-        let minus_g1_wz_leg1 = t262 + t263;
+        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
         let g2_wz_leg2 = t6 * minus_g2_vx_leg2 - t2 * g2_vy_leg2;
-        let t271 = t2 * g1_vy_leg2;
-        let t272 = t6 * g1_vx_leg2;
-        let minus_g1_wz_leg2 = t271 + t272;
-        let t277 = t2 * g1_vy_leg3;
-        let t278 = t6 * g1_vx_leg3;
-        let g1_wz_leg3 = t277 + t278;
+        let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t6 * g1_vx_leg2;
+        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
         let g2_wz_leg3 = t2 * g2_vy_leg3 - t6 * minus_g2_vx_leg3;
         let t286 = g2_wz_leg1 * t60 - minus_g1_wz_leg1 * t54 + g2_wz_leg2 * t114
             - minus_g1_wz_leg2 * t108 + g1_wz_leg3 * t168 + g2_wz_leg3 * t174;
-        let t287 = t2 * g1_vy_leg4;
-        let t288 = t6 * g1_vx_leg4;
-        let g1_wz_leg4 = t287 + t288;
+        let g1_wz_leg4 = t2 * g1_vy_leg4 + t6 * g1_vx_leg4;
         let g2_wz_leg4 = t2 * g2_vy_leg4 - t6 * minus_g2_vx_leg4;
         let t297 = parameters[62] + parameters[66];
         let t299 = parameters[61] + parameters[65];
         let t301 = c_phi * t297 + s_phi * t299;
         let t307 = 3.5714285714285716 * (t34 * g1_vy_leg1);
-        let t310 = g1_vy_leg1 + g2_vy_leg1 - g1_vy_leg1;
+        let t310 = g1_vy_leg1 - (g1_vy_leg1 - g2_vy_leg1);
         let t316 = 1.7857142857142858 * (t45 * g1_vy_leg1);
         let t321 = g1_vy_leg1 * parameters[0] + g1_vy_leg1 * parameters[1]
             + t35 * (parameters[8] * t307 - parameters[7] * t310)
             + t46 * (parameters[6] * t310 + parameters[8] * t316);
         let t327 = parameters[5] * t310 + parameters[6] * t316 - parameters[7] * t307;
-        let t334 = g1_vy_leg2 + g2_vy_leg2 - g1_vy_leg2;
+        let t334 = g1_vy_leg2 - (g1_vy_leg2 - g2_vy_leg2);
         let t337 = 3.5714285714285716 * (t88 * g1_vy_leg2);
         let t343 = 1.7857142857142858 * (t99 * g1_vy_leg2);
         let t348 = g1_vy_leg2 * parameters[15] + g1_vy_leg2 * parameters[16]
@@ -7011,7 +6951,7 @@ impl DualV {
             + t100 * (parameters[21] * t334 + parameters[23] * t343);
         let t354 = parameters[20] * t334 + parameters[21] * t343 + parameters[22] * t337;
         let t362 = 3.5714285714285716 * (t148 * g1_vy_leg3);
-        let t365 = g1_vy_leg3 + g2_vy_leg3 - g1_vy_leg3;
+        let t365 = g1_vy_leg3 - (g1_vy_leg3 - g2_vy_leg3);
         let t371 = 1.7857142857142858 * (t159 * g1_vy_leg3);
         let t376 = g1_vy_leg3 * parameters[30] + g1_vy_leg3 * parameters[31]
             + t149 * (parameters[38] * t362 - parameters[37] * t365)
@@ -7019,7 +6959,7 @@ impl DualV {
         let t382 = parameters[35] * t365 + parameters[36] * t371 - parameters[37] * t362;
         let t385 = g1_vx_leg1 * t321 - minus_g2_vx_leg1 * t327 + g1_vx_leg2 * t348
             - minus_g2_vx_leg2 * t354 + g1_vx_leg3 * t376 - minus_g2_vx_leg3 * t382;
-        let t390 = g1_vy_leg4 + g2_vy_leg4 - g1_vy_leg4;
+        let t390 = g1_vy_leg4 - (g1_vy_leg4 - g2_vy_leg4);
         let t393 = 3.5714285714285716 * (t203 * g1_vy_leg4);
         let t399 = 1.7857142857142858 * (t214 * g1_vy_leg4);
         let t404 = g1_vy_leg4 * parameters[45] + g1_vy_leg4 * parameters[46]
@@ -7031,59 +6971,60 @@ impl DualV {
         let t440 = g2_wz_leg1 * t327 - minus_g1_wz_leg1 * t321 + g2_wz_leg2 * t354
             - minus_g1_wz_leg2 * t348 + g1_wz_leg3 * t376 + g2_wz_leg3 * t382;
         let t447 = c_phi * t299 - s_phi * t297;
-        let t449 = t263 + t262;
-        let t451 = g2_wz_leg1 + t449 - t449;
-        let t454 = 1.7857142857142858 * (t45 * t449);
-        let t459 = 3.5714285714285716 * (t34 * t449);
-        let t468 = t46 * (parameters[6] * t451 - parameters[8] * t454)
-            - t35 * (parameters[8] * t459 + parameters[7] * t451)
-            - (parameters[0] * t449 + parameters[1] * t449);
-        let t474 = parameters[5] * t451 - parameters[6] * t454 + parameters[7] * t459;
-        let t477 = t272 + t271;
-        let t479 = g2_wz_leg2 + t477 - t477;
-        let t482 = 3.5714285714285716 * (t88 * t477);
-        let t488 = 1.7857142857142858 * (t99 * t477);
-        let t496 = t89 * (parameters[22] * t479 - parameters[23] * t482)
-            + t100 * (parameters[21] * t479 - parameters[23] * t488)
-            - (parameters[15] * t477 + parameters[16] * t477);
-        let t502 = parameters[20] * t479 - parameters[21] * t488 - parameters[22] * t482;
-        let t506 = t278 + t277;
-        let t511 = 3.5714285714285716 * (t148 * t506);
-        let t514 = t506 + g2_wz_leg3 - t506;
-        let t520 = 1.7857142857142858 * (t159 * t506);
-        let t525 = parameters[30] * t506 + parameters[31] * t506
-            + t149 * (parameters[38] * t511 - parameters[37] * t514)
-            + t160 * (parameters[36] * t514 + parameters[38] * t520);
-        let t531 = parameters[35] * t514 + parameters[36] * t520 - parameters[37] * t511;
-        let t534 = g1_vx_leg1 * t468 - minus_g2_vx_leg1 * t474 + g1_vx_leg2 * t496
-            - minus_g2_vx_leg2 * t502 + g1_vx_leg3 * t525 - minus_g2_vx_leg3 * t531;
-        let t535 = t288 + t287;
-        let t540 = t535 + g2_wz_leg4 - t535;
-        let t543 = 3.5714285714285716 * (t203 * t535);
-        let t549 = 1.7857142857142858 * (t214 * t535);
-        let t554 = parameters[45] * t535 + parameters[46] * t535
-            + t204 * (parameters[52] * t540 + parameters[53] * t543)
-            + t215 * (parameters[51] * t540 + parameters[53] * t549);
-        let t560 = parameters[50] * t540 + parameters[51] * t549 + parameters[52] * t543;
-        let t575 = g1_vy_leg1 * t468 + g2_vy_leg1 * t474 + g1_vy_leg2 * t496
-            + g2_vy_leg2 * t502 + g1_vy_leg3 * t525 + g2_vy_leg3 * t531;
-        let t591 = g2_wz_leg1 * t474 - minus_g1_wz_leg1 * t468 + g2_wz_leg2 * t502
-            - minus_g1_wz_leg2 * t496 + g1_wz_leg3 * t525 + g2_wz_leg3 * t531;
+        let t452 = t29 * (t6 * t17 + t2 * t21);
+        let t458 = t452 + t29 * (t2 * t26 - t6 * t23) - t452;
+        let t461 = 3.5714285714285716 * (t34 * t452);
+        let t467 = 1.7857142857142858 * (t45 * t452);
+        let t475 = t35 * (parameters[7] * t458 - parameters[8] * t461)
+            - t46 * (parameters[6] * t458 + parameters[8] * t467)
+            - (parameters[0] * t452 + parameters[1] * t452);
+        let t481 = parameters[7] * t461 - (parameters[5] * t458 + parameters[6] * t467);
+        let t487 = t83 * (t6 * t72 + t2 * t75);
+        let t493 = t487 + t83 * (t2 * t80 - t6 * t77) - t487;
+        let t496 = 1.7857142857142858 * (t99 * t487);
+        let t500 = 3.5714285714285716 * (t88 * t487);
+        let t502 = parameters[20] * t493 + parameters[21] * t496 + parameters[22] * t500;
+        let t516 = parameters[15] * t487 + parameters[16] * t487
+            + t89 * (parameters[22] * t493 + parameters[23] * t500)
+            + t100 * (parameters[21] * t493 + parameters[23] * t496);
+        let t523 = t143 * (t6 * t131 + t2 * t135);
+        let t528 = 3.5714285714285716 * (t148 * t523);
+        let t535 = t523 - (t523 + t143 * (t6 * t137 - t2 * t140));
+        let t541 = 1.7857142857142858 * (t159 * t523);
+        let t546 = parameters[30] * t523 + parameters[31] * t523
+            + t149 * (parameters[38] * t528 - parameters[37] * t535)
+            + t160 * (parameters[36] * t535 + parameters[38] * t541);
+        let t552 = parameters[35] * t535 + parameters[36] * t541 - parameters[37] * t528;
+        let t555 = g1_vx_leg1 * t475 - minus_g2_vx_leg1 * t481 + minus_g2_vx_leg2 * t502
+            - g1_vx_leg2 * t516 + g1_vx_leg3 * t546 - minus_g2_vx_leg3 * t552;
+        let t559 = t198 * (t6 * t187 + t2 * t190);
+        let t568 = t559 - (t559 + t198 * (t6 * t192 - t2 * t195));
+        let t571 = 3.5714285714285716 * (t203 * t559);
+        let t577 = 1.7857142857142858 * (t214 * t559);
+        let t582 = parameters[45] * t559 + parameters[46] * t559
+            + t204 * (parameters[52] * t568 + parameters[53] * t571)
+            + t215 * (parameters[51] * t568 + parameters[53] * t577);
+        let t588 = parameters[50] * t568 + parameters[51] * t577 + parameters[52] * t571;
+        let t603 = g1_vy_leg1 * t475 + g2_vy_leg1 * t481
+            - (g1_vy_leg2 * t516 + g2_vy_leg2 * t502) + g1_vy_leg3 * t546
+            + g2_vy_leg3 * t552;
+        let t619 = g2_wz_leg1 * t481 - minus_g1_wz_leg1 * t475 + minus_g1_wz_leg2 * t516
+            - g2_wz_leg2 * t502 + g1_wz_leg3 * t546 + g2_wz_leg3 * t552;
         Ok([
             [
                 t177 + g1_vx_leg4 * t223 - minus_g2_vx_leg4 * t229 + t233,
                 t385 + g1_vx_leg4 * t404 - minus_g2_vx_leg4 * t410,
-                t534 + g1_vx_leg4 * t554 - minus_g2_vx_leg4 * t560 - t301,
+                t555 + g1_vx_leg4 * t582 - minus_g2_vx_leg4 * t588 - t301,
             ],
             [
                 t251 + g1_vy_leg4 * t223 + g2_vy_leg4 * t229,
                 t424 + g1_vy_leg4 * t404 + g2_vy_leg4 * t410 + t233,
-                t575 + g1_vy_leg4 * t554 + g2_vy_leg4 * t560 + t447,
+                t603 + g1_vy_leg4 * t582 + g2_vy_leg4 * t588 + t447,
             ],
             [
                 t286 + g1_wz_leg4 * t223 + g2_wz_leg4 * t229 - t301,
                 t440 + g1_wz_leg4 * t404 + g2_wz_leg4 * t410 + t447,
-                t591 + g1_wz_leg4 * t554 + g2_wz_leg4 * t560 + parameters[60]
+                t619 + g1_wz_leg4 * t582 + g2_wz_leg4 * t588 + parameters[60]
                     + parameters[64],
             ],
         ])
@@ -7097,7 +7038,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 524 operations (237 additions, 279 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 539 intermediates.
+    /// 508 operations (237 additions, 263 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 523 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7135,222 +7076,222 @@ impl DualV {
         let g1_vy_leg1 = t21 * t29;
         let t37 = twist[1] - t31;
         let rate_1_leg1 = g1_vx_leg1 * t34 + g1_vy_leg1 * t37;
+        let t40 = rate_1_leg1 * rate_1_leg1;
         let g2_vy_leg1 = t26 * t29;
         let minus_g2_vx_leg1 = t23 * t29;
         let rate_2_leg1 = g2_vy_leg1 * t37 - minus_g2_vx_leg1 * t34;
         let t47 = rate_2_leg1 - rate_1_leg1;
         let t48 = rate_1_leg1 + t47;
-        let t52 = t32 + rate_1_leg1 * (t16 * rate_1_leg1) + t48 * (t17 * t48);
-        let t59 = twist[2] * t33;
-        let t60 = rate_1_leg1 * (t20 * rate_1_leg1) + t48 * (t21 * t48) - t59;
-        let rate_dot_1_leg1 = g1_vx_leg1 * t52 + g1_vy_leg1 * t60;
-        let t71 = t11 * t14;
-        let t75 = t11 - 0.1568;
-        let t76 = rate_1_leg1 * rate_1_leg1;
-        let t79 = 3.5714285714285716 * (t71 * rate_dot_1_leg1)
-            - 1.7857142857142858 * (t75 * t76);
-        let t81 = t48 * t48;
-        let rate_dot_2_leg1 = g2_vy_leg1 * t60 - minus_g2_vx_leg1 * t52;
-        let t87 = rate_dot_1_leg1 + rate_dot_2_leg1 - rate_dot_1_leg1;
-        let t100 = 3.5714285714285716 * (t71 * t76)
-            + 1.7857142857142858 * (t75 * rate_dot_1_leg1);
-        let t104 = 3.5714285714285716 * t71
-            * (parameters[8] * t79 - (parameters[6] * t81 + parameters[7] * t87))
-            + 1.7857142857142858 * t75
-                * (parameters[6] * t87 - parameters[7] * t81 + parameters[8] * t100);
-        let t109 = parameters[9] * t47 + ::overact::math::signed(parameters[10], t47)
+        let t49 = t48 * t48;
+        let t52 = t32 + t16 * t40 + t17 * t49;
+        let t57 = twist[2] * t33;
+        let t58 = t20 * t40 + t21 * t49 - t57;
+        let rate_dot_1_leg1 = g1_vx_leg1 * t52 + g1_vy_leg1 * t58;
+        let t69 = t11 * t14;
+        let t73 = t11 - 0.1568;
+        let t76 = 3.5714285714285716 * (t69 * rate_dot_1_leg1)
+            - 1.7857142857142858 * (t73 * t40);
+        let rate_dot_2_leg1 = g2_vy_leg1 * t58 - minus_g2_vx_leg1 * t52;
+        let t83 = rate_dot_1_leg1 + rate_dot_2_leg1 - rate_dot_1_leg1;
+        let t96 = 3.5714285714285716 * (t69 * t40)
+            + 1.7857142857142858 * (t73 * rate_dot_1_leg1);
+        let t100 = 3.5714285714285716 * t69
+            * (parameters[8] * t76 - (parameters[6] * t49 + parameters[7] * t83))
+            + 1.7857142857142858 * t73
+                * (parameters[6] * t83 - parameters[7] * t49 + parameters[8] * t96);
+        let t105 = parameters[9] * t47 + ::overact::math::signed(parameters[10], t47)
             + parameters[11];
-        let t110 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
+        let t106 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
             + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t104
-            - t109;
-        let t118 = twist[2] - rate_2_leg1;
-        let t122 = parameters[12] * t118 + ::overact::math::signed(parameters[13], t118)
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t100
+            - t105;
+        let t114 = twist[2] - rate_2_leg1;
+        let t118 = parameters[12] * t114 + ::overact::math::signed(parameters[13], t114)
             + parameters[14];
-        let t123 = parameters[5] * t87 + parameters[6] * t100 - parameters[7] * t79
-            + t109 - t122;
-        let t126 = t3 + 0.3950502153918333;
-        let t129 = t126 * t126 + t10;
-        let t131 = 0.0784 / t129 - 0.25;
-        ::overact::guard::reach(t131, "leg2")?;
-        let t132 = ::overact::math::sqrt(t131);
-        let t134 = 0.5 * t126 - t8 * t132;
-        let t135 = t126 - t134;
-        let t137 = t18 + t126 * t132;
-        let t138 = t8 - t137;
-        let t140 = t134 + t135 - t135;
-        let t143 = t138 - (t137 + t138);
-        let t145 = t138 * t140 + t135 * t143;
-        ::overact::guard::leg(t145, 0.078399138102973, "leg2")?;
-        let t146 = 1.0 / t145;
-        let g1_vx_leg2 = t135 * t146;
-        let g1_vy_leg2 = t138 * t146;
+        let t119 = parameters[5] * t83 + parameters[6] * t96 - parameters[7] * t76 + t105
+            - t118;
+        let t122 = t3 + 0.3950502153918333;
+        let t125 = t122 * t122 + t10;
+        let t127 = 0.0784 / t125 - 0.25;
+        ::overact::guard::reach(t127, "leg2")?;
+        let t128 = ::overact::math::sqrt(t127);
+        let t130 = 0.5 * t122 - t8 * t128;
+        let t131 = t122 - t130;
+        let t133 = t18 + t122 * t128;
+        let t134 = t8 - t133;
+        let t136 = t130 + t131 - t131;
+        let t139 = t134 - (t133 + t134);
+        let t141 = t134 * t136 + t131 * t139;
+        ::overact::guard::leg(t141, 0.078399138102973, "leg2")?;
+        let t142 = 1.0 / t141;
+        let g1_vx_leg2 = t131 * t142;
+        let g1_vy_leg2 = t134 * t142;
         let rate_1_leg2 = g1_vx_leg2 * t34 + g1_vy_leg2 * t37;
-        let g2_vy_leg2 = t143 * t146;
-        let minus_g2_vx_leg2 = t140 * t146;
+        let t148 = rate_1_leg2 * rate_1_leg2;
+        let g2_vy_leg2 = t139 * t142;
+        let minus_g2_vx_leg2 = t136 * t142;
         let rate_2_leg2 = g2_vy_leg2 * t37 - minus_g2_vx_leg2 * t34;
-        let t159 = rate_2_leg2 - rate_1_leg2;
-        let t160 = rate_1_leg2 + t159;
-        let t164 = t32 + rate_1_leg2 * (t134 * rate_1_leg2) + t160 * (t135 * t160);
-        let t171 = rate_1_leg2 * (t137 * rate_1_leg2) + t160 * (t138 * t160) - t59;
-        let rate_dot_1_leg2 = g1_vx_leg2 * t164 + g1_vy_leg2 * t171;
-        let t182 = t129 * t132;
-        let t184 = t160 * t160;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t171 - minus_g2_vx_leg2 * t164;
-        let t190 = rate_dot_1_leg2 + rate_dot_2_leg2 - rate_dot_1_leg2;
-        let t193 = t129 - 0.1568;
-        let t194 = rate_1_leg2 * rate_1_leg2;
-        let t199 = 1.7857142857142858 * (t193 * t194)
-            + 3.5714285714285716 * (t182 * rate_dot_1_leg2);
-        let t211 = 1.7857142857142858 * (t193 * rate_dot_1_leg2)
-            - 3.5714285714285716 * (t182 * t194);
-        let t215 = 3.5714285714285716 * t182
-            * (parameters[21] * t184 + parameters[22] * t190 + parameters[23] * t199)
-            + 1.7857142857142858 * t193
-                * (parameters[21] * t190 - parameters[22] * t184
-                    + parameters[23] * t211);
-        let t220 = parameters[24] * t159 + ::overact::math::signed(parameters[25], t159)
+        let t155 = rate_2_leg2 - rate_1_leg2;
+        let t156 = rate_1_leg2 + t155;
+        let t157 = t156 * t156;
+        let t160 = t32 + t130 * t148 + t131 * t157;
+        let t165 = t133 * t148 + t134 * t157 - t57;
+        let rate_dot_1_leg2 = g1_vx_leg2 * t160 + g1_vy_leg2 * t165;
+        let t176 = t125 * t128;
+        let rate_dot_2_leg2 = g2_vy_leg2 * t165 - minus_g2_vx_leg2 * t160;
+        let t183 = rate_dot_1_leg2 + rate_dot_2_leg2 - rate_dot_1_leg2;
+        let t186 = t125 - 0.1568;
+        let t191 = 1.7857142857142858 * (t186 * t148)
+            + 3.5714285714285716 * (t176 * rate_dot_1_leg2);
+        let t203 = 1.7857142857142858 * (t186 * rate_dot_1_leg2)
+            - 3.5714285714285716 * (t176 * t148);
+        let t207 = 3.5714285714285716 * t176
+            * (parameters[21] * t157 + parameters[22] * t183 + parameters[23] * t191)
+            + 1.7857142857142858 * t186
+                * (parameters[21] * t183 - parameters[22] * t157
+                    + parameters[23] * t203);
+        let t212 = parameters[24] * t155 + ::overact::math::signed(parameters[25], t155)
             + parameters[26];
-        let t221 = parameters[15] * rate_dot_1_leg2 + parameters[16] * rate_dot_1_leg2
+        let t213 = parameters[15] * rate_dot_1_leg2 + parameters[16] * rate_dot_1_leg2
             + parameters[17] * rate_1_leg2
             + ::overact::math::signed(parameters[18], rate_1_leg2) + parameters[19]
-            + t215 - t220;
-        let t229 = twist[2] - rate_2_leg2;
-        let t233 = parameters[27] * t229 + ::overact::math::signed(parameters[28], t229)
+            + t207 - t212;
+        let t221 = twist[2] - rate_2_leg2;
+        let t225 = parameters[27] * t221 + ::overact::math::signed(parameters[28], t221)
             + parameters[29];
-        let t234 = parameters[20] * t190 + parameters[21] * t211 + parameters[22] * t199
-            + t220 - t233;
-        let t238 = pose[0] + t2;
-        let t239 = t238 + 0.3950502153918333;
-        let t242 = pose[1] - t6 + 0.10970563941232059;
-        let t244 = t242 * t242;
-        let t245 = t239 * t239 + t244;
-        let t247 = 0.0784 / t245 - 0.25;
-        ::overact::guard::reach(t247, "leg3")?;
-        let t248 = ::overact::math::sqrt(t247);
-        let t250 = 0.5 * t239 + t242 * t248;
-        let t251 = t239 - t250;
-        let t252 = 0.5 * t242;
-        let t254 = t252 - t239 * t248;
-        let t255 = t242 - t254;
-        let t257 = t250 + t251 - t251;
-        let t260 = t255 - (t254 + t255);
-        let t262 = t255 * t257 + t251 * t260;
-        ::overact::guard::leg(t262, 0.078399138102973, "leg3")?;
-        let t263 = 1.0 / t262;
-        let g1_vx_leg3 = t251 * t263;
-        let t265 = twist[0] + t33;
-        let g1_vy_leg3 = t255 * t263;
-        let t268 = twist[1] + t31;
-        let rate_1_leg3 = g1_vx_leg3 * t265 + g1_vy_leg3 * t268;
-        let g2_vy_leg3 = t260 * t263;
-        let minus_g2_vx_leg3 = t257 * t263;
-        let rate_2_leg3 = g2_vy_leg3 * t268 - minus_g2_vx_leg3 * t265;
-        let t278 = rate_2_leg3 - rate_1_leg3;
-        let t279 = rate_1_leg3 + t278;
-        let t283 = rate_1_leg3 * (t250 * rate_1_leg3) + t279 * (t251 * t279) - t32;
-        let t290 = t59 + rate_1_leg3 * (t254 * rate_1_leg3) + t279 * (t255 * t279);
-        let rate_dot_1_leg3 = g1_vx_leg3 * t283 + g1_vy_leg3 * t290;
-        let t301 = t245 * t248;
-        let t305 = t245 - 0.1568;
-        let t306 = rate_1_leg3 * rate_1_leg3;
-        let t309 = 3.5714285714285716 * (t301 * rate_dot_1_leg3)
-            - 1.7857142857142858 * (t305 * t306);
-        let t311 = t279 * t279;
-        let rate_dot_2_leg3 = g2_vy_leg3 * t290 - minus_g2_vx_leg3 * t283;
-        let t317 = rate_dot_1_leg3 + rate_dot_2_leg3 - rate_dot_1_leg3;
-        let t330 = 3.5714285714285716 * (t301 * t306)
-            + 1.7857142857142858 * (t305 * rate_dot_1_leg3);
-        let t334 = 3.5714285714285716 * t301
-            * (parameters[38] * t309 - (parameters[36] * t311 + parameters[37] * t317))
-            + 1.7857142857142858 * t305
-                * (parameters[36] * t317 - parameters[37] * t311
-                    + parameters[38] * t330);
-        let t339 = parameters[39] * t278 + ::overact::math::signed(parameters[40], t278)
+        let t226 = parameters[20] * t183 + parameters[21] * t203 + parameters[22] * t191
+            + t212 - t225;
+        let t230 = pose[0] + t2;
+        let t231 = t230 + 0.3950502153918333;
+        let t234 = pose[1] - t6 + 0.10970563941232059;
+        let t236 = t234 * t234;
+        let t237 = t231 * t231 + t236;
+        let t239 = 0.0784 / t237 - 0.25;
+        ::overact::guard::reach(t239, "leg3")?;
+        let t240 = ::overact::math::sqrt(t239);
+        let t242 = 0.5 * t231 + t234 * t240;
+        let t243 = t231 - t242;
+        let t244 = 0.5 * t234;
+        let t246 = t244 - t231 * t240;
+        let t247 = t234 - t246;
+        let t249 = t242 + t243 - t243;
+        let t252 = t247 - (t246 + t247);
+        let t254 = t247 * t249 + t243 * t252;
+        ::overact::guard::leg(t254, 0.078399138102973, "leg3")?;
+        let t255 = 1.0 / t254;
+        let g1_vx_leg3 = t243 * t255;
+        let t257 = twist[0] + t33;
+        let g1_vy_leg3 = t247 * t255;
+        let t260 = twist[1] + t31;
+        let rate_1_leg3 = g1_vx_leg3 * t257 + g1_vy_leg3 * t260;
+        let t263 = rate_1_leg3 * rate_1_leg3;
+        let g2_vy_leg3 = t252 * t255;
+        let minus_g2_vx_leg3 = t249 * t255;
+        let rate_2_leg3 = g2_vy_leg3 * t260 - minus_g2_vx_leg3 * t257;
+        let t270 = rate_2_leg3 - rate_1_leg3;
+        let t271 = rate_1_leg3 + t270;
+        let t272 = t271 * t271;
+        let t275 = t242 * t263 + t243 * t272 - t32;
+        let t280 = t57 + t246 * t263 + t247 * t272;
+        let rate_dot_1_leg3 = g1_vx_leg3 * t275 + g1_vy_leg3 * t280;
+        let t291 = t237 * t240;
+        let t295 = t237 - 0.1568;
+        let t298 = 3.5714285714285716 * (t291 * rate_dot_1_leg3)
+            - 1.7857142857142858 * (t295 * t263);
+        let rate_dot_2_leg3 = g2_vy_leg3 * t280 - minus_g2_vx_leg3 * t275;
+        let t305 = rate_dot_1_leg3 + rate_dot_2_leg3 - rate_dot_1_leg3;
+        let t318 = 3.5714285714285716 * (t291 * t263)
+            + 1.7857142857142858 * (t295 * rate_dot_1_leg3);
+        let t322 = 3.5714285714285716 * t291
+            * (parameters[38] * t298 - (parameters[36] * t272 + parameters[37] * t305))
+            + 1.7857142857142858 * t295
+                * (parameters[36] * t305 - parameters[37] * t272
+                    + parameters[38] * t318);
+        let t327 = parameters[39] * t270 + ::overact::math::signed(parameters[40], t270)
             + parameters[41];
-        let t340 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
+        let t328 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
             + parameters[32] * rate_1_leg3
             + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34]
-            + t334 - t339;
-        let t348 = twist[2] - rate_2_leg3;
-        let t352 = parameters[42] * t348 + ::overact::math::signed(parameters[43], t348)
+            + t322 - t327;
+        let t336 = twist[2] - rate_2_leg3;
+        let t340 = parameters[42] * t336 + ::overact::math::signed(parameters[43], t336)
             + parameters[44];
-        let t353 = parameters[35] * t317 + parameters[36] * t330 - parameters[37] * t309
-            + t339 - t352;
-        let t356 = g1_vx_leg1 * t110 - minus_g2_vx_leg1 * t123 + g1_vx_leg2 * t221
-            - minus_g2_vx_leg2 * t234 + g1_vx_leg3 * t340 - minus_g2_vx_leg3 * t353;
-        let t357 = t238 - 0.3950502153918333;
-        let t360 = t357 * t357 + t244;
-        let t362 = 0.0784 / t360 - 0.25;
-        ::overact::guard::reach(t362, "leg4")?;
-        let t363 = ::overact::math::sqrt(t362);
-        let t365 = 0.5 * t357 - t242 * t363;
-        let t366 = t357 - t365;
-        let t368 = t252 + t357 * t363;
-        let t369 = t242 - t368;
-        let t371 = t365 + t366 - t366;
-        let t374 = t369 - (t368 + t369);
-        let t376 = t369 * t371 + t366 * t374;
-        ::overact::guard::leg(t376, 0.078399138102973, "leg4")?;
-        let t377 = 1.0 / t376;
-        let g1_vx_leg4 = t366 * t377;
-        let g1_vy_leg4 = t369 * t377;
-        let rate_1_leg4 = g1_vx_leg4 * t265 + g1_vy_leg4 * t268;
-        let g2_vy_leg4 = t374 * t377;
-        let minus_g2_vx_leg4 = t371 * t377;
-        let rate_2_leg4 = g2_vy_leg4 * t268 - minus_g2_vx_leg4 * t265;
-        let t390 = rate_2_leg4 - rate_1_leg4;
-        let t391 = rate_1_leg4 + t390;
-        let t395 = rate_1_leg4 * (t365 * rate_1_leg4) + t391 * (t366 * t391) - t32;
-        let t402 = t59 + rate_1_leg4 * (t368 * rate_1_leg4) + t391 * (t369 * t391);
-        let rate_dot_1_leg4 = g1_vx_leg4 * t395 + g1_vy_leg4 * t402;
-        let t413 = t360 * t363;
-        let t415 = t391 * t391;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t402 - minus_g2_vx_leg4 * t395;
-        let t421 = rate_dot_1_leg4 + rate_dot_2_leg4 - rate_dot_1_leg4;
-        let t424 = t360 - 0.1568;
-        let t425 = rate_1_leg4 * rate_1_leg4;
-        let t430 = 1.7857142857142858 * (t424 * t425)
-            + 3.5714285714285716 * (t413 * rate_dot_1_leg4);
-        let t442 = 1.7857142857142858 * (t424 * rate_dot_1_leg4)
-            - 3.5714285714285716 * (t413 * t425);
-        let t446 = 3.5714285714285716 * t413
-            * (parameters[51] * t415 + parameters[52] * t421 + parameters[53] * t430)
-            + 1.7857142857142858 * t424
-                * (parameters[51] * t421 - parameters[52] * t415
-                    + parameters[53] * t442);
-        let t451 = parameters[54] * t390 + ::overact::math::signed(parameters[55], t390)
+        let t341 = parameters[35] * t305 + parameters[36] * t318 - parameters[37] * t298
+            + t327 - t340;
+        let t344 = g1_vx_leg1 * t106 - minus_g2_vx_leg1 * t119 + g1_vx_leg2 * t213
+            - minus_g2_vx_leg2 * t226 + g1_vx_leg3 * t328 - minus_g2_vx_leg3 * t341;
+        let t345 = t230 - 0.3950502153918333;
+        let t348 = t345 * t345 + t236;
+        let t350 = 0.0784 / t348 - 0.25;
+        ::overact::guard::reach(t350, "leg4")?;
+        let t351 = ::overact::math::sqrt(t350);
+        let t353 = 0.5 * t345 - t234 * t351;
+        let t354 = t345 - t353;
+        let t356 = t244 + t345 * t351;
+        let t357 = t234 - t356;
+        let t359 = t353 + t354 - t354;
+        let t362 = t357 - (t356 + t357);
+        let t364 = t357 * t359 + t354 * t362;
+        ::overact::guard::leg(t364, 0.078399138102973, "leg4")?;
+        let t365 = 1.0 / t364;
+        let g1_vx_leg4 = t354 * t365;
+        let g1_vy_leg4 = t357 * t365;
+        let rate_1_leg4 = g1_vx_leg4 * t257 + g1_vy_leg4 * t260;
+        let t371 = rate_1_leg4 * rate_1_leg4;
+        let g2_vy_leg4 = t362 * t365;
+        let minus_g2_vx_leg4 = t359 * t365;
+        let rate_2_leg4 = g2_vy_leg4 * t260 - minus_g2_vx_leg4 * t257;
+        let t378 = rate_2_leg4 - rate_1_leg4;
+        let t379 = rate_1_leg4 + t378;
+        let t380 = t379 * t379;
+        let t383 = t353 * t371 + t354 * t380 - t32;
+        let t388 = t57 + t356 * t371 + t357 * t380;
+        let rate_dot_1_leg4 = g1_vx_leg4 * t383 + g1_vy_leg4 * t388;
+        let t399 = t348 * t351;
+        let rate_dot_2_leg4 = g2_vy_leg4 * t388 - minus_g2_vx_leg4 * t383;
+        let t406 = rate_dot_1_leg4 + rate_dot_2_leg4 - rate_dot_1_leg4;
+        let t409 = t348 - 0.1568;
+        let t414 = 1.7857142857142858 * (t409 * t371)
+            + 3.5714285714285716 * (t399 * rate_dot_1_leg4);
+        let t426 = 1.7857142857142858 * (t409 * rate_dot_1_leg4)
+            - 3.5714285714285716 * (t399 * t371);
+        let t430 = 3.5714285714285716 * t399
+            * (parameters[51] * t380 + parameters[52] * t406 + parameters[53] * t414)
+            + 1.7857142857142858 * t409
+                * (parameters[51] * t406 - parameters[52] * t380
+                    + parameters[53] * t426);
+        let t435 = parameters[54] * t378 + ::overact::math::signed(parameters[55], t378)
             + parameters[56];
-        let t452 = parameters[45] * rate_dot_1_leg4 + parameters[46] * rate_dot_1_leg4
+        let t436 = parameters[45] * rate_dot_1_leg4 + parameters[46] * rate_dot_1_leg4
             + parameters[47] * rate_1_leg4
             + ::overact::math::signed(parameters[48], rate_1_leg4) + parameters[49]
-            + t446 - t451;
-        let t460 = twist[2] - rate_2_leg4;
-        let t464 = parameters[57] * t460 + ::overact::math::signed(parameters[58], t460)
+            + t430 - t435;
+        let t444 = twist[2] - rate_2_leg4;
+        let t448 = parameters[57] * t444 + ::overact::math::signed(parameters[58], t444)
             + parameters[59];
-        let t465 = parameters[50] * t421 + parameters[51] * t442 + parameters[52] * t430
-            + t451 - t464;
-        let t469 = twist[2] * twist[2];
-        let t472 = parameters[62] * t469 + parameters[66] * t469;
-        let t476 = parameters[61] * t469 + parameters[65] * t469;
-        let t490 = g1_vy_leg1 * t110 + g2_vy_leg1 * t123 + g1_vy_leg2 * t221
-            + g2_vy_leg2 * t234 + g1_vy_leg3 * t340 + g2_vy_leg3 * t353;
+        let t449 = parameters[50] * t406 + parameters[51] * t426 + parameters[52] * t414
+            + t435 - t448;
+        let t453 = twist[2] * twist[2];
+        let t456 = parameters[62] * t453 + parameters[66] * t453;
+        let t460 = parameters[61] * t453 + parameters[65] * t453;
+        let t474 = g1_vy_leg1 * t106 + g2_vy_leg1 * t119 + g1_vy_leg2 * t213
+            + g2_vy_leg2 * t226 + g1_vy_leg3 * t328 + g2_vy_leg3 * t341;
         let g2_wz_leg1 = t6 * minus_g2_vx_leg1 - t2 * g2_vy_leg1;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
         let g2_wz_leg2 = t6 * minus_g2_vx_leg2 - t2 * g2_vy_leg2;
         let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t6 * g1_vx_leg2;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
         let g2_wz_leg3 = t2 * g2_vy_leg3 - t6 * minus_g2_vx_leg3;
-        let t530 = g2_wz_leg1 * t123 - minus_g1_wz_leg1 * t110 + t122 + g2_wz_leg2 * t234
-            - minus_g1_wz_leg2 * t221 + t233 + g1_wz_leg3 * t340 + g2_wz_leg3 * t353
-            + t352;
+        let t514 = g2_wz_leg1 * t119 - minus_g1_wz_leg1 * t106 + t118 + g2_wz_leg2 * t226
+            - minus_g1_wz_leg2 * t213 + t225 + g1_wz_leg3 * t328 + g2_wz_leg3 * t341
+            + t340;
         let g1_wz_leg4 = t2 * g1_vy_leg4 + t6 * g1_vx_leg4;
         let g2_wz_leg4 = t2 * g2_vy_leg4 - t6 * minus_g2_vx_leg4;
         Ok([
-            t356 + g1_vx_leg4 * t452 - minus_g2_vx_leg4 * t465 + s_phi * t472
-                - c_phi * t476,
-            t490 + g1_vy_leg4 * t452 + g2_vy_leg4 * t465 - (s_phi * t476 + c_phi * t472),
-            t530 + g1_wz_leg4 * t452 + g2_wz_leg4 * t465 + t464,
+            t344 + g1_vx_leg4 * t436 - minus_g2_vx_leg4 * t449 + s_phi * t456
+                - c_phi * t460,
+            t474 + g1_vy_leg4 * t436 + g2_vy_leg4 * t449 - (s_phi * t460 + c_phi * t456),
+            t514 + g1_wz_leg4 * t436 + g2_wz_leg4 * t449 + t448,
         ])
     }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
@@ -7364,7 +7305,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 715 operations (319 additions, 384 multiplications, 12 divisions), 5 square roots, 1 trigonometric pairs, 12 signs, 730 intermediates.
+    /// 699 operations (319 additions, 368 multiplications, 12 divisions), 5 square roots, 1 trigonometric pairs, 12 signs, 714 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7406,288 +7347,288 @@ impl DualV {
         let g1_vy_leg1 = t21 * t29;
         let t40 = twist[1] - t33;
         let rate_1_leg1 = g1_vx_leg1 * t37 + g1_vy_leg1 * t40;
+        let t43 = rate_1_leg1 * rate_1_leg1;
         let g2_vy_leg1 = t26 * t29;
         let minus_g2_vx_leg1 = t23 * t29;
         let rate_2_leg1 = g2_vy_leg1 * t40 - minus_g2_vx_leg1 * t37;
         let t50 = rate_2_leg1 - rate_1_leg1;
         let t51 = rate_1_leg1 + t50;
-        let t55 = t35 + rate_1_leg1 * (t16 * rate_1_leg1) + t51 * (t17 * t51);
+        let t52 = t51 * t51;
+        let t55 = t35 + t16 * t43 + t17 * t52;
         let t57 = t2 * acceleration[2];
         let t59 = twist[2] * t36;
         let t60 = acceleration[1] - t57 - t59;
-        let t66 = t60 + rate_1_leg1 * (t20 * rate_1_leg1) + t51 * (t21 * t51);
-        let rate_dot_1_leg1 = g1_vx_leg1 * t55 + g1_vy_leg1 * t66;
-        let t77 = t11 * t14;
-        let t81 = t11 - 0.1568;
-        let t82 = rate_1_leg1 * rate_1_leg1;
-        let t85 = 3.5714285714285716 * (t77 * rate_dot_1_leg1)
-            - 1.7857142857142858 * (t81 * t82);
-        let t87 = t51 * t51;
-        let rate_dot_2_leg1 = g2_vy_leg1 * t66 - minus_g2_vx_leg1 * t55;
-        let t93 = rate_dot_1_leg1 + rate_dot_2_leg1 - rate_dot_1_leg1;
-        let t106 = 3.5714285714285716 * (t77 * t82)
-            + 1.7857142857142858 * (t81 * rate_dot_1_leg1);
-        let t110 = 3.5714285714285716 * t77
-            * (parameters[8] * t85 - (parameters[6] * t87 + parameters[7] * t93))
-            + 1.7857142857142858 * t81
-                * (parameters[6] * t93 - parameters[7] * t87 + parameters[8] * t106);
-        let t115 = parameters[9] * t50 + ::overact::math::signed(parameters[10], t50)
+        let t64 = t60 + t20 * t43 + t21 * t52;
+        let rate_dot_1_leg1 = g1_vx_leg1 * t55 + g1_vy_leg1 * t64;
+        let t75 = t11 * t14;
+        let t79 = t11 - 0.1568;
+        let t82 = 3.5714285714285716 * (t75 * rate_dot_1_leg1)
+            - 1.7857142857142858 * (t79 * t43);
+        let rate_dot_2_leg1 = g2_vy_leg1 * t64 - minus_g2_vx_leg1 * t55;
+        let t89 = rate_dot_1_leg1 + rate_dot_2_leg1 - rate_dot_1_leg1;
+        let t102 = 3.5714285714285716 * (t75 * t43)
+            + 1.7857142857142858 * (t79 * rate_dot_1_leg1);
+        let t106 = 3.5714285714285716 * t75
+            * (parameters[8] * t82 - (parameters[6] * t52 + parameters[7] * t89))
+            + 1.7857142857142858 * t79
+                * (parameters[6] * t89 - parameters[7] * t52 + parameters[8] * t102);
+        let t111 = parameters[9] * t50 + ::overact::math::signed(parameters[10], t50)
             + parameters[11];
-        let t116 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
+        let t112 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
             + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t110
-            - t115;
-        let t124 = twist[2] - rate_2_leg1;
-        let t128 = parameters[12] * t124 + ::overact::math::signed(parameters[13], t124)
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t106
+            - t111;
+        let t120 = twist[2] - rate_2_leg1;
+        let t124 = parameters[12] * t120 + ::overact::math::signed(parameters[13], t120)
             + parameters[14];
-        let t129 = parameters[5] * t93 + parameters[6] * t106 - parameters[7] * t85
-            + t115 - t128;
-        let t132 = t3 + 0.3950502153918333;
-        let t135 = t132 * t132 + t10;
-        let t137 = 0.0784 / t135 - 0.25;
-        ::overact::guard::reach(t137, "leg2")?;
-        let t138 = ::overact::math::sqrt(t137);
-        let t140 = 0.5 * t132 - t8 * t138;
-        let t141 = t132 - t140;
-        let t143 = t18 + t132 * t138;
-        let t144 = t8 - t143;
-        let t146 = t140 + t141 - t141;
-        let t149 = t144 - (t143 + t144);
-        let t151 = t144 * t146 + t141 * t149;
-        ::overact::guard::leg(t151, 0.078399138102973, "leg2")?;
-        let t152 = 1.0 / t151;
-        let g1_vx_leg2 = t141 * t152;
-        let g1_vy_leg2 = t144 * t152;
+        let t125 = parameters[5] * t89 + parameters[6] * t102 - parameters[7] * t82
+            + t111 - t124;
+        let t128 = t3 + 0.3950502153918333;
+        let t131 = t128 * t128 + t10;
+        let t133 = 0.0784 / t131 - 0.25;
+        ::overact::guard::reach(t133, "leg2")?;
+        let t134 = ::overact::math::sqrt(t133);
+        let t136 = 0.5 * t128 - t8 * t134;
+        let t137 = t128 - t136;
+        let t139 = t18 + t128 * t134;
+        let t140 = t8 - t139;
+        let t142 = t136 + t137 - t137;
+        let t145 = t140 - (t139 + t140);
+        let t147 = t140 * t142 + t137 * t145;
+        ::overact::guard::leg(t147, 0.078399138102973, "leg2")?;
+        let t148 = 1.0 / t147;
+        let g1_vx_leg2 = t137 * t148;
+        let g1_vy_leg2 = t140 * t148;
         let rate_1_leg2 = g1_vx_leg2 * t37 + g1_vy_leg2 * t40;
-        let g2_vy_leg2 = t149 * t152;
-        let minus_g2_vx_leg2 = t146 * t152;
+        let t154 = rate_1_leg2 * rate_1_leg2;
+        let g2_vy_leg2 = t145 * t148;
+        let minus_g2_vx_leg2 = t142 * t148;
         let rate_2_leg2 = g2_vy_leg2 * t40 - minus_g2_vx_leg2 * t37;
-        let t165 = rate_2_leg2 - rate_1_leg2;
-        let t166 = rate_1_leg2 + t165;
-        let t170 = t35 + rate_1_leg2 * (t140 * rate_1_leg2) + t166 * (t141 * t166);
-        let t177 = t60 + rate_1_leg2 * (t143 * rate_1_leg2) + t166 * (t144 * t166);
-        let rate_dot_1_leg2 = g1_vx_leg2 * t170 + g1_vy_leg2 * t177;
-        let t188 = t135 * t138;
-        let t190 = t166 * t166;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t177 - minus_g2_vx_leg2 * t170;
-        let t196 = rate_dot_1_leg2 + rate_dot_2_leg2 - rate_dot_1_leg2;
-        let t199 = t135 - 0.1568;
-        let t200 = rate_1_leg2 * rate_1_leg2;
-        let t205 = 1.7857142857142858 * (t199 * t200)
-            + 3.5714285714285716 * (t188 * rate_dot_1_leg2);
-        let t217 = 1.7857142857142858 * (t199 * rate_dot_1_leg2)
-            - 3.5714285714285716 * (t188 * t200);
-        let t221 = 3.5714285714285716 * t188
-            * (parameters[21] * t190 + parameters[22] * t196 + parameters[23] * t205)
-            + 1.7857142857142858 * t199
-                * (parameters[21] * t196 - parameters[22] * t190
-                    + parameters[23] * t217);
-        let t226 = parameters[24] * t165 + ::overact::math::signed(parameters[25], t165)
+        let t161 = rate_2_leg2 - rate_1_leg2;
+        let t162 = rate_1_leg2 + t161;
+        let t163 = t162 * t162;
+        let t166 = t35 + t136 * t154 + t137 * t163;
+        let t171 = t60 + t139 * t154 + t140 * t163;
+        let rate_dot_1_leg2 = g1_vx_leg2 * t166 + g1_vy_leg2 * t171;
+        let t182 = t131 * t134;
+        let rate_dot_2_leg2 = g2_vy_leg2 * t171 - minus_g2_vx_leg2 * t166;
+        let t189 = rate_dot_1_leg2 + rate_dot_2_leg2 - rate_dot_1_leg2;
+        let t192 = t131 - 0.1568;
+        let t197 = 1.7857142857142858 * (t192 * t154)
+            + 3.5714285714285716 * (t182 * rate_dot_1_leg2);
+        let t209 = 1.7857142857142858 * (t192 * rate_dot_1_leg2)
+            - 3.5714285714285716 * (t182 * t154);
+        let t213 = 3.5714285714285716 * t182
+            * (parameters[21] * t163 + parameters[22] * t189 + parameters[23] * t197)
+            + 1.7857142857142858 * t192
+                * (parameters[21] * t189 - parameters[22] * t163
+                    + parameters[23] * t209);
+        let t218 = parameters[24] * t161 + ::overact::math::signed(parameters[25], t161)
             + parameters[26];
-        let t227 = parameters[15] * rate_dot_1_leg2 + parameters[16] * rate_dot_1_leg2
+        let t219 = parameters[15] * rate_dot_1_leg2 + parameters[16] * rate_dot_1_leg2
             + parameters[17] * rate_1_leg2
             + ::overact::math::signed(parameters[18], rate_1_leg2) + parameters[19]
-            + t221 - t226;
-        let t235 = twist[2] - rate_2_leg2;
-        let t239 = parameters[27] * t235 + ::overact::math::signed(parameters[28], t235)
+            + t213 - t218;
+        let t227 = twist[2] - rate_2_leg2;
+        let t231 = parameters[27] * t227 + ::overact::math::signed(parameters[28], t227)
             + parameters[29];
-        let t240 = parameters[20] * t196 + parameters[21] * t217 + parameters[22] * t205
-            + t226 - t239;
-        let t244 = pose[0] + t2;
-        let t245 = t244 + 0.3950502153918333;
-        let t248 = pose[1] - t6 + 0.10970563941232059;
-        let t250 = t248 * t248;
-        let t251 = t245 * t245 + t250;
-        let t253 = 0.0784 / t251 - 0.25;
-        ::overact::guard::reach(t253, "leg3")?;
-        let t254 = ::overact::math::sqrt(t253);
-        let t256 = 0.5 * t245 + t248 * t254;
-        let t257 = t245 - t256;
-        let t258 = 0.5 * t248;
-        let t260 = t258 - t245 * t254;
-        let t261 = t248 - t260;
-        let t263 = t256 + t257 - t257;
-        let t266 = t261 - (t260 + t261);
-        let t268 = t261 * t263 + t257 * t266;
-        ::overact::guard::leg(t268, 0.078399138102973, "leg3")?;
-        let t269 = 1.0 / t268;
-        let g1_vx_leg3 = t257 * t269;
-        let t272 = acceleration[0] + t31 - t34;
-        let t273 = twist[0] + t36;
-        let g1_vy_leg3 = t261 * t269;
-        let t276 = twist[1] + t33;
-        let rate_1_leg3 = g1_vx_leg3 * t273 + g1_vy_leg3 * t276;
-        let g2_vy_leg3 = t266 * t269;
-        let minus_g2_vx_leg3 = t263 * t269;
-        let rate_2_leg3 = g2_vy_leg3 * t276 - minus_g2_vx_leg3 * t273;
-        let t286 = rate_2_leg3 - rate_1_leg3;
-        let t287 = rate_1_leg3 + t286;
-        let t291 = t272 + rate_1_leg3 * (t256 * rate_1_leg3) + t287 * (t257 * t287);
-        let t294 = acceleration[1] + t57 + t59;
-        let t300 = t294 + rate_1_leg3 * (t260 * rate_1_leg3) + t287 * (t261 * t287);
-        let rate_dot_1_leg3 = g1_vx_leg3 * t291 + g1_vy_leg3 * t300;
-        let t311 = t251 * t254;
-        let t315 = t251 - 0.1568;
-        let t316 = rate_1_leg3 * rate_1_leg3;
-        let t319 = 3.5714285714285716 * (t311 * rate_dot_1_leg3)
-            - 1.7857142857142858 * (t315 * t316);
-        let t321 = t287 * t287;
-        let rate_dot_2_leg3 = g2_vy_leg3 * t300 - minus_g2_vx_leg3 * t291;
-        let t327 = rate_dot_1_leg3 + rate_dot_2_leg3 - rate_dot_1_leg3;
-        let t340 = 3.5714285714285716 * (t311 * t316)
-            + 1.7857142857142858 * (t315 * rate_dot_1_leg3);
-        let t344 = 3.5714285714285716 * t311
-            * (parameters[38] * t319 - (parameters[36] * t321 + parameters[37] * t327))
-            + 1.7857142857142858 * t315
-                * (parameters[36] * t327 - parameters[37] * t321
-                    + parameters[38] * t340);
-        let t349 = parameters[39] * t286 + ::overact::math::signed(parameters[40], t286)
+        let t232 = parameters[20] * t189 + parameters[21] * t209 + parameters[22] * t197
+            + t218 - t231;
+        let t236 = pose[0] + t2;
+        let t237 = t236 + 0.3950502153918333;
+        let t240 = pose[1] - t6 + 0.10970563941232059;
+        let t242 = t240 * t240;
+        let t243 = t237 * t237 + t242;
+        let t245 = 0.0784 / t243 - 0.25;
+        ::overact::guard::reach(t245, "leg3")?;
+        let t246 = ::overact::math::sqrt(t245);
+        let t248 = 0.5 * t237 + t240 * t246;
+        let t249 = t237 - t248;
+        let t250 = 0.5 * t240;
+        let t252 = t250 - t237 * t246;
+        let t253 = t240 - t252;
+        let t255 = t248 + t249 - t249;
+        let t258 = t253 - (t252 + t253);
+        let t260 = t253 * t255 + t249 * t258;
+        ::overact::guard::leg(t260, 0.078399138102973, "leg3")?;
+        let t261 = 1.0 / t260;
+        let g1_vx_leg3 = t249 * t261;
+        let t264 = acceleration[0] + t31 - t34;
+        let t265 = twist[0] + t36;
+        let g1_vy_leg3 = t253 * t261;
+        let t268 = twist[1] + t33;
+        let rate_1_leg3 = g1_vx_leg3 * t265 + g1_vy_leg3 * t268;
+        let t271 = rate_1_leg3 * rate_1_leg3;
+        let g2_vy_leg3 = t258 * t261;
+        let minus_g2_vx_leg3 = t255 * t261;
+        let rate_2_leg3 = g2_vy_leg3 * t268 - minus_g2_vx_leg3 * t265;
+        let t278 = rate_2_leg3 - rate_1_leg3;
+        let t279 = rate_1_leg3 + t278;
+        let t280 = t279 * t279;
+        let t283 = t264 + t248 * t271 + t249 * t280;
+        let t286 = acceleration[1] + t57 + t59;
+        let t290 = t286 + t252 * t271 + t253 * t280;
+        let rate_dot_1_leg3 = g1_vx_leg3 * t283 + g1_vy_leg3 * t290;
+        let t301 = t243 * t246;
+        let t305 = t243 - 0.1568;
+        let t308 = 3.5714285714285716 * (t301 * rate_dot_1_leg3)
+            - 1.7857142857142858 * (t305 * t271);
+        let rate_dot_2_leg3 = g2_vy_leg3 * t290 - minus_g2_vx_leg3 * t283;
+        let t315 = rate_dot_1_leg3 + rate_dot_2_leg3 - rate_dot_1_leg3;
+        let t328 = 3.5714285714285716 * (t301 * t271)
+            + 1.7857142857142858 * (t305 * rate_dot_1_leg3);
+        let t332 = 3.5714285714285716 * t301
+            * (parameters[38] * t308 - (parameters[36] * t280 + parameters[37] * t315))
+            + 1.7857142857142858 * t305
+                * (parameters[36] * t315 - parameters[37] * t280
+                    + parameters[38] * t328);
+        let t337 = parameters[39] * t278 + ::overact::math::signed(parameters[40], t278)
             + parameters[41];
-        let t350 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
+        let t338 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
             + parameters[32] * rate_1_leg3
             + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34]
-            + t344 - t349;
-        let t358 = twist[2] - rate_2_leg3;
-        let t362 = parameters[42] * t358 + ::overact::math::signed(parameters[43], t358)
+            + t332 - t337;
+        let t346 = twist[2] - rate_2_leg3;
+        let t350 = parameters[42] * t346 + ::overact::math::signed(parameters[43], t346)
             + parameters[44];
-        let t363 = parameters[35] * t327 + parameters[36] * t340 - parameters[37] * t319
-            + t349 - t362;
-        let t366 = g1_vx_leg1 * t116 - minus_g2_vx_leg1 * t129 + g1_vx_leg2 * t227
-            - minus_g2_vx_leg2 * t240 + g1_vx_leg3 * t350 - minus_g2_vx_leg3 * t363;
-        let t367 = t244 - 0.3950502153918333;
-        let t370 = t367 * t367 + t250;
-        let t372 = 0.0784 / t370 - 0.25;
-        ::overact::guard::reach(t372, "leg4")?;
-        let t373 = ::overact::math::sqrt(t372);
-        let t375 = 0.5 * t367 - t248 * t373;
-        let t376 = t367 - t375;
-        let t378 = t258 + t367 * t373;
-        let t379 = t248 - t378;
-        let t381 = t375 + t376 - t376;
-        let t384 = t379 - (t378 + t379);
-        let t386 = t379 * t381 + t376 * t384;
-        ::overact::guard::leg(t386, 0.078399138102973, "leg4")?;
-        let t387 = 1.0 / t386;
-        let g1_vx_leg4 = t376 * t387;
-        let g1_vy_leg4 = t379 * t387;
-        let rate_1_leg4 = g1_vx_leg4 * t273 + g1_vy_leg4 * t276;
-        let g2_vy_leg4 = t384 * t387;
-        let minus_g2_vx_leg4 = t381 * t387;
-        let rate_2_leg4 = g2_vy_leg4 * t276 - minus_g2_vx_leg4 * t273;
-        let t400 = rate_2_leg4 - rate_1_leg4;
-        let t401 = rate_1_leg4 + t400;
-        let t405 = t272 + rate_1_leg4 * (t375 * rate_1_leg4) + t401 * (t376 * t401);
-        let t412 = t294 + rate_1_leg4 * (t378 * rate_1_leg4) + t401 * (t379 * t401);
-        let rate_dot_1_leg4 = g1_vx_leg4 * t405 + g1_vy_leg4 * t412;
-        let t423 = t370 * t373;
-        let t425 = t401 * t401;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t412 - minus_g2_vx_leg4 * t405;
-        let t431 = rate_dot_1_leg4 + rate_dot_2_leg4 - rate_dot_1_leg4;
-        let t434 = t370 - 0.1568;
-        let t435 = rate_1_leg4 * rate_1_leg4;
-        let t440 = 1.7857142857142858 * (t434 * t435)
-            + 3.5714285714285716 * (t423 * rate_dot_1_leg4);
-        let t452 = 1.7857142857142858 * (t434 * rate_dot_1_leg4)
-            - 3.5714285714285716 * (t423 * t435);
-        let t456 = 3.5714285714285716 * t423
-            * (parameters[51] * t425 + parameters[52] * t431 + parameters[53] * t440)
-            + 1.7857142857142858 * t434
-                * (parameters[51] * t431 - parameters[52] * t425
-                    + parameters[53] * t452);
-        let t461 = parameters[54] * t400 + ::overact::math::signed(parameters[55], t400)
+        let t351 = parameters[35] * t315 + parameters[36] * t328 - parameters[37] * t308
+            + t337 - t350;
+        let t354 = g1_vx_leg1 * t112 - minus_g2_vx_leg1 * t125 + g1_vx_leg2 * t219
+            - minus_g2_vx_leg2 * t232 + g1_vx_leg3 * t338 - minus_g2_vx_leg3 * t351;
+        let t355 = t236 - 0.3950502153918333;
+        let t358 = t355 * t355 + t242;
+        let t360 = 0.0784 / t358 - 0.25;
+        ::overact::guard::reach(t360, "leg4")?;
+        let t361 = ::overact::math::sqrt(t360);
+        let t363 = 0.5 * t355 - t240 * t361;
+        let t364 = t355 - t363;
+        let t366 = t250 + t355 * t361;
+        let t367 = t240 - t366;
+        let t369 = t363 + t364 - t364;
+        let t372 = t367 - (t366 + t367);
+        let t374 = t367 * t369 + t364 * t372;
+        ::overact::guard::leg(t374, 0.078399138102973, "leg4")?;
+        let t375 = 1.0 / t374;
+        let g1_vx_leg4 = t364 * t375;
+        let g1_vy_leg4 = t367 * t375;
+        let rate_1_leg4 = g1_vx_leg4 * t265 + g1_vy_leg4 * t268;
+        let t381 = rate_1_leg4 * rate_1_leg4;
+        let g2_vy_leg4 = t372 * t375;
+        let minus_g2_vx_leg4 = t369 * t375;
+        let rate_2_leg4 = g2_vy_leg4 * t268 - minus_g2_vx_leg4 * t265;
+        let t388 = rate_2_leg4 - rate_1_leg4;
+        let t389 = rate_1_leg4 + t388;
+        let t390 = t389 * t389;
+        let t393 = t264 + t363 * t381 + t364 * t390;
+        let t398 = t286 + t366 * t381 + t367 * t390;
+        let rate_dot_1_leg4 = g1_vx_leg4 * t393 + g1_vy_leg4 * t398;
+        let t409 = t358 * t361;
+        let rate_dot_2_leg4 = g2_vy_leg4 * t398 - minus_g2_vx_leg4 * t393;
+        let t416 = rate_dot_1_leg4 + rate_dot_2_leg4 - rate_dot_1_leg4;
+        let t419 = t358 - 0.1568;
+        let t424 = 1.7857142857142858 * (t419 * t381)
+            + 3.5714285714285716 * (t409 * rate_dot_1_leg4);
+        let t436 = 1.7857142857142858 * (t419 * rate_dot_1_leg4)
+            - 3.5714285714285716 * (t409 * t381);
+        let t440 = 3.5714285714285716 * t409
+            * (parameters[51] * t390 + parameters[52] * t416 + parameters[53] * t424)
+            + 1.7857142857142858 * t419
+                * (parameters[51] * t416 - parameters[52] * t390
+                    + parameters[53] * t436);
+        let t445 = parameters[54] * t388 + ::overact::math::signed(parameters[55], t388)
             + parameters[56];
-        let t462 = parameters[45] * rate_dot_1_leg4 + parameters[46] * rate_dot_1_leg4
+        let t446 = parameters[45] * rate_dot_1_leg4 + parameters[46] * rate_dot_1_leg4
             + parameters[47] * rate_1_leg4
             + ::overact::math::signed(parameters[48], rate_1_leg4) + parameters[49]
-            + t456 - t461;
-        let t470 = twist[2] - rate_2_leg4;
-        let t474 = parameters[57] * t470 + ::overact::math::signed(parameters[58], t470)
+            + t440 - t445;
+        let t454 = twist[2] - rate_2_leg4;
+        let t458 = parameters[57] * t454 + ::overact::math::signed(parameters[58], t454)
             + parameters[59];
-        let t475 = parameters[50] * t431 + parameters[51] * t452 + parameters[52] * t440
-            + t461 - t474;
-        let t481 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t483 = twist[2] * twist[2];
-        let t493 = parameters[63] * t481
-            - (parameters[61] * t483 + acceleration[2] * parameters[62])
-            - parameters[65] * t483 - acceleration[2] * parameters[66]
-            + parameters[67] * t481;
-        let t500 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t508 = acceleration[2] * parameters[61] - parameters[62] * t483
-            + parameters[63] * t500 + acceleration[2] * parameters[65]
-            - parameters[66] * t483 + parameters[67] * t500;
-        let t511 = t366 + g1_vx_leg4 * t462 - minus_g2_vx_leg4 * t475 + c_phi * t493
-            - s_phi * t508;
-        let t518 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t459 = parameters[50] * t416 + parameters[51] * t436 + parameters[52] * t424
+            + t445 - t458;
+        let t465 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t467 = twist[2] * twist[2];
+        let t477 = parameters[63] * t465
+            - (parameters[61] * t467 + acceleration[2] * parameters[62])
+            - parameters[65] * t467 - acceleration[2] * parameters[66]
+            + parameters[67] * t465;
+        let t484 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t492 = acceleration[2] * parameters[61] - parameters[62] * t467
+            + parameters[63] * t484 + acceleration[2] * parameters[65]
+            - parameters[66] * t467 + parameters[67] * t484;
+        let t495 = t354 + g1_vx_leg4 * t446 - minus_g2_vx_leg4 * t459 + c_phi * t477
+            - s_phi * t492;
+        let t502 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t518, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(t518, 25.429161076750646, "actuators")?;
-        let t519 = 1.0 / t518;
-        let t527 = g1_vy_leg1 * g1_vx_leg1 + g1_vy_leg2 * g1_vx_leg2
-            + g1_vy_leg3 * g1_vx_leg3 + g1_vy_leg4 * g1_vx_leg4;
-        let t528 = t527 * t519;
-        let t537 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t527 * t528;
-        ::overact::guard::platform(t537, 25.59236889935335, "actuators")?;
-        ::overact::guard::platform(t537, 25.59236889935335, "actuators")?;
-        let t538 = 1.0 / t537;
-        let t549 = g1_vy_leg1 * t116 + g2_vy_leg1 * t129 + g1_vy_leg2 * t227
-            + g2_vy_leg2 * t240 + g1_vy_leg3 * t350 + g2_vy_leg3 * t363;
-        let t559 = t549 + g1_vy_leg4 * t462 + g2_vy_leg4 * t475 + s_phi * t493
-            + c_phi * t508 - t511 * t528;
+        ::overact::guard::platform(t502, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(t502, 25.429161076750646, "actuators")?;
+        let t503 = 1.0 / t502;
+        let t511 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
+        let t512 = t511 * t503;
+        let t521 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t511 * t512;
+        ::overact::guard::platform(t521, 25.59236889935335, "actuators")?;
+        ::overact::guard::platform(t521, 25.59236889935335, "actuators")?;
+        let t522 = 1.0 / t521;
+        let t533 = g1_vy_leg1 * t112 + g2_vy_leg1 * t125 + g1_vy_leg2 * t219
+            + g2_vy_leg2 * t232 + g1_vy_leg3 * t338 + g2_vy_leg3 * t351;
+        let t543 = t533 + g1_vy_leg4 * t446 + g2_vy_leg4 * t459 + s_phi * t477
+            + c_phi * t492 - t495 * t512;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
         let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t6 * g1_vx_leg2;
         let g1_wz_leg4 = t2 * g1_vy_leg4 + t6 * g1_vx_leg4;
-        let t586 = g1_vx_leg3 * g1_wz_leg3
+        let t570 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + g1_vx_leg2 * minus_g1_wz_leg2)
             + g1_vx_leg4 * g1_wz_leg4;
-        let t587 = t586 * t519;
-        let t589 = g1_vy_leg3 * g1_wz_leg3
+        let t571 = t570 * t503;
+        let t573 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
-            + g1_vy_leg4 * g1_wz_leg4 - t527 * t587;
-        let t590 = t589 * t538;
-        let t601 = minus_g1_wz_leg1 * minus_g1_wz_leg1
+            + g1_vy_leg4 * g1_wz_leg4 - t511 * t571;
+        let t574 = t573 * t522;
+        let t585 = minus_g1_wz_leg1 * minus_g1_wz_leg1
             + minus_g1_wz_leg2 * minus_g1_wz_leg2 + g1_wz_leg3 * g1_wz_leg3
-            + g1_wz_leg4 * g1_wz_leg4 - t586 * t587 - t589 * t590;
-        ::overact::guard::platform(t601, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t601, 0.3076928490286828, "actuators")?;
-        let t602 = 1.0 / t601;
+            + g1_wz_leg4 * g1_wz_leg4 - t570 * t571 - t573 * t574;
+        ::overact::guard::platform(t585, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(t585, 0.3076928490286828, "actuators")?;
+        let t586 = 1.0 / t585;
         let g2_wz_leg1 = t6 * minus_g2_vx_leg1 - t2 * g2_vy_leg1;
         let g2_wz_leg2 = t6 * minus_g2_vx_leg2 - t2 * g2_vy_leg2;
         let g2_wz_leg3 = t2 * g2_vy_leg3 - t6 * minus_g2_vx_leg3;
-        let t625 = g2_wz_leg1 * t129 - minus_g1_wz_leg1 * t116 + t128 + g2_wz_leg2 * t240
-            - minus_g1_wz_leg2 * t227 + t239 + g1_wz_leg3 * t350 + g2_wz_leg3 * t363
-            + t362;
+        let t609 = g2_wz_leg1 * t125 - minus_g1_wz_leg1 * t112 + t124 + g2_wz_leg2 * t232
+            - minus_g1_wz_leg2 * t219 + t231 + g1_wz_leg3 * t338 + g2_wz_leg3 * t351
+            + t350;
         let g2_wz_leg4 = t2 * g2_vy_leg4 - t6 * minus_g2_vx_leg4;
-        let t644 = acceleration[2] * parameters[60] + parameters[61] * t500
-            - parameters[62] * t481 + acceleration[2] * parameters[64]
-            + parameters[65] * t500 - parameters[66] * t481;
-        let t649 = t625 + g1_wz_leg4 * t462 + g2_wz_leg4 * t475 + t474 + t644
-            - t511 * t587 - t590 * t559;
-        let t650 = t602 * t649;
-        let t652 = t538 * t559 - t590 * t650;
-        let t656 = t511 * t519 - t528 * t652 - t587 * t650;
-        let t664 = g1_vy_leg4 - g1_vx_leg4 * t528;
-        let t670 = t602 * (g1_wz_leg4 - g1_vx_leg4 * t587 - t590 * t664);
-        let t672 = t538 * t664 - t590 * t670;
-        let t676 = g1_vx_leg4 * t519 - t528 * t672 - t587 * t670;
-        let t681 = g1_vx_leg1 * t676 + g1_vy_leg1 * t672 - minus_g1_wz_leg1 * t670;
-        let t687 = g1_vx_leg2 * t676 + g1_vy_leg2 * t672 - minus_g1_wz_leg2 * t670;
-        let t694 = g1_vx_leg3 * t676 + g1_vy_leg3 * t672 + g1_wz_leg3 * t670;
-        let t702 = 1.0 - (g1_vx_leg4 * t676 + g1_vy_leg4 * t672 + g1_wz_leg4 * t670);
-        let t706 = 1.0
+        let t628 = acceleration[2] * parameters[60] + parameters[61] * t484
+            - parameters[62] * t465 + acceleration[2] * parameters[64]
+            + parameters[65] * t484 - parameters[66] * t465;
+        let t633 = t609 + g1_wz_leg4 * t446 + g2_wz_leg4 * t459 + t458 + t628
+            - t495 * t571 - t574 * t543;
+        let t634 = t586 * t633;
+        let t636 = t522 * t543 - t574 * t634;
+        let t640 = t495 * t503 - t512 * t636 - t571 * t634;
+        let t648 = g1_vy_leg4 - g1_vx_leg4 * t512;
+        let t654 = t586 * (g1_wz_leg4 - g1_vx_leg4 * t571 - t574 * t648);
+        let t656 = t522 * t648 - t574 * t654;
+        let t660 = g1_vx_leg4 * t503 - t512 * t656 - t571 * t654;
+        let t665 = g1_vx_leg1 * t660 + g1_vy_leg1 * t656 - minus_g1_wz_leg1 * t654;
+        let t671 = g1_vx_leg2 * t660 + g1_vy_leg2 * t656 - minus_g1_wz_leg2 * t654;
+        let t678 = g1_vx_leg3 * t660 + g1_vy_leg3 * t656 + g1_wz_leg3 * t654;
+        let t686 = 1.0 - (g1_vx_leg4 * t660 + g1_vy_leg4 * t656 + g1_wz_leg4 * t654);
+        let t690 = 1.0
             / ::overact::math::sqrt(
-                t681 * t681 + t687 * t687 + t694 * t694 + t702 * t702,
+                t665 * t665 + t671 * t671 + t678 * t678 + t686 * t686,
             );
         Ok([
-            g1_vx_leg1 * t656 + g1_vy_leg1 * t652 - minus_g1_wz_leg1 * t650
-                - preload[0] * (t681 * t706),
-            g1_vx_leg2 * t656 + g1_vy_leg2 * t652 - minus_g1_wz_leg2 * t650
-                - preload[0] * (t687 * t706),
-            g1_vx_leg3 * t656 + g1_vy_leg3 * t652 + g1_wz_leg3 * t650
-                - preload[0] * (t694 * t706),
-            g1_vx_leg4 * t656 + g1_vy_leg4 * t652 + g1_wz_leg4 * t650
-                + preload[0] * (t702 * t706),
+            g1_vx_leg1 * t640 + g1_vy_leg1 * t636 - minus_g1_wz_leg1 * t634
+                - preload[0] * (t665 * t690),
+            g1_vx_leg2 * t640 + g1_vy_leg2 * t636 - minus_g1_wz_leg2 * t634
+                - preload[0] * (t671 * t690),
+            g1_vx_leg3 * t640 + g1_vy_leg3 * t636 + g1_wz_leg3 * t634
+                - preload[0] * (t678 * t690),
+            g1_vx_leg4 * t640 + g1_vy_leg4 * t636 + g1_wz_leg4 * t634
+                + preload[0] * (t686 * t690),
         ])
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50).
@@ -7775,8 +7716,8 @@ impl DualV {
         let g1_vy_leg2 = t44 * t52;
         let g1_vy_leg3 = t73 * t81;
         let g1_vy_leg4 = t97 * t105;
-        let t128 = g1_vy_leg1 * g1_vx_leg1 + g1_vy_leg2 * g1_vx_leg2
-            + g1_vy_leg3 * g1_vx_leg3 + g1_vy_leg4 * g1_vx_leg4;
+        let t128 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
         let t129 = t128 * t116;
         let t138 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t128 * t129;
@@ -7892,8 +7833,8 @@ impl DualV {
         let g1_vy_leg2 = t71 * t79;
         let g1_vy_leg3 = t95 * t103;
         let g1_vy_leg4 = t48 * t56;
-        let t121 = g1_vy_leg1 * g1_vx_leg1 + g1_vy_leg2 * g1_vx_leg2
-            + g1_vy_leg3 * g1_vx_leg3 + g1_vy_leg4 * g1_vx_leg4;
+        let t121 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
         let t122 = t121 * t109;
         let t131 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t121 * t122;

@@ -242,6 +242,7 @@ fn full_rate(
     let sizes = info.sizes;
     let r = sizes.dof;
     let width = columns.len() + 1;
+    let scales = home_scales(model);
     (0..motion.samples.div_ceil(BLOCK))
         .into_par_iter()
         .map(|index| {
@@ -281,12 +282,27 @@ fn full_rate(
                 model
                     .evaluate(Function::InverseJacobian, &[pose], &mut jacobians)
                     .map_err(at)?;
-                keep_actuators(&mut block, &jacobians, &kept, r, sizes.actuators, first)
+                keep_actuators(&mut block, &jacobians, &kept, &scales, sizes.actuators, first)
                     .map_err(|sample| singular(motion, sample))?;
             }
             Ok(block)
         })
         .collect()
+}
+
+/// Inverse norms of the columns of J_p^inv at home, which make metres and radians comparable; ones
+/// where the model has no value at home.
+fn home_scales(model: &dyn Model) -> Vec<f64> {
+    let info = model.info();
+    let (n, r) = (info.sizes.actuators, info.sizes.dof);
+    let mut jacobian = vec![0.0; n * r];
+    let evaluated = model.evaluate(Function::InverseJacobian, &[info.home_pose], &mut jacobian);
+    let norm = |column: usize| {
+        let squares = (0..n).map(|row| jacobian[row * r + column].powi(2));
+        squares.sum::<f64>().sqrt()
+    };
+    let scale = |norm: f64| if evaluated.is_ok() && norm > 0.0 { 1.0 / norm } else { 1.0 };
+    (0..r).map(norm).map(scale).collect()
 }
 
 /// Turns rows of Γ¹ into rows of Γ² = J_a^-T Γ¹, sample by sample, and tracks the condition of
@@ -295,10 +311,11 @@ fn keep_actuators(
     block: &mut Block,
     jacobians: &[f64],
     kept: &[usize],
-    r: usize,
+    scales: &[f64],
     actuators: usize,
     first: usize,
 ) -> Result<(), usize> {
+    let r = scales.len();
     let count = jacobians.len() / (actuators * r).max(1);
     let width = block.values.len() / (count * r).max(1);
     let samples = block
@@ -311,7 +328,8 @@ fn keep_actuators(
         let condition = if is_identity {
             1.0
         } else {
-            condition_number(&transposed)
+            // Columns of J_a in units that compare metres with radians.
+            condition_number(&DMatrix::from_fn(r, r, |i, j| transposed[(i, j)] * scales[i]))
         };
         if !condition.is_finite() {
             return Err(first + index);

@@ -22,11 +22,17 @@ impl<const R: usize, const C: usize> Flat for [[f64; C]; R] {
 }
 
 /// The row of an input for a sample; an input of a single row serves all samples.
-fn row<'a, const N: usize>(input: Option<&&'a [f64]>, sample: usize) -> Result<&'a [f64; N], Error> {
+fn row<'a, const N: usize>(
+    input: Option<&&'a [f64]>,
+    sample: usize,
+) -> Result<&'a [f64; N], Error> {
     let input: &'a [f64] = input.copied().unwrap_or_default();
     let start = if input.len() == N { 0 } else { sample * N };
     let rest = input.get(start..).unwrap_or_default();
-    rest.first_chunk::<N>().ok_or(Error::Length { expected: start + N, found: input.len() })
+    rest.first_chunk::<N>().ok_or(Error::Length {
+        expected: start + N,
+        found: input.len(),
+    })
 }
 
 /// A slice as an array.
@@ -34,7 +40,10 @@ fn row<'a, const N: usize>(input: Option<&&'a [f64]>, sample: usize) -> Result<&
 /// # Errors
 /// [`Error::Length`].
 pub fn array<const N: usize>(slice: &[f64]) -> Result<&[f64; N], Error> {
-    slice.try_into().map_err(|_| Error::Length { expected: N, found: slice.len() })
+    slice.try_into().map_err(|_| Error::Length {
+        expected: N,
+        found: slice.len(),
+    })
 }
 
 /// Evaluates a function sample by sample; `size` is the number of its results.
@@ -50,7 +59,10 @@ fn each<O: Flat>(
         let value = f(sample).map_err(|error| SampleError { sample, error })?;
         let value = value.flat();
         if out.len() != value.len() {
-            let error = Error::Length { expected: value.len(), found: out.len() };
+            let error = Error::Length {
+                expected: value.len(),
+                found: out.len(),
+            };
             return Err(SampleError { sample, error });
         }
         out.copy_from_slice(value);
@@ -81,7 +93,9 @@ pub fn map2<const A: usize, const B: usize, O: Flat>(
     output: &mut [f64],
     f: impl Fn(&[f64; A], &[f64; B]) -> Result<O, Error>,
 ) -> Result<(), SampleError> {
-    each(size, output, |i| f(row(inputs.first(), i)?, row(inputs.get(1), i)?))
+    each(size, output, |i| {
+        f(row(inputs.first(), i)?, row(inputs.get(1), i)?)
+    })
 }
 
 /// A function of three inputs.
@@ -95,7 +109,11 @@ pub fn map3<const A: usize, const B: usize, const C: usize, O: Flat>(
     f: impl Fn(&[f64; A], &[f64; B], &[f64; C]) -> Result<O, Error>,
 ) -> Result<(), SampleError> {
     each(size, output, |i| {
-        f(row(inputs.first(), i)?, row(inputs.get(1), i)?, row(inputs.get(2), i)?)
+        f(
+            row(inputs.first(), i)?,
+            row(inputs.get(1), i)?,
+            row(inputs.get(2), i)?,
+        )
     })
 }
 

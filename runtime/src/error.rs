@@ -58,7 +58,10 @@ impl fmt::Display for Error {
                 f,
                 "leg `{leg}` is singular here: its determinant is {condition:.1e} times smaller than at home"
             ),
-            Self::SingularPlatform { actuators, condition } => write!(
+            Self::SingularPlatform {
+                actuators,
+                condition,
+            } => write!(
                 f,
                 "the {actuators} do not determine the platform's motion here: their determinant is {condition:.1e} times smaller than at home"
             ),

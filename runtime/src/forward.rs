@@ -52,7 +52,12 @@ pub fn gauss_newton(
     mut evaluate: impl FnMut(&[f64], &mut [f64], &mut [f64]) -> Result<(), Error>,
     mut displace: impl FnMut(&mut [f64], &[f64]),
 ) -> Result<(), Error> {
-    let Workspace { actuators, inverse_jacobian, normal, step } = workspace;
+    let Workspace {
+        actuators,
+        inverse_jacobian,
+        normal,
+        step,
+    } = workspace;
     if measured.positions.iter().any(|q| !q.is_finite()) {
         return Err(Error::NotFinite);
     }
@@ -100,7 +105,10 @@ pub fn solve_positive_definite(matrix: &mut [f64], vector: &mut [f64]) -> Result
     for k in 0..n {
         let pivot = matrix[k * n + k];
         if pivot.is_nan() || pivot <= 1e-15 * largest {
-            return Err(Error::SingularPlatform { actuators: "actuators", condition: largest / pivot.abs() });
+            return Err(Error::SingularPlatform {
+                actuators: "actuators",
+                condition: largest / pivot.abs(),
+            });
         }
         for i in k + 1..n {
             let factor = matrix[i * n + k] / pivot;
@@ -135,7 +143,9 @@ pub fn displace_quaternion(pose: &mut [f64], step: &[f64]) {
     for (coordinate, step) in pose.iter_mut().zip(&step[..linear]) {
         *coordinate += step;
     }
-    let Some([w, x, y, z]) = pose.last_chunk_mut::<4>() else { return };
+    let Some([w, x, y, z]) = pose.last_chunk_mut::<4>() else {
+        return;
+    };
     let angle = sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]);
     let (sine, cosine) = sin_cos(0.5 * angle);
     // sin(a/2)/a tends to 1/2.

@@ -12,7 +12,11 @@ pub const SINGULAR: f64 = 1e-9;
 /// [`Error::OutOfReach`]; also for NaN.
 #[inline]
 pub fn reach(radicand: f64, leg: &'static str) -> Result<(), Error> {
-    if radicand >= 0.0 { Ok(()) } else { Err(Error::OutOfReach { leg }) }
+    if radicand >= 0.0 {
+        Ok(())
+    } else {
+        Err(Error::OutOfReach { leg })
+    }
 }
 
 /// A leg's determinant must not vanish; `home` is its magnitude at home.
@@ -24,7 +28,10 @@ pub fn leg(determinant: f64, home: f64, leg: &'static str) -> Result<(), Error> 
     if determinant.abs() > SINGULAR * home {
         Ok(())
     } else {
-        Err(Error::SingularLeg { leg, condition: home / determinant.abs() })
+        Err(Error::SingularLeg {
+            leg,
+            condition: home / determinant.abs(),
+        })
     }
 }
 
@@ -37,6 +44,9 @@ pub fn platform(determinant: f64, home: f64, actuators: &'static str) -> Result<
     if determinant.abs() > SINGULAR * home {
         Ok(())
     } else {
-        Err(Error::SingularPlatform { actuators, condition: home / determinant.abs() })
+        Err(Error::SingularPlatform {
+            actuators,
+            condition: home / determinant.abs(),
+        })
     }
 }

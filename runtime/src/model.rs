@@ -68,10 +68,13 @@ impl Function {
     #[must_use]
     pub const fn inputs(self) -> &'static [Input] {
         use Input::{
-            Acceleration, ActuatorAccelerations, ActuatorVelocities, Parameters, Pose, Torques, Twist,
+            Acceleration, ActuatorAccelerations, ActuatorVelocities, Parameters, Pose, Torques,
+            Twist,
         };
         match self {
-            Self::Joints | Self::ActuatorPositions | Self::InverseJacobian | Self::NullSpace => &[Pose],
+            Self::Joints | Self::ActuatorPositions | Self::InverseJacobian | Self::NullSpace => {
+                &[Pose]
+            }
             Self::JointVelocities
             | Self::JointAccelerations
             | Self::IdmRedPlatform
@@ -253,19 +256,34 @@ impl Parameter {
         index: u16,
         shape: u16,
     ) -> Self {
-        Self { name, symbol, unit, body: Body::Leg { leg, index, shape } }
+        Self {
+            name,
+            symbol,
+            unit,
+            body: Body::Leg { leg, index, shape },
+        }
     }
 
     /// A parameter of the platform.
     #[must_use]
     pub const fn of_platform(name: &'static str, symbol: Symbol, unit: &'static str) -> Self {
-        Self { name, symbol, unit, body: Body::Platform }
+        Self {
+            name,
+            symbol,
+            unit,
+            body: Body::Platform,
+        }
     }
 
     /// A parameter of the payload.
     #[must_use]
     pub const fn of_payload(name: &'static str, symbol: Symbol, unit: &'static str) -> Self {
-        Self { name, symbol, unit, body: Body::Payload }
+        Self {
+            name,
+            symbol,
+            unit,
+            body: Body::Payload,
+        }
     }
 }
 
@@ -288,7 +306,11 @@ impl BaseParameter {
         parameter: &'static str,
         regrouped: &'static [(&'static str, f64)],
     ) -> Self {
-        Self { name, parameter, regrouped }
+        Self {
+            name,
+            parameter,
+            regrouped,
+        }
     }
 }
 

@@ -14,12 +14,18 @@ pub struct Angle {
 
 impl Angle {
     /// Zero.
-    pub const ZERO: Self = Self { half_turns: Ratio::ZERO, radians: Ratio::ZERO };
+    pub const ZERO: Self = Self {
+        half_turns: Ratio::ZERO,
+        radians: Ratio::ZERO,
+    };
 
     /// π times a fraction.
     #[must_use]
     pub const fn half_turns(half_turns: Ratio) -> Self {
-        Self { half_turns, radians: Ratio::ZERO }
+        Self {
+            half_turns,
+            radians: Ratio::ZERO,
+        }
     }
 
     /// A fraction of degrees; `None` on overflow.
@@ -31,7 +37,10 @@ impl Angle {
     /// A fraction of radians.
     #[must_use]
     pub const fn radians(radians: Ratio) -> Self {
-        Self { half_turns: Ratio::ZERO, radians }
+        Self {
+            half_turns: Ratio::ZERO,
+            radians,
+        }
     }
 
     /// The angle in radians.
@@ -61,7 +70,10 @@ impl Angle {
     /// The angle with the opposite sign.
     #[must_use]
     pub const fn negative(self) -> Self {
-        Self { half_turns: self.half_turns.negative(), radians: self.radians.negative() }
+        Self {
+            half_turns: self.half_turns.negative(),
+            radians: self.radians.negative(),
+        }
     }
 
     /// Whether the angle is zero.
@@ -99,7 +111,11 @@ impl Angle {
 
 /// A constant whose image is zero is zero, whatever the rounding of the float says.
 fn exact(value: f64, image: Element) -> Number {
-    if image == Element::ZERO { Number::ZERO } else { Number::known(value, image) }
+    if image == Element::ZERO {
+        Number::ZERO
+    } else {
+        Number::known(value, image)
+    }
 }
 
 fn hash(ratio: Ratio) -> u64 {
@@ -141,7 +157,9 @@ mod tests {
 
     #[test]
     fn a_right_angle_has_cosine_zero() {
-        let (cosine, sine) = Angle::degrees(Ratio::integer(90)).unwrap().cosine_and_sine();
+        let (cosine, sine) = Angle::degrees(Ratio::integer(90))
+            .unwrap()
+            .cosine_and_sine();
         assert!(cosine.is_zero() && sine.is_one());
     }
 

@@ -114,8 +114,13 @@ impl Arena {
     /// An empty graph.
     #[must_use]
     pub fn new() -> Self {
-        let tables = Tables { scopes: vec![String::new()], ..Tables::default() };
-        Self { tables: RefCell::new(tables) }
+        let tables = Tables {
+            scopes: vec![String::new()],
+            ..Tables::default()
+        };
+        Self {
+            tables: RefCell::new(tables),
+        }
     }
 
     /// Number of nodes built so far.
@@ -133,10 +138,14 @@ impl Arena {
     /// Sets the heading under which new nodes are listed, for instance a leg's name.
     pub fn enter(&self, scope: &str) {
         let mut tables = self.tables.borrow_mut();
-        let at = tables.scopes.iter().position(|s| s == scope).unwrap_or_else(|| {
-            tables.scopes.push(scope.to_owned());
-            tables.scopes.len() - 1
-        });
+        let at = tables
+            .scopes
+            .iter()
+            .position(|s| s == scope)
+            .unwrap_or_else(|| {
+                tables.scopes.push(scope.to_owned());
+                tables.scopes.len() - 1
+            });
         tables.scope = at as u32;
     }
 
@@ -198,7 +207,11 @@ impl Arena {
         let circle = std::array::from_fn(|k| Element::circle_point(mix(seed ^ (k as u64 + 11))));
         // Samples lie in (0.2, 1.2), where sums, products and angles are all well-behaved.
         let sample = 0.2 + (mix(seed ^ 5) >> 11) as f64 / (1_u64 << 53) as f64;
-        tables.symbols.push(Symbol { name: name.to_owned(), circle, sample });
+        tables.symbols.push(Symbol {
+            name: name.to_owned(),
+            circle,
+            sample,
+        });
         tables.symbol_ids.insert(name.to_owned(), id);
         id
     }
@@ -252,7 +265,11 @@ impl Arena {
         match tables.nodes[handle.index()].op {
             Op::Constant(id) => {
                 let number = tables.constants[id as usize];
-                Some(if handle.is_negative() { -number } else { number })
+                Some(if handle.is_negative() {
+                    -number
+                } else {
+                    number
+                })
             }
             _ => None,
         }
@@ -334,7 +351,10 @@ impl Arena {
     }
 
     pub(crate) fn is_constant(&self, handle: Handle) -> bool {
-        matches!(self.tables.borrow().nodes[handle.index()].op, Op::Constant(_))
+        matches!(
+            self.tables.borrow().nodes[handle.index()].op,
+            Op::Constant(_)
+        )
     }
 
     fn push(&self, op: Op, meaning: Meaning) -> Handle {
@@ -348,7 +368,10 @@ impl Arena {
         let scope = tables.scope;
         tables.nodes.push(Node { op, meaning, scope });
         let (key, negative) = canonical(meaning.image);
-        tables.by_meaning.entry(key).or_insert(Handle::new(index, negative));
+        tables
+            .by_meaning
+            .entry(key)
+            .or_insert(Handle::new(index, negative));
         if let (false, Some(key)) = (scaled, ratio_key(&meaning)) {
             tables.by_ratio.entry(key).or_insert(index as u32);
         }
@@ -364,7 +387,11 @@ impl Tables {
 
     fn sample(&self, handle: Handle) -> f64 {
         let sample = self.nodes[handle.index()].meaning.sample;
-        if handle.is_negative() { -sample } else { sample }
+        if handle.is_negative() {
+            -sample
+        } else {
+            sample
+        }
     }
 
     /// The magnitude against which rounding of the node's sample is judged.
@@ -396,7 +423,9 @@ impl Tables {
             Op::Sub(a, b) => image(a) - image(b),
             Op::Mul(a, b) => image(a) * image(b),
             Op::Div(a, b) => image(a) * image(b).inverse(),
-            Op::Sqrt(a) => image(a).square_root().unwrap_or_else(|| free(1, &[image(a)])),
+            Op::Sqrt(a) => image(a)
+                .square_root()
+                .unwrap_or_else(|| free(1, &[image(a)])),
             // Odd in its argument: the canonical one of ±a is hashed, the sign put back.
             Op::Sign(a) => {
                 let (key, negative) = canonical([image(a), Element::ZERO]);
@@ -412,7 +441,9 @@ impl Tables {
         let mut result = direction.offset().circle_point();
         for &(symbol, factor) in direction.terms() {
             let unit = self.symbols[symbol.0 as usize].circle[point];
-            let count = factor.numerator().rem_euclid(i128::from(super::field::CIRCLE)) as u64;
+            let count = factor
+                .numerator()
+                .rem_euclid(i128::from(super::field::CIRCLE)) as u64;
             let turned = unit.power(count);
             // A part of an angle is a free angle of its own.
             result = result
@@ -444,9 +475,12 @@ impl Tables {
 
     fn angle_sample(&self, direction: u32) -> f64 {
         let direction = &self.directions[direction as usize];
-        direction.terms().iter().fold(direction.offset().value(), |angle, (symbol, factor)| {
-            angle + self.symbols[symbol.0 as usize].sample * factor.value()
-        })
+        direction
+            .terms()
+            .iter()
+            .fold(direction.offset().value(), |angle, (symbol, factor)| {
+                angle + self.symbols[symbol.0 as usize].sample * factor.value()
+            })
     }
 }
 
@@ -462,7 +496,11 @@ fn free(tag: u64, arguments: &[Element]) -> Element {
 /// The smaller of a value and its negative, and whether it is the negative.
 fn canonical(image: [Element; POINTS]) -> ([Element; POINTS], bool) {
     let negative = image.map(|e| -e);
-    if negative < image { (negative, true) } else { (image, false) }
+    if negative < image {
+        (negative, true)
+    } else {
+        (image, false)
+    }
 }
 
 /// The ratio of the values at the two points, equal for nodes that differ by a constant factor.

@@ -13,7 +13,11 @@ impl<'a> Expr<'a> {
     pub fn derivative(self, symbol: SymbolId) -> Expr<'a> {
         let mut known = HashMap::new();
         let derivative = differentiate(self.arena(), self.handle().index(), symbol, &mut known);
-        if self.handle().is_negative() { -derivative } else { derivative }
+        if self.handle().is_negative() {
+            -derivative
+        } else {
+            derivative
+        }
     }
 
     /// The value for given values of the symbols (angles in radians).
@@ -35,7 +39,11 @@ fn differentiate<'a>(
     }
     let mut d = |handle: Handle| {
         let derivative = differentiate(arena, handle.index(), symbol, known);
-        if handle.is_negative() { -derivative } else { derivative }
+        if handle.is_negative() {
+            -derivative
+        } else {
+            derivative
+        }
     };
     let e = |handle: Handle| arena.expr(handle);
     let factor = |direction: u32| {
@@ -97,9 +105,12 @@ fn sign_of(value: f64) -> f64 {
 }
 
 fn angle_of(direction: &Direction, values: &dyn Fn(SymbolId) -> f64) -> f64 {
-    direction.terms().iter().fold(direction.offset().value(), |sum, (symbol, factor)| {
-        sum + values(*symbol) * factor.value()
-    })
+    direction
+        .terms()
+        .iter()
+        .fold(direction.offset().value(), |sum, (symbol, factor)| {
+            sum + values(*symbol) * factor.value()
+        })
 }
 
 /// Replaces symbols by expressions, possibly of another graph: a number by an expression, an angle
@@ -115,7 +126,11 @@ impl<'b> Substitution<'b> {
     /// A substitution into the graph `arena`. Symbols that are not replaced keep their names.
     #[must_use]
     pub fn new(arena: &'b Arena) -> Self {
-        Self { arena, values: HashMap::new(), angles: HashMap::new() }
+        Self {
+            arena,
+            values: HashMap::new(),
+            angles: HashMap::new(),
+        }
     }
 
     /// Replaces the value of a symbol.
@@ -138,7 +153,12 @@ impl<'b> Substitution<'b> {
         self.replace(expr.arena(), expr.handle(), &mut HashMap::new())
     }
 
-    fn replace(&self, from: &Arena, handle: Handle, known: &mut HashMap<usize, Expr<'b>>) -> Expr<'b> {
+    fn replace(
+        &self,
+        from: &Arena,
+        handle: Handle,
+        known: &mut HashMap<usize, Expr<'b>>,
+    ) -> Expr<'b> {
         let sign = |e: Expr<'b>| if handle.is_negative() { -e } else { e };
         if let Some(&expr) = known.get(&handle.index()) {
             return sign(expr);
@@ -167,12 +187,15 @@ impl<'b> Substitution<'b> {
     fn turn(&self, from: &Arena, id: u32) -> Direction {
         let direction = from.direction_at(id);
         let start = Direction::constant(direction.offset());
-        direction.terms().iter().fold(start, |sum, &(symbol, factor)| {
-            let by = self.angles.get(&symbol).cloned();
-            let by = by.unwrap_or_else(|| self.arena.angle(&from.symbol_name(symbol)));
-            let part = by.times(factor).and_then(|by| sum.plus(&by));
-            part.unwrap_or(sum)
-        })
+        direction
+            .terms()
+            .iter()
+            .fold(start, |sum, &(symbol, factor)| {
+                let by = self.angles.get(&symbol).cloned();
+                let by = by.unwrap_or_else(|| self.arena.angle(&from.symbol_name(symbol)));
+                let part = by.times(factor).and_then(|by| sum.plus(&by));
+                part.unwrap_or(sum)
+            })
     }
 }
 
@@ -192,7 +215,10 @@ mod tests {
             let h = 1e-5;
             let difference = (at(h) - at(-h)) / (2.0 * h);
             let exact = f.derivative(symbol).evaluate(&|_| 0.7);
-            assert!((difference - exact).abs() < 1e-9, "{name}: {difference} {exact}");
+            assert!(
+                (difference - exact).abs() < 1e-9,
+                "{name}: {difference} {exact}"
+            );
         }
     }
 

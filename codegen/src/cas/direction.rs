@@ -19,13 +19,19 @@ impl Direction {
     /// A constant angle.
     #[must_use]
     pub const fn constant(constant: Angle) -> Self {
-        Self { terms: Vec::new(), constant }
+        Self {
+            terms: Vec::new(),
+            constant,
+        }
     }
 
     /// The angle that a symbol is.
     #[must_use]
     pub fn symbol(symbol: SymbolId) -> Self {
-        Self { terms: vec![(symbol, Ratio::ONE)], constant: Angle::ZERO }
+        Self {
+            terms: vec![(symbol, Ratio::ONE)],
+            constant: Angle::ZERO,
+        }
     }
 
     /// Sum; `None` if a constant overflows its 128 bits.
@@ -43,7 +49,10 @@ impl Direction {
                 Err(at) => terms.insert(at, (symbol, factor)),
             }
         }
-        Some(Self { terms, constant: self.constant.plus(other.constant)? })
+        Some(Self {
+            terms,
+            constant: self.constant.plus(other.constant)?,
+        })
     }
 
     /// The angle times a fraction; `None` on overflow.
@@ -57,7 +66,10 @@ impl Direction {
             .iter()
             .map(|&(symbol, f)| Some((symbol, f.times(factor)?)))
             .collect::<Option<Vec<_>>>()?;
-        Some(Self { terms, constant: self.constant.times(factor)? })
+        Some(Self {
+            terms,
+            constant: self.constant.times(factor)?,
+        })
     }
 
     /// The opposite angle.
@@ -84,7 +96,10 @@ impl Direction {
     /// The angle without its constant part.
     #[must_use]
     pub fn without_offset(&self) -> Self {
-        Self { terms: self.terms.clone(), constant: Angle::ZERO }
+        Self {
+            terms: self.terms.clone(),
+            constant: Angle::ZERO,
+        }
     }
 
     /// Whether the angle does not vary.

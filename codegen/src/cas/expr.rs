@@ -1,11 +1,11 @@
 //! Handles with operators: construction simplifies, so that zeros, ones and double negations never
 //! survive it.
 
+use super::Angle;
 use super::arena::{Arena, Handle, Op};
 use super::direction::Direction;
 use super::number::Number;
 use super::ratio::Ratio;
-use super::Angle;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// An expression: a `Copy` handle to a node of an [`Arena`].
@@ -88,7 +88,11 @@ impl<'a> Expr<'a> {
     #[must_use]
     pub fn sign(self) -> Self {
         if let Some(number) = self.as_number() {
-            let sign = if number.is_zero() { 0 } else { number.value().signum() as i64 };
+            let sign = if number.is_zero() {
+                0
+            } else {
+                number.value().signum() as i64
+            };
             return self.arena.integer(sign);
         }
         let (factor, base) = self.factor_and_base();
@@ -110,7 +114,10 @@ impl<'a> Expr<'a> {
     }
 
     fn with(self, handle: Handle) -> Self {
-        Self { arena: self.arena, handle }
+        Self {
+            arena: self.arena,
+            handle,
+        }
     }
 
     fn is_negative(self) -> bool {
@@ -124,7 +131,11 @@ impl<'a> Expr<'a> {
     /// The expression as constant × base, where the base is no such product.
     #[must_use]
     pub fn factor_and_base(self) -> (Number, Self) {
-        let sign = if self.is_negative() { Number::integer(-1) } else { Number::ONE };
+        let sign = if self.is_negative() {
+            Number::integer(-1)
+        } else {
+            Number::ONE
+        };
         let node = self.abs_node();
         if let Op::Mul(a, b) = self.arena.op(node.handle.index()) {
             if let Some(factor) = self.arena.as_constant(a) {
@@ -150,7 +161,11 @@ impl<'a> Expr<'a> {
             let inner = if fa == fb { a + b } else { a - b };
             return self.arena.number(fa) * inner;
         }
-        let op = if negative { Op::Sub(self.handle, other.handle) } else { Op::Add(self.handle, other.handle) };
+        let op = if negative {
+            Op::Sub(self.handle, other.handle)
+        } else {
+            Op::Add(self.handle, other.handle)
+        };
         self.with(self.arena.intern(op))
     }
 
@@ -174,7 +189,11 @@ impl<'a> Expr<'a> {
 impl<'a> Neg for Expr<'a> {
     type Output = Self;
     fn neg(self) -> Self {
-        if self.is_zero() { self } else { self.with(self.handle.negated()) }
+        if self.is_zero() {
+            self
+        } else {
+            self.with(self.handle.negated())
+        }
     }
 }
 
@@ -241,10 +260,8 @@ impl<'a> Div for Expr<'a> {
     /// The quotient. A divisor that is identically zero is the caller's error; the quotient then
     /// evaluates to infinity or NaN.
     fn div(self, other: Self) -> Self {
-        if let Some(divisor) = other.as_number() {
-            if !divisor.is_zero() {
-                return self.scale(Number::ONE / divisor);
-            }
+        if let Some(divisor) = other.as_number().filter(|d| !d.is_zero()) {
+            return self.scale(Number::ONE / divisor);
         }
         if self.is_zero() {
             return self;
@@ -262,7 +279,9 @@ impl<'a> std::iter::Sum for Expr<'a> {
     /// # Panics
     /// Without any expression, because an empty sum has no arena.
     fn sum<I: Iterator<Item = Self>>(mut iter: I) -> Self {
-        let first = iter.next().expect("a sum of expressions has at least one term");
+        let first = iter
+            .next()
+            .expect("a sum of expressions has at least one term");
         iter.fold(first, |sum, term| sum + term)
     }
 }
@@ -304,7 +323,9 @@ fn split_quarters(angle: Angle) -> (u8, Angle) {
     let (half_turns, radians) = angle.parts();
     let doubled = half_turns.times(Ratio::integer(2));
     match doubled {
-        Some(d) if d.denominator() == 1 => (d.numerator().rem_euclid(4) as u8, Angle::radians(radians)),
+        Some(d) if d.denominator() == 1 => {
+            (d.numerator().rem_euclid(4) as u8, Angle::radians(radians))
+        }
         _ => (0, angle),
     }
 }

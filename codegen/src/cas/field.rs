@@ -69,19 +69,28 @@ impl Element {
     #[must_use]
     pub fn integer(value: i128) -> Self {
         // A Euclidean remainder is never negative and below P.
-        Self { re: value.rem_euclid(i128::from(P)) as u64, im: 0 }
+        Self {
+            re: value.rem_euclid(i128::from(P)) as u64,
+            im: 0,
+        }
     }
 
     /// A base-field element from any 64 bits.
     #[must_use]
     pub fn from_bits(bits: u64) -> Self {
-        Self { re: bits % P, im: 0 }
+        Self {
+            re: bits % P,
+            im: 0,
+        }
     }
 
     /// The element with its real and imaginary parts modulo P.
     #[must_use]
     pub fn from_parts(re: u64, im: u64) -> Self {
-        Self { re: re % P, im: im % P }
+        Self {
+            re: re % P,
+            im: im % P,
+        }
     }
 
     /// Real and imaginary part.
@@ -95,7 +104,10 @@ impl Element {
     pub fn inverse(self) -> Self {
         let norm = add(mul(self.re, self.re), mul(self.im, self.im));
         let inverse = power(norm, P - 2);
-        Self { re: mul(self.re, inverse), im: mul(sub(0, self.im), inverse) }
+        Self {
+            re: mul(self.re, inverse),
+            im: mul(sub(0, self.im), inverse),
+        }
     }
 
     /// The element to a power.
@@ -133,7 +145,10 @@ impl Element {
         let scale = (Self::ONE + square).inverse();
         let cosine = (Self::ONE - square) * scale;
         let sine = (t + t) * scale;
-        Self { re: cosine.re, im: sine.re }
+        Self {
+            re: cosine.re,
+            im: sine.re,
+        }
     }
 
     /// Cosine and sine of the angle that a point of the circle stands for.
@@ -152,10 +167,16 @@ impl Element {
         // P = 3 mod 4: one of a and -a is a square, with the root a^((P+1)/4).
         let root = power(self.re, CIRCLE / 4);
         if mul(root, root) == self.re {
-            return Some(Self { re: root.min(sub(0, root)), im: 0 });
+            return Some(Self {
+                re: root.min(sub(0, root)),
+                im: 0,
+            });
         }
         let root = power(sub(0, self.re), CIRCLE / 4);
-        Some(Self { re: 0, im: root.min(sub(0, root)) })
+        Some(Self {
+            re: 0,
+            im: root.min(sub(0, root)),
+        })
     }
 
     /// The rational n/d with |n|, d below about 2^30 that the element stands for, if there is one
@@ -184,21 +205,30 @@ impl Element {
 impl Add for Element {
     type Output = Self;
     fn add(self, other: Self) -> Self {
-        Self { re: add(self.re, other.re), im: add(self.im, other.im) }
+        Self {
+            re: add(self.re, other.re),
+            im: add(self.im, other.im),
+        }
     }
 }
 
 impl Sub for Element {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
-        Self { re: sub(self.re, other.re), im: sub(self.im, other.im) }
+        Self {
+            re: sub(self.re, other.re),
+            im: sub(self.im, other.im),
+        }
     }
 }
 
 impl Neg for Element {
     type Output = Self;
     fn neg(self) -> Self {
-        Self { re: sub(0, self.re), im: sub(0, self.im) }
+        Self {
+            re: sub(0, self.re),
+            im: sub(0, self.im),
+        }
     }
 }
 
@@ -206,7 +236,10 @@ impl Mul for Element {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
         if self.im == 0 && other.im == 0 {
-            return Self { re: mul(self.re, other.re), im: 0 };
+            return Self {
+                re: mul(self.re, other.re),
+                im: 0,
+            };
         }
         Self {
             re: sub(mul(self.re, other.re), mul(self.im, other.im)),
@@ -227,9 +260,9 @@ pub fn mix(seed: u64) -> u64 {
 /// Bits from a name (FNV-1a, mixed), the same on every machine.
 #[must_use]
 pub fn mix_name(name: &str) -> u64 {
-    let hash = name
-        .bytes()
-        .fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
+    let hash = name.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| {
+        (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3)
+    });
     mix(hash)
 }
 
@@ -242,7 +275,10 @@ mod tests {
         let (cosine, sine) = Element::half_turns(1, 6).unwrap();
         assert_eq!((cosine + cosine) * (cosine + cosine), Element::integer(3));
         assert_eq!(sine + sine, Element::ONE);
-        assert_eq!(Element::half_turns(1, 2).unwrap(), (Element::ZERO, Element::ONE));
+        assert_eq!(
+            Element::half_turns(1, 2).unwrap(),
+            (Element::ZERO, Element::ONE)
+        );
     }
 
     #[test]

@@ -19,9 +19,17 @@ pub struct Number {
 
 impl Number {
     /// Zero.
-    pub const ZERO: Self = Self { value: 0.0, image: Element::ZERO, ratio: Some(Ratio::ZERO) };
+    pub const ZERO: Self = Self {
+        value: 0.0,
+        image: Element::ZERO,
+        ratio: Some(Ratio::ZERO),
+    };
     /// One.
-    pub const ONE: Self = Self { value: 1.0, image: Element::ONE, ratio: Some(Ratio::ONE) };
+    pub const ONE: Self = Self {
+        value: 1.0,
+        image: Element::ONE,
+        ratio: Some(Ratio::ONE),
+    };
 
     /// An integer.
     #[must_use]
@@ -32,8 +40,13 @@ impl Number {
     /// A fraction.
     #[must_use]
     pub fn ratio(ratio: Ratio) -> Self {
-        let image = Element::integer(ratio.numerator()) * Element::integer(ratio.denominator()).inverse();
-        Self { value: ratio.value(), image, ratio: Some(ratio) }
+        let image =
+            Element::integer(ratio.numerator()) * Element::integer(ratio.denominator()).inverse();
+        Self {
+            value: ratio.value(),
+            image,
+            ratio: Some(ratio),
+        }
     }
 
     /// A float of unknown origin; its image is random but the same for equal floats.
@@ -42,17 +55,31 @@ impl Number {
         if value.fract() == 0.0 && value.abs() < 9e15 {
             return Self::integer(value as i64);
         }
-        Self { value, image: Element::from_bits(mix(value.to_bits())), ratio: None }
+        Self {
+            value,
+            image: Element::from_bits(mix(value.to_bits())),
+            ratio: None,
+        }
     }
 
     /// A float whose image is known, for instance the cosine of an exact angle.
     #[must_use]
     pub fn known(value: f64, image: Element) -> Self {
         match image.to_rational() {
-            Some((n, d)) if close(n as f64 / d as f64, value) => {
-                Ratio::new(n.into(), d.into()).map_or(Self { value, image, ratio: None }, Self::ratio)
-            }
-            _ => Self { value, image, ratio: None },
+            Some((n, d)) if close(n as f64 / d as f64, value) => Ratio::new(n.into(), d.into())
+                .map_or(
+                    Self {
+                        value,
+                        image,
+                        ratio: None,
+                    },
+                    Self::ratio,
+                ),
+            _ => Self {
+                value,
+                image,
+                ratio: None,
+            },
         }
     }
 
@@ -130,7 +157,11 @@ fn root_of_ratio(ratio: Ratio, value: f64) -> Number {
         }
         prime += 1;
     }
-    Number { value, image, ratio: None }
+    Number {
+        value,
+        image,
+        ratio: None,
+    }
 }
 
 fn root_of_prime(prime: i128) -> Element {
@@ -149,11 +180,7 @@ fn close(a: f64, b: f64) -> bool {
 }
 
 /// Combines two numbers: exactly as fractions if both are, else by value and image.
-fn combine(
-    ratio: Option<Ratio>,
-    value: f64,
-    image: Element,
-) -> Number {
+fn combine(ratio: Option<Ratio>, value: f64, image: Element) -> Number {
     if let Some(ratio) = ratio {
         return Number::ratio(ratio);
     }
@@ -190,15 +217,26 @@ impl Div for Number {
     type Output = Self;
     /// The quotient; the caller sees to it that the divisor is not zero.
     fn div(self, other: Self) -> Self {
-        let ratio = self.ratio.zip(other.ratio).and_then(|(a, b)| a.times(b.reciprocal()?));
-        combine(ratio, self.value / other.value, self.image * other.image.inverse())
+        let ratio = self
+            .ratio
+            .zip(other.ratio)
+            .and_then(|(a, b)| a.times(b.reciprocal()?));
+        combine(
+            ratio,
+            self.value / other.value,
+            self.image * other.image.inverse(),
+        )
     }
 }
 
 impl Neg for Number {
     type Output = Self;
     fn neg(self) -> Self {
-        Self { value: -self.value, image: -self.image, ratio: self.ratio.map(Ratio::negative) }
+        Self {
+            value: -self.value,
+            image: -self.image,
+            ratio: self.ratio.map(Ratio::negative),
+        }
     }
 }
 

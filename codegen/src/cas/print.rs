@@ -27,13 +27,21 @@ fn text(arena: &Arena, handle: Handle, binding: u8) -> String {
         Op::Sign(a) => (2, format!("sign({})", t(a, 0))),
         Op::Atan2(y, x) => (2, format!("atan2({}, {})", t(y, 0), t(x, 0))),
     };
-    let own = if handle.is_negative() { own.min(1) } else { own };
+    let own = if handle.is_negative() {
+        own.min(1)
+    } else {
+        own
+    };
     let body = match (handle.is_negative(), arena.op(handle.index())) {
         (true, Op::Add(..) | Op::Sub(..)) => format!("-({body})"),
         (true, _) => format!("-{body}"),
         (false, _) => body,
     };
-    if own < binding { format!("({body})") } else { body }
+    if own < binding {
+        format!("({body})")
+    } else {
+        body
+    }
 }
 
 fn angle(arena: &Arena, direction: &Direction) -> String {

@@ -20,9 +20,15 @@ fn gcd(a: i128, b: i128) -> i128 {
 
 impl Ratio {
     /// Zero.
-    pub const ZERO: Self = Self { numerator: 0, denominator: 1 };
+    pub const ZERO: Self = Self {
+        numerator: 0,
+        denominator: 1,
+    };
     /// One.
-    pub const ONE: Self = Self { numerator: 1, denominator: 1 };
+    pub const ONE: Self = Self {
+        numerator: 1,
+        denominator: 1,
+    };
 
     /// A fraction, reduced; `None` if the denominator is 0 or a part overflows.
     #[must_use]
@@ -41,7 +47,10 @@ impl Ratio {
     /// An integer.
     #[must_use]
     pub const fn integer(value: i64) -> Self {
-        Self { numerator: value as i128, denominator: 1 }
+        Self {
+            numerator: value as i128,
+            denominator: 1,
+        }
     }
 
     /// A decimal number such as `-0.41`, `15.52` or `1e-3`; `None` if it is none or too long.
@@ -56,7 +65,11 @@ impl Ratio {
         let digits: i128 = format!("{whole}{fraction}").parse().ok()?;
         let exponent = exponent.checked_sub(i32::try_from(fraction.len()).ok()?)?;
         let scale = 10_i128.checked_pow(exponent.unsigned_abs())?;
-        if exponent < 0 { Self::new(digits, scale) } else { Self::new(digits.checked_mul(scale)?, 1) }
+        if exponent < 0 {
+            Self::new(digits, scale)
+        } else {
+            Self::new(digits.checked_mul(scale)?, 1)
+        }
     }
 
     /// Numerator, with the sign.
@@ -88,7 +101,10 @@ impl Ratio {
     pub fn plus(self, other: Self) -> Option<Self> {
         let a = self.numerator.checked_mul(other.denominator)?;
         let b = other.numerator.checked_mul(self.denominator)?;
-        Self::new(a.checked_add(b)?, self.denominator.checked_mul(other.denominator)?)
+        Self::new(
+            a.checked_add(b)?,
+            self.denominator.checked_mul(other.denominator)?,
+        )
     }
 
     /// Product.
@@ -109,7 +125,10 @@ impl Ratio {
     /// Negative.
     #[must_use]
     pub const fn negative(self) -> Self {
-        Self { numerator: -self.numerator, denominator: self.denominator }
+        Self {
+            numerator: -self.numerator,
+            denominator: self.denominator,
+        }
     }
 
     /// Square root, if it is a fraction too.

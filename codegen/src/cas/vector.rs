@@ -124,7 +124,9 @@ impl<'a> Matrix3<'a> {
     /// Transpose.
     #[must_use]
     pub fn transposed(self) -> Self {
-        Self(std::array::from_fn(|i| std::array::from_fn(|j| self.0[j][i])))
+        Self(std::array::from_fn(|i| {
+            std::array::from_fn(|j| self.0[j][i])
+        }))
     }
 }
 

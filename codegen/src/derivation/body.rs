@@ -39,7 +39,13 @@ impl<'a> BodyMotion<'a> {
         partials: Vec<[Vector3<'a>; 2]>,
     ) -> Self {
         let u_matrix = u_matrix(omega, alpha);
-        Self { omega, alpha, acceleration, u_matrix, partials }
+        Self {
+            omega,
+            alpha,
+            acceleration,
+            u_matrix,
+            partials,
+        }
     }
 
     /// The generalised forces on all u of a wrench (force, moment) in the body's frame.
@@ -55,7 +61,10 @@ impl<'a> BodyMotion<'a> {
         use StandardParameter as P;
         let zero = Vector3::zero(arena);
         let first = |k: usize| {
-            [self.u_matrix.column(k), Vector3::unit(arena, k).cross(self.acceleration)]
+            [
+                self.u_matrix.column(k),
+                Vector3::unit(arena, k).cross(self.acceleration),
+            ]
         };
         let second = |i: usize, j: usize| {
             let momentum = |w: Vector3<'a>| {
@@ -64,7 +73,10 @@ impl<'a> BodyMotion<'a> {
                 h.0[j] = w.0[i];
                 h
             };
-            [zero, momentum(self.alpha) + self.omega.cross(momentum(self.omega))]
+            [
+                zero,
+                momentum(self.alpha) + self.omega.cross(momentum(self.omega)),
+            ]
         };
         match parameter {
             P::M => [self.acceleration, zero],
@@ -174,7 +186,10 @@ impl<'a> Turn<'a> {
             (Some(about_z * about_x), theta)
         };
         let (cosine, sine) = configuration.unit(&angle)?;
-        Some(Self { tilt, matrix: Matrix3::rotation(2, cosine, sine) })
+        Some(Self {
+            tilt,
+            matrix: Matrix3::rotation(2, cosine, sine),
+        })
     }
 
     /// A vector of the antecedent frame in the joint's frame.

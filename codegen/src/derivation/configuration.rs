@@ -40,9 +40,18 @@ impl<'a> Configuration<'a> {
     pub fn new(arena: &'a Arena, mechanism: &Mechanism, from: From) -> Self {
         let joints = mechanism.joints();
         let names = joints.iter().map(|&index| {
-            (mechanism.legs[index.leg].name.clone(), mechanism.joint(index).name.clone())
+            (
+                mechanism.legs[index.leg].name.clone(),
+                mechanism.joint(index).name.clone(),
+            )
         });
-        Self { arena, from, known: Vec::new(), positions: Vec::new(), names: names.collect() }
+        Self {
+            arena,
+            from,
+            known: Vec::new(),
+            positions: Vec::new(),
+            names: names.collect(),
+        }
     }
 
     /// What the configuration is given by.
@@ -68,7 +77,11 @@ impl<'a> Configuration<'a> {
     pub fn joint_position(&self, index: usize) -> Option<Expr<'a>> {
         match self.from {
             From::Joints => Some(self.arena.variable(&Self::joint_symbol(index))),
-            From::Pose | From::Actuators => self.positions.iter().find(|(at, _)| *at == index).map(|p| p.1),
+            From::Pose | From::Actuators => self
+                .positions
+                .iter()
+                .find(|(at, _)| *at == index)
+                .map(|p| p.1),
         }
     }
 
@@ -97,7 +110,10 @@ impl<'a> Configuration<'a> {
 
     /// Whether the angle holds no joint.
     fn is_input(&self, angle: &Direction) -> bool {
-        angle.terms().iter().all(|(symbol, _)| !self.arena.symbol_name(*symbol).starts_with("joints["))
+        angle
+            .terms()
+            .iter()
+            .all(|(symbol, _)| !self.arena.symbol_name(*symbol).starts_with("joints["))
     }
 
     /// The angle as a known one plus or minus another, plus a constant.
@@ -109,7 +125,9 @@ impl<'a> Configuration<'a> {
         let turned = |unit: Unit<'a>, sign: i64| if sign < 0 { (unit.0, -unit.1) } else { unit };
         for (known, unit) in &self.known {
             for sign in [1, -1] {
-                let Some(rest) = rest(known, sign) else { continue };
+                let Some(rest) = rest(known, sign) else {
+                    continue;
+                };
                 if rest.is_constant() {
                     let constant = self.arena.cosine_and_sine(&rest);
                     return Some(add_angles(turned(*unit, sign), constant));
@@ -118,11 +136,15 @@ impl<'a> Configuration<'a> {
         }
         for (i, (first, unit)) in self.known.iter().enumerate() {
             for sign in [1, -1] {
-                let Some(rest) = rest(first, sign) else { continue };
+                let Some(rest) = rest(first, sign) else {
+                    continue;
+                };
                 for (second, other) in &self.known[..i] {
                     for other_sign in [1, -1] {
                         let part = second.times(Ratio::integer(other_sign))?;
-                        let Some(last) = rest.plus(&part.negative()) else { continue };
+                        let Some(last) = rest.plus(&part.negative()) else {
+                            continue;
+                        };
                         if last.is_constant() {
                             let sum = add_angles(turned(*unit, sign), turned(*other, other_sign));
                             return Some(add_angles(sum, self.arena.cosine_and_sine(&last)));
@@ -143,8 +165,13 @@ impl<'a> Configuration<'a> {
             if *factor != Ratio::ONE {
                 return;
             }
-            let index = name.strip_prefix("joints[").and_then(|n| n.strip_suffix(']'));
-            match index.and_then(|i| i.parse::<usize>().ok()).and_then(|i| self.names.get(i)) {
+            let index = name
+                .strip_prefix("joints[")
+                .and_then(|n| n.strip_suffix(']'));
+            match index
+                .and_then(|i| i.parse::<usize>().ok())
+                .and_then(|i| self.names.get(i))
+            {
                 Some((of, joint)) => {
                     leg = Some(of);
                     label += joint;
@@ -156,7 +183,11 @@ impl<'a> Configuration<'a> {
             return;
         }
         let suffix = leg.map_or(String::new(), |l| format!("_{l}"));
-        let separator = if label.starts_with(|c: char| c.is_ascii_digit()) { "" } else { "_" };
+        let separator = if label.starts_with(|c: char| c.is_ascii_digit()) {
+            ""
+        } else {
+            "_"
+        };
         let (cosine, sine) = unit;
         let _ = cosine.named(&format!("c{separator}{label}{suffix}"));
         let _ = sine.named(&format!("s{separator}{label}{suffix}"));

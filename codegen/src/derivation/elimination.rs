@@ -12,11 +12,31 @@ use crate::cas::{Expr, Number};
 /// A matrix by rows.
 pub type Rows<'a> = Vec<Vec<Expr<'a>>>;
 
+/// A row as factor × entries. The factor holds the reciprocal of the determinant, the entries are
+/// free of it.
+#[derive(Debug, Clone)]
+pub struct ScaledRow<'a> {
+    /// The common factor.
+    pub factor: Expr<'a>,
+    /// What it is multiplied with.
+    pub entries: Vec<Expr<'a>>,
+}
+
+impl<'a> ScaledRow<'a> {
+    /// The row itself.
+    #[must_use]
+    pub fn values(&self) -> Vec<Expr<'a>> {
+        self.entries.iter().map(|&e| self.factor * e).collect()
+    }
+}
+
 /// The inverse of a matrix.
 #[derive(Debug, Clone)]
 pub struct Inverse<'a> {
     /// The inverse, by rows.
     pub rows: Rows<'a>,
+    /// The same rows with the reciprocals of the determinants taken out.
+    pub scaled: Vec<ScaledRow<'a>>,
     /// The divisor of each row: the determinant (or pivot) of the block that determines it.
     pub determinants: Vec<Expr<'a>>,
 }
@@ -31,10 +51,17 @@ pub fn inverse<'a>(matrix: &Rows<'a>, home: &dyn Fn(Expr<'a>) -> f64) -> Option<
     let zero_row = vec![arena.zero(); n];
     let mut rows: Rows<'a> = vec![zero_row.clone(); n];
     let mut determinants = vec![arena.one(); n];
+    let unit = ScaledRow {
+        factor: arena.one(),
+        entries: zero_row.clone(),
+    };
+    let mut scaled = vec![unit; n];
     for block in &blocks {
         let block_rows: Vec<usize> = block.iter().map(|&column| row_of[column]).collect();
-        let inner: Rows<'a> =
-            block_rows.iter().map(|&r| block.iter().map(|&c| matrix[r][c]).collect()).collect();
+        let inner: Rows<'a> = block_rows
+            .iter()
+            .map(|&r| block.iter().map(|&c| matrix[r][c]).collect())
+            .collect();
         let (block_inverse, block_determinants) = invert_block(&inner, home)?;
         // What the right-hand side is after the unknowns of earlier blocks are taken out.
         let right: Rows<'a> = block_rows
@@ -49,15 +76,24 @@ pub fn inverse<'a>(matrix: &Rows<'a>, home: &dyn Fn(Expr<'a>) -> f64) -> Option<
             })
             .collect();
         for (i, &column) in block.iter().enumerate() {
-            let mut row = zero_row.clone();
-            for (factor, right) in block_inverse[i].iter().zip(&right) {
-                subtract(&mut row, -*factor, right);
+            let mut entries = zero_row.clone();
+            for (factor, right) in block_inverse[i].entries.iter().zip(&right) {
+                subtract(&mut entries, -*factor, right);
             }
-            rows[column] = row;
+            let row = ScaledRow {
+                factor: block_inverse[i].factor,
+                entries,
+            };
+            rows[column] = row.values();
+            scaled[column] = row;
             determinants[column] = block_determinants[i];
         }
     }
-    Some(Inverse { rows, determinants })
+    Some(Inverse {
+        rows,
+        scaled,
+        determinants,
+    })
 }
 
 /// target -= factor * row
@@ -172,12 +208,9 @@ fn components(matrix: &Rows<'_>, row_of: &[usize]) -> Vec<Vec<usize>> {
     search.blocks
 }
 
-type BlockInverse<'a> = (Rows<'a>, Vec<Expr<'a>>);
+type BlockInverse<'a> = (Vec<ScaledRow<'a>>, Vec<Expr<'a>>);
 
-fn invert_block<'a>(
-    block: &Rows<'a>,
-    home: &dyn Fn(Expr<'a>) -> f64,
-) -> Option<BlockInverse<'a>> {
+fn invert_block<'a>(block: &Rows<'a>, home: &dyn Fn(Expr<'a>) -> f64) -> Option<BlockInverse<'a>> {
     match block.len() {
         1..=3 => by_adjugate(block),
         _ => by_elimination(block, home),
@@ -194,7 +227,10 @@ fn by_adjugate<'a>(block: &Rows<'a>) -> Option<BlockInverse<'a>> {
     }
     let (scale, base) = determinant.factor_and_base();
     let reciprocal = base.reciprocal();
-    let rows = adjugate.iter().map(|row| scaled_row(row, reciprocal, scale)).collect();
+    let rows = adjugate
+        .iter()
+        .map(|row| scaled_row(row, reciprocal, scale))
+        .collect();
     Some((rows, vec![determinant; n]))
 }
 
@@ -205,7 +241,12 @@ pub fn adjugate<'a>(block: &Rows<'a>) -> Rows<'a> {
     let minor = |skip_row: usize, skip_column: usize| {
         let rest: Vec<Vec<Expr<'a>>> = (0..n)
             .filter(|&r| r != skip_row)
-            .map(|r| (0..n).filter(|&c| c != skip_column).map(|c| block[r][c]).collect())
+            .map(|r| {
+                (0..n)
+                    .filter(|&c| c != skip_column)
+                    .map(|c| block[r][c])
+                    .collect()
+            })
             .collect();
         match rest.len() {
             0 => block[0][0].arena().one(),
@@ -213,22 +254,36 @@ pub fn adjugate<'a>(block: &Rows<'a>) -> Rows<'a> {
             _ => rest[0][0] * rest[1][1] - rest[0][1] * rest[1][0],
         }
     };
-    let cofactor = |i: usize, j: usize| if (i + j) % 2 == 0 { minor(j, i) } else { -minor(j, i) };
-    (0..n).map(|i| (0..n).map(|j| cofactor(i, j)).collect()).collect()
+    let cofactor = |i: usize, j: usize| {
+        if (i + j).is_multiple_of(2) {
+            minor(j, i)
+        } else {
+            -minor(j, i)
+        }
+    };
+    (0..n)
+        .map(|i| (0..n).map(|j| cofactor(i, j)).collect())
+        .collect()
 }
 
-/// row × reciprocal / scale, with a constant that the whole row shares put into one factor.
-fn scaled_row<'a>(row: &[Expr<'a>], reciprocal: Expr<'a>, scale: Number) -> Vec<Expr<'a>> {
-    let entries: Vec<(Number, Expr<'a>)> = row.iter().map(|e| e.factor_and_base()).collect();
+/// row × reciprocal / scale, with a constant that the whole row shares put into the factor.
+fn scaled_row<'a>(row: &[Expr<'a>], reciprocal: Expr<'a>, scale: Number) -> ScaledRow<'a> {
+    let parts: Vec<(Number, Expr<'a>)> = row.iter().map(|e| e.factor_and_base()).collect();
     let size = |n: Number| if n.value() < 0.0 { -n } else { n };
-    let mut factors = entries.iter().filter(|(_, base)| !base.is_zero()).map(|(f, _)| size(*f));
-    let Some(first) = factors.next() else { return row.to_vec() };
+    let mut factors = parts
+        .iter()
+        .filter(|(_, base)| !base.is_zero())
+        .map(|(f, _)| size(*f));
+    let first = factors.next().unwrap_or(Number::ONE);
     if factors.all(|f| f == first) {
         let factor = reciprocal * (first / scale);
-        return entries.iter().map(|(f, base)| factor * *base * (*f / first)).collect();
+        let entries = parts.iter().map(|(f, base)| *base * (*f / first)).collect();
+        return ScaledRow { factor, entries };
     }
-    let factor = reciprocal * (Number::ONE / scale);
-    row.iter().map(|&e| factor * e).collect()
+    ScaledRow {
+        factor: reciprocal * (Number::ONE / scale),
+        entries: row.to_vec(),
+    }
 }
 
 /// Gauss-Jordan elimination; every step takes the pivot that is largest at home among the columns
@@ -250,7 +305,11 @@ fn by_elimination<'a>(
         let (row, column) = free_rows
             .flat_map(|r| (0..n).map(move |c| (r, c)))
             .filter(|&(r, c)| row_of[c] == usize::MAX && !left[r][c].is_zero())
-            .max_by(|a, b| home(left[a.0][a.1]).abs().total_cmp(&home(left[b.0][b.1]).abs()))?;
+            .max_by(|a, b| {
+                home(left[a.0][a.1])
+                    .abs()
+                    .total_cmp(&home(left[b.0][b.1]).abs())
+            })?;
         row_of[column] = row;
         pivots[column] = left[row][column];
         let reciprocal = left[row][column].reciprocal();
@@ -263,5 +322,10 @@ fn by_elimination<'a>(
             subtract(&mut right[other], factor, &pivot_right);
         }
     }
-    Some((row_of.iter().map(|&r| right[r].clone()).collect(), pivots))
+    let one = arena.one();
+    let row = |&r: &usize| ScaledRow {
+        factor: one,
+        entries: right[r].clone(),
+    };
+    Some((row_of.iter().map(row).collect(), pivots))
 }

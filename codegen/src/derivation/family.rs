@@ -89,30 +89,64 @@ impl Family {
     #[must_use]
     pub const fn summary(self) -> &'static str {
         match self {
-            Self::Joints => "Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.",
-            Self::ActuatorPositions => "Positions q of the actuated joints (m, rad), in the working mode of the home configuration.",
+            Self::Joints => {
+                "Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration."
+            }
+            Self::ActuatorPositions => {
+                "Positions q of the actuated joints (m, rad), in the working mode of the home configuration."
+            }
             Self::InverseJacobian => "J_p^inv: actuator velocities = J_p^inv v, eq. (20).",
-            Self::Jacobian => "The pseudo-inverse of J_p^inv: v = J_p^inv+ times the actuator velocities, eqs. (21) and (22).",
-            Self::ClosurePlatformJacobian => "A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.",
-            Self::ClosureActuatorJacobian => "B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.",
-            Self::LegsJacobian => "J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.",
-            Self::LegsPlatformJacobian => "J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.",
+            Self::Jacobian => {
+                "The pseudo-inverse of J_p^inv: v = J_p^inv+ times the actuator velocities, eqs. (21) and (22)."
+            }
+            Self::ClosurePlatformJacobian => {
+                "A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate."
+            }
+            Self::ClosureActuatorJacobian => {
+                "B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal."
+            }
+            Self::LegsJacobian => {
+                "J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate."
+            }
+            Self::LegsPlatformJacobian => {
+                "J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate."
+            }
             Self::JointVelocities => "Velocities of all joints (m/s, rad/s), eq. (9).",
             Self::JointAccelerations => "Accelerations of all joints (m/s², rad/s²), eq. (10).",
-            Self::TwistFromActuators => "The twist v that fits the actuator velocities in the sense of least squares, eq. (21).",
-            Self::AccelerationFromActuators => "The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.",
-            Self::IdmRedPlatform(_) => "IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).",
-            Self::IdmRedActuators(_) => "IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).",
+            Self::TwistFromActuators => {
+                "The twist v that fits the actuator velocities in the sense of least squares, eq. (21)."
+            }
+            Self::AccelerationFromActuators => {
+                "The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv."
+            }
+            Self::IdmRedPlatform(_) => {
+                "IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30)."
+            }
+            Self::IdmRedActuators(_) => {
+                "IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36)."
+            }
             Self::IdmRedPayload => "The payload's columns of case 1, eq. (38).",
             Self::IdmRedPayloadActuators => "The payload's columns of case 2, eq. (38).",
-            Self::ProjectPlatform => "Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).",
-            Self::ProjectActuators => "Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).",
-            Self::InverseDynamics => "Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).",
-            Self::InverseDynamicsPreloaded => "Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.",
+            Self::ProjectPlatform => {
+                "Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30)."
+            }
+            Self::ProjectActuators => {
+                "Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36)."
+            }
+            Self::InverseDynamics => {
+                "Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19)."
+            }
+            Self::InverseDynamicsPreloaded => {
+                "Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives."
+            }
             Self::MassMatrix => "Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.",
             Self::Bias => "Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.",
-            Self::ProjectTorques => "τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50).",
-            Self::NullSpace => "N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.",
+            Self::ProjectTorques => {
+                "τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50)."
+            }
+            Self::NullSpace => {
+                "N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects."
+            }
         }
     }
 
@@ -149,7 +183,11 @@ impl Family {
     /// The name of the Rust function, unique in the robot.
     #[must_use]
     pub fn function_name(self, from: From, tree: bool) -> String {
-        let base = if self.columns() == Some(Columns::Base) { "_base" } else { "" };
+        let base = if self.columns() == Some(Columns::Base) {
+            "_base"
+        } else {
+            ""
+        };
         let from = match from {
             From::Joints if !tree => "_from_joints",
             From::Actuators => "_from_actuators",
@@ -164,7 +202,10 @@ impl Family {
         use From::{Actuators, Joints, Pose};
         let tree = mechanism.platform.is_none();
         let redundant = mechanism.actuated().len() > mechanism.dof();
-        let payload = mechanism.platform.as_ref().is_some_and(|p| p.payload.is_some());
+        let payload = mechanism
+            .platform
+            .as_ref()
+            .is_some_and(|p| p.payload.is_some());
         let mut all = Vec::new();
         let mut add = |families: &[Self], from: &[From]| {
             for &family in families {
@@ -175,7 +216,11 @@ impl Family {
         };
         let pose: &[From] = if tree { &[Joints] } else { &[Pose] };
         let pose_and_joints: &[From] = if tree { &[Joints] } else { &[Pose, Joints] };
-        let dynamic: &[From] = if tree { &[Joints] } else { &[Pose, Joints, Actuators] };
+        let dynamic: &[From] = if tree {
+            &[Joints]
+        } else {
+            &[Pose, Joints, Actuators]
+        };
         add(&[Self::Joints, Self::ActuatorPositions], pose);
         add(&[Self::InverseJacobian], pose_and_joints);
         if !tree {
@@ -191,7 +236,10 @@ impl Family {
             );
         }
         add(&[Self::JointVelocities, Self::JointAccelerations], pose);
-        add(&[Self::TwistFromActuators, Self::AccelerationFromActuators], pose);
+        add(
+            &[Self::TwistFromActuators, Self::AccelerationFromActuators],
+            pose,
+        );
         for columns in [Columns::Standard, Columns::Base] {
             add(&[Self::IdmRedPlatform(columns)], dynamic);
             if !tree {
@@ -209,7 +257,14 @@ impl Family {
         add(&[Self::InverseDynamics], dynamic);
         add(&[Self::MassMatrix, Self::Bias], pose);
         if redundant {
-            add(&[Self::InverseDynamicsPreloaded, Self::ProjectTorques, Self::NullSpace], pose);
+            add(
+                &[
+                    Self::InverseDynamicsPreloaded,
+                    Self::ProjectTorques,
+                    Self::NullSpace,
+                ],
+                pose,
+            );
         }
         all
     }

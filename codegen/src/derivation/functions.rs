@@ -6,7 +6,7 @@ use super::family::{Columns, Family};
 use super::linear::{Factored, apply, null_space, product, pseudo_inverse, transposed};
 use super::regressor::{BodyParameter, Projection};
 use super::robot::{Guard, GuardKind, Robot, Underivable};
-use crate::cas::{Arena, Expr};
+use crate::cas::{Arena, Expr, Number};
 use crate::mechanism::{JointKind, Mechanism};
 
 /// A function as expressions.
@@ -33,6 +33,17 @@ pub struct Selection {
     pub payload: Vec<BodyParameter>,
     /// Kept actuators of case 2.
     pub kept_actuators: Vec<usize>,
+    /// Dependent columns that are had more cheaply from others than from their definition.
+    pub combined: Vec<Combination>,
+}
+
+/// A column as a linear combination of other columns.
+#[derive(Debug, Clone)]
+pub struct Combination {
+    /// The parameter whose column it is.
+    pub parameter: BodyParameter,
+    /// The other columns with their coefficients.
+    pub of: Vec<(BodyParameter, Number)>,
 }
 
 /// Derives a function in its own graph.
@@ -59,7 +70,12 @@ pub fn derive<'a>(
     let shape = (rows.len(), rows.first().map_or(0, Vec::len));
     let mut guards = sheet.robot.guards.clone();
     guards.extend(sheet.guards);
-    Ok(Derived { inputs: sheet.inputs, shape, entries: rows.concat(), guards })
+    Ok(Derived {
+        inputs: sheet.inputs,
+        shape,
+        entries: rows.concat(),
+        guards,
+    })
 }
 
 /// A function being derived.
@@ -98,7 +114,10 @@ impl<'a> Sheet<'a, '_> {
             self.twist = self.least_squares(&rates);
             return self.twist.clone();
         }
-        self.input(if tree { "joint_velocities" } else { "twist" }, self.robot.mechanism.dof())
+        self.input(
+            if tree { "joint_velocities" } else { "twist" },
+            self.robot.mechanism.dof(),
+        )
     }
 
     fn acceleration(&mut self) -> Vec<Expr<'a>> {
@@ -107,7 +126,14 @@ impl<'a> Sheet<'a, '_> {
             let twist = self.twist.clone();
             return self.acceleration_of(&twist);
         }
-        self.input(if tree { "joint_accelerations" } else { "acceleration" }, self.robot.mechanism.dof())
+        self.input(
+            if tree {
+                "joint_accelerations"
+            } else {
+                "acceleration"
+            },
+            self.robot.mechanism.dof(),
+        )
     }
 
     fn rows(&mut self, family: Family) -> Result<Rows<'a>, Underivable> {
@@ -116,7 +142,14 @@ impl<'a> Sheet<'a, '_> {
             Family::Joints => column(self.joint_positions()),
             Family::ActuatorPositions => {
                 let all = self.joint_positions();
-                column(self.robot.mechanism.actuated().iter().map(|&i| all[i]).collect())
+                column(
+                    self.robot
+                        .mechanism
+                        .actuated()
+                        .iter()
+                        .map(|&i| all[i])
+                        .collect(),
+                )
             }
             Family::InverseJacobian => self.robot.inverse_jacobian(),
             Family::Jacobian => self.pseudo_inverse(),
@@ -194,7 +227,9 @@ impl<'a> Sheet<'a, '_> {
                 return arena.variable(&format!("joints[{index}]"));
             }
             if mechanism.joint(*of).kind == JointKind::Prismatic {
-                return configuration.joint_position(index).unwrap_or_else(|| arena.zero());
+                return configuration
+                    .joint_position(index)
+                    .unwrap_or_else(|| arena.zero());
             }
             let home = crate::cas::Number::float(mechanism.home.joints[index]);
             match configuration.unit(&configuration.joint_angle(index)) {
@@ -209,7 +244,12 @@ impl<'a> Sheet<'a, '_> {
                 None => arena.zero(),
             }
         };
-        mechanism.joints().iter().enumerate().map(position).collect()
+        mechanism
+            .joints()
+            .iter()
+            .enumerate()
+            .map(position)
+            .collect()
     }
 
     fn factored(&mut self, jacobian: &Rows<'a>) -> Factored<'a> {
@@ -228,8 +268,15 @@ impl<'a> Sheet<'a, '_> {
         for value in values {
             let (_, base) = value.factor_and_base();
             if base.as_number().is_none() {
-                let kind = GuardKind::Platform { home: self.robot.at_home(base).abs(), actuators };
-                self.guards.push(Guard { value: base, kind, leg: String::new() });
+                let kind = GuardKind::Platform {
+                    home: self.robot.at_home(base).abs(),
+                    actuators,
+                };
+                self.guards.push(Guard {
+                    value: base,
+                    kind,
+                    leg: String::new(),
+                });
             }
         }
     }
@@ -246,8 +293,11 @@ impl<'a> Sheet<'a, '_> {
         let measured = self.input("actuator_accelerations", actuated.len());
         let still = self.zeros();
         let bias = self.joint_motion(twist, &still).1;
-        let rest: Vec<Expr<'a>> =
-            measured.iter().zip(&actuated).map(|(m, &i)| *m - bias[i]).collect();
+        let rest: Vec<Expr<'a>> = measured
+            .iter()
+            .zip(&actuated)
+            .map(|(m, &i)| *m - bias[i])
+            .collect();
         self.least_squares(&rest)
     }
 
@@ -257,9 +307,10 @@ impl<'a> Sheet<'a, '_> {
         acceleration: &[Expr<'a>],
     ) -> (Vec<Expr<'a>>, Vec<Expr<'a>>) {
         match self.robot.motion(twist, acceleration) {
-            Some(motion) => {
-                (self.robot.joint_values(&motion.u), self.robot.joint_values(&motion.u_dot))
-            }
+            Some(motion) => (
+                self.robot.joint_values(&motion.u),
+                self.robot.joint_values(&motion.u_dot),
+            ),
             None => (Vec::new(), Vec::new()),
         }
     }
@@ -272,16 +323,46 @@ impl<'a> Sheet<'a, '_> {
     }
 
     fn on_actuators(&mut self) -> Result<Projection<'a>, Underivable> {
-        let projection = self.robot.project_on_actuators(&self.selection.kept_actuators)?;
+        let projection = self
+            .robot
+            .project_on_actuators(&self.selection.kept_actuators)?;
         self.guard_platform(&projection.determinants, "kept actuators");
         Ok(projection)
     }
 
     fn columns(&mut self, projection: &Projection<'a>, of: &[BodyParameter]) -> Rows<'a> {
         let (twist, acceleration) = (self.twist(), self.acceleration());
-        let Some(motion) = self.robot.motion(&twist, &acceleration) else { return Vec::new() };
-        let columns: Rows<'a> =
-            of.iter().map(|&p| self.robot.column(&motion, projection, p)).collect();
+        let Some(motion) = self.robot.motion(&twist, &acceleration) else {
+            return Vec::new();
+        };
+        let selection = self.selection;
+        let combination = |p: BodyParameter| {
+            let found = selection.combined.iter().find(|c| c.parameter == p)?;
+            found
+                .of
+                .iter()
+                .all(|(q, _)| of.contains(q))
+                .then_some(found)
+        };
+        let direct = |p: BodyParameter| self.robot.column(&motion, projection, p);
+        let own: Vec<Option<Vec<Expr<'a>>>> = of
+            .iter()
+            .map(|&p| combination(p).is_none().then(|| direct(p)))
+            .collect();
+        let column_of =
+            |p: BodyParameter| of.iter().position(|q| *q == p).and_then(|i| own[i].clone());
+        let columns: Rows<'a> = of
+            .iter()
+            .zip(&own)
+            .map(|(&p, own)| match (own, combination(p)) {
+                (None, Some(combination)) => self
+                    .robot
+                    .combined(combination, &column_of)
+                    .unwrap_or_else(|| direct(p)),
+                (Some(own), _) => own.clone(),
+                (None, None) => direct(p),
+            })
+            .collect();
         if columns.is_empty() {
             return vec![Vec::new(); self.robot.mechanism.dof()];
         }
@@ -290,7 +371,9 @@ impl<'a> Sheet<'a, '_> {
 
     fn project_actuators(&mut self, n: usize) -> Result<Rows<'a>, Underivable> {
         let torques = self.input("torques", n);
-        let projection = self.robot.project_on_actuators(&self.selection.kept_actuators)?;
+        let projection = self
+            .robot
+            .project_on_actuators(&self.selection.kept_actuators)?;
         self.guard_platform(&projection.determinants, "kept actuators");
         let kept = &self.selection.kept_actuators;
         let jacobian = self.robot.inverse_jacobian();
@@ -308,8 +391,13 @@ impl<'a> Sheet<'a, '_> {
     }
 
     fn parameter_values(&mut self) -> Vec<(BodyParameter, Expr<'a>)> {
-        let all: Vec<BodyParameter> =
-            self.selection.standard.iter().chain(&self.selection.payload).copied().collect();
+        let all: Vec<BodyParameter> = self
+            .selection
+            .standard
+            .iter()
+            .chain(&self.selection.payload)
+            .copied()
+            .collect();
         let values = self.input("parameters", all.len());
         all.into_iter().zip(values).collect()
     }
@@ -341,7 +429,10 @@ impl<'a> Sheet<'a, '_> {
         let preload = self.input("preload", n - self.robot.mechanism.dof());
         let basis = self.null_space();
         let entry = |i: usize| {
-            basis[i].iter().zip(&preload).fold(torques[i], |sum, (b, c)| sum + *b * *c)
+            basis[i]
+                .iter()
+                .zip(&preload)
+                .fold(torques[i], |sum, (b, c)| sum + *b * *c)
         };
         column((0..n).map(entry).collect())
     }
@@ -364,7 +455,10 @@ impl<'a> Sheet<'a, '_> {
         let derivative = |force: &Expr<'a>, i: usize| {
             force.derivative(arena.symbol(&format!("acceleration[{i}]")))
         };
-        forces.iter().map(|f| (0..dof).map(|i| derivative(f, i)).collect()).collect()
+        forces
+            .iter()
+            .map(|f| (0..dof).map(|i| derivative(f, i)).collect())
+            .collect()
     }
 
     /// A_p (n x r) and B_p (n x n), eq. (11): the rows of the legs' adjugates.
@@ -377,14 +471,22 @@ impl<'a> Sheet<'a, '_> {
         let scale = |k: usize| {
             let index = joints[actuated[k]];
             let state = &self.robot.legs[index.leg];
-            let at = mechanism.legs[index.leg].independent().position(|j| j == index.joint);
+            let at = mechanism.legs[index.leg]
+                .independent()
+                .position(|j| j == index.joint);
             let closure = state.closure.as_ref();
-            closure.zip(at).map_or_else(|| arena.one(), |(c, at)| c.determinants[at])
+            closure
+                .zip(at)
+                .map_or_else(|| arena.one(), |(c, at)| c.determinants[at])
         };
         let scales: Vec<Expr<'a>> = (0..n).map(scale).collect();
-        let platform = (0..n).map(|k| jacobian[k].iter().map(|&g| g * scales[k]).collect()).collect();
+        let platform = (0..n)
+            .map(|k| jacobian[k].iter().map(|&g| g * scales[k]).collect())
+            .collect();
         let diagonal = |i: usize, j: usize| if i == j { -scales[i] } else { arena.zero() };
-        let actuators = (0..n).map(|i| (0..n).map(|j| diagonal(i, j)).collect()).collect();
+        let actuators = (0..n)
+            .map(|i| (0..n).map(|j| diagonal(i, j)).collect())
+            .collect();
         (platform, actuators)
     }
 
@@ -394,7 +496,9 @@ impl<'a> Sheet<'a, '_> {
         let total = mechanism.joints().len();
         let (mut legs, mut platform) = (Vec::new(), Vec::new());
         for (leg, state) in mechanism.legs.iter().zip(&self.robot.legs) {
-            let Some(closure) = &state.closure else { continue };
+            let Some(closure) = &state.closure else {
+                continue;
+            };
             let columns = closure.independent_columns(leg, arena);
             for &row in &closure.rows {
                 let mut entries = vec![arena.zero(); total];

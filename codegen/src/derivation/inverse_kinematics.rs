@@ -74,11 +74,16 @@ fn planar_links(
     let moves = |i: usize| joints[i].kind == JointKind::Revolute && joints[i].is_independent(i);
     let chain = |i: usize| joints[i].antecedent == i.checked_sub(1);
     let plain = |i: usize| i == 0 || parallel(joints[i].alpha) == Some(Ratio::ONE);
-    if joints.len() != end_joints || !(0..3).all(|i| chain(i) && plain(i)) || !moves(0) || !moves(1) {
+    if joints.len() != end_joints || !(0..3).all(|i| chain(i) && plain(i)) || !moves(0) || !moves(1)
+    {
         return None;
     }
     let rigid = matches!(leg.end, Some(End::Rigid(_)));
-    let last_fits = if rigid { moves(2) } else { joints[2].kind == JointKind::Fixed || moves(2) };
+    let last_fits = if rigid {
+        moves(2)
+    } else {
+        joints[2].kind == JointKind::Fixed || moves(2)
+    };
     if !last_fits {
         return None;
     }
@@ -86,7 +91,10 @@ fn planar_links(
         let turn = total_turn(leg, i - 1, first_joint, configuration)?;
         let direction = turn.plus(&Direction::constant(joints[i].gamma))?;
         let positive = joints[i].d.value() > 0.0;
-        positive.then_some(Link { length: joints[i].d, direction })
+        positive.then_some(Link {
+            length: joints[i].d,
+            direction,
+        })
     };
     Some([link(1)?, link(2)?])
 }
@@ -126,7 +134,14 @@ fn first_origin<'a>(arena: &'a Arena, leg: &Leg) -> Vector3<'a> {
     let (cg, sg) = joint.gamma.cosine_and_sine();
     let (ca, sa) = joint.alpha.cosine_and_sine();
     let axis = [sg * sa, -(cg * sa), ca].map(|c| c * joint.r);
-    Vector3::constant(arena, [joint.d * cg + axis[0], joint.d * sg + axis[1], joint.b + axis[2]])
+    Vector3::constant(
+        arena,
+        [
+            joint.d * cg + axis[0],
+            joint.d * sg + axis[1],
+            joint.b + axis[2],
+        ],
+    )
 }
 
 /// Both links' unit vectors from the end's position in the plane.
@@ -154,9 +169,15 @@ fn two_links<'a>(
     // The elbow lies to the right of D when the second link bends to the left.
     let (e1x, e1y) = (along.0 + across.1, along.1 - across.0);
     let inverse = |l: Number| Number::ONE / l;
-    configuration.learn(first.direction.clone(), (e1x * inverse(l1), e1y * inverse(l1)));
+    configuration.learn(
+        first.direction.clone(),
+        (e1x * inverse(l1), e1y * inverse(l1)),
+    );
     let (e2x, e2y) = (x - e1x, y - e1y);
-    configuration.learn(second.direction.clone(), (e2x * inverse(l2), e2y * inverse(l2)));
+    configuration.learn(
+        second.direction.clone(),
+        (e2x * inverse(l2), e2y * inverse(l2)),
+    );
     let product = l1 * l2;
     let cosine = (square - arena.number(l1 * l1 + l2 * l2)) * (half / product);
     let sine = h * square * (Number::ONE / product);
@@ -166,8 +187,11 @@ fn two_links<'a>(
 
 /// Value at home of a bend that is a sum of joint angles and a constant.
 fn bend_angle(bend: &Direction, home: &[f64], configuration: &Configuration<'_>) -> f64 {
-    bend.terms().iter().fold(bend.offset().value(), |sum, (symbol, factor)| {
-        let joint = (0..home.len()).find(|&i| configuration.joint_angle(i) == Direction::symbol(*symbol));
-        sum + joint.map_or(0.0, |i| home[i]) * factor.value()
-    })
+    bend.terms()
+        .iter()
+        .fold(bend.offset().value(), |sum, (symbol, factor)| {
+            let joint = (0..home.len())
+                .find(|&i| configuration.joint_angle(i) == Direction::symbol(*symbol));
+            sum + joint.map_or(0.0, |i| home[i]) * factor.value()
+        })
 }

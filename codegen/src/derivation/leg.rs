@@ -64,7 +64,12 @@ impl<'a> LegFrames<'a> {
                     let f = &frames[a];
                     (f.prefix, f.turn.clone(), f.rotation, f.origin)
                 }
-                None => (base, Direction::constant(crate::cas::Angle::ZERO), base, Vector3::zero(arena)),
+                None => (
+                    base,
+                    Direction::constant(crate::cas::Angle::ZERO),
+                    base,
+                    Vector3::zero(arena),
+                ),
             };
             let turned = from_turn.plus(&Direction::constant(joint.gamma))?;
             let theta = joint_turn(leg, index, first_joint, configuration)?;
@@ -74,20 +79,43 @@ impl<'a> LegFrames<'a> {
             let (prefix, turn) = match parallel(joint.alpha) {
                 Some(sign) if sign == Ratio::ONE => (from_prefix, turned.plus(&theta)?),
                 Some(_) => {
-                    let flip = constant_rotation(arena, [joint.alpha, crate::cas::Angle::ZERO, crate::cas::Angle::ZERO]);
+                    let flip = constant_rotation(
+                        arena,
+                        [
+                            joint.alpha,
+                            crate::cas::Angle::ZERO,
+                            crate::cas::Angle::ZERO,
+                        ],
+                    );
                     (from_prefix * flip, turned.negative().plus(&theta)?)
                 }
                 None => {
                     let (cosine, sine) = configuration.unit(&turned)?;
-                    let tilt = constant_rotation(arena, [joint.alpha, crate::cas::Angle::ZERO, crate::cas::Angle::ZERO]);
-                    (from_prefix * Matrix3::rotation(2, cosine, sine) * tilt, theta)
+                    let tilt = constant_rotation(
+                        arena,
+                        [
+                            joint.alpha,
+                            crate::cas::Angle::ZERO,
+                            crate::cas::Angle::ZERO,
+                        ],
+                    );
+                    (
+                        from_prefix * Matrix3::rotation(2, cosine, sine) * tilt,
+                        theta,
+                    )
                 }
             };
             let (cosine, sine) = configuration.unit(&turn)?;
             let rotation = prefix * Matrix3::rotation(2, cosine, sine);
             let link = from_rotation * link_vector(arena, leg, index, first_joint, configuration)?;
             let origin = from_origin + link;
-            frames.push(Frame { prefix, turn, rotation, link, origin });
+            frames.push(Frame {
+                prefix,
+                turn,
+                rotation,
+                link,
+                origin,
+            });
         }
         Some(Self { frames })
     }
@@ -170,6 +198,17 @@ pub(super) fn joint_axis<'a>(arena: &'a Arena, leg: &Leg, index: usize) -> Vecto
     Vector3::constant(arena, [sg * sa, -(cg * sa), ca])
 }
 
+/// A wrench as factor × (force, moment).
+#[derive(Debug, Clone, Copy)]
+pub struct Wrench<'a> {
+    /// The factor with the reciprocal of the determinant.
+    pub factor: Expr<'a>,
+    /// Force.
+    pub force: Vector3<'a>,
+    /// Moment about P.
+    pub moment: Vector3<'a>,
+}
+
 /// The closure of a leg: its Jacobian's inverse as wrenches.
 #[derive(Debug, Clone)]
 pub struct LegClosure<'a> {
@@ -181,6 +220,8 @@ pub struct LegClosure<'a> {
     pub forces: Vec<Vector3<'a>>,
     /// n_i of every u_i.
     pub moments: Vec<Vector3<'a>>,
+    /// The same wrenches with the reciprocals of the determinants taken out.
+    pub wrenches: Vec<Wrench<'a>>,
     /// The determinant that each row was divided by.
     pub determinants: Vec<Expr<'a>>,
     /// From the platform's origin to P, in the base frame.
@@ -216,7 +257,11 @@ impl<'a> LegClosure<'a> {
             .iter()
             .map(|&row| columns.iter().map(|c| c[row / 3].0[row % 3]).collect())
             .collect();
-        let Inverse { rows: inverse, determinants } = inverse(&matrix, home)?;
+        let Inverse {
+            rows: inverse,
+            scaled,
+            determinants,
+        } = inverse(&matrix, home)?;
         let wrench = |part: usize, entries: &Vec<Expr<'a>>| {
             let mut vector = Vector3::zero(arena);
             for (&row, &entry) in rows.iter().zip(entries) {
@@ -235,6 +280,14 @@ impl<'a> LegClosure<'a> {
             rows: rows.to_vec(),
             forces: inverse.iter().map(|entries| wrench(0, entries)).collect(),
             moments: inverse.iter().map(|entries| wrench(1, entries)).collect(),
+            wrenches: scaled
+                .iter()
+                .map(|row| Wrench {
+                    factor: row.factor,
+                    force: wrench(0, &row.entries),
+                    moment: wrench(1, &row.entries),
+                })
+                .collect(),
             determinants,
             arm,
         })
@@ -302,19 +355,61 @@ impl<'a> LegClosure<'a> {
     }
 
     /// The derivatives u̇ for a platform motion and the bias accelerations of the leg's end.
+    ///
+    /// Where the products of the wrenches with the links are known already (in a plane they are the
+    /// links' lengths and cosines of joint angles), the bias is taken term by term and the determinant
+    /// is divided out last; else the bias is added up as a vector first.
     #[must_use]
     pub fn accelerations(
         &self,
+        arena: &'a Arena,
         motion: &PlatformMotion<'a>,
-        bias: [Vector3<'a>; 2],
+        bias: &[BiasTerm<'a>],
     ) -> Vec<Expr<'a>> {
-        let acceleration = motion.point_acceleration(self.arm);
-        self.apply(acceleration - bias[0], motion.angular_acceleration - bias[1])
+        let linear = motion.point_acceleration(self.arm);
+        let angular = motion.angular_acceleration;
+        if let Some(products) = self.bias_products(arena, bias) {
+            let wrenches = self.wrenches.iter().zip(products);
+            return wrenches
+                .map(|(wrench, products)| {
+                    let start = wrench.force.dot(linear) + wrench.moment.dot(angular);
+                    let terms = bias.iter().zip(products);
+                    let (constant, other): (Vec<_>, Vec<_>) =
+                        terms.partition(|(_, product)| product.as_number().is_some());
+                    let sum = constant
+                        .into_iter()
+                        .chain(other)
+                        .fold(start, |sum, (term, product)| sum - term.scalar * product);
+                    wrench.factor * sum
+                })
+                .collect();
+        }
+        let (mut b, mut beta) = (Vector3::zero(arena), Vector3::zero(arena));
+        for term in bias {
+            b = b + term.linear.scaled(term.scalar);
+            beta = beta + term.angular.scaled(term.scalar);
+        }
+        self.apply(linear - b, angular - beta)
+    }
+
+    /// The products of all wrenches with all bias terms, if each is a constant or a known node.
+    fn bias_products(&self, arena: &'a Arena, bias: &[BiasTerm<'a>]) -> Option<Rows<'a>> {
+        let known = arena.len();
+        let product = |wrench: &Wrench<'a>, term: &BiasTerm<'a>| {
+            let product = wrench.force.dot(term.linear) + wrench.moment.dot(term.angular);
+            let (_, base) = product.factor_and_base();
+            let is_known = base.as_number().is_some() || base.handle().index() < known;
+            is_known.then_some(product)
+        };
+        let row = |wrench| bias.iter().map(|term| product(wrench, term)).collect();
+        self.wrenches.iter().map(row).collect()
     }
 
     fn apply(&self, linear: Vector3<'a>, angular: Vector3<'a>) -> Vec<Expr<'a>> {
         let wrenches = self.forces.iter().zip(&self.moments);
-        wrenches.map(|(force, moment)| force.dot(linear) + moment.dot(angular)).collect()
+        wrenches
+            .map(|(force, moment)| force.dot(linear) + moment.dot(angular))
+            .collect()
     }
 }
 
@@ -322,23 +417,32 @@ impl<'a> LegClosure<'a> {
 fn joint_columns<'a>(arena: &'a Arena, leg: &Leg, frames: &LegFrames<'a>) -> Vec<[Vector3<'a>; 2]> {
     let zero = Vector3::zero(arena);
     let mut columns = vec![[zero; 2]; leg.joints.len()];
-    let mut at = leg.joints.len().checked_sub(1);
-    while let Some(index) = at {
+    for index in path_to_end(leg) {
         let axis = frames.frames[index].axis();
         columns[index] = match leg.joints[index].kind {
             JointKind::Revolute => [axis.cross(frames.to_end(arena, leg, index)), axis],
             JointKind::Prismatic => [axis, zero],
             JointKind::Fixed => [zero; 2],
         };
-        at = leg.joints[index].antecedent;
     }
     columns
 }
 
-/// The end's linear and angular acceleration in the base frame at u̇ = 0.
+/// A part of the end's acceleration at u̇ = 0: scalar × (linear, angular).
+#[derive(Debug, Clone, Copy)]
+pub struct BiasTerm<'a> {
+    /// The common factor, for instance -ω².
+    pub scalar: Expr<'a>,
+    /// Linear acceleration per unit of the factor.
+    pub linear: Vector3<'a>,
+    /// Angular acceleration per unit of the factor.
+    pub angular: Vector3<'a>,
+}
+
+/// The end's linear and angular acceleration in the base frame at u̇ = 0, as a sum of terms.
 ///
 /// Along the path, with ω the angular velocity of the antecedent and q̇ the joint rate:
-/// ω' = ω + z q̇, β' = β + ω × z q̇, b' = b + β × l + ω × (ω × l) + 2 ω × z ṙ.
+/// ω' = ω + z q̇, β' = β + ω × z q̇, b' = b + β × l + ω (ω · l) - ω² l + 2 ω × z ṙ.
 #[must_use]
 pub fn end_bias<'a>(
     arena: &'a Arena,
@@ -346,28 +450,53 @@ pub fn end_bias<'a>(
     frames: &LegFrames<'a>,
     rates: &Rates,
     u: &[Expr<'a>],
-) -> [Vector3<'a>; 2] {
+) -> Vec<BiasTerm<'a>> {
     let zero = Vector3::zero(arena);
-    // Angular velocity, angular bias and linear bias of every frame.
-    let mut states: Vec<[Vector3<'a>; 3]> = Vec::new();
+    let mut terms = Vec::new();
+    let mut add = |scalar: Expr<'a>, linear: Vector3<'a>, angular: Vector3<'a>| {
+        if !scalar.is_zero() && !(linear.is_zero() && angular.is_zero()) {
+            terms.push(BiasTerm {
+                scalar,
+                linear,
+                angular,
+            });
+        }
+    };
+    let path = path_to_end(leg);
+    // Angular velocity and angular bias of every frame.
+    let mut states: Vec<[Vector3<'a>; 2]> = Vec::new();
     for (index, joint) in leg.joints.iter().enumerate() {
-        let [omega, beta, bias] = joint.antecedent.map_or([zero; 3], |a| states[a]);
+        let [omega, beta] = joint.antecedent.map_or([zero; 2], |a| states[a]);
         let frame = &frames.frames[index];
         let rate = frame.axis().scaled(rates.joint[index].value(arena, u));
-        let link = frame.link;
-        let mut next_bias = bias + beta.cross(link) + omega.cross(omega.cross(link));
-        let (mut next_omega, mut next_beta) = (omega, beta);
-        match joint.kind {
-            JointKind::Revolute => {
-                next_omega = omega + rate;
-                next_beta = beta + omega.cross(rate);
-            }
-            JointKind::Prismatic => {
-                next_bias = next_bias + omega.cross(rate).scaled(arena.integer(2));
-            }
-            JointKind::Fixed => {}
+        let mut next = [omega, beta];
+        if joint.kind == JointKind::Revolute {
+            next = [omega + rate, beta + omega.cross(rate)];
         }
-        states.push([next_omega, next_beta, next_bias]);
+        if path.contains(&index) {
+            let link = frame.link;
+            add(-omega.dot(omega), link, zero);
+            add(omega.dot(link), omega, zero);
+            add(arena.one(), beta.cross(link), zero);
+            if joint.kind == JointKind::Prismatic {
+                add(arena.integer(2), omega.cross(rate), zero);
+            }
+        }
+        states.push(next);
     }
-    states.last().map_or([zero; 2], |s| [s[2], s[1]])
+    if let Some([_, beta]) = states.last() {
+        add(arena.one(), zero, *beta);
+    }
+    terms
+}
+
+/// The joints from the base to the end.
+fn path_to_end(leg: &Leg) -> Vec<usize> {
+    let mut path = Vec::new();
+    let mut at = leg.joints.len().checked_sub(1);
+    while let Some(index) = at {
+        path.push(index);
+        at = leg.joints[index].antecedent;
+    }
+    path
 }

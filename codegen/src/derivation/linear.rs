@@ -27,14 +27,18 @@ pub fn dot<'a>(a: &[Expr<'a>], b: &[Expr<'a>]) -> Expr<'a> {
 #[must_use]
 pub fn transposed<'a>(rows: &Rows<'a>) -> Rows<'a> {
     let width = rows.first().map_or(0, Vec::len);
-    (0..width).map(|c| rows.iter().map(|row| row[c]).collect()).collect()
+    (0..width)
+        .map(|c| rows.iter().map(|row| row[c]).collect())
+        .collect()
 }
 
 /// Product of two matrices.
 #[must_use]
 pub fn product<'a>(a: &Rows<'a>, b: &Rows<'a>) -> Rows<'a> {
     let columns = transposed(b);
-    a.iter().map(|row| columns.iter().map(|c| dot(row, c)).collect()).collect()
+    a.iter()
+        .map(|row| columns.iter().map(|c| dot(row, c)).collect())
+        .collect()
 }
 
 /// Matrix times vector.
@@ -49,8 +53,10 @@ impl<'a> Factored<'a> {
     pub fn normal(jacobian: &Rows<'a>) -> Self {
         let columns = transposed(jacobian);
         let n = columns.len();
-        let mut s: Rows<'a> =
-            columns.iter().map(|a| columns.iter().map(|b| dot(a, b)).collect()).collect();
+        let mut s: Rows<'a> = columns
+            .iter()
+            .map(|a| columns.iter().map(|b| dot(a, b)).collect())
+            .collect();
         let mut reciprocals = Vec::new();
         let mut pivots = Vec::new();
         let mut lower = s.clone();
@@ -60,15 +66,20 @@ impl<'a> Factored<'a> {
             for i in k + 1..n {
                 let factor = s[i][k] * reciprocal;
                 lower[i][k] = factor;
-                for j in k + 1..=i {
-                    s[i][j] = s[i][j] - factor * s[j][k];
+                let pivot_column: Vec<Expr<'a>> = s.iter().map(|row| row[k]).collect();
+                for (j, entry) in pivot_column.iter().enumerate().take(i + 1).skip(k + 1) {
+                    s[i][j] = s[i][j] - factor * *entry;
                     s[j][i] = s[i][j];
                 }
             }
             pivots.push(pivot);
             reciprocals.push(reciprocal);
         }
-        Self { lower, reciprocals, pivots }
+        Self {
+            lower,
+            reciprocals,
+            pivots,
+        }
     }
 
     /// Solves S x = y.
@@ -113,20 +124,30 @@ pub fn null_space<'a>(jacobian: &Rows<'a>, seeds: &[usize]) -> Rows<'a> {
     for &seed in seeds {
         // (I - J J⁺) e_seed, the part of the unit torque that moves nothing.
         let inside = apply(jacobian, &factored.solve(&jacobian[seed]));
-        let mut vector: Vec<Expr<'a>> =
-            (0..n).map(|i| arena.integer(i64::from(i == seed)) - inside[i]).collect();
+        let mut vector: Vec<Expr<'a>> = (0..n)
+            .map(|i| arena.integer(i64::from(i == seed)) - inside[i])
+            .collect();
         for known in &basis {
             let along = dot(known, &vector);
-            vector = vector.iter().zip(known).map(|(v, k)| *v - along * *k).collect();
+            vector = vector
+                .iter()
+                .zip(known)
+                .map(|(v, k)| *v - along * *k)
+                .collect();
         }
         let scale = dot(&vector, &vector).sqrt().reciprocal();
         basis.push(vector.iter().map(|v| *v * scale).collect());
     }
-    (0..n).map(|i| basis.iter().map(|column| column[i]).collect()).collect()
+    (0..n)
+        .map(|i| basis.iter().map(|column| column[i]).collect())
+        .collect()
 }
 
 /// Sum of vectors.
 #[must_use]
-pub fn sum<'a>(arena: &'a crate::cas::Arena, vectors: impl Iterator<Item = Vector3<'a>>) -> Vector3<'a> {
+pub fn sum<'a>(
+    arena: &'a crate::cas::Arena,
+    vectors: impl Iterator<Item = Vector3<'a>>,
+) -> Vector3<'a> {
     vectors.fold(Vector3::zero(arena), |a, b| a + b)
 }

@@ -1,6 +1,6 @@
 //! The platform: pose, twist t = D v and acceleration as vectors in the base frame, eq. (14).
 
-use crate::cas::{Arena, Angle, Direction, Expr, Matrix3, Number, Vector3};
+use crate::cas::{Angle, Arena, Direction, Expr, Matrix3, Number, Vector3};
 use crate::mechanism::{Motion, Placement, TwistCoordinate};
 
 /// Position and orientation of the platform frame in the base frame.
@@ -52,7 +52,13 @@ impl<'a> PlatformPose<'a> {
         } else if motion.has_quaternion() {
             rotation = quaternion_rotation(std::array::from_fn(|i| input(count - 4 + i)));
         }
-        Self { arena, motion, origin: Vector3(origin), rotation, angle }
+        Self {
+            arena,
+            motion,
+            origin: Vector3(origin),
+            rotation,
+            angle,
+        }
     }
 
     /// The vector from the platform's origin to a platform point, in the base frame.

@@ -33,13 +33,18 @@ impl Form {
     /// The coefficient of u_i.
     #[must_use]
     pub fn coefficient(&self, index: usize) -> Number {
-        self.0.iter().find(|(i, _)| *i == index).map_or(Number::ZERO, |(_, c)| *c)
+        self.0
+            .iter()
+            .find(|(i, _)| *i == index)
+            .map_or(Number::ZERO, |(_, c)| *c)
     }
 
     /// The form's value for given u.
     #[must_use]
     pub fn value<'a>(&self, arena: &'a Arena, u: &[Expr<'a>]) -> Expr<'a> {
-        self.0.iter().fold(arena.zero(), |sum, (i, c)| sum + u[*i] * *c)
+        self.0
+            .iter()
+            .fold(arena.zero(), |sum, (i, c)| sum + u[*i] * *c)
     }
 
     /// The form of rows: Σ coefficient × row_i.
@@ -47,7 +52,11 @@ impl Form {
     pub fn row<'a>(&self, arena: &'a Arena, rows: &[Vec<Expr<'a>>]) -> Vec<Expr<'a>> {
         let width = rows.first().map_or(0, Vec::len);
         (0..width)
-            .map(|c| self.0.iter().fold(arena.zero(), |sum, (i, k)| sum + rows[*i][c] * *k))
+            .map(|c| {
+                self.0
+                    .iter()
+                    .fold(arena.zero(), |sum, (i, k)| sum + rows[*i][c] * *k)
+            })
             .collect()
     }
 }
@@ -110,5 +119,9 @@ pub fn parallel(alpha: Angle) -> Option<Ratio> {
     if !sine.is_zero() {
         return None;
     }
-    Some(if cosine.value() > 0.0 { Ratio::ONE } else { Ratio::integer(-1) })
+    Some(if cosine.value() > 0.0 {
+        Ratio::ONE
+    } else {
+        Ratio::integer(-1)
+    })
 }

@@ -6,9 +6,10 @@
 //! ∂u_i/∂v J_a⁻¹, J_a being the kept rows of J_p^inv: rows are transformed once, never columns.
 
 use super::elimination::{Rows, inverse};
+use super::functions::Combination;
 use super::linear::{dot, product, transposed};
 use super::robot::{Robot, RobotMotion, Underivable};
-use crate::cas::{Expr, Vector3};
+use crate::cas::{Arena, Expr, Number, Vector3};
 use crate::description::StandardParameter;
 
 /// A standard parameter of the robot.
@@ -54,9 +55,15 @@ impl<'a> Robot<'a> {
     pub fn project_on_platform(&self) -> Projection<'a> {
         let r = self.mechanism.dof();
         let entry = |i: usize, j: usize| self.arena.integer(i64::from(i == j));
-        let identity = (0..r).map(|i| (0..r).map(|j| entry(i, j)).collect()).collect();
+        let identity = (0..r)
+            .map(|i| (0..r).map(|j| entry(i, j)).collect())
+            .collect();
         let legs = self.legs.iter().map(|l| l.rows.clone()).collect();
-        Projection { legs, platform: identity, determinants: Vec::new() }
+        Projection {
+            legs,
+            platform: identity,
+            determinants: Vec::new(),
+        }
     }
 
     /// Case 2: on the kept actuators.
@@ -68,8 +75,16 @@ impl<'a> Robot<'a> {
         let kept_rows: Rows<'a> = kept.iter().map(|&i| all[i].clone()).collect();
         let home = |e: Expr<'a>| self.at_home(e);
         let inverted = inverse(&kept_rows, &home).ok_or(Underivable::SingularPartition)?;
-        let legs = self.legs.iter().map(|l| product(&l.rows, &inverted.rows)).collect();
-        Ok(Projection { legs, platform: inverted.rows, determinants: inverted.determinants })
+        let legs = self
+            .legs
+            .iter()
+            .map(|l| product(&l.rows, &inverted.rows))
+            .collect();
+        Ok(Projection {
+            legs,
+            platform: inverted.rows,
+            determinants: inverted.determinants,
+        })
     }
 
     /// All parameters that the description does not declare absent, in column order: leg by leg, body
@@ -80,11 +95,20 @@ impl<'a> Robot<'a> {
         for (l, leg) in self.mechanism.legs.iter().enumerate() {
             for (j, joint) in leg.joints.iter().enumerate() {
                 let symbols = joint.parameters.iter();
-                parameters.extend(symbols.map(|&symbol| BodyParameter::Leg { leg: l, joint: j, symbol }));
+                parameters.extend(symbols.map(|&symbol| BodyParameter::Leg {
+                    leg: l,
+                    joint: j,
+                    symbol,
+                }));
             }
         }
         if let Some(platform) = &self.mechanism.platform {
-            parameters.extend(platform.parameters.iter().map(|&s| BodyParameter::Platform(s)));
+            parameters.extend(
+                platform
+                    .parameters
+                    .iter()
+                    .map(|&s| BodyParameter::Platform(s)),
+            );
         }
         parameters
     }
@@ -92,7 +116,11 @@ impl<'a> Robot<'a> {
     /// The payload's parameters.
     #[must_use]
     pub fn payload_parameters(&self) -> Vec<BodyParameter> {
-        let payload = self.mechanism.platform.as_ref().and_then(|p| p.payload.as_ref());
+        let payload = self
+            .mechanism
+            .platform
+            .as_ref()
+            .and_then(|p| p.payload.as_ref());
         payload.map_or_else(Vec::new, |symbols| {
             symbols.iter().map(|&s| BodyParameter::Payload(s)).collect()
         })
@@ -122,11 +150,44 @@ impl<'a> Robot<'a> {
             }
             BodyParameter::Platform(symbol) | BodyParameter::Payload(symbol) => {
                 self.arena.enter("platform");
-                let Some(body) = &motion.platform else { return Vec::new() };
+                let Some(body) = &motion.platform else {
+                    return Vec::new();
+                };
                 let forces = body.project(body.unit_wrench(self.arena, symbol));
                 self.combine(&projection.platform, &forces)
             }
         }
+    }
+
+    /// A column from other columns. The platform's and each leg's parts are added up on their own, so
+    /// that legs that meet in a platform point share theirs. `None` if a column is missing.
+    #[must_use]
+    pub fn combined(
+        &self,
+        combination: &Combination,
+        column_of: &dyn Fn(BodyParameter) -> Option<Vec<Expr<'a>>>,
+    ) -> Option<Vec<Expr<'a>>> {
+        let in_leg = |p: BodyParameter| matches!(p, BodyParameter::Leg { .. });
+        let mut parts = Vec::new();
+        for wanted in [false, true] {
+            let terms: Option<Vec<(Vec<Expr<'a>>, Number)>> = combination
+                .of
+                .iter()
+                .filter(|(p, _)| in_leg(*p) == wanted)
+                .map(|(p, c)| Some((column_of(*p)?, *c)))
+                .collect();
+            parts.push(terms?);
+        }
+        let entry = |row: usize| {
+            let sum = |terms: &Vec<(Vec<Expr<'a>>, Number)>| {
+                normalised_sum(
+                    self.arena,
+                    terms.iter().map(|(column, c)| (column[row], *c)),
+                )
+            };
+            sum(&parts[0]) + sum(&parts[1])
+        };
+        Some((0..self.mechanism.dof()).map(entry).collect())
     }
 
     /// The force on a joint that one of its own parameters produces, eq. (5).
@@ -181,7 +242,11 @@ impl<'a> Robot<'a> {
                     match parameter {
                         BodyParameter::Leg { leg, joint, symbol } if (*leg, *joint) == (l, j) => {
                             if symbol.is_inertial() {
-                                add_wrench(&mut wrench, body.unit_wrench(self.arena, *symbol), *value);
+                                add_wrench(
+                                    &mut wrench,
+                                    body.unit_wrench(self.arena, *symbol),
+                                    *value,
+                                );
                             } else {
                                 own = own + self.joint_force(motion, l, j, *symbol) * *value;
                             }
@@ -190,7 +255,9 @@ impl<'a> Robot<'a> {
                     }
                 }
                 for (i, force) in body.project(wrench).into_iter().enumerate() {
-                    let share = self.arena.number(self.legs[l].rates.joint[j].coefficient(i));
+                    let share = self
+                        .arena
+                        .number(self.legs[l].rates.joint[j].coefficient(i));
                     forces[i] = forces[i] + force + own * share;
                 }
             }
@@ -203,7 +270,10 @@ impl<'a> Robot<'a> {
                     add_wrench(&mut wrench, body.unit_wrench(self.arena, *s), *value);
                 }
             }
-            add(&mut total, self.combine(&projection.platform, &body.project(wrench)));
+            add(
+                &mut total,
+                self.combine(&projection.platform, &body.project(wrench)),
+            );
         }
         total
     }
@@ -211,8 +281,24 @@ impl<'a> Robot<'a> {
     /// Γ¹ = (J_p^inv)ᵀ τ, eq. (30).
     #[must_use]
     pub fn projected_torques(&self, torques: &[Expr<'a>]) -> Vec<Expr<'a>> {
-        transposed(&self.inverse_jacobian()).iter().map(|row| dot(row, torques)).collect()
+        transposed(&self.inverse_jacobian())
+            .iter()
+            .map(|row| dot(row, torques))
+            .collect()
     }
+}
+
+/// Σ c_i x_i as c_0 (x_0 + Σ (c_i / c_0) x_i): the inner sum often has a meaning of its own, such as
+/// the acceleration of a platform point.
+fn normalised_sum<'a>(
+    arena: &'a Arena,
+    terms: impl Iterator<Item = (Expr<'a>, Number)>,
+) -> Expr<'a> {
+    let mut terms = terms.filter(|(x, c)| !x.is_zero() && !c.is_zero());
+    let Some((first, scale)) = terms.next() else {
+        return arena.zero();
+    };
+    terms.fold(first, |sum, (x, c)| sum + x * (c / scale)) * scale
 }
 
 fn add_wrench<'a>(total: &mut [Vector3<'a>; 2], part: [Vector3<'a>; 2], factor: Expr<'a>) {

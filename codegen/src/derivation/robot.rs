@@ -121,7 +121,9 @@ impl<'a> Robot<'a> {
             mechanism,
             configuration: Configuration::new(arena, mechanism, from),
             platform: motion.map(|m| PlatformPose::new(arena, m)),
-            twist: motion.map(crate::mechanism::Motion::twist).unwrap_or_default(),
+            twist: motion
+                .map(crate::mechanism::Motion::twist)
+                .unwrap_or_default(),
             legs: Vec::new(),
             guards: Vec::new(),
         };
@@ -136,10 +138,19 @@ impl<'a> Robot<'a> {
         arena.enter(&leg.name);
         let first_joint = self.mechanism.leg_range(index).start;
         let name = || leg.name.clone();
-        if let (Some(platform), From::Pose | From::Actuators) = (&self.platform, self.configuration.from()) {
+        if let (Some(platform), From::Pose | From::Actuators) =
+            (&self.platform, self.configuration.from())
+        {
             let home = &self.mechanism.home.joints;
-            let conditions = solve_leg(arena, leg, first_joint, home, platform, &mut self.configuration)
-                .ok_or_else(|| Underivable::InverseKinematics { leg: name() })?;
+            let conditions = solve_leg(
+                arena,
+                leg,
+                first_joint,
+                home,
+                platform,
+                &mut self.configuration,
+            )
+            .ok_or_else(|| Underivable::InverseKinematics { leg: name() })?;
             let guards = conditions.into_iter().map(|reach| Guard {
                 value: reach.radicand,
                 kind: GuardKind::Reach,
@@ -151,7 +162,10 @@ impl<'a> Robot<'a> {
             .ok_or_else(|| Underivable::InverseKinematics { leg: name() })?;
         let rates = Rates::new(leg, self.platform.is_some());
         let (closure, rows) = match &self.platform {
-            None => (None, self.identity_rows(first_joint, leg.independent().count())),
+            None => (
+                None,
+                self.identity_rows(first_joint, leg.independent().count()),
+            ),
             Some(platform) => {
                 let selected = self.mechanism.closure_rows(index);
                 let home = |e: Expr<'a>| self.at_home(e);
@@ -166,7 +180,13 @@ impl<'a> Robot<'a> {
             self.guard_leg(closure, &leg.name);
         }
         name_rows(&rows, leg, &self.twist);
-        self.legs.push(LegState { first_joint, frames, rates, closure, rows });
+        self.legs.push(LegState {
+            first_joint,
+            frames,
+            rates,
+            closure,
+            rows,
+        });
         arena.enter("");
         Ok(())
     }
@@ -177,7 +197,11 @@ impl<'a> Robot<'a> {
             let known = self.guards.iter().any(|g| g.value == base);
             if !known && base.as_number().is_none() {
                 let kind = GuardKind::Leg(self.at_home(base).abs());
-                self.guards.push(Guard { value: base, kind, leg: leg.to_owned() });
+                self.guards.push(Guard {
+                    value: base,
+                    kind,
+                    leg: leg.to_owned(),
+                });
             }
         }
     }
@@ -185,7 +209,9 @@ impl<'a> Robot<'a> {
     fn identity_rows(&self, first: usize, count: usize) -> Rows<'a> {
         let dof = self.mechanism.dof();
         let entry = |i: usize, j: usize| self.arena.integer(i64::from(first + i == j));
-        (0..count).map(|i| (0..dof).map(|j| entry(i, j)).collect()).collect()
+        (0..count)
+            .map(|i| (0..dof).map(|j| entry(i, j)).collect())
+            .collect()
     }
 
     /// The value of an expression at the home configuration, with all rates set to small numbers.
@@ -206,15 +232,25 @@ impl<'a> Robot<'a> {
     /// Inputs `name[0]`, `name[1]`, … as expressions.
     #[must_use]
     pub fn inputs(&self, name: &str, count: usize) -> Vec<Expr<'a>> {
-        (0..count).map(|i| self.arena.variable(&format!("{name}[{i}]"))).collect()
+        (0..count)
+            .map(|i| self.arena.variable(&format!("{name}[{i}]")))
+            .collect()
     }
 
     /// Velocities and accelerations of all legs and bodies.
     #[must_use]
     pub fn motion(&self, twist: &[Expr<'a>], acceleration: &[Expr<'a>]) -> Option<RobotMotion<'a>> {
-        let platform = self.platform.as_ref().map(|p| p.motion(twist, acceleration));
+        let platform = self
+            .platform
+            .as_ref()
+            .map(|p| p.motion(twist, acceleration));
         let gravity = Vector3::constant(self.arena, self.mechanism.gravity);
-        let mut motion = RobotMotion { u: vec![], u_dot: vec![], bodies: vec![], platform: None };
+        let mut motion = RobotMotion {
+            u: vec![],
+            u_dot: vec![],
+            bodies: vec![],
+            platform: None,
+        };
         for (leg, state) in self.mechanism.legs.iter().zip(&self.legs) {
             self.arena.enter(&leg.name);
             let (u, u_dot) = match (&state.closure, &platform) {
@@ -222,7 +258,7 @@ impl<'a> Robot<'a> {
                     let u = closure.velocities(platform);
                     name_rates(leg, &u, "rate");
                     let bias = end_bias(self.arena, leg, &state.frames, &state.rates, &u);
-                    let u_dot = closure.accelerations(platform, bias);
+                    let u_dot = closure.accelerations(self.arena, platform, &bias);
                     name_rates(leg, &u_dot, "rate_dot");
                     (u, u_dot)
                 }
@@ -245,20 +281,24 @@ impl<'a> Robot<'a> {
             motion.bodies.push(bodies);
         }
         self.arena.enter("platform");
-        motion.platform = self.platform.as_ref().zip(platform.as_ref()).map(|(pose, m)| {
-            let into = pose.rotation.transposed();
-            let zero = Vector3::zero(self.arena);
-            let partial = |c: &TwistCoordinate| match c {
-                TwistCoordinate::Linear(a) => [into * Vector3::unit(self.arena, *a), zero],
-                TwistCoordinate::Angular(a) => [zero, into * Vector3::unit(self.arena, *a)],
-            };
-            BodyMotion::new(
-                into * m.angular_velocity,
-                into * m.angular_acceleration,
-                into * (m.acceleration - gravity),
-                self.twist.iter().map(partial).collect(),
-            )
-        });
+        motion.platform = self
+            .platform
+            .as_ref()
+            .zip(platform.as_ref())
+            .map(|(pose, m)| {
+                let into = pose.rotation.transposed();
+                let zero = Vector3::zero(self.arena);
+                let partial = |c: &TwistCoordinate| match c {
+                    TwistCoordinate::Linear(a) => [into * Vector3::unit(self.arena, *a), zero],
+                    TwistCoordinate::Angular(a) => [zero, into * Vector3::unit(self.arena, *a)],
+                };
+                BodyMotion::new(
+                    into * m.angular_velocity,
+                    into * m.angular_acceleration,
+                    into * (m.acceleration - gravity),
+                    self.twist.iter().map(partial).collect(),
+                )
+            });
         self.arena.enter("");
         Some(motion)
     }
@@ -267,7 +307,11 @@ impl<'a> Robot<'a> {
     #[must_use]
     pub fn inverse_jacobian(&self) -> Rows<'a> {
         let all = self.joint_rows();
-        self.mechanism.actuated().iter().map(|&i| all[i].clone()).collect()
+        self.mechanism
+            .actuated()
+            .iter()
+            .map(|&i| all[i].clone())
+            .collect()
     }
 
     /// ∂q̇_t/∂v, n_t x r.
@@ -289,7 +333,10 @@ impl<'a> Robot<'a> {
     pub fn joint_values(&self, u: &[Vec<Expr<'a>>]) -> Vec<Expr<'a>> {
         let mut values = Vec::new();
         for ((leg, state), u) in self.mechanism.legs.iter().zip(&self.legs).zip(u) {
-            values.extend(leg.independent().map(|j| state.rates.joint[j].value(self.arena, u)));
+            values.extend(
+                leg.independent()
+                    .map(|j| state.rates.joint[j].value(self.arena, u)),
+            );
         }
         values
     }

@@ -217,11 +217,11 @@ fn parameters(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<TrueParameter> 
 fn pattern(robot: &Inventory<'_>) -> &'static str {
     match robot.platform {
         None => {
-            "names are SYMBOL_JOINT, for instance `zz_1`; only parameters listed for the joint exist"
+            "names are SYMBOL_JOINT, for instance `zz_1`; only those listed for the joint exist"
         }
         Some(_) => {
-            "names are SYMBOL_JOINT_LEG, SYMBOL_platform and SYMBOL_payload; only parameters listed \
-             for the body exist"
+            "names are SYMBOL_JOINT_LEG, SYMBOL_platform and SYMBOL_payload; only those \
+             listed for the body exist"
         }
     }
 }

@@ -147,7 +147,7 @@ impl Reader<'_, '_, '_> {
         if has_own && value.terms != [(self.index, Ratio::ONE)] {
             let error =
                 item.error("the position of a joint with its own variable is `q` plus a constant");
-            let help = "turn the axis to change the sign; use the variables of other joints only for \
+            let help = "turn the axis to change the sign; use the variables of others only for \
                         a joint that has none of its own";
             return Some(error.help(help));
         }
@@ -183,8 +183,8 @@ fn resolve(joints: &mut [Joint], shape: &Shape<'_, '_>) {
     }
 }
 
-/// The variable of one joint in terms of independent ones: dependent ones are replaced until none is
-/// left, which takes at most as many rounds as there are joints unless they form a cycle.
+/// The variable of one joint in terms of independent ones: dependent ones are replaced until none
+/// is left, which takes at most as many rounds as there are joints unless they form a cycle.
 fn independent(given: &[Combination], index: usize) -> Result<Combination, &'static str> {
     let own = |joint: usize| {
         given

@@ -1,7 +1,7 @@
 //! TOML to [`Description`]: every field evaluated and with its place in the text.
 //!
-//! A description is a TOML file; `robots/README.md` documents its keys, frames and units. Reading it
-//! goes down the tables: [`parse`] reads the root, which reads constants, platform, shapes (legs
+//! A description is a TOML file; `robots/README.md` documents its keys, frames and units. Reading
+//! it goes down the tables: [`parse`] reads the root, which reads constants, platform, shapes (legs
 //! written once) and placements (shapes evaluated with values of their own), and then the tables
 //! about experiments, which name what came before. All errors are noted with their places and
 //! reported together.

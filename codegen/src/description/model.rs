@@ -196,7 +196,7 @@ pub struct Joint {
     pub name: Spanned<String>,
     /// Revolute, prismatic or fixed.
     pub kind: Spanned<JointKind>,
-    /// The joint whose frame this one starts from, always an earlier one; `None` for the leg's base.
+    /// The joint whose frame this one starts from, an earlier one; `None` for the leg's base.
     pub antecedent: Option<usize>,
     /// MDH γ.
     pub gamma: Spanned<Angle>,
@@ -210,9 +210,9 @@ pub struct Joint {
     pub theta: Spanned<Angle>,
     /// MDH r, m; for a prismatic joint its constant part.
     pub r: Spanned<Number>,
-    /// The joint's variable, which adds to θ (revolute) or r (prismatic), as a linear combination of
-    /// the independent joint variables of the leg: itself with factor one, or others for a dependent
-    /// joint (in rad or m per rad or m). Empty for a fixed joint.
+    /// The joint's variable, which adds to θ (revolute) or r (prismatic), as a linear combination
+    /// of the independent joint variables of the leg: itself with factor one, or others for a
+    /// dependent joint (in rad or m per rad or m). Empty for a fixed joint.
     pub variable: Vec<(usize, Ratio)>,
     /// Whether a motor drives the joint.
     pub actuated: bool,

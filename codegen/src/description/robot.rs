@@ -220,8 +220,8 @@ fn check_ends(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], platform: bool, l
     }
 }
 
-/// Without actuators there is nothing to identify from; a platform with more freedoms than the robot
-/// has actuators cannot be controlled.
+/// Without actuators there is nothing to identify from; a platform with more freedoms than the
+/// robot has actuators cannot be controlled.
 fn check_actuators(table: &Table<'_, '_>, platform: Option<&Platform>, legs: &[Leg]) {
     let count = actuators(legs).len();
     let Some(platform) = platform else {

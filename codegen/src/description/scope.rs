@@ -148,7 +148,7 @@ impl Item<'_, '_> {
                 "`{}` is constant and cannot hold a joint variable",
                 self.key.value
             );
-            let help = "joint variables belong into the theta of a revolute and the r of a prismatic joint";
+            let help = "joint variables stand in theta of a revolute or r of a prismatic joint";
             self.context.report_once(self.error(message).help(help));
             return None;
         }

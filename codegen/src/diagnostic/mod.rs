@@ -1,7 +1,7 @@
 //! Source text, spans and collected errors, and how they are shown.
 //!
-//! A stage that finds an error notes a [`Diagnostic`] and goes on, so that one run shows every error
-//! of a description. Nothing here prints: rendering gives a string, plain for `compile_error!` and
+//! A stage that finds an error notes a [`Diagnostic`] and goes on, so that one run shows every
+//! error of a description. Nothing here prints: rendering gives a string, plain for `compile_error!` and
 //! styled for a terminal, or plain data for machines.
 
 mod render;

@@ -14,9 +14,21 @@ pub fn items(model: &RobotModel) -> TokenStream {
     let size = |n: usize| Literal::usize_unsuffixed(n);
     let sizes = [
         ("POSE", mechanism.pose_len(), " Numbers in a pose."),
-        ("DOF", mechanism.dof(), " r, independent platform coordinates."),
-        ("ACTUATORS", mechanism.actuated().len(), " n, actuated joints."),
-        ("JOINTS", mechanism.joints().len(), " n_t, joints of all legs."),
+        (
+            "DOF",
+            mechanism.dof(),
+            " r, independent platform coordinates.",
+        ),
+        (
+            "ACTUATORS",
+            mechanism.actuated().len(),
+            " n, actuated joints.",
+        ),
+        (
+            "JOINTS",
+            mechanism.joints().len(),
+            " n_t, joints of all legs.",
+        ),
     ];
     let sizes = sizes.map(|(name, value, doc)| {
         let (name, value) = (format_ident!("{name}"), size(value));
@@ -25,20 +37,50 @@ pub fn items(model: &RobotModel) -> TokenStream {
     let name = &mechanism.name;
     let legs: Vec<&str> = mechanism.legs.iter().map(|l| l.name.as_str()).collect();
     let actuators = mechanism.actuator_names();
-    let joints: Vec<String> = mechanism.joints().iter().map(|&j| mechanism.joint_name(j)).collect();
+    let joints: Vec<String> = mechanism
+        .joints()
+        .iter()
+        .map(|&j| mechanism.joint_name(j))
+        .collect();
     let strings = [
-        ("LEGS", legs.iter().map(ToString::to_string).collect(), " Names of the legs."),
-        ("ACTUATOR_NAMES", actuators, " Names of the actuators, in the order of q and τ."),
-        ("JOINT_NAMES", joints, " Names of the joints, in the order of q_t."),
-        ("COORDINATES", coordinates(model), " Names of the pose's numbers."),
+        (
+            "LEGS",
+            legs.iter().map(ToString::to_string).collect(),
+            " Names of the legs.",
+        ),
+        (
+            "ACTUATOR_NAMES",
+            actuators,
+            " Names of the actuators, in the order of q and τ.",
+        ),
+        (
+            "JOINT_NAMES",
+            joints,
+            " Names of the joints, in the order of q_t.",
+        ),
+        (
+            "COORDINATES",
+            coordinates(model),
+            " Names of the pose's numbers.",
+        ),
     ];
     let strings = strings.map(|(name, values, doc): (_, Vec<String>, _)| {
         let (name, count) = (format_ident!("{name}"), size(values.len()));
         quote!(#[doc = #doc] pub const #name: [&'static str; #count] = [#(#values),*];)
     });
     let tables = [
-        parameters("PARAMETERS", " The standard parameters whose columns are not identically zero, in column order.", model, &model.selection.standard),
-        parameters("PAYLOAD_PARAMETERS", " The payload's parameters, in column order.", model, &model.selection.payload),
+        parameters(
+            "PARAMETERS",
+            " The standard parameters whose columns are not identically zero, in column order.",
+            model,
+            &model.selection.standard,
+        ),
+        parameters(
+            "PAYLOAD_PARAMETERS",
+            " The payload's parameters, in column order.",
+            model,
+            &model.selection.payload,
+        ),
     ];
     let base = base_parameters(model);
     let home = home(model);
@@ -55,12 +97,18 @@ pub fn items(model: &RobotModel) -> TokenStream {
 
 fn coordinates(model: &RobotModel) -> Vec<String> {
     match &model.mechanism.platform {
-        Some(platform) => {
-            platform.motion.pose_coordinates().iter().map(ToString::to_string).collect()
-        }
+        Some(platform) => platform
+            .motion
+            .pose_coordinates()
+            .iter()
+            .map(ToString::to_string)
+            .collect(),
         None => {
             let joints = model.mechanism.joints();
-            joints.iter().map(|&j| format!("q_{}", model.mechanism.joint_name(j))).collect()
+            joints
+                .iter()
+                .map(|&j| format!("q_{}", model.mechanism.joint_name(j)))
+                .collect()
         }
     }
 }
@@ -70,8 +118,13 @@ fn home(model: &RobotModel) -> TokenStream {
     let joints = mechanism.joints();
     let actuated = mechanism.actuated();
     let indices = actuated.iter().map(|&i| Literal::usize_unsuffixed(i));
-    let revolute = actuated.iter().map(|&i| mechanism.joint(joints[i]).kind == JointKind::Revolute);
-    let kept = mechanism.kept_actuators.iter().map(|&i| Literal::usize_unsuffixed(i));
+    let revolute = actuated
+        .iter()
+        .map(|&i| mechanism.joint(joints[i]).kind == JointKind::Revolute);
+    let kept = mechanism
+        .kept_actuators
+        .iter()
+        .map(|&i| Literal::usize_unsuffixed(i));
     let kept_count = Literal::usize_unsuffixed(mechanism.kept_actuators.len());
     let pose = mechanism.home.pose.iter().map(|&v| number(v));
     let positions = mechanism.home.joints.iter().map(|&v| number(v));
@@ -95,7 +148,11 @@ fn parameters(name: &str, doc: &str, model: &RobotModel, of: &[BodyParameter]) -
         let unit = model.parameter_unit(parameter);
         let symbol = |s: StandardParameter| format_ident!("{s:?}");
         match parameter {
-            BodyParameter::Leg { leg, joint, symbol: s } => {
+            BodyParameter::Leg {
+                leg,
+                joint,
+                symbol: s,
+            } => {
                 let shape = model.mechanism.legs[leg].shape;
                 let (leg, joint, shape) = (index(leg), index(joint), index(shape));
                 let symbol = symbol(s);

@@ -27,13 +27,21 @@ struct Text {
 
 impl Text {
     fn atom(tokens: TokenStream) -> Self {
-        Self { tokens, binding: Binding::Atom, size: 0 }
+        Self {
+            tokens,
+            binding: Binding::Atom,
+            size: 0,
+        }
     }
 
     /// The tokens, in parentheses if the context binds more tightly.
     fn within(&self, binding: Binding) -> TokenStream {
         let tokens = &self.tokens;
-        if self.binding < binding { quote!((#tokens)) } else { quote!(#tokens) }
+        if self.binding < binding {
+            quote!((#tokens))
+        } else {
+            quote!(#tokens)
+        }
     }
 }
 
@@ -76,7 +84,11 @@ impl<'p> Body<'p> {
         }
         let text = self.text(self.program.steps[at].operation);
         let named = self.program.steps[at].name.is_some();
-        let guarded = self.program.guards.iter().any(|g| g.source == Source::Step(at));
+        let guarded = self
+            .program
+            .guards
+            .iter()
+            .any(|g| g.source == Source::Step(at));
         if self.uses[at] == 1 && !named && !guarded && text.size < LONGEST {
             self.inlined[at] = Some(text);
         } else {
@@ -92,7 +104,8 @@ impl<'p> Body<'p> {
     fn pair(&self, at: usize) -> Option<Source> {
         let operation = |i: usize| self.program.steps.get(i).map(|s| s.operation);
         match (operation(at)?, operation(at + 1)?) {
-            (Operation::Cosine(a), Operation::Sine(b)) | (Operation::Sine(a), Operation::Cosine(b))
+            (Operation::Cosine(a), Operation::Sine(b))
+            | (Operation::Sine(a), Operation::Cosine(b))
                 if a == b =>
             {
                 Some(a)
@@ -105,15 +118,25 @@ impl<'p> Body<'p> {
         let angle = self.source(angle).tokens;
         let (first, second) = (self.declare(at), self.declare(at + 1));
         let cosine_first = matches!(self.program.steps[at].operation, Operation::Cosine(_));
-        let (sine, cosine) = if cosine_first { (second, first) } else { (first, second) };
-        self.statements.extend(quote!(let (#sine, #cosine) = ::overact::math::sin_cos(#angle);));
+        let (sine, cosine) = if cosine_first {
+            (second, first)
+        } else {
+            (first, second)
+        };
+        self.statements
+            .extend(quote!(let (#sine, #cosine) = ::overact::math::sin_cos(#angle);));
         self.guards(at);
         self.guards(at + 1);
         2
     }
 
     fn guards(&mut self, at: usize) {
-        for guard in self.program.guards.iter().filter(|g| g.source == Source::Step(at)) {
+        for guard in self
+            .program
+            .guards
+            .iter()
+            .filter(|g| g.source == Source::Step(at))
+        {
             let value = self.source(guard.source).tokens;
             self.statements.extend(match &guard.condition {
                 Condition::Reach { leg } => quote!(::overact::guard::reach(#value, #leg)?;),
@@ -131,7 +154,10 @@ impl<'p> Body<'p> {
 
     /// A name for the value of a step: its own, made unique, or `t` with a number.
     fn declare(&mut self, at: usize) -> Ident {
-        let wanted = self.program.steps[at].name.clone().unwrap_or_else(|| format!("t{at}"));
+        let wanted = self.program.steps[at]
+            .name
+            .clone()
+            .unwrap_or_else(|| format!("t{at}"));
         let mut name = wanted.clone();
         let mut suffix = 2;
         while !self.taken.insert(name.clone()) {
@@ -147,8 +173,16 @@ impl<'p> Body<'p> {
         match source {
             Source::Constant(value) => {
                 let literal = number(value);
-                let binding = if value < 0.0 { Binding::Product } else { Binding::Atom };
-                Text { tokens: literal, binding, size: 0 }
+                let binding = if value < 0.0 {
+                    Binding::Product
+                } else {
+                    Binding::Atom
+                };
+                Text {
+                    tokens: literal,
+                    binding,
+                    size: 0,
+                }
             }
             Source::Input { array, index } => {
                 let name = Ident::new(&self.program.inputs[array].name, Span::call_site());
@@ -172,7 +206,11 @@ impl<'p> Body<'p> {
             Operation::Neg(a) => {
                 let inner = self.source(a);
                 let tokens = inner.within(Binding::Atom);
-                Text { tokens: quote!(-#tokens), binding: Binding::Product, size: inner.size }
+                Text {
+                    tokens: quote!(-#tokens),
+                    binding: Binding::Product,
+                    size: inner.size,
+                }
             }
             Operation::Sqrt(a) => self.call(&quote!(sqrt), &[a]),
             Operation::Sign(a) => self.call(&quote!(sign), &[a]),
@@ -194,7 +232,11 @@ impl<'p> Body<'p> {
     ) -> Text {
         let (a, b) = (self.source(a), self.source(b));
         let (left, right) = (a.within(binding), b.within(right));
-        Text { tokens: quote!(#left #operator #right), binding, size: a.size + b.size + 1 }
+        Text {
+            tokens: quote!(#left #operator #right),
+            binding,
+            size: a.size + b.size + 1,
+        }
     }
 
     fn call(&mut self, function: &TokenStream, arguments: &[Source]) -> Text {
@@ -202,12 +244,20 @@ impl<'p> Body<'p> {
         let size = arguments.iter().map(|a| a.size).sum::<usize>() + 1;
         let tokens = arguments.iter().map(|a| &a.tokens);
         let tokens = quote!(::overact::math::#function(#(#tokens),*));
-        Text { tokens, binding: Binding::Atom, size }
+        Text {
+            tokens,
+            binding: Binding::Atom,
+            size,
+        }
     }
 
     fn part(&mut self, angle: Source, index: &TokenStream) -> Text {
         let angle = self.source(angle).tokens;
-        Text { tokens: quote!(::overact::math::sin_cos(#angle).#index), binding: Binding::Atom, size: 1 }
+        Text {
+            tokens: quote!(::overact::math::sin_cos(#angle).#index),
+            binding: Binding::Atom,
+            size: 1,
+        }
     }
 
     fn output(&mut self) -> TokenStream {
@@ -246,5 +296,9 @@ pub fn number(value: f64) -> TokenStream {
         return quote!(f64::NAN);
     }
     let literal = Literal::f64_unsuffixed(value.abs());
-    if value < 0.0 { quote!(-#literal) } else { quote!(#literal) }
+    if value < 0.0 {
+        quote!(-#literal)
+    } else {
+        quote!(#literal)
+    }
 }

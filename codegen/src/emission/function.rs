@@ -68,7 +68,13 @@ fn arguments(model: &RobotModel, function: &Function) -> TokenStream {
         let pose_is_found = function.from == From::Actuators && array.name == "pose";
         let (name, array) = if pose_is_found {
             let actuators = model.mechanism.actuated().len();
-            ("actuators".to_owned(), Array { name: String::new(), shape: vec![actuators] })
+            (
+                "actuators".to_owned(),
+                Array {
+                    name: String::new(),
+                    shape: vec![actuators],
+                },
+            )
         } else if used[index] {
             (array.name.clone(), array.clone())
         } else {
@@ -119,7 +125,13 @@ fn documentation(model: &RobotModel, function: &Function) -> Vec<String> {
             }
         }
     }
-    let shape: Vec<String> = function.program.output.shape.iter().map(ToString::to_string).collect();
+    let shape: Vec<String> = function
+        .program
+        .output
+        .shape
+        .iter()
+        .map(ToString::to_string)
+        .collect();
     lines.push(String::new());
     lines.push(format!(" Output: {}.", shape.join(" x ")));
     if function.family.columns().is_some() {
@@ -146,8 +158,16 @@ fn columns_constant(function: &Function) -> &'static str {
 
 fn input_meaning(model: &RobotModel, name: &str) -> Option<String> {
     let platform = model.mechanism.platform.as_ref();
-    let coordinates = || platform.map(|p| p.motion.pose_coordinates().join(", ")).unwrap_or_default();
-    let rates = || platform.map(|p| p.motion.twist_names().join(", ")).unwrap_or_default();
+    let coordinates = || {
+        platform
+            .map(|p| p.motion.pose_coordinates().join(", "))
+            .unwrap_or_default()
+    };
+    let rates = || {
+        platform
+            .map(|p| p.motion.twist_names().join(", "))
+            .unwrap_or_default()
+    };
     Some(match name {
         "pose" => format!("x = [{}] (m, rad), in the base frame", coordinates()),
         "joints" => "q_t, all joint positions, leg by leg (m, rad)".to_owned(),
@@ -156,7 +176,9 @@ fn input_meaning(model: &RobotModel, name: &str) -> Option<String> {
         "joint_velocities" => "velocities of the joints (m/s, rad/s)".to_owned(),
         "joint_accelerations" => "accelerations of the joints (m/s², rad/s²)".to_owned(),
         "actuator_velocities" => "velocities of the actuated joints (m/s, rad/s)".to_owned(),
-        "actuator_accelerations" => "accelerations of the actuated joints (m/s², rad/s²)".to_owned(),
+        "actuator_accelerations" => {
+            "accelerations of the actuated joints (m/s², rad/s²)".to_owned()
+        }
         "torques" => "τ, forces and torques of the actuators (N, N m)".to_owned(),
         "parameters" => {
             "values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)".to_owned()

@@ -56,7 +56,10 @@ mod tests {
     fn elements_share_lines_and_nothing_is_lost() {
         let code = "let x = [\n    a,\n    b * c,\n    [\n        1.0,\n        2.0,\n    ],\n    d,\n];\n";
         let packed = super::pack_arrays(code);
-        assert_eq!(packed, "let x = [\n    a, b * c,\n    [\n        1.0, 2.0,\n    ],\n    d,\n];\n");
+        assert_eq!(
+            packed,
+            "let x = [\n    a, b * c,\n    [\n        1.0, 2.0,\n    ],\n    d,\n];\n"
+        );
         let squeeze = |s: &str| s.split_whitespace().collect::<String>();
         assert_eq!(squeeze(code), squeeze(&packed));
     }

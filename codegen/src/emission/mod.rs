@@ -70,7 +70,11 @@ pub fn module(model: &RobotModel) -> TokenStream {
 fn sentence(text: &str) -> String {
     let text = text.trim();
     let end = if text.ends_with('.') { "" } else { "." };
-    if text.is_empty() { " A robot.".to_owned() } else { format!(" {text}{end}") }
+    if text.is_empty() {
+        " A robot.".to_owned()
+    } else {
+        format!(" {text}{end}")
+    }
 }
 
 /// A formatted source file. `label` is the description's path as the header shall show it.

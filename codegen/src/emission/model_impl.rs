@@ -14,7 +14,10 @@ const FUNCTIONS: [(&str, Family); 15] = [
     ("JointVelocities", Family::JointVelocities),
     ("JointAccelerations", Family::JointAccelerations),
     ("TwistFromActuators", Family::TwistFromActuators),
-    ("AccelerationFromActuators", Family::AccelerationFromActuators),
+    (
+        "AccelerationFromActuators",
+        Family::AccelerationFromActuators,
+    ),
     ("IdmRedPlatform", Family::IdmRedPlatform(Columns::Standard)),
     ("IdmRedPayload", Family::IdmRedPayload),
     ("ProjectPlatform", Family::ProjectPlatform),
@@ -28,17 +31,23 @@ const FUNCTIONS: [(&str, Family); 15] = [
 /// `impl overact::Model for NAME` and `pose_from_actuators`.
 #[must_use]
 pub fn item(model: &RobotModel, name: &Ident) -> TokenStream {
-    let arms = FUNCTIONS.iter().filter_map(|(label, family)| arm(model, label, *family));
+    let arms = FUNCTIONS
+        .iter()
+        .filter_map(|(label, family)| arm(model, label, *family));
     let mechanism = &model.mechanism;
     let payload = Literal::usize_unsuffixed(model.selection.payload.len());
     let standard = Literal::usize_unsuffixed(model.selection.standard.len());
-    let displace = mechanism.platform.as_ref().is_some_and(|p| p.motion.has_quaternion()).then(|| {
-        quote! {
-            fn displace(&self, pose: &mut [f64], step: &[f64]) {
-                ::overact::forward::displace_quaternion(pose, step);
+    let displace = mechanism
+        .platform
+        .as_ref()
+        .is_some_and(|p| p.motion.has_quaternion())
+        .then(|| {
+            quote! {
+                fn displace(&self, pose: &mut [f64], step: &[f64]) {
+                    ::overact::forward::displace_quaternion(pose, step);
+                }
             }
-        }
-    });
+        });
     quote! {
         impl ::overact::Model for #name {
             fn info(&self) -> ::overact::Info<'_> {
@@ -102,8 +111,12 @@ fn arm(model: &RobotModel, label: &str, family: Family) -> Option<TokenStream> {
     let function = model.plain(family)?;
     let (label, name) = (format_ident!("{label}"), format_ident!("{}", function.name));
     let size = Literal::usize_unsuffixed(function.program.entries.len());
-    let arguments: Vec<Ident> =
-        function.program.inputs.iter().map(|a| format_ident!("{}", a.name)).collect();
+    let arguments: Vec<Ident> = function
+        .program
+        .inputs
+        .iter()
+        .map(|a| format_ident!("{}", a.name))
+        .collect();
     let map = format_ident!("map{}", arguments.len());
     let call = if is_fallible(function) {
         quote!(Self::#name)
@@ -133,8 +146,16 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
             }
         };
     }
-    let quaternion = model.mechanism.platform.as_ref().is_some_and(|p| p.motion.has_quaternion());
-    let displace = if quaternion { quote!(displace_quaternion) } else { quote!(displace) };
+    let quaternion = model
+        .mechanism
+        .platform
+        .as_ref()
+        .is_some_and(|p| p.motion.has_quaternion());
+    let displace = if quaternion {
+        quote!(displace_quaternion)
+    } else {
+        quote!(displace)
+    };
     let fallible = |family: Family| model.plain(family).is_some_and(is_fallible);
     let unwrap = |fallible: bool| fallible.then(|| quote!(?));
     let position = unwrap(fallible(Family::ActuatorPositions));

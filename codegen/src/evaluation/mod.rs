@@ -53,7 +53,9 @@ impl Program {
     ) -> Result<(), Failed> {
         let width = self.entries.len();
         workspace.steps.resize(self.steps.len(), [0.0; BLOCK]);
-        workspace.inputs.resize(self.inputs.iter().map(|a| a.len()).sum(), [0.0; BLOCK]);
+        workspace
+            .inputs
+            .resize(self.inputs.iter().map(|a| a.len()).sum(), [0.0; BLOCK]);
         let offsets = self.input_offsets();
         for start in (0..samples).step_by(BLOCK) {
             let count = BLOCK.min(samples - start);
@@ -62,10 +64,18 @@ impl Program {
             let lanes = if count == 1 { 1 } else { BLOCK };
             for at in 0..self.steps.len() {
                 let (done, rest) = workspace.steps.split_at_mut(at);
-                let fetch = Fetch { done, inputs: &workspace.inputs, offsets: &offsets };
+                let fetch = Fetch {
+                    done,
+                    inputs: &workspace.inputs,
+                    offsets: &offsets,
+                };
                 run_step(self.steps[at].operation, &fetch, &mut rest[0], lanes);
             }
-            let fetch = Fetch { done: &workspace.steps, inputs: &workspace.inputs, offsets: &offsets };
+            let fetch = Fetch {
+                done: &workspace.steps,
+                inputs: &workspace.inputs,
+                offsets: &offsets,
+            };
             self.check(&fetch, start, count)?;
             for (column, entry) in self.entries.iter().enumerate() {
                 let sign = if entry.negative { -1.0 } else { 1.0 };
@@ -93,10 +103,14 @@ impl Program {
         for (array, rows) in self.inputs.iter().zip(inputs) {
             let len = array.len();
             for index in 0..len {
-                for lane in 0..BLOCK {
+                for (lane, slot) in block[at + index].iter_mut().enumerate() {
                     // Lanes beyond the last sample repeat it, so that they stay harmless.
-                    let row = if rows.shared { 0 } else { start + lane.min(count - 1) };
-                    block[at + index][lane] = rows.values.get(row * len + index).copied().unwrap_or(0.0);
+                    let row = if rows.shared {
+                        0
+                    } else {
+                        start + lane.min(count - 1)
+                    };
+                    *slot = rows.values.get(row * len + index).copied().unwrap_or(0.0);
                 }
             }
             at += len;
@@ -111,7 +125,11 @@ impl Program {
                 let sample = start + lane;
                 let earlier = first.as_ref().is_none_or(|f| sample < f.sample);
                 if !guard.condition.holds(value) && earlier {
-                    first = Some(Failed { sample, guard: index, value });
+                    first = Some(Failed {
+                        sample,
+                        guard: index,
+                        value,
+                    });
                 }
             }
         }
@@ -149,7 +167,9 @@ impl Fetch<'_> {
     fn block(&self, source: Source) -> Operand<'_> {
         match source {
             Source::Constant(value) => Operand::Constant(value),
-            Source::Input { array, index } => Operand::Block(&self.inputs[self.offsets[array] + index]),
+            Source::Input { array, index } => {
+                Operand::Block(&self.inputs[self.offsets[array] + index])
+            }
             Source::Step(at) => Operand::Block(&self.done[at]),
         }
     }
@@ -238,7 +258,12 @@ fn trigonometric(
         out[0] = one(angles[0]);
         return;
     }
-    for (o, a) in out.as_chunks_mut::<4>().0.iter_mut().zip(angles.as_chunks::<4>().0) {
+    for (o, a) in out
+        .as_chunks_mut::<4>()
+        .0
+        .iter_mut()
+        .zip(angles.as_chunks::<4>().0)
+    {
         *o = four(f64x4::new(*a)).to_array();
     }
 }

@@ -44,10 +44,19 @@ pub fn lower<'a>(
         .iter()
         .filter_map(|guard| {
             let source = *lowering.done.get(&guard.value.handle().index())?;
-            Some(Guard { source, condition: guard.condition.clone() })
+            Some(Guard {
+                source,
+                condition: guard.condition.clone(),
+            })
         })
         .collect();
-    let program = Program { inputs: inputs.to_vec(), output, entries, steps: lowering.steps, guards };
+    let program = Program {
+        inputs: inputs.to_vec(),
+        output,
+        entries,
+        steps: lowering.steps,
+        guards,
+    };
     super::peephole::improve(program)
 }
 
@@ -78,17 +87,25 @@ impl<'a> Lowering<'a> {
     fn entry(&mut self, handle: Handle) -> Entry {
         let source = self.node(handle.index());
         match source {
-            Source::Constant(value) if handle.is_negative() => {
-                Entry { source: Source::Constant(-value), negative: false }
-            }
-            _ => Entry { source, negative: handle.is_negative() },
+            Source::Constant(value) if handle.is_negative() => Entry {
+                source: Source::Constant(-value),
+                negative: false,
+            },
+            _ => Entry {
+                source,
+                negative: handle.is_negative(),
+            },
         }
     }
 
     /// The operand that a handle is; a negative one is negated first.
     fn operand(&mut self, handle: Handle) -> Source {
         let entry = self.entry(handle);
-        if entry.negative { self.push(Operation::Neg(entry.source), None, String::new()) } else { entry.source }
+        if entry.negative {
+            self.push(Operation::Neg(entry.source), None, String::new())
+        } else {
+            entry.source
+        }
     }
 
     fn node(&mut self, index: usize) -> Source {
@@ -119,7 +136,11 @@ impl<'a> Lowering<'a> {
             Op::Sign(a) => Operation::Sign(self.operand(a)),
             Op::Atan2(y, x) => Operation::Atan2(self.operand(y), self.operand(x)),
         };
-        let source = self.push(operation, self.arena.name_of(index), self.arena.scope(index));
+        let source = self.push(
+            operation,
+            self.arena.name_of(index),
+            self.arena.scope(index),
+        );
         self.finish(index, source)
     }
 
@@ -141,7 +162,11 @@ impl<'a> Lowering<'a> {
     }
 
     fn push(&mut self, operation: Operation, name: Option<String>, scope: String) -> Source {
-        self.steps.push(Step { operation, name, scope });
+        self.steps.push(Step {
+            operation,
+            name,
+            scope,
+        });
         Source::Step(self.steps.len() - 1)
     }
 
@@ -151,7 +176,10 @@ impl<'a> Lowering<'a> {
         let parts = symbol.strip_suffix(']').and_then(|s| s.split_once('['));
         let found = parts.and_then(|(name, index)| {
             let array = self.inputs.iter().position(|a| a.name == name)?;
-            Some(Source::Input { array, index: index.parse().ok()? })
+            Some(Source::Input {
+                array,
+                index: index.parse().ok()?,
+            })
         });
         debug_assert!(found.is_some(), "`{symbol}` is no input");
         found.unwrap_or(Source::Constant(f64::NAN))
@@ -172,16 +200,36 @@ impl<'a> Lowering<'a> {
         let (direction, how) = self.angles[at].clone();
         let unit = match how {
             Plan::Direct => self.direct(&direction),
-            Plan::Sum { first, second, sign, rest } => {
-                let mut unit = Turned { unit: self.unit(first), mirrored: sign < 0 };
+            Plan::Sum {
+                first,
+                second,
+                sign,
+                rest,
+            } => {
+                let mut unit = Turned {
+                    unit: self.unit(first),
+                    mirrored: sign < 0,
+                };
                 if let Some((second, sign)) = second {
-                    let other = Turned { unit: self.unit(second), mirrored: sign < 0 };
+                    let other = Turned {
+                        unit: self.unit(second),
+                        mirrored: sign < 0,
+                    };
                     unit = self.sum(unit, other);
                 }
                 if !rest.offset().is_zero() {
                     let (cosine, sine) = rest.offset().cosine_and_sine();
-                    let constant = (Source::Constant(cosine.value()), Source::Constant(sine.value()));
-                    unit = self.sum(unit, Turned { unit: constant, mirrored: false });
+                    let constant = (
+                        Source::Constant(cosine.value()),
+                        Source::Constant(sine.value()),
+                    );
+                    unit = self.sum(
+                        unit,
+                        Turned {
+                            unit: constant,
+                            mirrored: false,
+                        },
+                    );
                 }
                 self.resolved(unit)
             }
@@ -205,7 +253,11 @@ impl<'a> Lowering<'a> {
             let part = if size == 1.0 {
                 input
             } else {
-                self.push(Operation::Mul(Source::Constant(size), input), None, String::new())
+                self.push(
+                    Operation::Mul(Source::Constant(size), input),
+                    None,
+                    String::new(),
+                )
             };
             let negative = factor.value() < 0.0;
             sum = Some(match (sum, negative) {
@@ -230,14 +282,30 @@ impl<'a> Lowering<'a> {
     fn sum(&mut self, a: Turned, b: Turned) -> Turned {
         let ((ca, sa), (cb, sb)) = (a.unit, b.unit);
         let mut product = |x, y| self.product(x, y);
-        let (cc, ss, sc, cs) = (product(ca, cb), product(sa, sb), product(sa, cb), product(ca, sb));
+        let (cc, ss, sc, cs) = (
+            product(ca, cb),
+            product(sa, sb),
+            product(sa, cb),
+            product(ca, sb),
+        );
         let same = a.mirrored == b.mirrored;
-        let cosine = if same { Operation::Sub(cc, ss) } else { Operation::Add(cc, ss) };
-        let sine = if same { Operation::Add(sc, cs) } else { Operation::Sub(sc, cs) };
+        let cosine = if same {
+            Operation::Sub(cc, ss)
+        } else {
+            Operation::Add(cc, ss)
+        };
+        let sine = if same {
+            Operation::Add(sc, cs)
+        } else {
+            Operation::Sub(sc, cs)
+        };
         let cosine = self.push(cosine, None, String::new());
         let sine = self.push(sine, None, String::new());
         // With a mirrored the whole sine changes its sign.
-        Turned { unit: (cosine, sine), mirrored: a.mirrored }
+        Turned {
+            unit: (cosine, sine),
+            mirrored: a.mirrored,
+        }
     }
 
     fn product(&mut self, x: Source, y: Source) -> Source {

@@ -10,4 +10,6 @@ pub mod program;
 pub mod trigonometry;
 
 pub use lower::{GuardedExpr, lower};
-pub use program::{Array, Condition, Cost, Entry, Guard, Operation, Program, SINGULAR, Source, Step};
+pub use program::{
+    Array, Condition, Cost, Entry, Guard, Operation, Program, SINGULAR, Source, Step,
+};

@@ -20,7 +20,11 @@ pub fn uses(program: &Program) -> Vec<usize> {
             uses[at] += 1;
         }
     };
-    program.steps.iter().flat_map(|s| s.operation.operands()).for_each(&mut count);
+    program
+        .steps
+        .iter()
+        .flat_map(|s| s.operation.operands())
+        .for_each(&mut count);
     program.entries.iter().for_each(|e| count(e.source));
     program.guards.iter().for_each(|g| count(g.source));
     uses
@@ -86,8 +90,14 @@ fn remove_unused(program: Program) -> Program {
             needed[at] = true;
         }
     };
-    program.entries.iter().for_each(|e| mark(&mut needed, e.source));
-    program.guards.iter().for_each(|g| mark(&mut needed, g.source));
+    program
+        .entries
+        .iter()
+        .for_each(|e| mark(&mut needed, e.source));
+    program
+        .guards
+        .iter()
+        .for_each(|g| mark(&mut needed, g.source));
     for at in (0..program.steps.len()).rev() {
         if needed[at] {
             for operand in program.steps[at].operation.operands() {
@@ -105,17 +115,32 @@ fn remove_unused(program: Program) -> Program {
         Source::Step(at) => Source::Step(number[at]),
         other => other,
     };
-    let steps = program.steps.into_iter().zip(&needed).filter(|(_, n)| **n).map(|(step, _)| Step {
-        operation: map_operands(step.operation, &moved),
-        ..step
-    });
+    let steps = program
+        .steps
+        .into_iter()
+        .zip(&needed)
+        .filter(|(_, n)| **n)
+        .map(|(step, _)| Step {
+            operation: map_operands(step.operation, &moved),
+            ..step
+        });
     Program {
         steps: steps.collect(),
-        entries: program.entries.iter().map(|e| Entry { source: moved(e.source), ..*e }).collect(),
+        entries: program
+            .entries
+            .iter()
+            .map(|e| Entry {
+                source: moved(e.source),
+                ..*e
+            })
+            .collect(),
         guards: program
             .guards
             .into_iter()
-            .map(|g| Guard { source: moved(g.source), ..g })
+            .map(|g| Guard {
+                source: moved(g.source),
+                ..g
+            })
             .collect(),
         inputs: program.inputs,
         output: program.output,

@@ -49,7 +49,9 @@ impl Operation {
             | Self::Div(a, b)
             | Self::Signed(a, b)
             | Self::Atan2(a, b) => vec![a, b],
-            Self::Neg(a) | Self::Sqrt(a) | Self::Sine(a) | Self::Cosine(a) | Self::Sign(a) => vec![a],
+            Self::Neg(a) | Self::Sqrt(a) | Self::Sine(a) | Self::Cosine(a) | Self::Sign(a) => {
+                vec![a]
+            }
         }
     }
 }

@@ -31,7 +31,9 @@ pub fn plan(angles: &[Direction]) -> Vec<(Direction, Plan)> {
     sorted.sort_by(|a, b| {
         let key = |d: &Direction| (d.terms().len(), !d.offset().is_zero());
         let symbols = |d: &Direction| d.terms().iter().map(|t| t.0).collect::<Vec<_>>();
-        key(a).cmp(&key(b)).then_with(|| symbols(a).cmp(&symbols(b)))
+        key(a)
+            .cmp(&key(b))
+            .then_with(|| symbols(a).cmp(&symbols(b)))
     });
     let mut planned: Vec<(Direction, Plan)> = Vec::new();
     for angle in sorted {
@@ -48,16 +50,30 @@ fn composed(angle: &Direction, known: &[(Direction, Plan)]) -> Option<Plan> {
     };
     for (first, (direction, _)) in known.iter().enumerate() {
         for sign in [1, -1] {
-            let Some(rest) = less(angle, direction, sign) else { continue };
+            let Some(rest) = less(angle, direction, sign) else {
+                continue;
+            };
             if rest.is_constant() {
-                return Some(Plan::Sum { first, second: None, sign, rest });
+                return Some(Plan::Sum {
+                    first,
+                    second: None,
+                    sign,
+                    rest,
+                });
             }
             for (second, (other, _)) in known.iter().enumerate() {
                 for other_sign in [1, -1] {
-                    let Some(last) = less(&rest, other, other_sign) else { continue };
+                    let Some(last) = less(&rest, other, other_sign) else {
+                        continue;
+                    };
                     if last.is_constant() {
                         let second = Some((second, other_sign));
-                        return Some(Plan::Sum { first, second, sign, rest: last });
+                        return Some(Plan::Sum {
+                            first,
+                            second,
+                            sign,
+                            rest: last,
+                        });
                     }
                 }
             }

@@ -23,7 +23,9 @@ pub fn check(description: &Description) -> Result<Mechanism, Diagnostics> {
         Ok(home) => mechanism.home = home,
         Err(found) => {
             let mut errors = Diagnostics::new();
-            found.iter().for_each(|e| errors.push(home_error(description, e)));
+            found
+                .iter()
+                .for_each(|e| errors.push(home_error(description, e)));
             return Err(errors);
         }
     }
@@ -81,8 +83,13 @@ fn check_actuators(description: &Description, mechanism: &Mechanism, errors: &mu
         None => description.name.span.clone(),
     };
     if mechanism.platform.is_none() && n < r {
-        let passive = mechanism.joints().into_iter().find(|&i| !mechanism.joint(i).actuated);
-        let span = passive.map_or(span, |i| description.legs[i.leg].joints[i.joint].span.clone());
+        let passive = mechanism
+            .joints()
+            .into_iter()
+            .find(|&i| !mechanism.joint(i).actuated);
+        let span = passive.map_or(span, |i| {
+            description.legs[i.leg].joints[i.joint].span.clone()
+        });
         errors.push(
             Diagnostic::new("a robot without a platform needs a motor at every joint", span)
                 .label(format!("{n} of {r} joints are actuated"))
@@ -95,11 +102,12 @@ fn check_actuators(description: &Description, mechanism: &Mechanism, errors: &mu
                 .help("mark the motors with `actuated = true`, or choose a platform motion with fewer coordinates"),
         );
     } else if mechanism.kept_actuators.len() != r {
-        let message = format!("case 2 keeps as many actuators as there are degrees of freedom, {r}");
-        errors.push(
-            Diagnostic::new(message, span)
-                .label(format!("`kept_actuators` names {}", mechanism.kept_actuators.len())),
-        );
+        let message =
+            format!("case 2 keeps as many actuators as there are degrees of freedom, {r}");
+        errors.push(Diagnostic::new(message, span).label(format!(
+            "`kept_actuators` names {}",
+            mechanism.kept_actuators.len()
+        )));
     }
 }
 
@@ -117,7 +125,11 @@ fn check_leg_sizes(description: &Description, errors: &mut Diagnostics) {
 
 fn rough_home(description: &Description) -> Home {
     let joints = description.legs.iter().flat_map(|leg| {
-        let own = leg.joints.iter().enumerate().filter(|(i, j)| j.is_independent(*i));
+        let own = leg
+            .joints
+            .iter()
+            .enumerate()
+            .filter(|(i, j)| j.is_independent(*i));
         own.map(|(_, j)| j.home.value())
     });
     let joints: Vec<f64> = joints.collect();
@@ -162,7 +174,10 @@ fn home_error(description: &Description, error: &HomeError) -> Diagnostic {
             .label(format!("its end stays {gap:.3} (m, rad) away from the platform"))
             .help("check lengths, attachment and base; give rough joint positions in `home` near the wanted working mode")
         }
-        HomeError::Singular { leg: index, condition } => {
+        HomeError::Singular {
+            leg: index,
+            condition,
+        } => {
             let leg = leg(*index);
             Diagnostic::new(
                 format!("leg `{}` is singular at the home configuration", leg.name.value),
@@ -181,17 +196,23 @@ fn check_mobility(
     index: usize,
     errors: &mut Diagnostics,
 ) {
-    let Some(platform) = &mechanism.platform else { return };
+    let Some(platform) = &mechanism.platform else {
+        return;
+    };
     let leg = &mechanism.legs[index];
     let Some(end) = &leg.end else { return };
     let frame = platform_frame(platform.motion, &mechanism.home.pose);
     let (target, oriented) = target(end, &frame);
     let rows = if oriented { 6 } else { 3 };
     let arm = target.translation.vector - frame.translation.vector;
-    let wanted = platform_columns(platform.motion, arm).rows(0, rows).into_owned();
+    let wanted = platform_columns(platform.motion, arm)
+        .rows(0, rows)
+        .into_owned();
     let jacobian = leg.end_jacobian(&mechanism.home.joints[mechanism.leg_range(index)]);
     let jacobian = jacobian.rows(0, rows).into_owned();
-    let Ok(pseudo_inverse) = jacobian.clone().pseudo_inverse(1e-9) else { return };
+    let Ok(pseudo_inverse) = jacobian.clone().pseudo_inverse(1e-9) else {
+        return;
+    };
     let missed = &wanted - &jacobian * (pseudo_inverse * &wanted);
     if missed.amax() > 1e-6 {
         let place = &description.legs[index];

@@ -45,7 +45,10 @@ impl Home {
     /// Every leg that does not close, or is singular where it closes.
     pub fn refine(mechanism: &Mechanism, rough: &Self) -> Result<Self, Vec<HomeError>> {
         let Some(platform) = &mechanism.platform else {
-            return Ok(Self { pose: rough.joints.clone(), joints: rough.joints.clone() });
+            return Ok(Self {
+                pose: rough.joints.clone(),
+                joints: rough.joints.clone(),
+            });
         };
         let frame = platform_frame(platform.motion, &rough.pose);
         let mut joints = rough.joints.clone();
@@ -58,11 +61,21 @@ impl Home {
                 Ok(q) => joints[range].copy_from_slice(&q),
                 Err(Failure::Open(gap)) => errors.push(HomeError::Open { leg: index, gap }),
                 Err(Failure::Singular(condition)) => {
-                    errors.push(HomeError::Singular { leg: index, condition });
+                    errors.push(HomeError::Singular {
+                        leg: index,
+                        condition,
+                    });
                 }
             }
         }
-        if errors.is_empty() { Ok(Self { pose: rough.pose.clone(), joints }) } else { Err(errors) }
+        if errors.is_empty() {
+            Ok(Self {
+                pose: rough.pose.clone(),
+                joints,
+            })
+        } else {
+            Err(errors)
+        }
     }
 }
 
@@ -90,12 +103,24 @@ fn close(
         }
         let jacobian = leg.end_jacobian(&q).rows(0, rows).into_owned();
         let normal = jacobian.tr_mul(&jacobian) + DMatrix::identity(q.len(), q.len()) * damping;
-        let Some(step) = normal.lu().solve(&jacobian.tr_mul(&error)) else { break };
+        let Some(step) = normal.lu().solve(&jacobian.tr_mul(&error)) else {
+            break;
+        };
         // A step of more than half a radian may jump to another working mode.
         let limit = 0.5 / step.amax().max(0.5);
-        let trial: Vec<f64> = q.iter().zip(step.iter()).map(|(q, s)| q + limit * s).collect();
-        let better = closure_error(leg, &trial, target, oriented).iter().fold(0.0_f64, |m, e| m.max(e.abs()));
-        damping = if better < gap { (damping * 0.1).max(1e-14) } else { (damping * 10.0).min(1e2) };
+        let trial: Vec<f64> = q
+            .iter()
+            .zip(step.iter())
+            .map(|(q, s)| q + limit * s)
+            .collect();
+        let better = closure_error(leg, &trial, target, oriented)
+            .iter()
+            .fold(0.0_f64, |m, e| m.max(e.abs()));
+        damping = if better < gap {
+            (damping * 0.1).max(1e-14)
+        } else {
+            (damping * 10.0).min(1e2)
+        };
         if better < gap || damping > 1.0 {
             q = trial;
         }
@@ -103,9 +128,13 @@ fn close(
     if gap.is_nan() || gap >= CLOSED {
         return Err(Failure::Open(gap));
     }
-    let singular_values = leg.end_jacobian(&q).rows(0, rows).into_owned().singular_values();
+    let singular_values = leg
+        .end_jacobian(&q)
+        .rows(0, rows)
+        .into_owned()
+        .singular_values();
     let condition = singular_values.max() / singular_values.min();
-    if q.len() > rows || !(condition < SINGULAR) {
+    if q.len() > rows || condition.is_nan() || condition >= SINGULAR {
         return Err(Failure::Singular(condition));
     }
     Ok(q)
@@ -122,6 +151,10 @@ pub fn close_from(
 ) -> Option<Vec<f64>> {
     let q = close(leg, start, target, oriented).ok()?;
     let rows = if oriented { 6 } else { 3 };
-    let values = leg.end_jacobian(&q).rows(0, rows).into_owned().singular_values();
+    let values = leg
+        .end_jacobian(&q)
+        .rows(0, rows)
+        .into_owned()
+        .singular_values();
     (values.max() < 50.0 * values.min()).then_some(q)
 }

@@ -74,7 +74,11 @@ pub struct Leg {
 impl Leg {
     /// Indices of the joints with a variable of their own.
     pub fn independent(&self) -> impl Iterator<Item = usize> + '_ {
-        self.joints.iter().enumerate().filter(|(i, j)| j.is_independent(*i)).map(|(i, _)| i)
+        self.joints
+            .iter()
+            .enumerate()
+            .filter(|(i, j)| j.is_independent(*i))
+            .map(|(i, _)| i)
     }
 }
 
@@ -124,7 +128,8 @@ impl Mechanism {
     #[must_use]
     pub fn joints(&self) -> Vec<JointIndex> {
         let legs = self.legs.iter().enumerate();
-        legs.flat_map(|(leg, l)| l.independent().map(move |joint| JointIndex { leg, joint })).collect()
+        legs.flat_map(|(leg, l)| l.independent().map(move |joint| JointIndex { leg, joint }))
+            .collect()
     }
 
     /// The joint behind an index.
@@ -137,20 +142,28 @@ impl Mechanism {
     #[must_use]
     pub fn actuated(&self) -> Vec<usize> {
         let joints = self.joints();
-        let actuated = joints.iter().enumerate().filter(|(_, j)| self.joint(**j).actuated);
+        let actuated = joints
+            .iter()
+            .enumerate()
+            .filter(|(_, j)| self.joint(**j).actuated);
         actuated.map(|(i, _)| i).collect()
     }
 
     /// r, the number of independent platform coordinates; for a tree, of its joints.
     #[must_use]
     pub fn dof(&self) -> usize {
-        self.platform.as_ref().map_or_else(|| self.joints().len(), |p| p.motion.twist().len())
+        self.platform
+            .as_ref()
+            .map_or_else(|| self.joints().len(), |p| p.motion.twist().len())
     }
 
     /// Length of a pose.
     #[must_use]
     pub fn pose_len(&self) -> usize {
-        self.platform.as_ref().map_or_else(|| self.joints().len(), |p| p.motion.pose_coordinates().len())
+        self.platform.as_ref().map_or_else(
+            || self.joints().len(),
+            |p| p.motion.pose_coordinates().len(),
+        )
     }
 
     /// Name of a joint for people: `leg1.2`, or `2` in a robot of one leg without a platform.

@@ -55,7 +55,9 @@ impl Leg {
         };
         let mut frames: Vec<Isometry3<f64>> = Vec::new();
         for joint in &self.joints {
-            let from = joint.antecedent.map_or_else(|| self.base.numeric(), |a| frames[a]);
+            let from = joint
+                .antecedent
+                .map_or_else(|| self.base.numeric(), |a| frames[a]);
             frames.push(from * joint.displacement(position(joint)));
         }
         frames
@@ -68,7 +70,9 @@ impl Leg {
         let frames = self.frames(q);
         let independent: Vec<usize> = self.independent().collect();
         let mut jacobian = DMatrix::zeros(6, independent.len());
-        let Some(last) = frames.last() else { return jacobian };
+        let Some(last) = frames.last() else {
+            return jacobian;
+        };
         let mut on_path = vec![false; self.joints.len()];
         let mut at = self.joints.len().checked_sub(1);
         while let Some(joint) = at {
@@ -84,7 +88,9 @@ impl Leg {
                 JointKind::Fixed => continue,
             };
             for (of, factor) in &joint.variable {
-                let Some(column) = independent.iter().position(|i| i == of) else { continue };
+                let Some(column) = independent.iter().position(|i| i == of) else {
+                    continue;
+                };
                 for i in 0..3 {
                     jacobian[(i, column)] += linear[i] * factor.value();
                     jacobian[(3 + i, column)] += angular[i] * factor.value();
@@ -100,7 +106,8 @@ impl Leg {
 pub fn platform_frame(motion: Motion, pose: &[f64]) -> Isometry3<f64> {
     let mut at = Vector3::zeros();
     let mut rotation = UnitQuaternion::identity();
-    let quaternion = |q: &[f64]| UnitQuaternion::from_quaternion(Quaternion::new(q[0], q[1], q[2], q[3]));
+    let quaternion =
+        |q: &[f64]| UnitQuaternion::from_quaternion(Quaternion::new(q[0], q[1], q[2], q[3]));
     match motion {
         Motion::FixedAxis { axis } => at[axis] = pose[0],
         Motion::Point { axis } | Motion::Planar { axis } => {
@@ -139,21 +146,28 @@ pub fn target(end: &End, platform: &Isometry3<f64>) -> (Isometry3<f64>, bool) {
 /// The rotational part is zero for a point end.
 #[must_use]
 pub fn closure_error(leg: &Leg, q: &[f64], target: &Isometry3<f64>, oriented: bool) -> [f64; 6] {
-    let Some(last) = leg.frames(q).pop() else { return [0.0; 6] };
+    let Some(last) = leg.frames(q).pop() else {
+        return [0.0; 6];
+    };
     let linear = target.translation.vector - last.translation.vector;
     let angular = if oriented {
         (target.rotation * last.rotation.inverse()).scaled_axis()
     } else {
         Vector3::zeros()
     };
-    [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z]
+    [
+        linear.x, linear.y, linear.z, angular.x, angular.y, angular.z,
+    ]
 }
 
 impl Mechanism {
     /// The joint positions of one leg within q_t.
     #[must_use]
     pub fn leg_range(&self, leg: usize) -> std::ops::Range<usize> {
-        let start = self.legs[..leg].iter().map(|l| l.independent().count()).sum::<usize>();
+        let start = self.legs[..leg]
+            .iter()
+            .map(|l| l.independent().count())
+            .sum::<usize>();
         start..start + self.legs[leg].independent().count()
     }
 
@@ -162,7 +176,11 @@ impl Mechanism {
     #[must_use]
     pub fn closure_rows(&self, leg: usize) -> Vec<usize> {
         let home = &self.home.joints[self.leg_range(leg)];
-        let rows = if matches!(self.legs[leg].end, Some(End::Rigid(_))) { 6 } else { 3 };
+        let rows = if matches!(self.legs[leg].end, Some(End::Rigid(_))) {
+            6
+        } else {
+            3
+        };
         let jacobian = self.legs[leg].end_jacobian(home);
         let mut basis: Vec<nalgebra::DVector<f64>> = Vec::new();
         let mut selected = Vec::new();
@@ -186,8 +204,14 @@ impl Mechanism {
     pub fn length_scale(&self) -> f64 {
         let reach = |(index, leg): (usize, &Leg)| {
             let frames = leg.frames(&self.home.joints[self.leg_range(index)]);
-            let last = frames.last().map(|f| f.translation.vector).unwrap_or_default();
-            let first = frames.first().map(|f| f.translation.vector).unwrap_or_default();
+            let last = frames
+                .last()
+                .map(|f| f.translation.vector)
+                .unwrap_or_default();
+            let first = frames
+                .first()
+                .map(|f| f.translation.vector)
+                .unwrap_or_default();
             (last - first).norm()
         };
         let sum: f64 = self.legs.iter().enumerate().map(reach).sum();

@@ -121,10 +121,24 @@ fn defaults() {
 
 #[test]
 fn motions_and_ends() {
-    let leg = "[[leg.a.joint]]\ntype = \"prismatic\"\nactuated = true\n[leg.a.end]\ntype = \"point\"\nat = [0, 0.1, 0]\n[[place]]\nname = \"a\"\nshape = \"a\"\n";
-    let robot = good(&format!(
-        "name = \"one_axis\"\n[platform]\nmotion = \"fixed axis\"\naxis = {{ at = [0, \"1 cm\", 0], direction = \"x\" }}\nhome = {{ x = 0.5 }}\n{leg}"
-    ));
+    let robot = good(
+        r#"
+name = "one_axis"
+[platform]
+motion = "fixed axis"
+axis = { at = [0, "1 cm", 0], direction = "x" }
+home = { x = 0.5 }
+[[leg.a.joint]]
+type = "prismatic"
+actuated = true
+[leg.a.end]
+type = "point"
+at = [0, 0.1, 0]
+[[place]]
+name = "a"
+shape = "a"
+"#,
+    );
     assert_eq!(robot.type_name(), "OneAxis");
     let platform = robot.platform.unwrap();
     assert_eq!(platform.motion.value, Motion::FixedAxis { axis: 0 });

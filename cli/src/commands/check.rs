@@ -1,0 +1,81 @@
+//! `overact check`: every error of a description at once.
+
+use crate::{
+    failure::Failure,
+    load::{Robot, load},
+    output::{counted, json, print},
+};
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Arguments of the command.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Arguments {
+    /// Descriptions
+    #[arg(required = true, value_name = "TOML")]
+    files: Vec<PathBuf>,
+}
+
+/// A description without errors.
+#[derive(Debug, Serialize)]
+struct Checked {
+    file: String,
+    robot: String,
+    legs: usize,
+    joints: usize,
+    actuators: usize,
+    dof: usize,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// All errors of all descriptions.
+pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    let (mut good, mut bad) = (Vec::new(), Vec::new());
+    for file in &arguments.files {
+        match load(file) {
+            Ok(robot) => good.push(Checked::new(robot)),
+            Err(failure) => bad.push(failure),
+        }
+    }
+    if as_json {
+        // Without an error: a document with errors goes to stderr.
+        if bad.is_empty() {
+            print(&json(&serde_json::json!({ "robots": good }))?)?;
+        }
+    } else {
+        let lines: Vec<String> = good.iter().map(Checked::line).collect();
+        print(&lines.join("\n"))?;
+    }
+    match bad.len() {
+        0 => Ok(()),
+        _ => Err(Failure::Several(bad)),
+    }
+}
+
+impl Checked {
+    fn new(robot: Robot) -> Self {
+        let mechanism = &robot.model.mechanism;
+        Self {
+            robot: mechanism.name.clone(),
+            legs: mechanism.legs.len(),
+            joints: mechanism.joints().len(),
+            actuators: mechanism.actuated().len(),
+            dof: mechanism.dof(),
+            file: robot.file,
+        }
+    }
+
+    fn line(&self) -> String {
+        format!(
+            "{}: {}, {}, {}, {}, {}, ok",
+            self.file,
+            self.robot,
+            counted(self.legs, "leg", "legs"),
+            counted(self.joints, "joint", "joints"),
+            counted(self.actuators, "actuator", "actuators"),
+            counted(self.dof, "degree of freedom", "degrees of freedom"),
+        )
+    }
+}

@@ -1,0 +1,218 @@
+//! `overact evaluate`: a function of a robot on given states.
+
+mod gather;
+mod resolve;
+
+use crate::{
+    InterpretedRobot,
+    failure::{Failure, Problem},
+    load::{Robot, load},
+    output,
+    states::States,
+};
+use clap::ValueEnum;
+use overact_codegen::{
+    RobotModel, compile,
+    derivation::{Columns, Family, From},
+    evaluation::{Rows, Workspace},
+    lowering::Program,
+};
+use serde::Serialize;
+use std::{collections::BTreeMap, path::PathBuf};
+
+/// Arguments of the command.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Arguments {
+    /// Description
+    #[arg(value_name = "TOML")]
+    file: PathBuf,
+    /// A function, such as `idm_red_platform`, or the full name of a Rust function
+    function: String,
+    /// States: a JSON array of objects keyed by input name, or CSV with a header such as
+    /// `pose[0],pose[1]`; `-` is stdin
+    #[arg(long, value_name = "FILE")]
+    states: PathBuf,
+    /// What to evaluate from [default: what the states hold]
+    #[arg(long, value_enum)]
+    from: Option<Source>,
+    /// Which columns an identification model has [default: standard]
+    #[arg(long, value_enum)]
+    columns: Option<Choice>,
+    /// Kept actuators of case 2 [default: those of the description]
+    #[arg(long, value_delimiter = ',', value_name = "ACTUATORS")]
+    kept: Option<Vec<String>>,
+    /// Write to a file instead of stdout
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+/// What a function is evaluated from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Source {
+    /// Platform motion
+    Pose,
+    /// Joint positions with the platform's twist
+    Joints,
+    /// Actuator motion; forward kinematics starts from `start`, the previous state or home
+    Actuators,
+}
+
+/// Columns of an identification model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Choice {
+    /// All standard parameters
+    Standard,
+    /// Base parameters only
+    Base,
+}
+
+impl Source {
+    const fn from(self) -> From {
+        match self {
+            Self::Pose => From::Pose,
+            Self::Joints => From::Joints,
+            Self::Actuators => From::Actuators,
+        }
+    }
+}
+
+impl Choice {
+    const fn columns(self) -> Columns {
+        match self {
+            Self::Standard => Columns::Standard,
+            Self::Base => Columns::Base,
+        }
+    }
+}
+
+/// The document with `--json`.
+#[derive(Debug, Serialize)]
+struct Document {
+    function: String,
+    parameters: Vec<String>,
+    shapes: BTreeMap<&'static str, Vec<usize>>,
+    results: Vec<BTreeMap<&'static str, Vec<f64>>>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A function that the robot does not have, states that do not hold what it needs, or a state at
+/// which it has no value.
+pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    let Robot { model, .. } = load(&arguments.file)?;
+    let states = States::read(&arguments.states)?;
+    let function = resolve::function(&model, arguments, &states)?;
+    let (family, name) = (function.family, function.name.clone());
+    let (from, mut program) = (function.from, function.program.clone());
+    if let Some(names) = &arguments.kept {
+        program = with_kept(&model, names, family, from)?;
+    }
+    let robot = InterpretedRobot::new(model);
+    let values = evaluate(&robot, &program, from, &states)?;
+    let width = program.entries.len();
+    let rows = (0..states.len()).map(|at| &values[at * width..(at + 1) * width]);
+    let shape = program.output.shape.clone();
+    let text = if as_json {
+        output::json(&Document {
+            function: name,
+            parameters: parameters(robot.model(), family),
+            shapes: BTreeMap::from([(family.name(), shape)]),
+            results: rows
+                .map(|row| BTreeMap::from([(family.name(), row.to_vec())]))
+                .collect(),
+        })?
+    } else {
+        csv(family.name(), &shape, rows)
+    };
+    output::emit(&text, arguments.output.as_deref())
+}
+
+/// The program of a function with other kept actuators than the description's.
+fn with_kept(
+    model: &RobotModel,
+    names: &[String],
+    family: Family,
+    from: From,
+) -> Result<Program, Failure> {
+    let kept = super::kept_actuators(model, names)?;
+    let mut mechanism = model.mechanism.clone();
+    mechanism.kept_actuators.clone_from(&kept);
+    let mut selection = model.selection.clone();
+    selection.kept_actuators = kept;
+    compile::program(&mechanism, &selection, family, from).map_err(|_| {
+        let message = "these kept actuators never determine the platform's motion";
+        Problem::new(message)
+            .help("choose other ones; `overact inspect` lists how well each choice does")
+            .into()
+    })
+}
+
+/// Names of the columns.
+fn parameters(model: &RobotModel, family: Family) -> Vec<String> {
+    match family {
+        Family::IdmRedPlatform(Columns::Base) | Family::IdmRedActuators(Columns::Base) => model
+            .base
+            .iter()
+            .map(|base| model.base_name(base))
+            .collect(),
+        _ => model
+            .columns_of(family)
+            .iter()
+            .map(|&p| model.parameter_name(p))
+            .collect(),
+    }
+}
+
+/// Values at all states, row after row.
+fn evaluate(
+    robot: &InterpretedRobot,
+    program: &Program,
+    from: From,
+    states: &States,
+) -> Result<Vec<f64>, Failure> {
+    let inputs = gather::inputs(robot, program, from, states)?;
+    let rows: Vec<Rows<'_>> = inputs
+        .iter()
+        .map(|values| Rows {
+            values,
+            shared: false,
+        })
+        .collect();
+    let mut values = vec![0.0; states.len() * program.entries.len()];
+    let done = program.evaluate(states.len(), &rows, &mut values, &mut Workspace::default());
+    done.map_err(|failed| {
+        let error = robot.error(program, &failed);
+        states.problem(error.sample, &error.error.to_string())
+    })?;
+    Ok(values)
+}
+
+/// One row per state under a header of names with indices.
+fn csv<'a>(name: &str, shape: &[usize], rows: impl Iterator<Item = &'a [f64]>) -> String {
+    let mut header: Vec<String> = vec![name.to_owned()];
+    for &length in shape {
+        header = header
+            .iter()
+            .flat_map(|h| (0..length).map(move |i| format!("{h}[{i}]")))
+            .collect();
+    }
+    let mut text = header.join(",") + "\n";
+    for row in rows {
+        let cells: Vec<String> = row.iter().map(|value| format!("{value:?}")).collect();
+        text += &(cells.join(",") + "\n");
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::csv;
+
+    #[test]
+    fn columns_are_named_row_by_row() {
+        let rows = [&[1.0, 2.0, 3.0, 4e-30][..]].into_iter();
+        let expected = "j[0][0],j[0][1],j[1][0],j[1][1]\n1.0,2.0,3.0,4e-30\n";
+        assert_eq!(csv("j", &[2, 2], rows), expected);
+    }
+}

@@ -1,0 +1,236 @@
+//! The inputs of a function from states that may hold other quantities than it takes: a pose from
+//! actuators or joints by forward kinematics, joints from a pose by inverse kinematics.
+
+use crate::{
+    InterpretedRobot,
+    failure::{Failure, Problem},
+    states::States,
+};
+use overact::{Function, Model, math::wrap_angle};
+use overact_codegen::{
+    derivation::From,
+    lowering::{Array, Program},
+};
+
+/// Forward kinematics walks towards far actuators in steps of this size (rad, m), so that the
+/// assembly mode stays that of the start.
+const STEP: f64 = 0.05;
+
+/// Most steps of such a walk.
+const STEPS: usize = 200;
+
+/// A problem of a state, or the names of quantities that it lacks.
+enum Lack {
+    Missing(Vec<String>),
+    Problem(Problem),
+}
+
+impl std::convert::From<Problem> for Lack {
+    fn from(problem: Problem) -> Self {
+        Self::Problem(problem)
+    }
+}
+
+/// For each input of the program its rows at all states.
+///
+/// # Errors
+/// The first state that lacks something, with all that it lacks, or where kinematics has no solution.
+pub(super) fn inputs(
+    robot: &InterpretedRobot,
+    program: &Program,
+    from: From,
+    states: &States,
+) -> Result<Vec<Vec<f64>>, Failure> {
+    let mut gatherer = Gatherer {
+        robot,
+        states,
+        from,
+        previous: robot.info().home_pose.to_vec(),
+    };
+    let mut inputs = vec![Vec::new(); program.inputs.len()];
+    for at in 0..states.len() {
+        let mut missing: Vec<String> = Vec::new();
+        for (array, rows) in program.inputs.iter().zip(&mut inputs) {
+            match gatherer.input(at, array) {
+                Ok(values) => rows.extend(values),
+                Err(Lack::Missing(names)) => missing.extend(names),
+                Err(Lack::Problem(problem)) => return Err(problem.into()),
+            }
+        }
+        missing.dedup();
+        if !missing.is_empty() {
+            let names: Vec<String> = missing.iter().map(|name| format!("`{name}`")).collect();
+            let problem = states.problem(at, &format!("missing {}", names.join(", ")));
+            let takes: Vec<String> = program
+                .inputs
+                .iter()
+                .map(|a| described(a, from, robot))
+                .collect();
+            return Err(problem
+                .help(format!("the function takes {}", takes.join(", ")))
+                .into());
+        }
+    }
+    Ok(inputs)
+}
+
+/// An input as the states are to hold it: from actuators, the pose is found and not given.
+fn described(array: &Array, from: From, robot: &InterpretedRobot) -> String {
+    if array.name == "pose" && from == From::Actuators {
+        return format!("`actuators` ({} numbers)", robot.info().sizes.actuators);
+    }
+    format!("`{}` ({} numbers)", array.name, array.len())
+}
+
+struct Gatherer<'a> {
+    robot: &'a InterpretedRobot,
+    states: &'a States,
+    from: From,
+    /// The pose from which forward kinematics starts.
+    previous: Vec<f64>,
+}
+
+impl Gatherer<'_> {
+    fn input(&mut self, at: usize, array: &Array) -> Result<Vec<f64>, Lack> {
+        let is_tree = self.robot.model().is_tree();
+        match array.name.as_str() {
+            "pose" => self.pose(at),
+            "joints" if !is_tree => self.joints(at, array.len()),
+            name => {
+                // A tree's joints are its pose and its actuators, too.
+                let names: &[&str] = match name {
+                    "joints" => &["joints", "pose", "actuators"],
+                    "joint_velocities" => &["joint_velocities", "twist", "actuator_velocities"],
+                    "joint_accelerations" => &[
+                        "joint_accelerations",
+                        "acceleration",
+                        "actuator_accelerations",
+                    ],
+                    _ => &[name],
+                };
+                self.first(at, names, array.len())
+            }
+        }
+    }
+
+    /// The first of several names that the state holds.
+    fn first(&self, at: usize, names: &[&str], length: usize) -> Result<Vec<f64>, Lack> {
+        for name in names {
+            if let Some(values) = self.states.get(at, name, length)? {
+                return Ok(values.to_vec());
+            }
+        }
+        let first = names.first().copied().unwrap_or_default();
+        Err(Lack::Missing(vec![first.to_owned()]))
+    }
+
+    /// The pose: given, or by forward kinematics from the actuators or the actuated joints.
+    fn pose(&mut self, at: usize) -> Result<Vec<f64>, Lack> {
+        let sizes = self.robot.info().sizes;
+        if self.from != From::Actuators
+            && let Some(pose) = self.states.get(at, "pose", sizes.pose)?
+        {
+            return Ok(pose.to_vec());
+        }
+        let mut actuators = self
+            .states
+            .get(at, "actuators", sizes.actuators)?
+            .map(<[f64]>::to_vec);
+        if self.from == From::Joints && actuators.is_none() {
+            let joints = self.states.get(at, "joints", sizes.joints)?;
+            let actuated = self.robot.info().actuated_joints;
+            actuators = joints.map(|joints| actuated.iter().map(|&i| joints[i]).collect());
+        }
+        let Some(actuators) = actuators else {
+            let wanted = if self.from == From::Actuators {
+                "actuators"
+            } else {
+                "pose"
+            };
+            return Err(Lack::Missing(vec![wanted.to_owned()]));
+        };
+        self.forward(at, &actuators)
+    }
+
+    /// Forward kinematics from the state's `start`, from the previous pose, or from home.
+    fn forward(&mut self, at: usize, actuators: &[f64]) -> Result<Vec<f64>, Lack> {
+        let info = self.robot.info();
+        let given = self
+            .states
+            .get(at, "start", info.sizes.pose)?
+            .map(<[f64]>::to_vec);
+        let starts = match given {
+            Some(start) => vec![start],
+            None => vec![self.previous.clone(), info.home_pose.to_vec()],
+        };
+        let mut first = None;
+        for mut pose in starts {
+            match walk(self.robot, actuators, &mut pose) {
+                Ok(()) => {
+                    self.previous.clone_from(&pose);
+                    return Ok(pose);
+                }
+                Err(error) => first = first.or(Some(error)),
+            }
+        }
+        let message = first.map_or_else(String::new, |error| error.to_string());
+        let help = "give a pose near the solution as `start`";
+        Err(self.states.problem(at, &message).help(help).into())
+    }
+
+    /// The joints: given, or by inverse kinematics from the pose.
+    fn joints(&mut self, at: usize, length: usize) -> Result<Vec<f64>, Lack> {
+        if let Some(joints) = self.states.get(at, "joints", length)? {
+            return Ok(joints.to_vec());
+        }
+        // Without a pose, too, the joints are what is missing.
+        let Some(pose) = self.states.get(at, "pose", self.robot.info().sizes.pose)? else {
+            return Err(Lack::Missing(vec!["joints".to_owned()]));
+        };
+        let mut joints = vec![0.0; length];
+        let done = self.robot.evaluate(Function::Joints, &[pose], &mut joints);
+        done.map_err(|error| self.states.problem(at, &error.error.to_string()))?;
+        Ok(joints)
+    }
+}
+
+/// Forward kinematics in small steps from the start's actuators to the wanted ones. Should the
+/// straight way leave the workspace, the wanted ones are tried at once.
+fn walk(
+    robot: &InterpretedRobot,
+    actuators: &[f64],
+    pose: &mut Vec<f64>,
+) -> Result<(), overact::Error> {
+    let info = robot.info();
+    let mut from = vec![0.0; actuators.len()];
+    robot
+        .evaluate(Function::ActuatorPositions, &[pose.as_slice()], &mut from)
+        .map_err(|error| error.error)?;
+    let difference = |((to, from), revolute): ((&f64, &f64), &bool)| {
+        if *revolute {
+            wrap_angle(to - from)
+        } else {
+            to - from
+        }
+    };
+    let way: Vec<f64> = actuators
+        .iter()
+        .zip(&from)
+        .zip(info.actuator_is_revolute)
+        .map(difference)
+        .collect();
+    let far = way.iter().fold(0.0_f64, |far, step| far.max(step.abs()));
+    // A cast from a float saturates.
+    let steps = ((far / STEP).ceil() as usize).clamp(1, STEPS);
+    let mut at = pose.clone();
+    for step in 1..steps {
+        let part = step as f64 / steps as f64;
+        let target: Vec<f64> = from.iter().zip(&way).map(|(f, w)| f + part * w).collect();
+        if robot.pose_from_actuators(&target, &mut at).is_err() {
+            return robot.pose_from_actuators(actuators, pose);
+        }
+    }
+    robot.pose_from_actuators(actuators, &mut at)?;
+    *pose = at;
+    Ok(())
+}

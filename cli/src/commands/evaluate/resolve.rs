@@ -1,0 +1,86 @@
+//! Which function is meant.
+
+use super::{Arguments, Choice};
+use crate::{
+    failure::{Failure, Problem},
+    states::States,
+};
+use overact_codegen::{
+    RobotModel,
+    derivation::{Columns, From},
+    diagnostic::did_you_mean,
+    model::Function,
+};
+
+/// The function that the arguments name: by its family with what it is evaluated from, or by the full
+/// name of the Rust function.
+///
+/// # Errors
+/// A name that no function has, or a function that is not offered in the wanted form.
+pub(super) fn function<'m>(
+    model: &'m RobotModel,
+    arguments: &Arguments,
+    states: &States,
+) -> Result<&'m Function, Failure> {
+    let name = arguments.function.as_str();
+    let family: Vec<&Function> = model
+        .functions
+        .iter()
+        .filter(|f| f.family.name() == name)
+        .collect();
+    if family.is_empty() {
+        return by_full_name(model, name);
+    }
+    let columns = arguments.columns.map_or(Columns::Standard, Choice::columns);
+    let is_meant = |f: &&Function| f.family.columns().is_none_or(|c| c == columns);
+    let offered: Vec<&Function> = family.into_iter().filter(is_meant).collect();
+    if offered.is_empty() {
+        let message = format!("`{name}` is not offered with {} columns", columns.name());
+        return Err(Problem::new(message).into());
+    }
+    let from = |from: From| offered.iter().find(|f| f.from == from).copied();
+    // The state of a tree are its joints, whatever they are called.
+    let tree = model.is_tree().then(|| from(From::Joints)).flatten();
+    if let Some(function) = tree {
+        return Ok(function);
+    }
+    if let Some(source) = arguments.from {
+        let offers: Vec<&str> = offered.iter().map(|f| f.from.name()).collect();
+        let missing = || {
+            let message = format!("`{name}` is not offered from {}", source.from().name());
+            Problem::new(message)
+                .help(format!("it is offered from {}", offers.join(", ")))
+                .into()
+        };
+        return from(source.from()).ok_or_else(missing);
+    }
+    let held = [("actuators", From::Actuators), ("joints", From::Joints)];
+    let by_states = held
+        .iter()
+        .find(|(key, _)| states.hold(key))
+        .map_or(From::Pose, |h| h.1);
+    let order = [by_states, From::Pose, From::Joints, From::Actuators];
+    // There is one, since `offered` is not empty.
+    order
+        .into_iter()
+        .find_map(from)
+        .ok_or_else(|| Problem::new("no such function").into())
+}
+
+fn by_full_name<'m>(model: &'m RobotModel, name: &str) -> Result<&'m Function, Failure> {
+    if let Some(function) = model.functions.iter().find(|f| f.name == name) {
+        return Ok(function);
+    }
+    let mut names: Vec<&str> = model.functions.iter().map(|f| f.family.name()).collect();
+    names.dedup();
+    let full = model.functions.iter().map(|f| f.name.as_str());
+    let help = did_you_mean(name, names.iter().copied().chain(full));
+    names.sort_unstable();
+    names.dedup();
+    let help = help.unwrap_or_else(|| format!("the functions are {}", names.join(", ")));
+    let message = format!(
+        "the robot `{}` has no function `{name}`",
+        model.mechanism.name
+    );
+    Err(Problem::new(message).help(help).into())
+}

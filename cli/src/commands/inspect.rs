@@ -1,0 +1,35 @@
+//! `overact inspect`: what a robot's model consists of and what it costs.
+
+mod conditioning;
+mod document;
+mod table;
+
+use crate::{failure::Failure, load::load, output};
+use document::Document;
+use std::path::PathBuf;
+
+/// Arguments of the command.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Arguments {
+    /// Description
+    #[arg(value_name = "TOML")]
+    file: PathBuf,
+    /// Write to a file instead of stdout
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A description with errors.
+pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    let robot = load(&arguments.file)?;
+    let document = Document::new(robot);
+    let text = if as_json {
+        output::json(&document)?
+    } else {
+        table::text(&document)
+    };
+    output::emit(&text, arguments.output.as_deref())
+}

@@ -1,0 +1,102 @@
+//! How well the actuators, and every choice of kept ones, determine the platform at home.
+
+use crate::InterpretedRobot;
+use nalgebra::DMatrix;
+use overact::{Function, Model};
+use serde::Serialize;
+
+/// More partitions than this are not listed.
+const PARTITIONS: usize = 1000;
+
+/// Condition numbers at the home pose, angular columns as they are (rad).
+#[derive(Debug, Serialize)]
+pub(super) struct Conditioning {
+    /// Of J_p^inv; null where it is singular.
+    pub(super) home: Option<f64>,
+    /// Of J_a for every choice of kept actuators of case 2, best first.
+    pub(super) partitions: Vec<Partition>,
+}
+
+/// A choice of kept actuators.
+#[derive(Debug, Serialize)]
+pub(super) struct Partition {
+    /// Their names.
+    pub(super) kept_actuators: Vec<String>,
+    /// Whether it is the description's choice.
+    pub(super) chosen: bool,
+    /// The condition number; null where they do not determine the platform.
+    pub(super) condition: Option<f64>,
+}
+
+impl Conditioning {
+    pub(super) fn new(robot: &InterpretedRobot) -> Self {
+        let info = robot.info();
+        let (n, r) = (info.sizes.actuators, info.sizes.dof);
+        let mut values = vec![0.0; n * r];
+        let inputs = [info.home_pose];
+        if robot
+            .evaluate(Function::InverseJacobian, &inputs, &mut values)
+            .is_err()
+        {
+            return Self {
+                home: None,
+                partitions: Vec::new(),
+            };
+        }
+        let jacobian = DMatrix::from_row_slice(n, r, &values);
+        let mut chosen = info.kept_actuators.to_vec();
+        chosen.sort_unstable();
+        let partition = |kept: Vec<usize>| Partition {
+            kept_actuators: kept.iter().map(|&i| info.actuators[i].to_owned()).collect(),
+            chosen: kept == chosen,
+            condition: condition(&jacobian.select_rows(&kept)),
+        };
+        let choices = if n > r { choices(n, r) } else { Vec::new() };
+        let mut partitions: Vec<Partition> = choices.into_iter().map(partition).collect();
+        let key = |p: &Partition| p.condition.unwrap_or(f64::INFINITY);
+        partitions.sort_by(|a, b| key(a).total_cmp(&key(b)));
+        Self {
+            home: condition(&jacobian),
+            partitions,
+        }
+    }
+}
+
+/// Largest by smallest singular value; none for a singular matrix.
+fn condition(matrix: &DMatrix<f64>) -> Option<f64> {
+    if matrix.is_empty() {
+        return None;
+    }
+    let values = matrix.singular_values();
+    let condition = values.max() / values.min();
+    (condition < 1e14).then_some(condition)
+}
+
+/// The choices of r among n in lexicographic order, the first [`PARTITIONS`] of them.
+fn choices(n: usize, r: usize) -> Vec<Vec<usize>> {
+    let mut all = vec![(0..r).collect::<Vec<usize>>()];
+    while all.len() < PARTITIONS
+        && let Some(last) = all.last()
+        && let Some(at) = (0..r).rev().find(|&i| last[i] < n - r + i)
+    {
+        let mut next = last.clone();
+        next[at] += 1;
+        for i in at + 1..r {
+            next[i] = next[i - 1] + 1;
+        }
+        all.push(next);
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::choices;
+
+    #[test]
+    fn choices_are_complete() {
+        assert_eq!(choices(4, 3), [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]);
+        assert_eq!(choices(8, 6).len(), 28);
+        assert_eq!(choices(2, 2), [[0, 1]]);
+    }
+}

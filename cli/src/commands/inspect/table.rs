@@ -1,0 +1,145 @@
+//! What `inspect` tells, for people.
+
+use super::document::{Base, Document};
+use crate::output::{counted, table};
+use overact_identification::report::{coefficient, significant};
+use std::fmt::Write;
+
+pub(super) fn text(document: &Document) -> String {
+    let mut text = heading(document);
+    text += "\nBodies\n";
+    text += &bodies(document);
+    let _ = writeln!(
+        text,
+        "\nBase parameters: {} of {} standard parameters",
+        document.base_parameters.len(),
+        document.parameters.len()
+    );
+    text += &base_parameters(&document.base_parameters);
+    text += "\nFunctions\n";
+    text += &functions(document);
+    text += "\nConditioning at home\n";
+    text += &conditioning(document);
+    text
+}
+
+fn heading(document: &Document) -> String {
+    let mut text = format!("{} ({})\n", document.robot, document.file);
+    if !document.summary.is_empty() {
+        let _ = writeln!(text, "{}", document.summary);
+    }
+    let _ = writeln!(
+        text,
+        "{}, {}, {}",
+        counted(document.dof, "degree of freedom", "degrees of freedom"),
+        counted(document.actuators, "actuator", "actuators"),
+        counted(document.joints, "joint", "joints"),
+    );
+    let numbers = |values: &[f64]| {
+        let texts: Vec<String> = values.iter().map(|value| significant(*value, 6)).collect();
+        texts.join(", ")
+    };
+    let _ = writeln!(text, "pose: {}", document.pose.join(", "));
+    let _ = writeln!(text, "home: {}", numbers(&document.home_pose));
+    let _ = writeln!(text, "actuators: {}", document.actuator_names.join(", "));
+    if document.actuators > document.dof {
+        let _ = writeln!(
+            text,
+            "kept in case 2: {}",
+            document.kept_actuators.join(", ")
+        );
+    }
+    text
+}
+
+fn bodies(document: &Document) -> String {
+    let row = |body: &super::document::Body| {
+        let motor = if body.actuated { "motor" } else { "" };
+        let parameters = match body.parameters.is_empty() {
+            true => "-".to_owned(),
+            false => body.parameters.join(" "),
+        };
+        vec![
+            body.name.clone(),
+            body.joint.to_owned(),
+            motor.to_owned(),
+            parameters,
+        ]
+    };
+    let rows: Vec<Vec<String>> = document.bodies.iter().map(row).collect();
+    table(&rows, &[true; 4])
+}
+
+fn base_parameters(all: &[Base]) -> String {
+    let mut text = String::new();
+    let mut alone = Vec::new();
+    for base in all {
+        if base.regrouping.len() == 1 {
+            alone.push(base.name.as_str());
+            continue;
+        }
+        let _ = write!(text, "{} =", base.name);
+        for (index, term) in base.regrouping.iter().enumerate() {
+            let sign = match (index, term.coefficient < 0.0) {
+                (0, _) => "",
+                (_, true) => " -",
+                (_, false) => " +",
+            };
+            let factor = match coefficient(term.coefficient.abs()).as_str() {
+                "1" => String::new(),
+                number => format!(" {number}"),
+            };
+            let _ = write!(text, "{sign}{factor} {}", term.parameter);
+        }
+        text.push('\n');
+    }
+    if !alone.is_empty() {
+        let _ = writeln!(text, "alone: {}", alone.join(", "));
+    }
+    text
+}
+
+fn functions(document: &Document) -> String {
+    let header = [
+        "function", "shape", "op", "+ -", "*", "/", "sqrt", "sin cos", "atan2", "sign", "values",
+    ];
+    let mut rows = vec![header.map(str::to_owned).to_vec()];
+    for function in &document.functions {
+        let shape = function.outputs.iter().map(|output| {
+            let sizes: Vec<String> = output.shape.iter().map(usize::to_string).collect();
+            sizes.join(" x ")
+        });
+        let cost = &function.cost;
+        let counts = [
+            function.operations,
+            cost.additions,
+            cost.multiplications,
+            cost.divisions,
+            cost.square_roots,
+            cost.trigonometric_pairs,
+            cost.arc_tangents,
+            cost.signs,
+            cost.intermediates,
+        ];
+        let mut row = vec![function.function.clone(), shape.collect()];
+        row.extend(counts.iter().map(usize::to_string));
+        rows.push(row);
+    }
+    table(&rows, &[true])
+}
+
+fn conditioning(document: &Document) -> String {
+    let number = |value: Option<f64>| {
+        value.map_or_else(|| "singular".to_owned(), |value| significant(value, 5))
+    };
+    let mut rows = vec![vec![
+        "all actuators".to_owned(),
+        number(document.conditioning.home),
+    ]];
+    for partition in &document.conditioning.partitions {
+        let chosen = if partition.chosen { " (chosen)" } else { "" };
+        let name = format!("kept {}{chosen}", partition.kept_actuators.join(", "));
+        rows.push(vec![name, number(partition.condition)]);
+    }
+    table(&rows, &[true])
+}

@@ -1,0 +1,113 @@
+//! The command line: one file per subcommand.
+
+mod check;
+mod evaluate;
+mod generate;
+mod identify;
+mod inspect;
+mod new;
+mod simulate;
+
+use crate::failure::{Failure, Problem};
+use clap::{Parser, Subcommand};
+use overact_codegen::{RobotModel, diagnostic::did_you_mean};
+
+/// Dynamic models and parameter identification of overactuated parallel robots.
+#[derive(Debug, Parser)]
+#[command(name = "overact", version, propagate_version = true)]
+pub(crate) struct Arguments {
+    /// Print one JSON document instead of tables; errors as JSON, too
+    #[arg(long, global = true)]
+    pub(crate) json: bool,
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Start a description from a commented template
+    New(new::Arguments),
+    /// Show every error of a description at once, each at its line
+    Check(check::Arguments),
+    /// Show sizes, bodies, base parameters, operation counts and conditioning
+    Inspect(inspect::Arguments),
+    /// Write a robot's functions as Rust source
+    Generate(generate::Arguments),
+    /// Evaluate a function on given states
+    Evaluate(evaluate::Arguments),
+    /// Make the virtual experiment of a description
+    Simulate(simulate::Arguments),
+    /// Estimate a robot's parameters from logs, or from its virtual experiment
+    Identify(identify::Arguments),
+}
+
+impl Command {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// What went wrong; then no output was touched.
+    pub(crate) fn run(&self, json: bool) -> Result<(), Failure> {
+        match self {
+            Self::New(arguments) => new::run(arguments, json),
+            Self::Check(arguments) => check::run(arguments, json),
+            Self::Inspect(arguments) => inspect::run(arguments, json),
+            Self::Generate(arguments) => generate::run(arguments, json),
+            Self::Evaluate(arguments) => evaluate::run(arguments, json),
+            Self::Simulate(arguments) => simulate::run(arguments, json),
+            Self::Identify(arguments) => identify::run(arguments, json),
+        }
+    }
+}
+
+/// Indices of kept actuators that are given by name: as many different ones as there are degrees of
+/// freedom.
+///
+/// # Errors
+/// Every name that no actuator has, names that are given twice, or a wrong number of them.
+fn kept_actuators(model: &RobotModel, names: &[String]) -> Result<Vec<usize>, Failure> {
+    let known = model.mechanism.actuator_names();
+    let mut kept = Vec::new();
+    let mut problems = Vec::new();
+    for name in names {
+        match known.iter().position(|actuator| actuator == name) {
+            Some(index) if kept.contains(&index) => {
+                problems.push(Problem::new(format!(
+                    "the actuator `{name}` is listed twice"
+                )));
+            }
+            Some(index) => kept.push(index),
+            None => {
+                let help = did_you_mean(name, known.iter().map(String::as_str));
+                let help =
+                    help.unwrap_or_else(|| format!("the actuators are {}", known.join(", ")));
+                problems.push(Problem::new(format!("there is no actuator `{name}`")).help(help));
+            }
+        }
+    }
+    let dof = model.mechanism.dof();
+    if problems.is_empty() && kept.len() != dof {
+        let message = format!(
+            "case 2 keeps {dof} actuators, one for each degree of freedom, not {}",
+            kept.len()
+        );
+        problems.push(Problem::new(message));
+    }
+    if problems.is_empty() {
+        Ok(kept)
+    } else {
+        Err(Failure::Problems(problems))
+    }
+}
+
+/// A name as part of a file's name: letters, digits, `-` and `_`; all else becomes `_`.
+fn file_stem(name: &str) -> String {
+    let keep = |c: char| {
+        if c.is_alphanumeric() || c == '-' {
+            c
+        } else {
+            '_'
+        }
+    };
+    name.chars().map(keep).collect()
+}

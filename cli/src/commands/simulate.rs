@@ -1,0 +1,226 @@
+//! `overact simulate`: the virtual experiment of a description, as logs.
+
+use crate::{
+    InterpretedRobot,
+    experiment::{experiment, failure},
+    failure::{Failure, Problem},
+    load::{Robot, load},
+    output::{self, json, print, table},
+    progress::Progress,
+};
+use overact::Model;
+use overact_codegen::diagnostic::did_you_mean;
+use overact_identification::report::significant;
+use overact_simulation::{Experiment, Record, simulate, write_csv};
+use serde::Serialize;
+use std::{
+    collections::BTreeMap,
+    io::{self, Write},
+    path::{Path, PathBuf},
+};
+
+/// Arguments of the command.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Arguments {
+    /// Description
+    #[arg(value_name = "TOML")]
+    file: PathBuf,
+    /// The log; several runs get `log_RUN.csv` each, or `RUN.csv` in a folder. Without it, a single
+    /// run goes to stdout
+    #[arg(short, long, value_name = "FILE|FOLDER")]
+    output: Option<PathBuf>,
+    /// Make only this run (again for others)
+    #[arg(long = "run", value_name = "RUN")]
+    runs: Vec<String>,
+    /// Seed of all noise [default: the description's]
+    #[arg(long)]
+    seed: Option<u64>,
+}
+
+/// What is told of a run.
+#[derive(Debug, Serialize)]
+struct Summary {
+    name: String,
+    file: Option<String>,
+    payload: bool,
+    samples: usize,
+    sampling_hz: f64,
+    /// Largest difference between wanted and measured position of each actuator (rad, m).
+    tracking_error: Vec<f64>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A description without an experiment, or a run that can't be made.
+pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    let robot = load(&arguments.file)?;
+    let served = InterpretedRobot::new(robot.model.clone());
+    let (mut virtual_experiment, without_effect) = experiment(&robot, &served.info())?;
+    keep_runs(&robot, &mut virtual_experiment, &arguments.runs)?;
+    if let Some(seed) = arguments.seed {
+        virtual_experiment.seed = seed;
+    }
+    let files = files(&virtual_experiment, arguments.output.as_deref(), as_json)?;
+    warn(&without_effect);
+    let records = records(&robot, &served, &virtual_experiment, as_json)?;
+    let logs = records.iter().map(csv).collect::<Result<Vec<_>, _>>()?;
+    let summaries: Vec<Summary> = records.iter().zip(&files).map(summary).collect();
+    let document = serde_json::json!({ "robot": served.info().name, "runs": summaries });
+    if files.iter().all(Option::is_none) && !as_json {
+        let text = logs
+            .into_iter()
+            .map(String::from_utf8)
+            .collect::<Result<String, _>>();
+        return print(&text.map_err(|error| Problem::new(error.to_string()))?);
+    }
+    let files = files
+        .into_iter()
+        .zip(logs)
+        .filter_map(|(file, log)| Some((file?, log)));
+    output::write(files.collect())?;
+    if as_json {
+        print(&json(&document)?)
+    } else {
+        print(&text(&summaries))
+    }
+}
+
+/// Parameters that the simulation does not feel are mentioned once.
+pub(super) fn warn(without_effect: &[String]) {
+    if !without_effect.is_empty() {
+        let names = without_effect.join(", ");
+        // A closed stderr is no reason to stop.
+        let _ = writeln!(io::stderr(), "note: without effect on the model: {names}");
+    }
+}
+
+/// Makes all runs, with a bar on a terminal.
+pub(super) fn records(
+    robot: &Robot,
+    served: &InterpretedRobot,
+    experiment: &Experiment,
+    as_json: bool,
+) -> Result<Vec<Record>, Failure> {
+    let bar = Progress::new("simulating", as_json);
+    let tell = |fraction: f64, run: &str| bar.at(fraction, run);
+    simulate(served, experiment, &tell).map_err(|error| failure(robot, &error))
+}
+
+fn keep_runs(robot: &Robot, experiment: &mut Experiment, names: &[String]) -> Result<(), Failure> {
+    let known: Vec<String> = experiment.runs.iter().map(|run| run.name.clone()).collect();
+    let unknown = names.iter().filter(|name| !known.contains(name));
+    let problems: Vec<Problem> = unknown
+        .map(|name| unknown_run(robot, name, &known))
+        .collect();
+    if !problems.is_empty() {
+        return Err(Failure::Problems(problems));
+    }
+    if !names.is_empty() {
+        experiment.runs.retain(|run| names.contains(&run.name));
+    }
+    Ok(())
+}
+
+/// A run that the description does not have.
+pub(super) fn unknown_run(robot: &Robot, name: &str, known: &[String]) -> Problem {
+    let help = did_you_mean(name, known.iter().map(String::as_str));
+    let help = help.unwrap_or_else(|| format!("the runs are {}", known.join(", ")));
+    Problem::new(format!("the experiment has no run `{name}`"))
+        .file(robot.file.as_str())
+        .help(help)
+}
+
+/// The file of each run; none where the only one goes to stdout.
+fn files(
+    experiment: &Experiment,
+    output: Option<&Path>,
+    as_json: bool,
+) -> Result<Vec<Option<PathBuf>>, Failure> {
+    let runs = &experiment.runs;
+    let Some(output) = output else {
+        if runs.len() > 1 && !as_json {
+            let message = "several runs need files to be written to: add `-o log.csv`, or choose one with `--run`";
+            return Err(Failure::Usage(message.to_owned()));
+        }
+        return Ok(vec![None; runs.len()]);
+    };
+    let written = output.as_os_str().to_string_lossy();
+    let is_folder = output.is_dir() || written.ends_with(std::path::is_separator);
+    let file = |run: &str| {
+        let run = super::file_stem(run);
+        if is_folder {
+            return output.join(format!("{run}.csv"));
+        }
+        if runs.len() == 1 {
+            return output.to_owned();
+        }
+        let stem = output.file_stem().unwrap_or_default().to_string_lossy();
+        let extension = output
+            .extension()
+            .map_or("csv".into(), |e| e.to_string_lossy());
+        output.with_file_name(format!("{stem}_{run}.{extension}"))
+    };
+    let files: Vec<PathBuf> = runs.iter().map(|run| file(&run.name)).collect();
+    let mut known: BTreeMap<&Path, &str> = BTreeMap::new();
+    for (run, file) in runs.iter().zip(&files) {
+        if let Some(other) = known.insert(file, &run.name) {
+            let message = format!("the runs `{other}` and `{}` would have one file", run.name);
+            return Err(Problem::new(message)
+                .file(file.display().to_string())
+                .into());
+        }
+    }
+    if is_folder {
+        std::fs::create_dir_all(output).map_err(|error| {
+            let problem = Problem::new(format!("the folder can't be made: {error}"));
+            problem.file(output.display().to_string())
+        })?;
+    }
+    Ok(files.into_iter().map(Some).collect())
+}
+
+fn csv(record: &Record) -> Result<Vec<u8>, Problem> {
+    let mut log = Vec::new();
+    write_csv(record, &mut log).map_err(|error| Problem::new(error.to_string()))?;
+    Ok(log)
+}
+
+fn summary((record, file): (&Record, &Option<PathBuf>)) -> Summary {
+    Summary {
+        name: record.name.clone(),
+        file: file.as_ref().map(|file| file.display().to_string()),
+        payload: record.payload,
+        samples: record.time.len(),
+        sampling_hz: record.sampling_hz,
+        tracking_error: record.tracking_error.clone(),
+    }
+}
+
+fn text(summaries: &[Summary]) -> String {
+    let header = [
+        "file",
+        "run",
+        "samples",
+        "Hz",
+        "payload",
+        "largest tracking errors",
+    ];
+    let mut rows = vec![header.map(str::to_owned).to_vec()];
+    for summary in summaries {
+        let errors: Vec<String> = summary
+            .tracking_error
+            .iter()
+            .map(|e| significant(*e, 3))
+            .collect();
+        rows.push(vec![
+            summary.file.clone().unwrap_or_default(),
+            summary.name.clone(),
+            summary.samples.to_string(),
+            summary.sampling_hz.to_string(),
+            if summary.payload { "yes" } else { "no" }.to_owned(),
+            errors.join(" "),
+        ]);
+    }
+    table(&rows, &[true, true])
+}

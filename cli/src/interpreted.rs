@@ -1,0 +1,379 @@
+//! A robot's description served as [`overact::Model`]: its programs are evaluated block by block,
+//! with no compiler at hand.
+//!
+//! A tree (a robot without platform) is served like any other: its pose are its joint positions and
+//! its twist their velocities.
+
+mod displacement;
+mod names;
+
+use names::Names;
+use overact::{
+    Error, Function, Info, Input, Model, SampleError,
+    forward::{self, Measured},
+};
+use overact_codegen::{
+    RobotModel,
+    derivation::{Columns, Family},
+    evaluation::{Failed, Rows, Workspace},
+    lowering::{Condition, Program},
+};
+use std::sync::{Mutex, PoisonError};
+
+/// Most inputs that a function of [`overact::Model`] has.
+const INPUTS: usize = 4;
+
+/// A robot that is interpreted.
+#[derive(Debug)]
+pub struct InterpretedRobot {
+    model: RobotModel,
+    names: Names,
+    functions: Vec<Served>,
+    scratch: Pool<Scratch>,
+}
+
+/// A function of the trait and the program that computes it.
+#[derive(Debug)]
+struct Served {
+    function: Function,
+    /// Index among the model's functions.
+    index: usize,
+    /// For each input of the program its place among the function's inputs.
+    inputs: Vec<usize>,
+    workspaces: Pool<Workspace>,
+}
+
+/// Memory for forward kinematics.
+#[derive(Debug, Default)]
+struct Scratch {
+    actuators: Vec<f64>,
+    inverse_jacobian: Vec<f64>,
+    normal: Vec<f64>,
+    step: Vec<f64>,
+    pose: Vec<f64>,
+}
+
+/// Memory that calls take and give back, so that a call allocates only when more threads than ever
+/// before are in it. Programs have memory of their own: sizing it anew would cost more than a sample.
+#[derive(Debug, Default)]
+struct Pool<T>(Mutex<Vec<T>>);
+
+impl<T: Default> Pool<T> {
+    fn with<R>(&self, work: impl FnOnce(&mut T) -> R) -> R {
+        // What a panicking thread left behind is memory like any other.
+        let free = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut memory = free().pop().unwrap_or_default();
+        let result = work(&mut memory);
+        free().push(memory);
+        result
+    }
+}
+
+impl InterpretedRobot {
+    /// Serves a model.
+    ///
+    /// The names that errors and parameters carry live as long as the program (`&'static str`, as in
+    /// generated code), so each robot leaks a few kilobytes once.
+    #[must_use]
+    pub fn new(model: RobotModel) -> Self {
+        let names = Names::new(&model);
+        let mut robot = Self {
+            model,
+            names,
+            functions: Vec::new(),
+            scratch: Pool::default(),
+        };
+        robot.functions = ALL
+            .iter()
+            .filter_map(|&(f, family)| robot.serve(f, family))
+            .collect();
+        robot
+    }
+
+    /// The model.
+    #[must_use]
+    pub const fn model(&self) -> &RobotModel {
+        &self.model
+    }
+
+    fn serve(&self, function: Function, family: Family) -> Option<Served> {
+        let wanted = self.model.plain(family)?;
+        let index = self
+            .model
+            .functions
+            .iter()
+            .position(|f| std::ptr::eq(f, wanted))?;
+        let place = |array: &overact_codegen::lowering::Array| {
+            let input = input_of(&array.name)?;
+            function.inputs().iter().position(|i| *i == input)
+        };
+        let inputs: Option<Vec<usize>> = wanted.program.inputs.iter().map(place).collect();
+        let (rows, columns) = function.shape(&self.names.sizes);
+        // A program that does not fit the trait is not offered rather than misread.
+        let inputs = inputs
+            .filter(|i| i.len() <= INPUTS && wanted.program.entries.len() == rows * columns)?;
+        let workspaces = Pool::default();
+        Some(Served {
+            function,
+            index,
+            inputs,
+            workspaces,
+        })
+    }
+
+    fn program(&self, served: &Served) -> &Program {
+        &self.model.functions[served.index].program
+    }
+
+    /// What a failed condition of a program means.
+    #[must_use]
+    pub fn error(&self, program: &Program, failed: &Failed) -> SampleError {
+        let times = |home: f64| {
+            let ratio = home / failed.value.abs();
+            if ratio.is_nan() { f64::INFINITY } else { ratio }
+        };
+        let leg = |name: &str| self.names.leg(name);
+        let error = match program
+            .guards
+            .get(failed.guard)
+            .map(|guard| &guard.condition)
+        {
+            Some(Condition::Reach { leg: name }) => Error::OutOfReach { leg: leg(name) },
+            Some(Condition::Leg { leg: name, home }) => Error::SingularLeg {
+                leg: leg(name),
+                condition: times(*home),
+            },
+            Some(Condition::Platform { actuators, home }) => Error::SingularPlatform {
+                actuators,
+                condition: times(*home),
+            },
+            None => Error::NotFinite,
+        };
+        SampleError {
+            sample: failed.sample,
+            error,
+        }
+    }
+
+    /// Lengths and finiteness of all inputs.
+    fn check(
+        &self,
+        function: Function,
+        inputs: &[&[f64]],
+        samples: usize,
+    ) -> Result<(), SampleError> {
+        let kinds = function.inputs();
+        let whole = |error| SampleError { sample: 0, error };
+        if inputs.len() != kinds.len() {
+            return Err(whole(Error::Length {
+                expected: kinds.len(),
+                found: inputs.len(),
+            }));
+        }
+        let mut first: Option<usize> = None;
+        for (kind, values) in kinds.iter().zip(inputs) {
+            let row = self.names.sizes.of(*kind);
+            let shared = *kind == Input::Parameters;
+            let expected = if shared { row } else { row * samples };
+            if values.len() != expected {
+                return Err(whole(Error::Length {
+                    expected,
+                    found: values.len(),
+                }));
+            }
+            if let Some(at) = values.iter().position(|value| !value.is_finite()) {
+                let sample = if shared { 0 } else { at / row };
+                first = Some(first.map_or(sample, |known| known.min(sample)));
+            }
+        }
+        first.map_or(Ok(()), |sample| {
+            Err(SampleError {
+                sample,
+                error: Error::NotFinite,
+            })
+        })
+    }
+
+    /// Functions that a robot without redundancy does not need, but that have a meaning.
+    fn trivial(
+        &self,
+        function: Function,
+        inputs: &[&[f64]],
+        output: &mut [f64],
+    ) -> Result<(), Error> {
+        let sizes = &self.names.sizes;
+        match (function, inputs) {
+            // Without redundancy there are no internal torques to remove.
+            (Function::ProjectTorques, [_, torques]) if sizes.actuators == sizes.dof => {
+                output.copy_from_slice(torques);
+                Ok(())
+            }
+            _ => Err(Error::NotOffered {
+                function: function.name(),
+            }),
+        }
+    }
+}
+
+impl Model for InterpretedRobot {
+    fn info(&self) -> Info<'_> {
+        self.names.info(&self.model)
+    }
+
+    fn evaluate(
+        &self,
+        function: Function,
+        inputs: &[&[f64]],
+        output: &mut [f64],
+    ) -> Result<(), SampleError> {
+        let whole = |error| SampleError { sample: 0, error };
+        let (rows, columns) = function.shape(&self.names.sizes);
+        let width = rows * columns;
+        let samples = output.len().checked_div(width).unwrap_or(0);
+        if output.len() != samples * width {
+            let expected = (samples + usize::from(width > 0)) * width;
+            return Err(whole(Error::Length {
+                expected,
+                found: output.len(),
+            }));
+        }
+        if width == 0 {
+            return Ok(());
+        }
+        self.check(function, inputs, samples)?;
+        let Some(served) = self.functions.iter().find(|s| s.function == function) else {
+            return self.trivial(function, inputs, output).map_err(whole);
+        };
+        let mut given = [Rows {
+            values: &[],
+            shared: false,
+        }; INPUTS];
+        for (slot, &at) in given.iter_mut().zip(&served.inputs) {
+            let shared = function.inputs()[at] == Input::Parameters;
+            *slot = Rows {
+                values: inputs[at],
+                shared,
+            };
+        }
+        let given = &given[..served.inputs.len()];
+        let program = self.program(served);
+        let run = |workspace: &mut Workspace| program.evaluate(samples, given, output, workspace);
+        served
+            .workspaces
+            .with(run)
+            .map_err(|failed| self.error(program, &failed))
+    }
+
+    fn pose_from_actuators(&self, actuators: &[f64], pose: &mut [f64]) -> Result<(), Error> {
+        let sizes = self.names.sizes;
+        for (expected, found) in [(sizes.actuators, actuators.len()), (sizes.pose, pose.len())] {
+            if expected != found {
+                return Err(Error::Length { expected, found });
+            }
+        }
+        if actuators.iter().any(|q| !q.is_finite()) {
+            return Err(Error::NotFinite);
+        }
+        if self.model.is_tree() {
+            pose.copy_from_slice(actuators);
+            return Ok(());
+        }
+        self.scratch.with(|scratch| {
+            scratch.resize(&sizes);
+            let Scratch {
+                actuators: reached,
+                inverse_jacobian,
+                normal,
+                step,
+                pose: at,
+            } = scratch;
+            at.copy_from_slice(pose);
+            let is_revolute = &self.names.actuator_is_revolute;
+            forward::gauss_newton(
+                Measured {
+                    positions: actuators,
+                    is_revolute,
+                },
+                at,
+                forward::Workspace {
+                    actuators: reached,
+                    inverse_jacobian,
+                    normal,
+                    step,
+                },
+                |pose, reached, jacobian| {
+                    self.evaluate(Function::ActuatorPositions, &[pose], reached)
+                        .and_then(|()| self.evaluate(Function::InverseJacobian, &[pose], jacobian))
+                        .map_err(|error| error.error)
+                },
+                |pose, step| self.displace(pose, step),
+            )?;
+            pose.copy_from_slice(at);
+            Ok(())
+        })
+    }
+
+    fn displace(&self, pose: &mut [f64], step: &[f64]) {
+        let motion = self
+            .model
+            .mechanism
+            .platform
+            .as_ref()
+            .map(|platform| platform.motion);
+        if motion.is_some_and(overact_codegen::mechanism::Motion::has_quaternion) {
+            displacement::with_quaternion(pose, step);
+        } else {
+            displacement::plain(pose, step);
+        }
+    }
+}
+
+impl Scratch {
+    fn resize(&mut self, sizes: &overact::Sizes) {
+        let (n, r) = (sizes.actuators, sizes.dof);
+        self.actuators.resize(n, 0.0);
+        self.inverse_jacobian.resize(n * r, 0.0);
+        self.normal.resize(r * r, 0.0);
+        self.step.resize(r, 0.0);
+        self.pose.resize(sizes.pose, 0.0);
+    }
+}
+
+/// The functions of the trait and what they are called in the generator.
+const ALL: [(Function, Family); 15] = [
+    (Function::Joints, Family::Joints),
+    (Function::ActuatorPositions, Family::ActuatorPositions),
+    (Function::InverseJacobian, Family::InverseJacobian),
+    (Function::JointVelocities, Family::JointVelocities),
+    (Function::JointAccelerations, Family::JointAccelerations),
+    (Function::TwistFromActuators, Family::TwistFromActuators),
+    (
+        Function::AccelerationFromActuators,
+        Family::AccelerationFromActuators,
+    ),
+    (
+        Function::IdmRedPlatform,
+        Family::IdmRedPlatform(Columns::Standard),
+    ),
+    (Function::IdmRedPayload, Family::IdmRedPayload),
+    (Function::ProjectPlatform, Family::ProjectPlatform),
+    (Function::InverseDynamics, Family::InverseDynamics),
+    (Function::MassMatrix, Family::MassMatrix),
+    (Function::Bias, Family::Bias),
+    (Function::ProjectTorques, Family::ProjectTorques),
+    (Function::NullSpace, Family::NullSpace),
+];
+
+/// The input that a program's array of this name is. A tree's joints are its pose.
+fn input_of(name: &str) -> Option<Input> {
+    Some(match name {
+        "pose" | "joints" => Input::Pose,
+        "twist" | "joint_velocities" => Input::Twist,
+        "acceleration" | "joint_accelerations" => Input::Acceleration,
+        "actuator_velocities" => Input::ActuatorVelocities,
+        "actuator_accelerations" => Input::ActuatorAccelerations,
+        "torques" => Input::Torques,
+        "parameters" => Input::Parameters,
+        _ => return None,
+    })
+}

@@ -1,0 +1,139 @@
+//! What a model says about its robot, as [`overact::Info`] wants it.
+
+use overact::{Body, Info, Parameter, Sizes, Symbol};
+use overact_codegen::{
+    RobotModel,
+    derivation::BodyParameter,
+    mechanism::{JointKind, StandardParameter},
+};
+
+/// Names, sizes and parameters of a robot.
+#[derive(Debug)]
+pub(super) struct Names {
+    name: &'static str,
+    pub(super) sizes: Sizes,
+    legs: Vec<&'static str>,
+    actuators: Vec<&'static str>,
+    actuated_joints: Vec<usize>,
+    pub(super) actuator_is_revolute: Vec<bool>,
+    coordinates: Vec<&'static str>,
+    parameters: Vec<Parameter>,
+    payload_parameters: Vec<Parameter>,
+}
+
+impl Names {
+    pub(super) fn new(model: &RobotModel) -> Self {
+        let mechanism = &model.mechanism;
+        let joints = mechanism.joints();
+        let actuated_joints = mechanism.actuated();
+        let is_revolute = |&at: &usize| mechanism.joint(joints[at]).kind == JointKind::Revolute;
+        let coordinates = match &mechanism.platform {
+            Some(platform) => platform.motion.coordinates(),
+            None => joints
+                .iter()
+                .map(|&at| leaked(mechanism.joint_name(at)))
+                .collect(),
+        };
+        Self {
+            name: leaked(mechanism.name.clone()),
+            sizes: Sizes {
+                pose: mechanism.pose_len(),
+                dof: mechanism.dof(),
+                actuators: actuated_joints.len(),
+                joints: joints.len(),
+                parameters: model.selection.standard.len(),
+                payload_parameters: model.selection.payload.len(),
+            },
+            legs: mechanism
+                .legs
+                .iter()
+                .map(|leg| leaked(leg.name.clone()))
+                .collect(),
+            actuators: mechanism.actuator_names().into_iter().map(leaked).collect(),
+            actuator_is_revolute: actuated_joints.iter().map(is_revolute).collect(),
+            actuated_joints,
+            coordinates,
+            parameters: parameters(model, &model.selection.standard),
+            payload_parameters: parameters(model, &model.selection.payload),
+        }
+    }
+
+    /// The name of a leg, with the life that errors need.
+    pub(super) fn leg(&self, name: &str) -> &'static str {
+        self.legs
+            .iter()
+            .find(|leg| **leg == name)
+            .copied()
+            .unwrap_or("")
+    }
+
+    pub(super) fn info<'a>(&'a self, model: &'a RobotModel) -> Info<'a> {
+        Info {
+            name: self.name,
+            sizes: self.sizes,
+            legs: &self.legs,
+            actuators: &self.actuators,
+            actuated_joints: &self.actuated_joints,
+            actuator_is_revolute: &self.actuator_is_revolute,
+            coordinates: &self.coordinates,
+            parameters: &self.parameters,
+            payload_parameters: &self.payload_parameters,
+            home_pose: &model.mechanism.home.pose,
+            home_joints: &model.mechanism.home.joints,
+            kept_actuators: &model.mechanism.kept_actuators,
+        }
+    }
+}
+
+fn leaked(name: String) -> &'static str {
+    Box::leak(name.into_boxed_str())
+}
+
+fn parameters(model: &RobotModel, all: &[BodyParameter]) -> Vec<Parameter> {
+    let parameter = |&parameter: &BodyParameter| {
+        let (symbol, body) = match parameter {
+            BodyParameter::Platform(symbol) => (symbol, Body::Platform),
+            BodyParameter::Payload(symbol) => (symbol, Body::Payload),
+            BodyParameter::Leg { leg, joint, symbol } => {
+                let shape = small(model.mechanism.legs[leg].shape);
+                let body = Body::Leg {
+                    leg: small(leg),
+                    index: small(joint),
+                    shape,
+                };
+                (symbol, body)
+            }
+        };
+        Parameter {
+            name: leaked(model.parameter_name(parameter)),
+            symbol: symbol_of(symbol),
+            unit: model.parameter_unit(parameter),
+            body,
+        }
+    };
+    all.iter().map(parameter).collect()
+}
+
+/// No robot has so many legs or joints that this saturates.
+fn small(index: usize) -> u16 {
+    u16::try_from(index).unwrap_or(u16::MAX)
+}
+
+const fn symbol_of(parameter: StandardParameter) -> Symbol {
+    match parameter {
+        StandardParameter::Xx => Symbol::Xx,
+        StandardParameter::Xy => Symbol::Xy,
+        StandardParameter::Xz => Symbol::Xz,
+        StandardParameter::Yy => Symbol::Yy,
+        StandardParameter::Yz => Symbol::Yz,
+        StandardParameter::Zz => Symbol::Zz,
+        StandardParameter::Mx => Symbol::Mx,
+        StandardParameter::My => Symbol::My,
+        StandardParameter::Mz => Symbol::Mz,
+        StandardParameter::M => Symbol::M,
+        StandardParameter::Ia => Symbol::Ia,
+        StandardParameter::Fv => Symbol::Fv,
+        StandardParameter::Fs => Symbol::Fs,
+        StandardParameter::Off => Symbol::Off,
+    }
+}

@@ -1,0 +1,68 @@
+//! A description's tables `[data]` and `[identification]` as settings of the identification.
+
+use crate::{
+    failure::{Failure, Problem},
+    load::Robot,
+};
+use overact::Info;
+use overact_codegen::description::{Factor, Friction, Normalisation};
+use overact_identification::{Gain, Mapping, Settings};
+
+/// The settings of an identification from runs sampled at `frequency` (Hz).
+pub(crate) fn settings(robot: &Robot, info: &Info<'_>, frequency: f64) -> Settings {
+    let table = &robot.description.identification;
+    let usual = Settings::for_sampling_frequency(frequency, info);
+    Settings {
+        filter_order: table.filter_order,
+        filter_cutoff_hz: table.filter_cutoff.unwrap_or(usual.filter_cutoff_hz),
+        decimation: table.decimation.unwrap_or(usual.decimation),
+        skip_start: table.skip_start,
+        skip_end: table.skip_end,
+        // Without essential parameters the elimination ends before it starts.
+        r_sigma: if table.essential {
+            table.r_sigma
+        } else {
+            f64::INFINITY
+        },
+        normalisation: match table.normalisation {
+            Normalisation::MinusOne => overact_identification::Normalisation::SampleVariance,
+            Normalisation::MinusParameters => overact_identification::Normalisation::Unbiased,
+        },
+        asymmetric_friction: table.friction == Friction::Asymmetric,
+        weighted: table.weighted,
+        ..usual
+    }
+}
+
+/// Which columns of a log are what: those that the description names, or `time`, `q_<actuator>` and
+/// `tau_<actuator>`.
+///
+/// # Errors
+/// A position that is scaled by a variable of the log: only gains of torques can be.
+pub(crate) fn mapping(robot: &Robot, info: &Info<'_>) -> Result<Mapping, Failure> {
+    let Some(data) = &robot.description.data else {
+        return Ok(Mapping::for_robot(info));
+    };
+    let scale = |factor: &Factor| match factor {
+        Factor::Value(value) => Ok(*value),
+        Factor::Variable(name) => {
+            let message = format!("`position_scale`: `{name}` is neither a number nor a constant");
+            Err(Problem::new(message).file(robot.file.as_str()))
+        }
+    };
+    let gain = |factor: &Factor| match factor {
+        Factor::Value(value) => Gain::Value(*value),
+        Factor::Variable(name) => Gain::Variable(name.clone()),
+    };
+    Ok(Mapping {
+        time: data.time.clone(),
+        positions: data.positions.clone(),
+        torques: data.torques.clone(),
+        position_scale: data
+            .position_scale
+            .iter()
+            .map(scale)
+            .collect::<Result<_, _>>()?,
+        torque_gain: data.torque_gain.iter().map(gain).collect(),
+    })
+}

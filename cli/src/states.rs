@@ -1,0 +1,269 @@
+//! States of a robot from JSON (an array of objects keyed by input name) or CSV (a column
+//! `pose[0]` for each number).
+
+use crate::failure::{Failure, Problem};
+use serde_json::{Map, Value};
+use std::{
+    collections::BTreeMap,
+    fs,
+    io::{self, Read},
+    path::Path,
+};
+
+/// States as they stand in a file.
+#[derive(Debug)]
+pub(crate) struct States {
+    file: String,
+    states: Vec<State>,
+}
+
+/// One state: quantities by name. Those that nobody asks for may be anything.
+#[derive(Debug, Default)]
+struct State {
+    line: Option<usize>,
+    quantities: BTreeMap<String, Quantity>,
+}
+
+/// The numbers of a quantity, or why there are none.
+type Quantity = Result<Vec<f64>, String>;
+
+impl States {
+    /// Reads states from a file, or from stdin where the path is `-`.
+    ///
+    /// # Errors
+    /// A file that can't be read, or that is neither JSON nor CSV with a header.
+    pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
+        let file = path.display().to_string();
+        let text = if file == "-" {
+            let mut text = String::new();
+            io::stdin().read_to_string(&mut text).map(|_| text)
+        } else {
+            fs::read_to_string(path)
+        };
+        let problem = |error| Problem::new(format!("the states can't be read: {error}"));
+        let text = text.map_err(|error| problem(error).file(file.as_str()))?;
+        Self::parse(file, &text)
+    }
+
+    fn parse(file: String, text: &str) -> Result<Self, Failure> {
+        let text = text.trim_start_matches('\u{feff}');
+        let states = if text.trim_start().starts_with(['[', '{']) {
+            from_json(text)
+        } else {
+            from_csv(text)
+        };
+        match states {
+            Ok(states) if states.is_empty() => {
+                let help = "give a JSON array of objects keyed by input name, or CSV with a header such as `pose[0],pose[1]`";
+                Err(Problem::new("the file holds no state")
+                    .file(file)
+                    .help(help)
+                    .into())
+            }
+            Ok(states) => Ok(Self { file, states }),
+            Err(problem) => Err(Problem {
+                file: Some(file),
+                ..problem
+            }
+            .into()),
+        }
+    }
+
+    /// Number of states.
+    pub(crate) const fn len(&self) -> usize {
+        self.states.len()
+    }
+
+    /// Whether the first state holds a quantity.
+    pub(crate) fn hold(&self, name: &str) -> bool {
+        self.states
+            .first()
+            .is_some_and(|state| state.quantities.contains_key(name))
+    }
+
+    /// The numbers of a quantity in a state; `None` where the state does not hold it.
+    ///
+    /// # Errors
+    /// Something that is not `length` finite numbers.
+    pub(crate) fn get(
+        &self,
+        at: usize,
+        name: &str,
+        length: usize,
+    ) -> Result<Option<&[f64]>, Problem> {
+        let Some(quantity) = self.states.get(at).and_then(|s| s.quantities.get(name)) else {
+            return Ok(None);
+        };
+        let values = match quantity {
+            Ok(values) => values,
+            Err(message) => return Err(self.problem(at, &format!("`{name}` {message}"))),
+        };
+        if values.len() != length {
+            let found = values.len();
+            let message = format!("`{name}` has {found} numbers, expected {length}");
+            return Err(self.problem(at, &message));
+        }
+        if let Some(index) = values.iter().position(|value| !value.is_finite()) {
+            let message = format!("`{name}[{index}]` is not a finite number");
+            return Err(self.problem(at, &message));
+        }
+        Ok(Some(values))
+    }
+
+    /// A problem with a state.
+    pub(crate) fn problem(&self, at: usize, message: &str) -> Problem {
+        let count = self.len();
+        let problem = Problem::new(format!("state {} of {count}: {message}", at + 1));
+        let line = self.states.get(at).and_then(|state| state.line);
+        problem.file(self.file.as_str()).line(line)
+    }
+}
+
+fn from_json(text: &str) -> Result<Vec<State>, Problem> {
+    let document: Value = serde_json::from_str(text).map_err(|error| {
+        let line = Some(error.line()).filter(|line| *line > 0);
+        Problem::new(format!("the states are not JSON: {error}")).line(line)
+    })?;
+    let all = match document {
+        Value::Array(all) => all,
+        one => vec![one],
+    };
+    let state = |(at, value): (usize, Value)| match value {
+        Value::Object(object) => Ok(from_object(object)),
+        _ => Err(Problem::new(format!("state {} is not an object", at + 1))
+            .help("write { \"pose\": [0.1, 0.2, 0.3], ... }")),
+    };
+    all.into_iter().enumerate().map(state).collect()
+}
+
+fn from_object(object: Map<String, Value>) -> State {
+    let quantity = |(name, value): (String, Value)| (name, numbers(&value));
+    State {
+        line: None,
+        quantities: object.into_iter().map(quantity).collect(),
+    }
+}
+
+/// An array of numbers, or one number.
+fn numbers(value: &Value) -> Quantity {
+    let one = |value: &Value| {
+        value
+            .as_f64()
+            .ok_or_else(|| format!("holds {value}, which is no number"))
+    };
+    match value {
+        Value::Array(all) => all.iter().map(one).collect(),
+        value => Ok(vec![one(value)?]),
+    }
+}
+
+fn from_csv(text: &str) -> Result<Vec<State>, Problem> {
+    let mut reader = csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .flexible(true)
+        .comment(Some(b'#'))
+        .from_reader(text.as_bytes());
+    let broken = |error: csv::Error| {
+        let line = error.position().map(|position| position.line() as usize);
+        Problem::new(format!("the states are not CSV: {error}")).line(line)
+    };
+    let header: Vec<(String, usize)> = reader
+        .headers()
+        .map_err(broken)?
+        .iter()
+        .map(cell_name)
+        .collect();
+    let mut states = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(broken)?;
+        let mut cells: BTreeMap<&str, Vec<(usize, &str)>> = BTreeMap::new();
+        for ((name, index), cell) in header.iter().zip(&record) {
+            cells.entry(name).or_default().push((*index, cell));
+        }
+        // A quantity whose cells are all empty is not given in this state.
+        cells.retain(|_, cells| cells.iter().any(|(_, cell)| !cell.is_empty()));
+        let line = record.position().map(|position| first_line(text, position));
+        let quantities = cells
+            .into_iter()
+            .map(|(name, cells)| (name.to_owned(), from_cells(cells)));
+        states.push(State {
+            line,
+            quantities: quantities.collect(),
+        });
+    }
+    Ok(states)
+}
+
+/// The line of a record: the reader's position is before comments and empty lines that precede it.
+fn first_line(text: &str, position: &csv::Position) -> usize {
+    let start = usize::try_from(position.byte()).unwrap_or(usize::MAX);
+    let rest = text.get(start..).unwrap_or_default();
+    let is_skipped = |line: &&str| line.trim().is_empty() || line.starts_with('#');
+    // Lines are far fewer than 2^64.
+    position.line() as usize + rest.lines().take_while(is_skipped).count()
+}
+
+/// Name and index of a column: `pose[1]`, or `pose` for its first number.
+fn cell_name(column: &str) -> (String, usize) {
+    let indexed = column.strip_suffix(']').and_then(|rest| {
+        let (name, index) = rest.split_once('[')?;
+        Some((name.trim().to_owned(), index.trim().parse().ok()?))
+    });
+    indexed.unwrap_or_else(|| (column.to_owned(), 0))
+}
+
+/// The cells of a quantity in the order of their indices, which count from 0 without a gap.
+fn from_cells(mut cells: Vec<(usize, &str)>) -> Quantity {
+    cells.sort_by_key(|(index, _)| *index);
+    let one = |(expected, (index, cell)): (usize, (usize, &str))| {
+        if index > expected {
+            return Err(format!("has no column [{expected}]"));
+        }
+        if index < expected {
+            return Err(format!("has two columns [{index}]"));
+        }
+        cell.parse::<f64>()
+            .map_err(|_| format!("holds \"{cell}\", which is no number"))
+    };
+    cells.into_iter().enumerate().map(one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::States;
+
+    #[test]
+    fn csv_and_json_say_the_same() {
+        let csv = "pose[1],pose[0],note,twist[0]\n2,1,x,3\n# c\n5,4,,nan\n";
+        let json = r#"[{"pose":[1,2],"note":"x","twist":3},{"pose":[4,5],"twist":[1e999]}]"#;
+        let csv = States::parse("a.csv".into(), csv).unwrap();
+        assert_eq!(csv.get(0, "pose", 2).unwrap(), Some(&[1.0, 2.0][..]));
+        assert_eq!(csv.get(1, "pose", 2).unwrap(), Some(&[4.0, 5.0][..]));
+        assert_eq!(csv.get(1, "twist", 1).unwrap_err().line, Some(4));
+        assert!(csv.get(0, "note", 1).is_err() && csv.get(1, "note", 1).unwrap().is_none());
+        assert!(
+            States::parse("a.json".into(), json).is_err(),
+            "1e999 is no number"
+        );
+        let json = States::parse("a.json".into(), &json.replace("1e999", "7")).unwrap();
+        assert_eq!(
+            json.get(0, "pose", 2).unwrap(),
+            csv.get(0, "pose", 2).unwrap()
+        );
+        assert_eq!(json.get(0, "twist", 1).unwrap(), Some(&[3.0][..]));
+    }
+
+    #[test]
+    fn wrong_states_say_where() {
+        let message = |text: &str, name| {
+            let states = States::parse("s".into(), text).unwrap();
+            states.get(0, name, 3).unwrap_err().message
+        };
+        assert!(message("pose[0],pose[2]\n1,2\n", "pose").contains("no column [1]"));
+        assert!(message("[{\"pose\":[1,2]}]", "pose").contains("has 2 numbers, expected 3"));
+        assert!(message("[{\"pose\":[1,\"a\",3]}]", "pose").contains("no number"));
+        for text in ["", "[]", "pose[0]\n", "[1]", "[{"] {
+            assert!(States::parse("s".into(), text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,209 @@
+//! `evaluate`: states in, values out.
+
+mod common;
+
+use common::{Bench, number, robot};
+use serde_json::{Value, json};
+
+fn bench() -> Bench {
+    let bench = Bench::new();
+    let state = |pose: [f64; 3]| {
+        json!({ "pose": pose, "twist": [0.1, 0.2, -0.3], "acceleration": [1.0, 2.0, 3.0],
+            "torques": [1.0, 2.0, 3.0, 4.0], "note": "ignored" })
+    };
+    let states = [state([0.02, -0.03, 0.1]), state([-0.05, 0.04, -0.2])];
+    bench.write("states.json", &Value::from(states.to_vec()).to_string());
+    bench
+}
+
+/// The values of a function at all states, flat.
+fn values(bench: &Bench, arguments: &[&str]) -> Vec<Vec<f64>> {
+    let dualv = robot("dualv.toml");
+    let name = arguments[0];
+    let document = bench.json(&[&["evaluate", &dualv], arguments].concat());
+    let row = |result: &Value| {
+        let (_, values) = result
+            .as_object()
+            .and_then(|o| o.iter().next())
+            .expect(name);
+        values.as_array().expect(name).iter().map(number).collect()
+    };
+    document["results"]
+        .as_array()
+        .expect(name)
+        .iter()
+        .map(row)
+        .collect()
+}
+
+fn far(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let pairs = a.iter().flatten().zip(b.iter().flatten());
+    pairs.fold(0.0, |far, (a, b)| far.max((a - b).abs()))
+}
+
+#[test]
+fn all_sources_of_motion_agree() {
+    let bench = bench();
+    let states = ["--states", "states.json"];
+    let ask = |function: &str| values(&bench, &[&[function][..], &states].concat());
+    let pose = ask("idm_red_platform");
+    let joints = values(
+        &bench,
+        &[
+            "idm_red_platform",
+            "--from",
+            "joints",
+            "--states",
+            "states.json",
+        ],
+    );
+    assert!(far(&pose, &joints) < 1e-12);
+    assert_eq!(ask("idm_red_platform_from_joints"), joints);
+
+    let (q, v, a) = (
+        ask("actuator_positions"),
+        ask("joint_velocities"),
+        ask("joint_accelerations"),
+    );
+    let actuated = |all: &[f64]| [all[0], all[3], all[6], all[9]];
+    let states: Vec<Value> = (0..2)
+        .map(|i| json!({ "actuators": q[i], "actuator_velocities": actuated(&v[i]), "actuator_accelerations": actuated(&a[i]) }))
+        .collect();
+    bench.write("actuators.json", &Value::from(states).to_string());
+    let actuators = values(&bench, &["idm_red_platform", "--states", "actuators.json"]);
+    assert!(far(&pose, &actuators) < 1e-10);
+    // A function of the pose finds it from the actuators.
+    let jacobian = values(&bench, &["inverse_jacobian", "--states", "actuators.json"]);
+    assert!(far(&ask("inverse_jacobian"), &jacobian) < 1e-11);
+}
+
+#[test]
+fn csv_says_the_same_as_json() {
+    let bench = bench();
+    let csv = "pose[0],pose[1],pose[2],torques[0],torques[1],torques[2],torques[3],note\n\
+        0.02,-0.03,0.1,1,2,3,4,a\n-0.05,0.04,-0.2,1,2,3,4,\n";
+    bench.write("states.csv", csv);
+    let dualv = robot("dualv.toml");
+    let run =
+        |states: &str| bench.good(&["evaluate", &dualv, "project_platform", "--states", states]);
+    let text = run("states.csv");
+    assert_eq!(text, run("states.json"));
+    let mut lines = text.lines();
+    assert_eq!(
+        lines.next(),
+        Some("project_platform[0],project_platform[1],project_platform[2]")
+    );
+    assert_eq!(lines.count(), 2);
+    bench.good(&[
+        "evaluate",
+        &dualv,
+        "joints",
+        "--states",
+        "states.csv",
+        "-o",
+        "joints.csv",
+    ]);
+    assert_eq!(bench.read("joints.csv").lines().count(), 3);
+}
+
+#[test]
+fn columns_and_kept_actuators_are_chosen() {
+    let bench = bench();
+    let dualv = robot("dualv.toml");
+    let common = [
+        "evaluate",
+        &dualv,
+        "idm_red_actuators",
+        "--states",
+        "states.json",
+    ];
+    let document = bench.json(&[&common[..], &["--columns", "base"]].concat());
+    assert_eq!(document["function"], "idm_red_actuators_base");
+    assert_eq!(document["shapes"]["idm_red_actuators"], json!([3, 49]));
+    assert_eq!(document["parameters"].as_array().map(Vec::len), Some(49));
+    let ask = |kept: &str| {
+        values(
+            &bench,
+            &[
+                "idm_red_actuators",
+                "--states",
+                "states.json",
+                "--kept",
+                kept,
+            ],
+        )
+    };
+    let (all, other) = (ask("leg1,leg2,leg3"), ask("leg1,leg2,leg4"));
+    assert!(far(&all, &values(&bench, &common[2..])) < 1e-12);
+    assert!(far(&all, &other) > 1e-3);
+    let text = bench.bad(&[&common[..], &["--kept", "leg1,leg2,leg9"]].concat());
+    assert!(text.contains("there is no actuator `leg9`"), "{text}");
+    assert!(
+        bench
+            .bad(&[&common[..], &["--kept", "leg1,leg2"]].concat())
+            .contains("3 actuators")
+    );
+}
+
+#[test]
+fn bad_states_are_told_of() {
+    let bench = bench();
+    let dualv = robot("dualv.toml");
+    let bad = |function: &str, states: &str| {
+        bench.bad(&[
+            "evaluate", &dualv, function, "--states", states, "-o", "out.csv",
+        ])
+    };
+    assert!(bad("idm_red_platfrm", "states.json").contains("did you mean `idm_red_platform`"));
+    assert!(bad("joints", "none.json").contains("none.json"));
+    let text = bad("inverse_dynamics", "states.json");
+    assert!(
+        text.contains("state 1 of 2: missing `parameters`"),
+        "{text}"
+    );
+    bench.write("few.csv", "twist[0]\n1\n");
+    let text = bad("idm_red_platform", "few.csv");
+    assert!(
+        text.contains("missing `pose`, `twist`, `acceleration`") || text.contains("`twist` has 1"),
+        "{text}"
+    );
+    bench.write("far.json", "[{\"pose\":[0,0,0]},{\"pose\":[3,0,0]}]");
+    let text = bad("joints", "far.json");
+    assert!(
+        text.contains("state 2 of 2") && text.contains("out of reach of leg `leg"),
+        "{text}"
+    );
+    bench.write("nan.csv", "pose[0],pose[1],pose[2]\n0,0,nan\n");
+    let text = bad("joints", "nan.csv");
+    assert!(
+        text.contains("nan.csv:2") && text.contains("not a finite number"),
+        "{text}"
+    );
+    bench.write("broken.json", "[{\"pose\":");
+    assert!(bad("joints", "broken.json").contains("not JSON"));
+    assert!(!bench.path("out.csv").exists());
+}
+
+#[test]
+fn a_tree_takes_its_motion_under_any_name() {
+    let bench = Bench::new();
+    bench.write(
+        "a.json",
+        r#"[{"joints":[0.1],"joint_velocities":[2],"joint_accelerations":[3]}]"#,
+    );
+    bench.write("b.json", r#"{"pose":0.1,"twist":2,"acceleration":3}"#);
+    let emps = robot("emps.toml");
+    let run =
+        |states: &str| bench.json(&["evaluate", &emps, "idm_red_platform", "--states", states]);
+    let document = run("a.json");
+    assert_eq!(document["results"], run("b.json")["results"]);
+    assert_eq!(
+        document["parameters"],
+        json!(["m_1", "ia_1", "fv_1", "fs_1", "off_1"])
+    );
+    assert_eq!(
+        document["results"][0]["idm_red_platform"],
+        json!([3.0, 3.0, 2.0, 1.0, 1.0])
+    );
+}

@@ -1,0 +1,264 @@
+//! `simulate` and `identify`: virtual experiments, logs, and the published EMPS benchmark.
+
+mod common;
+
+use common::{Bench, number, robot, shared};
+use serde_json::Value;
+
+/// The serial robot with a shorter experiment.
+fn serial() -> Bench {
+    Bench::with("serial-2r", |text| {
+        text.replace("duration = \"10 s\"", "duration = \"5 s\"")
+    })
+}
+
+#[test]
+fn simulated_logs_give_what_the_virtual_experiment_gives() {
+    let bench = serial();
+    let made = bench.run(&["simulate", "my.toml", "-o", "log.csv"]);
+    assert_eq!(
+        (made.code, made.err.as_str()),
+        (Some(0), ""),
+        "a pipe shows no progress"
+    );
+    assert_eq!(
+        bench.files(),
+        ["log_identification.csv", "log_validation.csv", "my.toml"]
+    );
+    let log = bench.read("log_identification.csv");
+    assert_eq!(log.lines().next(), Some("time,q_1,q_2,tau_1,tau_2"));
+    assert_eq!(log.lines().count(), 5001);
+    let one = bench.good(&["simulate", "my.toml", "--run", "identification"]);
+    assert_eq!(one, log);
+
+    let (logs, others) = ("log_identification.csv", "log_validation.csv");
+    let measured = bench.json(&[
+        "identify",
+        "my.toml",
+        "--data",
+        logs,
+        "--cross-validate",
+        others,
+    ]);
+    let made = bench.json(&["identify", "my.toml", "--cross-validate", "validation"]);
+    let value =
+        |document: &Value, i: usize| number(&document["estimates"][0]["parameters"][i]["value"]);
+    for i in 0..13 {
+        assert_eq!(value(&measured, i), value(&made, i));
+    }
+    let parameter = &made["estimates"][0]["parameters"][0];
+    assert_eq!(parameter["name"], "zz_1R");
+    assert!((number(&parameter["true_value"]) - 0.292).abs() < 1e-12);
+    assert!(number(&parameter["error_percent"]).abs() < 3.0);
+    assert!(
+        measured["estimates"][0]["parameters"][0]
+            .get("true_value")
+            .is_none()
+    );
+    assert!(number(&made["cross_validation"][0]["relative_error_percent"]) < 5.0);
+}
+
+#[test]
+fn the_document_has_its_keys() {
+    let bench = Bench::with("planar-4rrr", |text| {
+        text.replace("duration = \"4 s\"", "duration = \"2 s\"")
+    });
+    let document = bench.json(&["identify", "my.toml", "--seed", "7"]);
+    for key in ["robot", "runs", "estimates", "cross_validation", "warnings"] {
+        assert!(document.get(key).is_some(), "{key}");
+    }
+    let estimates = document["estimates"].as_array().expect("a list");
+    let models: Vec<(&str, &str)> = estimates
+        .iter()
+        .filter_map(|e| Some((e["model"].as_str()?, e["stage"].as_str()?)))
+        .collect();
+    let both = |model| [(model, "base"), (model, "essential")];
+    assert_eq!(models, [both("platform"), both("actuators")].concat());
+    assert_eq!(
+        estimates[2]["kept_actuators"],
+        serde_json::json!(["leg1", "leg2", "leg3"])
+    );
+    for key in ["relative_error_percent", "condition_number", "equations"] {
+        assert!(estimates[0][key].is_number(), "{key}");
+    }
+    let payload = estimates[0]["parameters"]
+        .as_array()
+        .expect("a list")
+        .last()
+        .expect("one");
+    assert_eq!(payload["name"], "m_payload");
+    for key in [
+        "value",
+        "standard_deviation",
+        "relative_standard_deviation_percent",
+        "true_value",
+    ] {
+        assert!(payload[key].is_number(), "{key}");
+    }
+    assert!(
+        (number(&payload["value"]) / 5.4 - 1.0).abs() < 0.02,
+        "{payload}"
+    );
+}
+
+#[test]
+fn bad_logs_are_told_of() {
+    let bench = serial();
+    let bad = |log: &str| {
+        bench.write("log.csv", log);
+        let text = bench.bad(&[
+            "identify",
+            "my.toml",
+            "--data",
+            "log.csv",
+            "-o",
+            "report.txt",
+        ]);
+        assert!(text.contains("log.csv"), "{text}");
+        text
+    };
+    let header = "time,q_1,q_2,tau_1,tau_2\n";
+    let text = bad("time,q1,q_2,tau_1\n0,0,0,0\n");
+    assert!(
+        text.contains("`q_1`, `tau_2`") && text.contains("did you mean `q1` for `q_1`"),
+        "{text}"
+    );
+    assert!(bad(&format!("{header}0,0,0,0,0\n0.001,0,NaN,0,0\n")).contains("log.csv:3"));
+    let rows = |time: fn(usize) -> f64, count: usize| {
+        let row = |i: usize| format!("{},{},0,1,2\n", time(i), (i as f64 * 0.01).sin());
+        header.to_owned() + &(0..count).map(row).collect::<String>()
+    };
+    assert!(
+        bad(&rows(
+            |i| i as f64 * 1e-3 + if i > 50 { 5e-3 } else { 0.0 },
+            100
+        ))
+        .contains("not uniform")
+    );
+    assert!(bad(&rows(|i| i as f64 * 1e-3, 10)).contains("need at least"));
+    assert!(bad("").contains("time"));
+    let text = bench.bad(&["identify", "my.toml", "--data", "none.csv", "also.csv"]);
+    assert!(
+        text.contains("none.csv") && text.contains("also.csv"),
+        "{text}"
+    );
+    assert!(!bench.path("report.txt").exists());
+}
+
+#[test]
+fn bad_experiments_are_told_of() {
+    let bench = serial();
+    bench.write("log_identification.csv", "old");
+    let text = bench.bad(&[
+        "simulate",
+        "my.toml",
+        "--run",
+        "identificaton",
+        "-o",
+        "log.csv",
+    ]);
+    assert!(text.contains("did you mean `identification`"), "{text}");
+    bench.write(
+        "far.toml",
+        &bench.read("my.toml").replace("60 deg", "60000 deg"),
+    );
+    let _ = bench.run(&["simulate", "far.toml", "-o", "none/log.csv"]);
+    let text = bench.bad(&[
+        "simulate",
+        "my.toml",
+        "--run",
+        "validation",
+        "-o",
+        "none/log.csv",
+    ]);
+    assert!(text.contains("none"), "{text}");
+    assert_eq!(bench.read("log_identification.csv"), "old");
+    let robot = Bench::with("serial-2r", |text| {
+        text.split("# A virtual experiment")
+            .next()
+            .unwrap_or_default()
+            .to_owned()
+    });
+    assert!(
+        robot
+            .bad(&["identify", "my.toml"])
+            .contains("no virtual experiment")
+    );
+    assert!(
+        robot
+            .bad(&["simulate", "my.toml", "-o", "log.csv"])
+            .contains("no virtual experiment")
+    );
+}
+
+#[test]
+fn emps_has_the_published_digits() {
+    let (Some(data), Some(pulses)) = (
+        shared("data/emps/DATA_EMPS.mat"),
+        shared("data/emps/DATA_EMPS_PULSES.mat"),
+    ) else {
+        return;
+    };
+    let bench = Bench::new();
+    let emps = robot("emps.toml");
+    let arguments = [
+        "identify",
+        &emps,
+        "--data",
+        &data,
+        "--cross-validate",
+        &pulses,
+    ];
+    let document = bench.json(&arguments);
+    assert_eq!(
+        document["estimates"].as_array().map(Vec::len),
+        Some(1),
+        "base parameters only"
+    );
+    let estimate = &document["estimates"][0];
+    let digits = |value: &Value| format!("{:.4}", number(value));
+    let expected = [
+        ("m_1R", "95.1089", "0.1141"),
+        ("fv_1", "203.5034", "0.5631"),
+        ("fs_1", "20.3935", "0.4964"),
+        ("off_1", "-3.1648", "1.4021"),
+    ];
+    for (at, (name, value, deviation)) in expected.iter().enumerate() {
+        let parameter = &estimate["parameters"][at];
+        assert_eq!(parameter["name"], *name);
+        assert_eq!(digits(&parameter["value"]), *value);
+        assert_eq!(
+            digits(&parameter["relative_standard_deviation_percent"]),
+            *deviation
+        );
+    }
+    assert_eq!(digits(&estimate["relative_error_percent"]), "4.0834");
+    assert_eq!(digits(&estimate["condition_number"]), "25.9883");
+    assert_eq!(digits(&estimate["residual_norm"]), "108.7569");
+    assert_eq!(digits(&estimate["residual_deviation"]), "2.1843");
+    assert_eq!(
+        digits(&document["cross_validation"][0]["residual_norm"]),
+        "169.4876"
+    );
+    assert_eq!(
+        digits(&document["cross_validation"][0]["relative_error_percent"]),
+        "5.9824"
+    );
+    let text = bench.good(&arguments);
+    assert!(
+        text.contains("95.1089") && text.contains("4.0834 %"),
+        "{text}"
+    );
+
+    let asymmetric = bench.json(&[&arguments[..], &["--friction", "asymmetric"]].concat());
+    let parameters = asymmetric["estimates"][0]["parameters"]
+        .as_array()
+        .expect("a list");
+    let value =
+        |name: &str| digits(&parameters.iter().find(|p| p["name"] == name).expect(name)["value"]);
+    assert_eq!(value("m_1R"), "95.1540");
+    assert_eq!(value("fv_pos_1"), "166.7061");
+    assert_eq!(value("fs_pos_1"), "20.1440");
+    assert_eq!(value("fv_neg_1"), "240.4236");
+    assert_eq!(value("fs_neg_1"), "20.6277");
+}

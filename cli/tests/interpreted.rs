@@ -1,0 +1,220 @@
+//! The interpreted robot against finite differences, and its forward kinematics.
+
+mod common;
+
+use overact::{Body, Error, Function, Model, Symbol};
+use overact_cli::{InterpretedRobot, load::load};
+use std::path::Path;
+
+fn robot(name: &str) -> InterpretedRobot {
+    match load(Path::new(&common::robot(name))) {
+        Ok(robot) => InterpretedRobot::new(robot.model),
+        Err(failure) => panic!("{}", failure.render(false)),
+    }
+}
+
+const POSE: [f64; 3] = [0.03, -0.02, 0.15];
+const TWIST: [f64; 3] = [0.4, -0.3, 1.1];
+const ACCELERATION: [f64; 3] = [2.0, 5.0, -7.0];
+
+fn evaluate(
+    robot: &InterpretedRobot,
+    function: Function,
+    inputs: &[&[f64]],
+    length: usize,
+) -> Vec<f64> {
+    let mut output = vec![0.0; length];
+    robot
+        .evaluate(function, inputs, &mut output)
+        .expect("a value");
+    output
+}
+
+/// The pose at a time near zero, on a motion with these rates.
+fn moved(time: f64) -> [f64; 3] {
+    std::array::from_fn(|i| POSE[i] + TWIST[i] * time + 0.5 * ACCELERATION[i] * time * time)
+}
+
+#[test]
+fn rates_are_derivatives_of_positions() {
+    let robot = robot("dualv.toml");
+    let h = 1e-4;
+    let joints = |time: f64| evaluate(&robot, Function::Joints, &[&moved(time)], 12);
+    let (before, now, after) = (joints(-h), joints(0.0), joints(h));
+    let inputs: [&[f64]; 3] = [&POSE, &TWIST, &ACCELERATION];
+    let velocities = evaluate(&robot, Function::JointVelocities, &inputs, 12);
+    let accelerations = evaluate(&robot, Function::JointAccelerations, &inputs, 12);
+    let jacobian = evaluate(&robot, Function::InverseJacobian, &[&POSE], 12);
+    for i in 0..12 {
+        let velocity = (after[i] - before[i]) / (2.0 * h);
+        let acceleration = (after[i] - 2.0 * now[i] + before[i]) / (h * h);
+        // Central differences are off by h²/6 times the third derivative.
+        assert!(
+            (velocity - velocities[i]).abs() < 1e-5,
+            "{velocity} {}",
+            velocities[i]
+        );
+        assert!((acceleration - accelerations[i]).abs() < 1e-4 * (1.0 + acceleration.abs()));
+    }
+    let actuators = evaluate(&robot, Function::ActuatorPositions, &[&POSE], 4);
+    for (k, &i) in robot.info().actuated_joints.iter().enumerate() {
+        let row = &jacobian[3 * k..3 * k + 3];
+        let velocity: f64 = row.iter().zip(&TWIST).map(|(j, v)| j * v).sum();
+        assert!((velocity - velocities[i]).abs() < 1e-13);
+        assert_eq!(actuators[k], now[i]);
+    }
+}
+
+#[test]
+fn forward_kinematics_finds_the_pose_back() {
+    let robot = robot("dualv.toml");
+    let actuators = evaluate(&robot, Function::ActuatorPositions, &[&POSE], 4);
+    let mut pose = robot.info().home_pose.to_vec();
+    robot
+        .pose_from_actuators(&actuators, &mut pose)
+        .expect("a pose");
+    assert!(
+        pose.iter()
+            .zip(&POSE)
+            .all(|(found, wanted)| (found - wanted).abs() < 1e-12)
+    );
+    let before = pose.clone();
+    let far = [9.0, -9.0, 9.0, -9.0];
+    assert!(robot.pose_from_actuators(&far, &mut pose).is_err());
+    assert_eq!(pose, before, "unchanged on error");
+    let nan = [f64::NAN, 0.0, 0.0, 0.0];
+    assert_eq!(
+        robot.pose_from_actuators(&nan, &mut pose),
+        Err(Error::NotFinite)
+    );
+}
+
+#[test]
+fn columns_times_parameters_are_the_torques() {
+    let robot = robot("dualv.toml");
+    let info = robot.info();
+    let (own, payload) = (info.sizes.parameters, info.sizes.payload_parameters);
+    let values: Vec<f64> = (0..own + payload)
+        .map(|i| 0.1 + (i as f64 * 0.7).sin().abs())
+        .collect();
+    let inputs: [&[f64]; 3] = [&POSE, &TWIST, &ACCELERATION];
+    let columns = evaluate(&robot, Function::IdmRedPlatform, &inputs, 3 * own);
+    let loaded = evaluate(&robot, Function::IdmRedPayload, &inputs, 3 * payload);
+    let inputs: [&[f64]; 4] = [&POSE, &TWIST, &ACCELERATION, &values];
+    let torques = evaluate(&robot, Function::InverseDynamics, &inputs, 4);
+    let projected = evaluate(&robot, Function::ProjectPlatform, &[&POSE, &torques], 3);
+    for r in 0..3 {
+        let row = columns[r * own..(r + 1) * own]
+            .iter()
+            .chain(&loaded[r * payload..(r + 1) * payload]);
+        let sum: f64 = row.zip(&values).map(|(w, x)| w * x).sum();
+        assert!(
+            (sum - projected[r]).abs() < 1e-11 * sum.abs().max(1.0),
+            "{sum} {}",
+            projected[r]
+        );
+    }
+    // The least-norm torques have no internal part.
+    let same = evaluate(&robot, Function::ProjectTorques, &[&POSE, &torques], 4);
+    assert!(
+        same.iter()
+            .zip(&torques)
+            .all(|(a, b)| (a - b).abs() < 1e-11)
+    );
+}
+
+#[test]
+fn bad_samples_are_named() {
+    let robot = robot("dualv.toml");
+    let mut output = vec![0.0; 24];
+    let mut poses = [POSE, POSE].concat();
+    poses[3] = f64::INFINITY;
+    let error = robot
+        .evaluate(Function::InverseJacobian, &[&poses], &mut output)
+        .expect_err("infinite");
+    assert_eq!((error.sample, error.error), (1, Error::NotFinite));
+    poses[3] = 3.0;
+    let error = robot
+        .evaluate(Function::InverseJacobian, &[&poses], &mut output)
+        .expect_err("far");
+    assert_eq!(error.sample, 1);
+    assert!(matches!(error.error, Error::OutOfReach { leg } if leg.starts_with("leg")));
+    let short = robot.evaluate(Function::InverseJacobian, &[&poses[..5]], &mut output);
+    let length = Error::Length {
+        expected: 6,
+        found: 5,
+    };
+    assert_eq!(short.expect_err("short").error, length);
+}
+
+#[test]
+fn what_a_robot_says_of_itself() {
+    let robot = robot("dualv.toml");
+    let info = robot.info();
+    assert_eq!(
+        (info.name, info.coordinates),
+        ("DualV", &["x", "y", "phi"][..])
+    );
+    assert_eq!(info.actuators, ["leg1", "leg2", "leg3", "leg4"]);
+    assert_eq!(info.actuated_joints, [0, 3, 6, 9]);
+    assert_eq!(
+        (info.sizes.parameters, info.sizes.payload_parameters),
+        (64, 4)
+    );
+    let zz = info
+        .parameters
+        .iter()
+        .find(|p| p.name == "zz_2_leg3")
+        .expect("a parameter");
+    assert_eq!(
+        (zz.symbol, zz.body),
+        (
+            Symbol::Zz,
+            Body::Leg {
+                leg: 2,
+                index: 1,
+                shape: 0
+            }
+        )
+    );
+    assert!(
+        info.payload_parameters
+            .iter()
+            .all(|p| p.body == Body::Payload)
+    );
+}
+
+#[test]
+fn a_tree_is_its_joints() {
+    let robot = robot("emps.toml");
+    let mut pose = [0.0];
+    robot
+        .pose_from_actuators(&[0.3], &mut pose)
+        .expect("a pose");
+    assert_eq!(pose, [0.3]);
+    let velocity = evaluate(
+        &robot,
+        Function::JointVelocities,
+        &[&[0.3], &[2.0], &[1.0]],
+        1,
+    );
+    assert_eq!(velocity, [2.0]);
+    // There are no internal torques and no null space.
+    assert_eq!(
+        evaluate(&robot, Function::ProjectTorques, &[&[0.3], &[5.0]], 1),
+        [5.0]
+    );
+    assert_eq!(
+        evaluate(&robot, Function::NullSpace, &[&[0.3]], 0),
+        [0.0; 0]
+    );
+    assert_eq!(
+        evaluate(
+            &robot,
+            Function::IdmRedPayload,
+            &[&[0.3], &[2.0], &[1.0]],
+            0
+        ),
+        [0.0; 0]
+    );
+}

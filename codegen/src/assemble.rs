@@ -1,0 +1,82 @@
+//! One function from mechanism to program: derivation in a graph of its own, then lowering.
+
+use crate::cas::Arena;
+use crate::derivation::{Columns, Family, From, GuardKind, Selection, Underivable, derive};
+use crate::lowering::{Array, Condition, GuardedExpr, Program, lower};
+use crate::mechanism::Mechanism;
+
+/// Derives and lowers one function.
+///
+/// # Errors
+/// See [`Underivable`].
+pub fn program(
+    mechanism: &Mechanism,
+    selection: &Selection,
+    family: Family,
+    from: From,
+) -> Result<Program, Underivable> {
+    let arena = Arena::new();
+    let derived = derive(&arena, mechanism, selection, family, from)?;
+    let array = |name: &str, shape: Vec<usize>| Array {
+        name: name.to_owned(),
+        shape,
+    };
+    let inputs: Vec<Array> = derived
+        .inputs
+        .iter()
+        .map(|(n, len)| array(n, vec![*len]))
+        .collect();
+    let guards: Vec<GuardedExpr<'_>> = derived
+        .guards
+        .iter()
+        .map(|guard| GuardedExpr {
+            value: guard.value,
+            condition: condition(guard.kind, &guard.leg),
+        })
+        .collect();
+    let (rows, columns) = derived.shape;
+    let shape = if family.is_vector() {
+        vec![rows]
+    } else {
+        vec![rows, columns]
+    };
+    Ok(lower(
+        &arena,
+        &inputs,
+        array(family.name(), shape),
+        &derived.entries,
+        &guards,
+    ))
+}
+
+/// The function with or without combined columns, whichever needs fewer operations.
+///
+/// # Errors
+/// See [`Underivable`].
+pub fn cheapest(
+    mechanism: &Mechanism,
+    selection: &Selection,
+    family: Family,
+    from: From,
+) -> Result<Program, Underivable> {
+    let combined = program(mechanism, selection, family, from)?;
+    if selection.combined.is_empty() || family.columns() != Some(Columns::Standard) {
+        return Ok(combined);
+    }
+    let plain = Selection {
+        combined: Vec::new(),
+        ..selection.clone()
+    };
+    let plain = program(mechanism, &plain, family, from)?;
+    let is_better = plain.cost().operations() < combined.cost().operations();
+    Ok(if is_better { plain } else { combined })
+}
+
+fn condition(kind: GuardKind, place: &str) -> Condition {
+    let leg = place.to_owned();
+    match kind {
+        GuardKind::Reach => Condition::Reach { leg },
+        GuardKind::Leg(home) => Condition::Leg { leg, home },
+        GuardKind::Platform { home, actuators } => Condition::Platform { actuators, home },
+    }
+}

@@ -1,0 +1,95 @@
+//! The columns of a robot's identification model: which are not identically zero, which of them are
+//! independent, and what the others are made of.
+
+use crate::assemble::program;
+use crate::base::{BaseParameter, select, symmetric_order};
+use crate::cas::Arena;
+use crate::derivation::{
+    BodyParameter, Columns, Family, From, Robot, Selection, Underivable, derive,
+};
+use crate::evaluation::{Rows, Workspace};
+use crate::lowering::Program;
+use crate::mechanism::Mechanism;
+use crate::states::{State, random_states};
+use nalgebra::DMatrix;
+
+/// The parameters whose columns are not identically zero.
+///
+/// # Errors
+/// See [`Underivable`].
+pub fn present(
+    mechanism: &Mechanism,
+    selection: &Selection,
+    family: Family,
+) -> Result<Vec<BodyParameter>, Underivable> {
+    let arena = Arena::new();
+    let robot = Robot::new(&arena, mechanism, From::Joints)?;
+    let payload = family == Family::IdmRedPayload;
+    let all = if payload {
+        robot.payload_parameters()
+    } else {
+        robot.parameters()
+    };
+    let mut everything = selection.clone();
+    everything.standard.clone_from(&all);
+    everything.payload.clone_from(&all);
+    let derived = derive(&arena, mechanism, &everything, family, From::Joints)?;
+    let (rows, columns) = derived.shape;
+    let is_present = |c: usize| (0..rows).any(|r| !derived.entries[r * columns + c].is_zero());
+    Ok(all
+        .into_iter()
+        .enumerate()
+        .filter(|(c, _)| is_present(*c))
+        .map(|(_, p)| p)
+        .collect())
+}
+
+/// Independent columns over random states, and what the others are made of.
+///
+/// # Errors
+/// See [`Underivable`].
+pub fn base_parameters(
+    mechanism: &Mechanism,
+    selection: &Selection,
+) -> Result<Vec<BaseParameter>, Underivable> {
+    let family = Family::IdmRedPlatform(Columns::Standard);
+    let program = program(mechanism, selection, family, From::Joints)?;
+    let columns = selection.standard.len();
+    let count = 3 * columns / mechanism.dof().max(1) + 10;
+    let states = random_states(mechanism, count, 1);
+    let matrix = sample(&program, &states, mechanism.dof(), columns);
+    let order = symmetric_order(mechanism, &selection.standard);
+    Ok(select(&matrix, &order, &selection.standard))
+}
+
+/// A model's rows over states, stacked.
+#[must_use]
+pub fn sample(program: &Program, states: &[State], rows: usize, columns: usize) -> DMatrix<f64> {
+    let gather = |name: &str| -> Vec<f64> {
+        let part = |s: &State| match name {
+            "pose" => s.pose.clone(),
+            "joints" => s.joints.clone(),
+            "twist" | "joint_velocities" => s.twist.clone(),
+            _ => s.acceleration.clone(),
+        };
+        states.iter().flat_map(part).collect()
+    };
+    let inputs: Vec<Vec<f64>> = program.inputs.iter().map(|a| gather(&a.name)).collect();
+    let inputs: Vec<Rows<'_>> = inputs
+        .iter()
+        .map(|values| Rows {
+            values,
+            shared: false,
+        })
+        .collect();
+    let mut output = vec![0.0; states.len() * rows * columns];
+    // Regular states by construction: a guard that fails all the same leaves zeros, which count for
+    // nothing.
+    let _ = program.evaluate(
+        states.len(),
+        &inputs,
+        &mut output,
+        &mut Workspace::default(),
+    );
+    DMatrix::from_row_slice(states.len() * rows, columns, &output)
+}

@@ -1,0 +1,90 @@
+//! How far two computations of the same matrix are apart, over many states.
+//!
+//! Two measures. `matrix`: the largest difference relative to the largest entry, state by state.
+//! `entry`: the largest difference of one entry over all states relative to the largest magnitude of
+//! that entry over all states, so that a small column cannot hide behind a large one.
+
+use crate::reference::linear::relative_difference;
+use nalgebra::DMatrix;
+use std::fmt;
+
+/// The worst differences seen so far.
+#[derive(Clone, Debug, Default)]
+pub struct Agreement {
+    matrix: f64,
+    differences: Option<DMatrix<f64>>,
+    magnitudes: Option<DMatrix<f64>>,
+    states: usize,
+}
+
+impl Agreement {
+    /// Nothing compared yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Compares what was found with what is expected.
+    pub fn compare(&mut self, found: &DMatrix<f64>, expected: &DMatrix<f64>) {
+        self.states += 1;
+        if found.shape() != expected.shape() || found.iter().any(|x| !x.is_finite()) {
+            self.matrix = f64::INFINITY;
+            return;
+        }
+        self.matrix = self.matrix.max(relative_difference(found, expected));
+        larger(&mut self.differences, (found - expected).abs());
+        larger(&mut self.magnitudes, expected.abs());
+    }
+
+    /// Worst relative difference of a whole matrix.
+    #[must_use]
+    pub const fn matrix(&self) -> f64 {
+        self.matrix
+    }
+
+    /// Worst relative difference of an entry. An entry that is always zero in one computation has to
+    /// be zero to the rounding of the largest entry in the other.
+    #[must_use]
+    pub fn entry(&self) -> f64 {
+        let (Some(differences), Some(magnitudes)) = (&self.differences, &self.magnitudes) else {
+            return self.matrix;
+        };
+        let rounding = 1e-12 * magnitudes.amax();
+        let relative = |difference: &f64, magnitude: &f64| {
+            if *magnitude > rounding {
+                difference / magnitude
+            } else if *difference > rounding {
+                f64::INFINITY
+            } else {
+                0.0
+            }
+        };
+        let all = differences.iter().zip(magnitudes.iter());
+        all.map(|(d, m)| relative(d, m)).fold(0.0, f64::max)
+    }
+
+    /// Whether both measures are within a tolerance, and something was compared.
+    #[must_use]
+    pub fn within(&self, tolerance: f64) -> bool {
+        self.states > 0 && self.matrix < tolerance && self.entry() < tolerance
+    }
+}
+
+impl fmt::Display for Agreement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{:.1e} of the matrix, {:.1e} of an entry, over {} states",
+            self.matrix,
+            self.entry(),
+            self.states
+        )
+    }
+}
+
+fn larger(kept: &mut Option<DMatrix<f64>>, new: DMatrix<f64>) {
+    *kept = Some(match kept.take() {
+        Some(old) => old.zip_map(&new, f64::max),
+        None => new,
+    });
+}

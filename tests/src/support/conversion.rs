@@ -1,0 +1,164 @@
+//! A checked mechanism as the numeric reference's plain data, with nothing derived.
+
+use super::Failure;
+use crate::reference::{End, Frame, Joint, JointKind, Leg, Mechanism, Motion};
+use nalgebra::{Rotation3, Vector3};
+use overact_codegen::cas::{Angle, Number};
+use overact_codegen::mechanism;
+
+/// The reference's data of a mechanism. The workspace, in twist coordinates, is the caller's choice:
+/// descriptions have none.
+///
+/// # Errors
+///
+/// If the reference has no such motion: its planes are normal to z.
+pub fn reference(
+    mechanism: &mechanism::Mechanism,
+    workspace: Vec<f64>,
+) -> Result<Mechanism, Failure> {
+    let first = |leg: usize| mechanism.leg_range(leg);
+    let legs = mechanism.legs.iter().enumerate();
+    Ok(Mechanism {
+        gravity: vector(mechanism.gravity),
+        motion: match &mechanism.platform {
+            Some(platform) => motion(platform.motion)?,
+            None => Motion::None,
+        },
+        home: mechanism.home.pose.clone(),
+        workspace,
+        legs: legs
+            .map(|(k, own)| leg(own, &mechanism.home.joints[first(k)]))
+            .collect(),
+    })
+}
+
+fn motion(motion: mechanism::Motion) -> Result<Motion, Failure> {
+    use mechanism::Motion as Described;
+    Ok(match motion {
+        Described::FixedAxis { axis } => {
+            let mut direction = Vector3::zeros();
+            direction[axis] = 1.0;
+            Motion::Slide(direction)
+        }
+        Described::Point { axis: 2 } => Motion::Point,
+        Described::Planar { axis: 2 } => Motion::Planar,
+        Described::Translation => Motion::Translation,
+        Described::Schoenflies { axis: 2 } => Motion::Schoenflies,
+        Described::Spherical => Motion::Spherical,
+        Described::Spatial => Motion::Spatial,
+        other => return Err(format!("the reference has no motion {other:?}").into()),
+    })
+}
+
+fn leg(leg: &mechanism::Leg, start: &[f64]) -> Leg {
+    let joints: Vec<Joint> = leg.joints.iter().map(joint).collect();
+    let last = joints.len().saturating_sub(1);
+    let end = match &leg.end {
+        None => End::Free,
+        Some(mechanism::End::Rigid(placement)) => End::Rigid {
+            joint: last,
+            attachment: frame(placement),
+        },
+        Some(mechanism::End::Point(at)) => End::Point {
+            joint: last,
+            attachment: vector(*at),
+        },
+    };
+    Leg {
+        base: frame(&leg.base),
+        joints,
+        end,
+        start: start.to_vec(),
+    }
+}
+
+fn joint(joint: &mechanism::Joint) -> Joint {
+    Joint {
+        kind: match joint.kind {
+            mechanism::JointKind::Revolute => JointKind::Revolute,
+            mechanism::JointKind::Prismatic => JointKind::Prismatic,
+            mechanism::JointKind::Fixed => JointKind::Fixed,
+        },
+        antecedent: joint.antecedent,
+        gamma: joint.gamma.value(),
+        b: joint.b.value(),
+        alpha: joint.alpha.value(),
+        d: joint.d.value(),
+        theta: joint.theta.value(),
+        r: joint.r.value(),
+        terms: joint
+            .variable
+            .iter()
+            .map(|(of, factor)| (*of, factor.value()))
+            .collect(),
+        actuated: joint.actuated,
+    }
+}
+
+fn frame(placement: &mechanism::Placement) -> Frame {
+    let [rx, ry, rz] = placement.rotation.map(Angle::value);
+    // Roll, pitch, yaw: Rz(rz) Ry(ry) Rx(rx).
+    let rotation = Rotation3::from_euler_angles(rx, ry, rz).into_inner();
+    Frame::new(rotation, vector(placement.at))
+}
+
+fn vector(values: [Number; 3]) -> Vector3<f64> {
+    Vector3::from(values.map(Number::value))
+}
+
+/// Largest difference of the numbers of two mechanisms; infinite if they differ in structure. The
+/// legs' starts, which only choose a working mode, and the workspace are left out.
+#[must_use]
+pub fn distance(a: &Mechanism, b: &Mechanism) -> f64 {
+    let same = a.motion == b.motion
+        && a.legs.len() == b.legs.len()
+        && a.legs.iter().zip(&b.legs).all(|(a, b)| same_shape(a, b));
+    if !same {
+        return f64::INFINITY;
+    }
+    let pairs = numbers(a).into_iter().zip(numbers(b));
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+fn same_shape(a: &Leg, b: &Leg) -> bool {
+    let joints = |a: &Joint, b: &Joint| {
+        a.kind == b.kind
+            && a.antecedent == b.antecedent
+            && a.terms == b.terms
+            && a.actuated == b.actuated
+    };
+    let ends = match (&a.end, &b.end) {
+        (End::Free, End::Free) => true,
+        (End::Rigid { joint: a, .. }, End::Rigid { joint: b, .. })
+        | (End::Point { joint: a, .. }, End::Point { joint: b, .. }) => a == b,
+        _ => false,
+    };
+    ends && a.joints.len() == b.joints.len()
+        && a.joints.iter().zip(&b.joints).all(|(a, b)| joints(a, b))
+}
+
+fn numbers(mechanism: &Mechanism) -> Vec<f64> {
+    let mut all: Vec<f64> = mechanism.gravity.iter().copied().collect();
+    all.extend(&mechanism.home);
+    let placed = |frame: &Frame| -> Vec<f64> {
+        frame
+            .rotation
+            .iter()
+            .chain(frame.position.iter())
+            .copied()
+            .collect()
+    };
+    for leg in &mechanism.legs {
+        all.extend(placed(&leg.base));
+        for joint in &leg.joints {
+            all.extend([joint.gamma, joint.b, joint.alpha]);
+            all.extend([joint.d, joint.theta, joint.r]);
+        }
+        match &leg.end {
+            End::Free => {}
+            End::Rigid { attachment, .. } => all.extend(placed(attachment)),
+            End::Point { attachment, .. } => all.extend(attachment.iter()),
+        }
+    }
+    all
+}

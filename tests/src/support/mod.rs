@@ -1,0 +1,63 @@
+//! What the tests share: descriptions, models, samples, backends and expected values.
+
+pub mod agreement;
+pub mod backend;
+pub mod conversion;
+pub mod expected;
+pub mod rank;
+pub mod sample;
+
+pub use agreement::Agreement;
+pub use backend::{Backend, Evaluated};
+pub use sample::Sample;
+
+use overact_codegen::{RobotModel, Source, compile};
+use std::error::Error;
+use std::path::PathBuf;
+use std::{fs, sync::OnceLock};
+
+/// What a test's helper may fail with.
+pub type Failure = Box<dyn Error + Send + Sync>;
+
+/// A file or folder of the repository, by its path from the repository's root.
+#[must_use]
+pub fn repository(path: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("..")
+        .join(path)
+}
+
+/// A description of `robots/`, called as in the headers of `generated/`.
+///
+/// # Errors
+///
+/// If there is no such file.
+pub fn description(stem: &str) -> Result<Source, Failure> {
+    let name = format!("robots/{stem}.toml");
+    let text = fs::read_to_string(repository(&name))?;
+    Ok(Source::new(name, text))
+}
+
+/// The model of a description.
+///
+/// # Errors
+///
+/// The description's errors as text.
+pub fn model_of(source: &Source) -> Result<RobotModel, Failure> {
+    compile(source).map_err(|errors| errors.render_plain(source).into())
+}
+
+/// The DualV's model, compiled once.
+///
+/// # Errors
+///
+/// The description's errors as text.
+pub fn dualv() -> Result<&'static RobotModel, Failure> {
+    static MODEL: OnceLock<Result<RobotModel, String>> = OnceLock::new();
+    let compiled = MODEL.get_or_init(|| {
+        description("dualv")
+            .and_then(|source| model_of(&source))
+            .map_err(|error| error.to_string())
+    });
+    compiled.as_ref().map_err(|error| error.as_str().into())
+}

@@ -1,0 +1,101 @@
+//! Ranks of a model's regressor over random states, by the evaluation backend.
+
+use super::{Failure, Sample};
+use crate::reference::linear::normalized_singular_values;
+use nalgebra::DMatrix;
+use overact_codegen::RobotModel;
+use overact_codegen::derivation::{Columns, Family, From};
+use overact_codegen::evaluation::{Rows, Workspace};
+use std::fmt;
+
+/// Singular values below this fraction of the largest one count as zero.
+const TOLERANCE: f64 = 1e-9;
+
+/// A rank and the singular values at its edge, columns scaled to unit length.
+#[derive(Clone, Copy, Debug)]
+pub struct Rank {
+    /// The rank.
+    pub rank: usize,
+    /// Number of columns.
+    pub columns: usize,
+    /// Largest singular value.
+    pub largest: f64,
+    /// The last one that counts.
+    pub last: f64,
+    /// The next one, which is rounding; zero if all count.
+    pub next: f64,
+}
+
+impl Rank {
+    /// Rank of a matrix.
+    #[must_use]
+    pub fn of(matrix: &DMatrix<f64>) -> Self {
+        let values = normalized_singular_values(matrix);
+        let largest = values.iter().copied().fold(0.0, f64::max);
+        let rank = values.iter().filter(|&&v| v > TOLERANCE * largest).count();
+        let at = |index: usize| values.get(index).copied().unwrap_or(0.0);
+        Self {
+            rank,
+            columns: matrix.ncols(),
+            largest,
+            last: at(rank.saturating_sub(1)),
+            next: at(rank),
+        }
+    }
+
+    /// Whether the gap leaves no doubt: four decades at least.
+    #[must_use]
+    pub fn is_clear(&self) -> bool {
+        self.last > 1e4 * self.next
+    }
+}
+
+impl fmt::Display for Rank {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "rank {} of {} columns, singular values {:.2} ... {:.1e} | {:.1e}",
+            self.rank, self.columns, self.largest, self.last, self.next
+        )
+    }
+}
+
+/// The model's standard case-1 regressor, from joints, over samples.
+///
+/// # Errors
+///
+/// If the model has no value at a sample.
+pub fn regressor(model: &RobotModel, samples: &[Sample]) -> Result<DMatrix<f64>, Failure> {
+    let family = Family::IdmRedPlatform(Columns::Standard);
+    let function = model.function(family, From::Joints);
+    let program = &function.ok_or("no regressor from joints")?.program;
+    let gather = |name: &str| -> Result<Vec<f64>, Failure> {
+        let mut all = Vec::new();
+        for sample in samples {
+            all.extend(sample.input(name)?);
+        }
+        Ok(all)
+    };
+    let values = program
+        .inputs
+        .iter()
+        .map(|array| gather(&array.name))
+        .collect::<Result<Vec<_>, _>>()?;
+    let inputs: Vec<Rows<'_>> = values
+        .iter()
+        .map(|values| Rows {
+            values,
+            shared: false,
+        })
+        .collect();
+    let (rows, columns) = (model.mechanism.dof(), model.selection.standard.len());
+    let mut output = vec![0.0; samples.len() * rows * columns];
+    program
+        .evaluate(samples.len(), &inputs, &mut output, &mut Workspace::default())
+        .map_err(|failed| format!("{failed:?}"))?;
+    Ok(DMatrix::from_row_slice(
+        samples.len() * rows,
+        columns,
+        &output,
+    ))
+}

@@ -1,0 +1,167 @@
+//! A state of a robot with everything that its functions take, by the names of their arguments.
+
+use super::Failure;
+use crate::reference::linear::{condition, pseudo_inverse};
+use crate::reference::states::{MAX_CONDITION, random_parameters, random_states};
+use crate::reference::{Dynamics, Mechanism, State};
+use nalgebra::DVector;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+/// Largest perturbation of actuator velocities, rad/s, and accelerations, rad/s².
+const NOISE: f64 = 0.05;
+
+/// A state and inputs that go with it.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// The reference's state.
+    pub state: State,
+    /// Twist that fits `actuator_velocities` best, then the acceleration that fits
+    /// `actuator_accelerations` best at that twist.
+    pub fitted: State,
+    /// Actuator positions, exact.
+    pub actuators: Vec<f64>,
+    /// Actuator velocities that no twist gives exactly.
+    pub actuator_velocities: Vec<f64>,
+    /// Actuator accelerations that no acceleration gives exactly.
+    pub actuator_accelerations: Vec<f64>,
+    /// Torques.
+    pub torques: Vec<f64>,
+    /// All standard parameters in the reference's order.
+    pub all_parameters: DVector<f64>,
+    /// Those of the model: standard, then payload.
+    pub parameters: Vec<f64>,
+    /// Coordinates of the internal torque.
+    pub preload: Vec<f64>,
+    /// A pose near the sample's, to start forward kinematics from.
+    pub start: Vec<f64>,
+}
+
+impl Sample {
+    /// A sample in a state; `columns` are the reference's columns of the model's parameters.
+    ///
+    /// # Errors
+    ///
+    /// If the reference can't compute the fitted state.
+    pub fn new(
+        mechanism: &Mechanism,
+        state: State,
+        columns: &[usize],
+        seed: u64,
+    ) -> Result<Self, Failure> {
+        let mut generator = Pcg64::seed_from_u64(seed);
+        let mut random = |count: usize, size: f64| -> DVector<f64> {
+            DVector::from_fn(count, |_, _| size * generator.random_range(-1.0..1.0))
+        };
+        let actuated = mechanism.actuated();
+        let (n, r) = (actuated.len(), mechanism.dof());
+        let velocities = state.qd.select_rows(&actuated) + random(n, NOISE);
+        let accelerations = state.qdd.select_rows(&actuated) + random(n, NOISE);
+        let fitted = fit(mechanism, &state, &velocities, &accelerations)?;
+        let drawn = random_parameters(mechanism, seed);
+        let mut all_parameters = DVector::zeros(drawn.len());
+        for &at in columns {
+            all_parameters[at] = drawn[at];
+        }
+        let shift = random(r, 0.02);
+        Ok(Self {
+            fitted,
+            actuators: state.q.select_rows(&actuated).as_slice().to_vec(),
+            actuator_velocities: velocities.as_slice().to_vec(),
+            actuator_accelerations: accelerations.as_slice().to_vec(),
+            torques: random(n, 10.0).as_slice().to_vec(),
+            parameters: columns.iter().map(|&at| drawn[at]).collect(),
+            all_parameters,
+            preload: random(n - r, 3.0).as_slice().to_vec(),
+            start: mechanism.motion.displace(&state.pose, &shift),
+            state,
+        })
+    }
+
+    /// An argument by its name.
+    ///
+    /// # Errors
+    ///
+    /// If there is no argument of the name.
+    pub fn input(&self, name: &str) -> Result<&[f64], Failure> {
+        Ok(match name {
+            "pose" => &self.state.pose,
+            "joints" => self.state.q.as_slice(),
+            "twist" | "joint_velocities" => self.state.twist.as_slice(),
+            "acceleration" | "joint_accelerations" => self.state.acceleration.as_slice(),
+            "actuators" => &self.actuators,
+            "actuator_velocities" => &self.actuator_velocities,
+            "actuator_accelerations" => &self.actuator_accelerations,
+            "torques" => &self.torques,
+            "parameters" => &self.parameters,
+            "preload" => &self.preload,
+            "start" => &self.start,
+            _ => return Err(format!("no argument is called `{name}`").into()),
+        })
+    }
+}
+
+/// Twist and acceleration of least squares: eq. (21), and eq. (24) in its J_p^inv form.
+fn fit(
+    mechanism: &Mechanism,
+    state: &State,
+    velocities: &DVector<f64>,
+    accelerations: &DVector<f64>,
+) -> Result<State, Failure> {
+    let inverse = pseudo_inverse(&state.jacobians(mechanism)?.inverse);
+    let twist = &inverse * velocities;
+    let acceleration = fitted_acceleration(mechanism, state, &twist, accelerations)?;
+    let state = State::with_joints(mechanism, &state.pose, &state.q, &twist, &acceleration)?;
+    Ok(state)
+}
+
+/// The acceleration that fits the actuators' best at a twist: the actuators' accelerations at zero
+/// acceleration of the platform are the term J̇_p^inv v.
+///
+/// # Errors
+///
+/// If the state is singular.
+pub fn fitted_acceleration(
+    mechanism: &Mechanism,
+    state: &State,
+    twist: &DVector<f64>,
+    measured: &DVector<f64>,
+) -> Result<DVector<f64>, Failure> {
+    let still = DVector::zeros(mechanism.dof());
+    let bias = State::with_joints(mechanism, &state.pose, &state.q, twist, &still)?;
+    let inverse = pseudo_inverse(&state.jacobians(mechanism)?.inverse);
+    Ok(inverse * (measured - bias.qdd.select_rows(&mechanism.actuated())))
+}
+
+/// Random regular samples. With `partitions`, J_p^inv of all actuators but any one is well
+/// conditioned too, so that every partition of case 2 has a meaning.
+///
+/// # Errors
+///
+/// If too few regular states are found.
+pub fn samples(
+    mechanism: &Mechanism,
+    columns: &[usize],
+    count: usize,
+    seed: u64,
+    partitions: bool,
+) -> Result<Vec<Sample>, Failure> {
+    let drawn = random_states(mechanism, if partitions { 2 * count } else { count }, seed)?;
+    let mut all = Vec::with_capacity(count);
+    for (at, state) in drawn.into_iter().enumerate() {
+        if all.len() < count && (!partitions || every_partition(mechanism, &state)?) {
+            all.push(Sample::new(mechanism, state, columns, seed + at as u64)?);
+        }
+    }
+    if all.len() == count {
+        Ok(all)
+    } else {
+        Err(format!("only {} of {count} states are regular", all.len()).into())
+    }
+}
+
+fn every_partition(mechanism: &Mechanism, state: &State) -> Result<bool, Failure> {
+    let inverse = Dynamics::new(mechanism, state)?.jacobians.inverse;
+    let regular = |without: usize| condition(&inverse.clone().remove_row(without)) < MAX_CONDITION;
+    Ok((0..inverse.nrows()).all(regular))
+}

@@ -1,0 +1,190 @@
+//! Macro, build script, `overact generate` and `generated/` give the same robot.
+//!
+//! The command line writes what `emission::file` returns; that it does so is tested beside it.
+
+use overact::{Function, Model, redundant_robot};
+use overact_codegen::emission;
+use overact_tests::support::sample::samples;
+use overact_tests::support::{
+    Backend, Failure, dualv, expected::Expected, model_of, repository,
+};
+use overact_tests::{compiled, redundant_backend, reference::robots};
+use proc_macro2::{Delimiter, Ident, Span, TokenStream, TokenTree};
+use std::fs;
+
+#[redundant_robot("../robots/dualv.toml")]
+struct DualV;
+
+redundant_backend!(ByMacro, "macro", DualV);
+redundant_backend!(ByBuildScript, "build script", compiled::kept_123::DualV);
+redundant_backend!(Generated, "generated", overact_robots::DualV);
+
+/// Tokens as text. A comma before a closing delimiter means nothing, and the printer of files puts
+/// some there; after a single element it would make a tuple, which generated code has not.
+fn normalised(tokens: TokenStream) -> String {
+    let mut all: Vec<TokenTree> = tokens.into_iter().collect();
+    let is_comma = |token: &TokenTree| matches!(token, TokenTree::Punct(p) if p.as_char() == ',');
+    if all.last().is_some_and(is_comma) {
+        all.pop();
+    }
+    let one = |token: TokenTree| match token {
+        TokenTree::Group(group) => {
+            let (open, close) = match group.delimiter() {
+                Delimiter::Parenthesis => ("(", ")"),
+                Delimiter::Brace => ("{", "}"),
+                Delimiter::Bracket => ("[", "]"),
+                Delimiter::None => ("", ""),
+            };
+            format!("{open} {} {close}", normalised(group.stream()))
+        }
+        other => other.to_string(),
+    };
+    let texts: Vec<String> = all.into_iter().map(one).collect();
+    texts.join(" ")
+}
+
+fn parsed(text: &str) -> Result<String, Failure> {
+    let tokens: TokenStream = text.parse().map_err(|e| format!("{e}"))?;
+    Ok(normalised(tokens))
+}
+
+/// The first place where two texts differ, with what is around it.
+fn first_difference(a: &str, b: &str) -> Option<String> {
+    let at = a.bytes().zip(b.bytes()).position(|(a, b)| a != b);
+    let at = at.or_else(|| (a.len() != b.len()).then(|| a.len().min(b.len())))?;
+    let around = |text: &str| -> String {
+        let bytes = &text.as_bytes()[at.saturating_sub(60)..(at + 60).min(text.len())];
+        String::from_utf8_lossy(bytes).into_owned()
+    };
+    Some(format!("...{}...\n...{}...", around(a), around(b)))
+}
+
+#[test]
+fn build_script_and_checked_in_file_hold_the_tokens_of_the_emission() -> Result<(), Failure> {
+    let tokens = normalised(emission::module(dualv()?));
+    let checked_in = fs::read_to_string(repository("generated/src/dualv.rs"))?;
+    for (which, text) in [
+        ("build script", compiled::KEPT_123),
+        ("generated/", checked_in.as_str()),
+    ] {
+        let difference = first_difference(&tokens, &parsed(text)?);
+        assert!(difference.is_none(), "{which}: {}", difference.unwrap_or_default());
+    }
+    Ok(())
+}
+
+#[test]
+fn macro_items_are_those_of_the_module() -> Result<(), Failure> {
+    // The macro puts these items behind the user's struct, whose name they take.
+    let items = normalised(emission::items(
+        dualv()?,
+        &Ident::new("DualV", Span::call_site()),
+    ));
+    assert!(normalised(emission::module(dualv()?)).ends_with(&items));
+    let other = emission::items(dualv()?, &Ident::new("Mine", Span::call_site()));
+    assert_eq!(normalised(other).replace("Mine", "DualV"), items);
+    Ok(())
+}
+
+#[test]
+fn all_ways_give_bit_identical_results() -> Result<(), Failure> {
+    let model = dualv()?;
+    let expected = Expected::new(model, robots::dualv())?;
+    let all = samples(&robots::dualv(), &expected.parameters(), 100, 71, true)?;
+    let names = model.functions.iter().map(|f| f.name.as_str());
+    for function in names.chain(["pose_from_actuators"]) {
+        for sample in &all {
+            let by_macro = ByMacro.call(function, sample)?;
+            for other in [&ByBuildScript as &dyn Backend, &Generated] {
+                let found = other.call(function, sample)?;
+                let same = found.shape() == by_macro.shape()
+                    && found.iter().zip(&by_macro).all(|(a, b)| a.to_bits() == b.to_bits());
+                assert!(same, "{function}: macro and {} differ", other.label());
+            }
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn models_say_the_same_of_the_robot() {
+    let made = DualV.info();
+    for info in [compiled::kept_123::DualV.info(), overact_robots::DualV.info()] {
+        assert_eq!(format!("{made:?}"), format!("{info:?}"));
+    }
+    assert_eq!(DualV::BASE_PARAMETERS, overact_robots::DualV::BASE_PARAMETERS);
+}
+
+#[test]
+fn trait_and_functions_give_the_same_numbers() -> Result<(), Failure> {
+    let expected = Expected::new(dualv()?, robots::dualv())?;
+    let all = samples(&robots::dualv(), &expected.parameters(), 20, 72, true)?;
+    let sizes = DualV.info().sizes;
+    let functions = [
+        Function::Joints,
+        Function::ActuatorPositions,
+        Function::InverseJacobian,
+        Function::JointVelocities,
+        Function::JointAccelerations,
+        Function::TwistFromActuators,
+        Function::AccelerationFromActuators,
+        Function::IdmRedPlatform,
+        Function::IdmRedPayload,
+        Function::ProjectPlatform,
+        Function::InverseDynamics,
+        Function::MassMatrix,
+        Function::Bias,
+        Function::ProjectTorques,
+        Function::NullSpace,
+    ];
+    for function in functions {
+        let (rows, columns) = function.shape(&sizes);
+        for sample in &all {
+            let inputs = function.inputs().iter().map(|input| sample.input(argument(*input)));
+            let inputs = inputs.collect::<Result<Vec<_>, _>>()?;
+            let mut output = vec![0.0; rows * columns];
+            DualV.evaluate(function, &inputs, &mut output)?;
+            let direct = ByMacro.call(function.name(), sample)?;
+            assert_eq!(output, direct.transpose().as_slice(), "{}", function.name());
+        }
+    }
+    Ok(())
+}
+
+const fn argument(input: overact::Input) -> &'static str {
+    use overact::Input;
+    match input {
+        Input::Pose => "pose",
+        Input::Joints => "joints",
+        Input::Twist => "twist",
+        Input::Acceleration => "acceleration",
+        Input::Actuators => "actuators",
+        Input::ActuatorVelocities => "actuator_velocities",
+        Input::ActuatorAccelerations => "actuator_accelerations",
+        Input::Torques => "torques",
+        Input::Parameters => "parameters",
+    }
+}
+
+#[test]
+fn generated_modules_are_fresh() -> Result<(), Failure> {
+    let mut compared = 0;
+    for entry in fs::read_dir(repository("robots"))? {
+        let path = entry?.path();
+        let stem = path.file_stem().and_then(|s| s.to_str()).unwrap_or_default();
+        let module = repository(&format!("generated/src/{stem}.rs"));
+        if path.extension().is_some_and(|e| e == "toml") && module.exists() {
+            let source = overact_tests::support::description(stem)?;
+            let file = emission::file(&model_of(&source)?, &source.name);
+            let difference = first_difference(&file, &fs::read_to_string(module)?);
+            assert!(
+                difference.is_none(),
+                "generated/src/{stem}.rs is stale, run `overact generate robots/{stem}.toml`:\n{}",
+                difference.unwrap_or_default()
+            );
+            compared += 1;
+        }
+    }
+    assert!(compared > 0, "no module of robots/ is generated");
+    Ok(())
+}
