@@ -90,10 +90,7 @@ fn stage(path: &Path, bytes: &[u8]) -> io::Result<Staged> {
     let existing = fs::metadata(path).ok();
     if let Some(existing) = &existing {
         if existing.is_dir() {
-            return Err(io::Error::new(
-                io::ErrorKind::IsADirectory,
-                "it is a folder",
-            ));
+            return Err(io::Error::from(io::ErrorKind::IsADirectory));
         }
         if !existing.is_file() {
             return Ok(Staged::Device);
@@ -135,8 +132,30 @@ fn usual_permissions() -> Option<fs::Permissions> {
     None
 }
 
+/// Fails early, before long work, if the folder of an output does not exist.
+///
+/// # Errors
+/// A folder that does not exist.
+pub(crate) fn check_folder(file: Option<&Path>) -> Result<(), Failure> {
+    match file.and_then(Path::parent) {
+        Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
+            let error = io::Error::from(io::ErrorKind::NotFound);
+            Err(unwritable(file.unwrap_or(folder), &error))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The error's own text may name the temporary file, which is nobody's business.
 fn unwritable(path: &Path, error: &io::Error) -> Failure {
-    let problem = Problem::new(format!("the file can't be written: {error}"));
+    let reason = match error.kind() {
+        io::ErrorKind::NotFound => "its folder does not exist".to_owned(),
+        io::ErrorKind::IsADirectory => "it is a folder".to_owned(),
+        io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
+        io::ErrorKind::StorageFull => "the disk is full".to_owned(),
+        kind => kind.to_string(),
+    };
+    let problem = Problem::new(format!("the file can't be written: {reason}"));
     problem.file(path.display().to_string()).into()
 }
 

@@ -19,27 +19,35 @@ redundant_backend!(ByMacro, "macro", DualV);
 redundant_backend!(ByBuildScript, "build script", compiled::kept_123::DualV);
 redundant_backend!(Generated, "generated", overact_robots::DualV);
 
-/// Tokens as text. A comma before a closing delimiter means nothing, and the printer of files puts
-/// some there; after a single element it would make a tuple, which generated code has not.
+/// Tokens as text, without what only the printer of files adds: commas before a closing delimiter,
+/// and braces around the one expression of a match arm.
 fn normalised(tokens: TokenStream) -> String {
-    let mut all: Vec<TokenTree> = tokens.into_iter().collect();
-    let is_comma = |token: &TokenTree| matches!(token, TokenTree::Punct(p) if p.as_char() == ',');
-    if all.last().is_some_and(is_comma) {
-        all.pop();
-    }
-    let one = |token: TokenTree| match token {
-        TokenTree::Group(group) => {
-            let (open, close) = match group.delimiter() {
-                Delimiter::Parenthesis => ("(", ")"),
-                Delimiter::Brace => ("{", "}"),
-                Delimiter::Bracket => ("[", "]"),
-                Delimiter::None => ("", ""),
-            };
-            format!("{open} {} {close}", normalised(group.stream()))
+    let is = |token: &TokenTree, c: char| matches!(token, TokenTree::Punct(p) if p.as_char() == c);
+    let mut texts: Vec<String> = Vec::new();
+    let mut rest = tokens.into_iter().peekable();
+    while let Some(token) = rest.next() {
+        let is_arm = texts.ends_with(&["=".to_owned(), ">".to_owned()]);
+        let last = rest.peek().is_none();
+        match &token {
+            comma if is(comma, ',') && last => {}
+            TokenTree::Group(group) if is_arm && group.delimiter() == Delimiter::Brace => {
+                texts.push(normalised(group.stream()));
+                if rest.peek().is_some_and(|next| !is(next, ',')) {
+                    texts.push(",".to_owned());
+                }
+            }
+            TokenTree::Group(group) => {
+                let (open, close) = match group.delimiter() {
+                    Delimiter::Parenthesis => ("(", ")"),
+                    Delimiter::Brace => ("{", "}"),
+                    Delimiter::Bracket => ("[", "]"),
+                    Delimiter::None => ("", ""),
+                };
+                texts.push(format!("{open} {} {close}", normalised(group.stream())));
+            }
+            other => texts.push(other.to_string()),
         }
-        other => other.to_string(),
-    };
-    let texts: Vec<String> = all.into_iter().map(one).collect();
+    }
     texts.join(" ")
 }
 

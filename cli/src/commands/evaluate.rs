@@ -100,14 +100,14 @@ struct Document {
 /// A function that the robot does not have, states that do not hold what it needs, or a state at
 /// which it has no value.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
-    let Robot { model, .. } = load(&arguments.file)?;
+    let Robot { mut model, .. } = load(&arguments.file)?;
     let states = States::read(&arguments.states)?;
-    let function = resolve::function(&model, arguments, &states)?;
-    let (family, name) = (function.family, function.name.clone());
-    let (from, mut program) = (function.from, function.program.clone());
     if let Some(names) = &arguments.kept {
-        program = with_kept(&model, names, family, from)?;
+        model = with_kept(model, names)?;
     }
+    let function = resolve::function(&model, arguments, &states)?;
+    let (family, from, name) = (function.family, function.from, function.name.clone());
+    let program = function.program.clone();
     let robot = InterpretedRobot::new(model);
     let values = evaluate(&robot, &program, from, &states)?;
     let width = program.entries.len();
@@ -128,23 +128,15 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     output::emit(&text, arguments.output.as_deref())
 }
 
-/// The program of a function with other kept actuators than the description's.
-fn with_kept(
-    model: &RobotModel,
-    names: &[String],
-    family: Family,
-    from: From,
-) -> Result<Program, Failure> {
-    let kept = super::kept_actuators(model, names)?;
-    let mut mechanism = model.mechanism.clone();
-    mechanism.kept_actuators.clone_from(&kept);
-    let mut selection = model.selection.clone();
-    selection.kept_actuators = kept;
-    compile::program(&mechanism, &selection, family, from).map_err(|_| {
+/// The model with other kept actuators than the description's.
+fn with_kept(model: RobotModel, names: &[String]) -> Result<RobotModel, Failure> {
+    let kept = super::kept_actuators(&model, names)?;
+    let mut mechanism = model.mechanism;
+    mechanism.kept_actuators = kept;
+    compile::model(mechanism).map_err(|_| {
         let message = "these kept actuators never determine the platform's motion";
-        Problem::new(message)
-            .help("choose other ones; `overact inspect` lists how well each choice does")
-            .into()
+        let help = "choose other ones; `overact inspect` lists how well each choice does";
+        Problem::new(message).help(help).into()
     })
 }
 

@@ -78,7 +78,9 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         .into_iter()
         .zip(logs)
         .filter_map(|(file, log)| Some((file?, log)));
-    output::write(files.collect())?;
+    let files: Vec<(PathBuf, Vec<u8>)> = files.collect();
+    make_folders(&files)?;
+    output::write(files)?;
     if as_json {
         print(&json(&document)?)
     } else {
@@ -171,13 +173,22 @@ fn files(
                 .into());
         }
     }
-    if is_folder {
-        std::fs::create_dir_all(output).map_err(|error| {
-            let problem = Problem::new(format!("the folder can't be made: {error}"));
-            problem.file(output.display().to_string())
-        })?;
+    if !is_folder {
+        output::check_folder(Some(output))?;
     }
     Ok(files.into_iter().map(Some).collect())
+}
+
+/// Makes the folder that the runs go to; that of a single file exists.
+fn make_folders(files: &[(PathBuf, Vec<u8>)]) -> Result<(), Problem> {
+    let folders = files.iter().filter_map(|(file, _)| file.parent());
+    for folder in folders.filter(|folder| !folder.as_os_str().is_empty()) {
+        std::fs::create_dir_all(folder).map_err(|error| {
+            let problem = Problem::new(format!("the folder can't be made: {error}"));
+            problem.file(folder.display().to_string())
+        })?;
+    }
+    Ok(())
 }
 
 fn csv(record: &Record) -> Result<Vec<u8>, Problem> {

@@ -454,7 +454,8 @@ pub fn end_bias<'a>(
     let zero = Vector3::zero(arena);
     let mut terms = Vec::new();
     let mut add = |scalar: Expr<'a>, linear: Vector3<'a>, angular: Vector3<'a>| {
-        if !scalar.is_zero() && !(linear.is_zero() && angular.is_zero()) {
+        let is_zero = scalar.is_zero() || (linear.is_zero() && angular.is_zero());
+        if !is_zero {
             terms.push(BiasTerm {
                 scalar,
                 linear,

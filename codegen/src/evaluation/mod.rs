@@ -4,6 +4,8 @@
 //! (structure of arrays), so that the loops vectorise and the overhead of interpretation is shared by
 //! the whole block. Numbers enter and leave sample by sample, row-major.
 
+mod single;
+
 use crate::lowering::{Condition, Operation, Program, SINGULAR, Source};
 use wide::f64x4;
 
@@ -26,6 +28,7 @@ pub struct Failed {
 pub struct Workspace {
     steps: Vec<[f64; BLOCK]>,
     inputs: Vec<[f64; BLOCK]>,
+    single: Vec<f64>,
 }
 
 /// An input of a block: one row of numbers per sample, or one row for all.
@@ -51,6 +54,9 @@ impl Program {
         output: &mut [f64],
         workspace: &mut Workspace,
     ) -> Result<(), Failed> {
+        if samples == 1 {
+            return single::evaluate(self, inputs, output, &mut workspace.single);
+        }
         let width = self.entries.len();
         workspace.steps.resize(self.steps.len(), [0.0; BLOCK]);
         workspace
@@ -60,8 +66,6 @@ impl Program {
         for start in (0..samples).step_by(BLOCK) {
             let count = BLOCK.min(samples - start);
             self.load(start, count, inputs, &mut workspace.inputs);
-            // A single sample is not worth a whole block.
-            let lanes = if count == 1 { 1 } else { BLOCK };
             for at in 0..self.steps.len() {
                 let (done, rest) = workspace.steps.split_at_mut(at);
                 let fetch = Fetch {
@@ -69,7 +73,7 @@ impl Program {
                     inputs: &workspace.inputs,
                     offsets: &offsets,
                 };
-                run_step(self.steps[at].operation, &fetch, &mut rest[0], lanes);
+                run_step(self.steps[at].operation, &fetch, &mut rest[0]);
             }
             let fetch = Fetch {
                 done: &workspace.steps,
@@ -181,9 +185,9 @@ enum Operand<'a> {
     Block(&'a [f64; BLOCK]),
 }
 
-fn run_step(operation: Operation, fetch: &Fetch<'_>, out: &mut [f64; BLOCK], lanes: usize) {
+fn run_step(operation: Operation, fetch: &Fetch<'_>, out: &mut [f64; BLOCK]) {
     let binary = |a: Source, b: Source, out: &mut [f64; BLOCK], f: fn(f64, f64) -> f64| {
-        zip(fetch.block(a), fetch.block(b), out, lanes, f);
+        zip(fetch.block(a), fetch.block(b), out, f);
     };
     match operation {
         Operation::Add(a, b) => binary(a, b, out, |a, b| a + b),
@@ -195,13 +199,13 @@ fn run_step(operation: Operation, fetch: &Fetch<'_>, out: &mut [f64; BLOCK], lan
         Operation::Neg(a) => binary(a, a, out, |a, _| -a),
         Operation::Sqrt(a) => binary(a, a, out, |a, _| a.sqrt()),
         Operation::Sign(a) => binary(a, a, out, |a, _| signed(1.0, a)),
-        Operation::Sine(a) => trigonometric(fetch.block(a), out, lanes, f64::sin, f64x4::sin),
-        Operation::Cosine(a) => trigonometric(fetch.block(a), out, lanes, f64::cos, f64x4::cos),
+        Operation::Sine(a) => trigonometric(fetch.block(a), out, f64::sin, f64x4::sin),
+        Operation::Cosine(a) => trigonometric(fetch.block(a), out, f64::cos, f64x4::cos),
     }
 }
 
 /// a with the sign of b; zero where b is zero.
-fn signed(a: f64, b: f64) -> f64 {
+pub(crate) fn signed(a: f64, b: f64) -> f64 {
     if b > 0.0 {
         a
     } else if b < 0.0 {
@@ -212,14 +216,7 @@ fn signed(a: f64, b: f64) -> f64 {
 }
 
 #[inline]
-fn zip(
-    a: Operand<'_>,
-    b: Operand<'_>,
-    out: &mut [f64; BLOCK],
-    lanes: usize,
-    f: impl Fn(f64, f64) -> f64,
-) {
-    let out = &mut out[..lanes];
+fn zip(a: Operand<'_>, b: Operand<'_>, out: &mut [f64; BLOCK], f: impl Fn(f64, f64) -> f64) {
     match (a, b) {
         (Operand::Block(a), Operand::Block(b)) => {
             for ((o, a), b) in out.iter_mut().zip(a).zip(b) {
@@ -240,11 +237,10 @@ fn zip(
     }
 }
 
-/// Sine or cosine: four lanes at a time, or one.
+/// Sine or cosine, four lanes at a time.
 fn trigonometric(
     a: Operand<'_>,
     out: &mut [f64; BLOCK],
-    lanes: usize,
     one: fn(f64) -> f64,
     four: fn(f64x4) -> f64x4,
 ) {
@@ -254,10 +250,6 @@ fn trigonometric(
         }
         return;
     };
-    if lanes == 1 {
-        out[0] = one(angles[0]);
-        return;
-    }
     for (o, a) in out
         .as_chunks_mut::<4>()
         .0

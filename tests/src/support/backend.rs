@@ -4,6 +4,7 @@ use super::{Failure, Sample};
 use nalgebra::DMatrix;
 use overact_codegen::RobotModel;
 use overact_codegen::evaluation::{Rows, Workspace};
+use overact_codegen::lowering::Program;
 
 /// Something that computes a robot's functions by name.
 pub trait Backend {
@@ -30,25 +31,38 @@ impl Backend for Evaluated<'_> {
     fn call(&self, function: &str, sample: &Sample) -> Result<DMatrix<f64>, Failure> {
         let found = self.0.functions.iter().find(|f| f.name == function);
         let program = &found.ok_or_else(|| format!("no function `{function}`"))?.program;
-        let values = program.inputs.iter().map(|array| sample.input(&array.name));
-        let inputs = values
-            .map(|values| {
-                values.map(|values| Rows {
-                    values,
-                    shared: false,
-                })
-            })
-            .collect::<Result<Vec<_>, _>>()?;
+        let output = evaluate(program, &|name| sample.input(name).ok())?;
         let (rows, columns) = match program.output.shape[..] {
             [rows, columns] => (rows, columns),
             _ => (program.output.len(), 1),
         };
-        let mut output = vec![0.0; rows * columns];
-        program
-            .evaluate(1, &inputs, &mut output, &mut Workspace::default())
-            .map_err(|failed| format!("`{function}`: {failed:?}"))?;
         Ok(DMatrix::from_row_slice(rows, columns, &output))
     }
+}
+
+/// A program's output, row-major, for inputs by name.
+///
+/// # Errors
+///
+/// If an input is missing, or a guard fails.
+pub fn evaluate<'a>(
+    program: &Program,
+    input: &dyn Fn(&str) -> Option<&'a [f64]>,
+) -> Result<Vec<f64>, Failure> {
+    let rows = program.inputs.iter().map(|array| {
+        let values = input(&array.name);
+        let values = values.ok_or_else(|| format!("no input `{}`", array.name))?;
+        Ok(Rows {
+            values,
+            shared: false,
+        })
+    });
+    let inputs = rows.collect::<Result<Vec<_>, Failure>>()?;
+    let mut output = vec![0.0; program.output.len()];
+    program
+        .evaluate(1, &inputs, &mut output, &mut Workspace::default())
+        .map_err(|failed| format!("`{}`: {failed:?}", program.output.name))?;
+    Ok(output)
 }
 
 /// What a compiled function returns, as a matrix.

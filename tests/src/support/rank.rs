@@ -1,11 +1,11 @@
 //! Ranks of a model's regressor over random states, by the evaluation backend.
 
+use super::backend::evaluate;
 use super::{Failure, Sample};
 use crate::reference::linear::normalized_singular_values;
 use nalgebra::DMatrix;
 use overact_codegen::RobotModel;
 use overact_codegen::derivation::{Columns, Family, From};
-use overact_codegen::evaluation::{Rows, Workspace};
 use std::fmt;
 
 /// Singular values below this fraction of the largest one count as zero.
@@ -69,33 +69,12 @@ pub fn regressor(model: &RobotModel, samples: &[Sample]) -> Result<DMatrix<f64>,
     let family = Family::IdmRedPlatform(Columns::Standard);
     let function = model.function(family, From::Joints);
     let program = &function.ok_or("no regressor from joints")?.program;
-    let gather = |name: &str| -> Result<Vec<f64>, Failure> {
-        let mut all = Vec::new();
-        for sample in samples {
-            all.extend(sample.input(name)?);
-        }
-        Ok(all)
-    };
-    let values = program
-        .inputs
-        .iter()
-        .map(|array| gather(&array.name))
-        .collect::<Result<Vec<_>, _>>()?;
-    let inputs: Vec<Rows<'_>> = values
-        .iter()
-        .map(|values| Rows {
-            values,
-            shared: false,
-        })
-        .collect();
     let (rows, columns) = (model.mechanism.dof(), model.selection.standard.len());
-    let mut output = vec![0.0; samples.len() * rows * columns];
-    program
-        .evaluate(samples.len(), &inputs, &mut output, &mut Workspace::default())
-        .map_err(|failed| format!("{failed:?}"))?;
-    Ok(DMatrix::from_row_slice(
-        samples.len() * rows,
-        columns,
-        &output,
-    ))
+    let mut all = DMatrix::zeros(rows * samples.len(), columns);
+    for (at, sample) in samples.iter().enumerate() {
+        let values = evaluate(program, &|name| sample.input(name).ok())?;
+        let block = DMatrix::from_row_slice(rows, columns, &values);
+        all.rows_mut(rows * at, rows).copy_from(&block);
+    }
+    Ok(all)
 }

@@ -1,12 +1,9 @@
 //! How well the actuators, and every choice of kept ones, determine the platform at home.
 
-use crate::InterpretedRobot;
+use crate::{InterpretedRobot, commands::choices};
 use nalgebra::DMatrix;
 use overact::{Function, Model};
 use serde::Serialize;
-
-/// More partitions than this are not listed.
-const PARTITIONS: usize = 1000;
 
 /// Condition numbers at the home pose, angular columns as they are (rad).
 #[derive(Debug, Serialize)]
@@ -70,33 +67,4 @@ fn condition(matrix: &DMatrix<f64>) -> Option<f64> {
     let values = matrix.singular_values();
     let condition = values.max() / values.min();
     (condition < 1e14).then_some(condition)
-}
-
-/// The choices of r among n in lexicographic order, the first [`PARTITIONS`] of them.
-fn choices(n: usize, r: usize) -> Vec<Vec<usize>> {
-    let mut all = vec![(0..r).collect::<Vec<usize>>()];
-    while all.len() < PARTITIONS
-        && let Some(last) = all.last()
-        && let Some(at) = (0..r).rev().find(|&i| last[i] < n - r + i)
-    {
-        let mut next = last.clone();
-        next[at] += 1;
-        for i in at + 1..r {
-            next[i] = next[i - 1] + 1;
-        }
-        all.push(next);
-    }
-    all
-}
-
-#[cfg(test)]
-mod tests {
-    use super::choices;
-
-    #[test]
-    fn choices_are_complete() {
-        assert_eq!(choices(4, 3), [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]);
-        assert_eq!(choices(8, 6).len(), 28);
-        assert_eq!(choices(2, 2), [[0, 1]]);
-    }
 }

@@ -1,0 +1,98 @@
+//! Damaged descriptions are answered with located errors or a model, never with a panic.
+
+use overact_codegen::{Source, compile};
+use overact_tests::support::description;
+use proptest::prelude::*;
+
+/// What stands in descriptions, to be put where it does not belong.
+const FRAGMENTS: [&str; 40] = [
+    "", "\"", "[", "]", "{", "}", "=", ",", "#", "\n", "0", "-1", "1e999", "nan", "\"nan m\"",
+    "\"1e308 m\"", "\"1/0\"", "\"-(\"", "\"q\"", "\"q - q\"", "\"2 * q\"", "\"q2\"", "\"sqrt(-1)\"",
+    "\"m\"", "\"1 kg\"", "\"prismatic\"", "\"fixed\"", "\"spatial\"", "\"point\"", "\"schoenflies\"",
+    "[[place]]", "[leg.arm]", "[platform]", "home = {}", "parameters = []", "actuated = false", "é",
+    "\u{0}", "[0, 0, 0]", "9007199254740993",
+];
+
+/// A damage: at which part of the text, which kind, how long, which fragment.
+#[derive(Clone, Debug)]
+struct Damage {
+    at: f64,
+    kind: u8,
+    length: usize,
+    fragment: usize,
+}
+
+fn damage() -> impl Strategy<Value = Damage> {
+    (0.0..1.0, 0..6_u8, 1..12_usize, 0..FRAGMENTS.len()).prop_map(|(at, kind, length, fragment)| {
+        Damage {
+            at,
+            kind,
+            length,
+            fragment,
+        }
+    })
+}
+
+/// The text with one damage: characters or lines dropped, doubled, swapped, or replaced.
+fn damaged(text: &str, damage: &Damage) -> String {
+    let fragment = FRAGMENTS[damage.fragment];
+    let lines: Vec<&str> = text.split('\n').collect();
+    let line = ((damage.at * lines.len() as f64) as usize).min(lines.len() - 1);
+    let replaced = |new: &str| {
+        let mut lines = lines.clone();
+        lines[line] = new;
+        lines.join("\n")
+    };
+    match damage.kind {
+        0 | 1 => {
+            let characters: Vec<char> = text.chars().collect();
+            let start = ((damage.at * characters.len() as f64) as usize).min(characters.len());
+            let end = (start + damage.length).min(characters.len());
+            let skip = if damage.kind == 0 { end } else { start };
+            let (before, after) = (&characters[..start], &characters[skip..]);
+            let middle: Vec<char> = fragment.chars().collect();
+            [before, &middle, after].concat().into_iter().collect()
+        }
+        2 => {
+            let end = (line + damage.length).min(lines.len());
+            [&lines[..line], &lines[end..]].concat().join("\n")
+        }
+        3 => replaced(&format!("{0}\n{0}", lines[line])),
+        4 => match lines[line].split_once('=') {
+            Some((key, _)) => replaced(&format!("{key}= {fragment}")),
+            None => replaced(fragment),
+        },
+        _ => {
+            let other = (line + damage.length) % lines.len();
+            let mut lines = lines;
+            lines.swap(line, other);
+            lines.join("\n")
+        }
+    }
+}
+
+/// The description without the parts that no mechanism depends on: damage shall meet the rest.
+fn text() -> String {
+    let source = description("dualv").map(|s| s.text).unwrap_or_default();
+    let end = source.find("[experiment]").unwrap_or(source.len());
+    source[..end].to_owned()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn damaged_descriptions_never_panic(damages in prop::collection::vec(damage(), 1..4)) {
+        let whole = text();
+        prop_assert!(!whole.is_empty());
+        let text = damages.iter().fold(whole, |text, damage| damaged(&text, damage));
+        let source = Source::new("damaged.toml", text);
+        if let Err(errors) = compile(&source) {
+            prop_assert!(!errors.is_empty(), "refused without a reason");
+            prop_assert!(!errors.render_plain(&source).is_empty());
+            for located in errors.located(&source) {
+                prop_assert!(!located.message.is_empty());
+            }
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! The same description gives the same bytes, whatever was compiled before.
+
+use overact_codegen::emission;
+use overact_tests::support::{Failure, description, model_of, repository};
+use std::fs;
+use std::time::Instant;
+
+#[test]
+fn the_same_description_gives_the_same_bytes() -> Result<(), Failure> {
+    for entry in fs::read_dir(repository("robots"))? {
+        let path = entry?.path();
+        let stem = path.file_stem().and_then(|s| s.to_str());
+        if path.extension().is_none_or(|e| e != "toml") {
+            continue;
+        }
+        let source = description(stem.unwrap_or_default())?;
+        let mut files = Vec::new();
+        for _ in 0..2 {
+            let start = Instant::now();
+            let model = model_of(&source)?;
+            let compiled = start.elapsed();
+            files.push(emission::file(&model, &source.name));
+            println!(
+                "{}: compiled in {compiled:.0?}, with emission {:.0?}",
+                source.name,
+                start.elapsed()
+            );
+        }
+        assert!(files[0] == files[1], "{} is not deterministic", source.name);
+    }
+    Ok(())
+}
+
+#[test]
+fn threads_give_the_same_bytes() -> Result<(), Failure> {
+    let source = description("dualv")?;
+    let one = || model_of(&source).map(|model| emission::file(&model, &source.name));
+    let (a, b) = std::thread::scope(|scope| {
+        let (a, b) = (scope.spawn(one), scope.spawn(one));
+        (a.join(), b.join())
+    });
+    let failed = |_| Failure::from("a thread panicked");
+    assert!(a.map_err(failed)?? == b.map_err(failed)??);
+    Ok(())
+}
+
+#[test]
+fn generated_text_names_no_folder_of_this_machine() -> Result<(), Failure> {
+    let here = repository("").canonicalize()?;
+    let here = here.to_string_lossy();
+    let source = description("dualv")?;
+    let file = emission::file(&model_of(&source)?, &source.name);
+    assert!(!file.contains(&*here));
+    for entry in fs::read_dir(repository("generated/src"))? {
+        let path = entry?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let text = fs::read_to_string(path)?;
+        assert!(!text.contains(&*here), "generated/src/{name} holds {here}");
+    }
+    Ok(())
+}

@@ -1,0 +1,283 @@
+//! One snapshot per stage of the generator for the DualV: what each hands to the next.
+//!
+//! The cost table pins the operation counts of all functions.
+
+use overact_codegen::cas::Arena;
+use overact_codegen::derivation::{Columns, Derived, Family, From, derive};
+use overact_codegen::description::{self, Description};
+use overact_codegen::emission;
+use overact_codegen::lowering::{Operation, Program, Source};
+use overact_codegen::mechanism::Mechanism;
+use overact_codegen::model::Function;
+use overact_codegen::states::random_states;
+use overact_tests::support::backend::evaluate;
+use overact_tests::support::{Failure, dualv};
+use std::fmt::Write;
+
+fn function(family: Family, from: From) -> Result<&'static Function, Failure> {
+    let found = dualv()?.function(family, from);
+    found.ok_or_else(|| format!("no {family:?} from {from:?}").into())
+}
+
+#[test]
+fn description_of_the_dualv() -> Result<(), Failure> {
+    let source = overact_tests::support::description("dualv")?;
+    let parsed = description::parse(&source).map_err(|e| e.render_plain(&source))?;
+    insta::assert_snapshot!(described(&parsed)?);
+    Ok(())
+}
+
+fn described(robot: &Description) -> Result<String, Failure> {
+    let mut text = format!("{}: {}\n", robot.type_name(), robot.summary);
+    writeln!(text, "gravity {:?}", robot.gravity.map(|g| g.value()))?;
+    if let Some(platform) = &robot.platform {
+        writeln!(text, "platform {:?}", platform.motion.value)?;
+        writeln!(text, "  parameters {:?}", platform.parameters)?;
+        writeln!(text, "  payload {:?}", platform.payload)?;
+    }
+    for leg in &robot.legs {
+        writeln!(
+            text,
+            "{} of shape {} ({})",
+            leg.name.value, leg.shape, leg.shape_name
+        )?;
+        for joint in &leg.joints {
+            write!(text, "  {} {:?}", joint.name.value, joint.kind.value)?;
+            write!(text, " home {:.4}", joint.home.value())?;
+            writeln!(text, " {:?}", joint.parameters)?;
+        }
+    }
+    let kept = &robot.identification.kept_actuators;
+    writeln!(text, "kept {kept:?}")?;
+    let runs = robot.experiment.as_ref().map_or(0, |e| e.runs.len());
+    writeln!(text, "{runs} runs of a virtual experiment")?;
+    Ok(text)
+}
+
+#[test]
+fn mechanism_of_the_dualv() -> Result<(), Failure> {
+    insta::assert_snapshot!(legs(&dualv()?.mechanism)?);
+    Ok(())
+}
+
+fn legs(mechanism: &Mechanism) -> Result<String, Failure> {
+    let mut text = format!("home pose {:?}\n", mechanism.home.pose);
+    writeln!(text, "actuators {:?}", mechanism.actuator_names())?;
+    for (k, leg) in mechanism.legs.iter().enumerate() {
+        writeln!(text, "{}", leg.name)?;
+        for joint in &leg.joints {
+            let numbers = [
+                ("gamma", joint.gamma.value()),
+                ("b", joint.b.value()),
+                ("alpha", joint.alpha.value()),
+                ("d", joint.d.value()),
+                ("theta", joint.theta.value()),
+                ("r", joint.r.value()),
+            ];
+            write!(text, "  {} {:?}", joint.name, joint.kind)?;
+            for (name, value) in numbers.iter().filter(|(_, value)| *value != 0.0) {
+                write!(text, " {name} {value:.6}")?;
+            }
+            writeln!(text, "{}", if joint.actuated { " actuated" } else { "" })?;
+        }
+        let home = &mechanism.home.joints[mechanism.leg_range(k)];
+        writeln!(text, "  home {home:.9?}")?;
+    }
+    Ok(text)
+}
+
+#[test]
+fn derivation_of_the_dualv() -> Result<(), Failure> {
+    let model = dualv()?;
+    let derived_text = |family: Family, picked: &dyn Fn(usize, usize) -> bool| {
+        let arena = Arena::new();
+        let derived = derive(&arena, &model.mechanism, &model.selection, family, From::Joints)
+            .map_err(|e| format!("{e:?}"))?;
+        Ok::<String, Failure>(printed(&derived, picked))
+    };
+    let jacobian = derived_text(Family::InverseJacobian, &|_, _| true)?;
+    let regressor = Family::IdmRedPlatform(Columns::Standard);
+    let column = model
+        .columns_of(regressor)
+        .iter()
+        .position(|p| model.parameter_name(*p) == "my_2_leg1");
+    let my = derived_text(regressor, &|_, c| Some(c) == column)?;
+    insta::assert_snapshot!(format!("J_p^inv\n{jacobian}\ncolumn my_2_leg1\n{my}"));
+    Ok(())
+}
+
+fn printed(derived: &Derived<'_>, picked: &dyn Fn(usize, usize) -> bool) -> String {
+    let columns = derived.shape.1;
+    let entries = derived.entries.iter().enumerate();
+    entries
+        .filter(|(at, _)| picked(at / columns, at % columns))
+        .map(|(at, e)| format!("[{}, {}] {e}\n", at / columns, at % columns))
+        .collect()
+}
+
+#[test]
+fn lowering_of_the_inverse_jacobian() -> Result<(), Failure> {
+    let program = &function(Family::InverseJacobian, From::Joints)?.program;
+    insta::assert_snapshot!(listing(program)?);
+    Ok(())
+}
+
+/// A program, one step a line.
+fn listing(program: &Program) -> Result<String, Failure> {
+    let mut text = String::new();
+    for input in &program.inputs {
+        writeln!(text, "input {} {:?}", input.name, input.shape)?;
+    }
+    let of = |source: &Source| match *source {
+        Source::Constant(value) => format!("{value:?}"),
+        Source::Input { array, index } => format!("{}[{index}]", program.inputs[array].name),
+        Source::Step(at) => format!("${at}"),
+    };
+    for (at, step) in program.steps.iter().enumerate() {
+        let operands: Vec<String> = step.operation.operands().iter().map(of).collect();
+        let name = step.name.as_deref().unwrap_or_default();
+        let line = format!(
+            "${at} = {} {} {name}",
+            operation(&step.operation),
+            operands.join(" ")
+        );
+        writeln!(text, "{}", line.trim_end())?;
+    }
+    for guard in &program.guards {
+        writeln!(text, "guard {} {:?}", of(&guard.source), guard.condition)?;
+    }
+    writeln!(text, "output {} {:?}", program.output.name, program.output.shape)?;
+    for entry in &program.entries {
+        let sign = if entry.negative { "-" } else { "" };
+        writeln!(text, "  {sign}{}", of(&entry.source))?;
+    }
+    Ok(text)
+}
+
+const fn operation(operation: &Operation) -> &'static str {
+    match operation {
+        Operation::Add(..) => "add",
+        Operation::Sub(..) => "sub",
+        Operation::Mul(..) => "mul",
+        Operation::Div(..) => "div",
+        Operation::Neg(_) => "neg",
+        Operation::Sqrt(_) => "sqrt",
+        Operation::Sine(_) => "sin",
+        Operation::Cosine(_) => "cos",
+        Operation::Sign(_) => "sign",
+        Operation::Signed(..) => "signed",
+        Operation::Atan2(..) => "atan2",
+    }
+}
+
+#[test]
+fn cost_of_all_functions() -> Result<(), Failure> {
+    let mut table = format!(
+        "{:<38} {:>10} {:>5} {:>5} {:>4} {:>5} {:>5} {:>6} {:>6} {:>5} {:>13}\n",
+        "function", "operations", "add", "mul", "div", "sqrt", "trig", "atan2", "signs", "neg",
+        "intermediates"
+    );
+    for function in &dualv()?.functions {
+        let cost = function.program.cost();
+        writeln!(
+            table,
+            "{:<38} {:>10} {:>5} {:>5} {:>4} {:>5} {:>5} {:>6} {:>6} {:>5} {:>13}",
+            function.name,
+            cost.operations(),
+            cost.additions,
+            cost.multiplications,
+            cost.divisions,
+            cost.square_roots,
+            cost.trigonometric_pairs,
+            cost.arc_tangents,
+            cost.signs,
+            cost.negations,
+            cost.intermediates
+        )?;
+    }
+    insta::assert_snapshot!(table);
+    Ok(())
+}
+
+#[test]
+fn regressor_from_joints_stays_as_small_as_it_is() -> Result<(), Failure> {
+    let program = &function(Family::IdmRedPlatform(Columns::Standard), From::Joints)?.program;
+    let cost = program.cost();
+    assert_eq!(program.output.shape, [3, 64]);
+    assert!(cost.operations() <= OPERATIONS, "{cost}");
+    assert_eq!(cost.trigonometric_pairs, 9, "{cost}");
+    Ok(())
+}
+
+/// The operations that the standard regressor takes today. The number may shrink only.
+const OPERATIONS: usize = 450;
+
+#[test]
+fn emission_of_two_functions() -> Result<(), Failure> {
+    let file = emission::file(dualv()?, "robots/dualv.toml");
+    let text = |name: &str| -> Result<String, Failure> {
+        let signature = format!("    pub fn {name}(");
+        let at = file.find(&signature).ok_or("no such function")?;
+        // The documentation begins behind the end of the function before.
+        let start = file[..at].rfind("    }\n").map_or(0, |end| end + 6);
+        let length = file[at..].find("\n    }\n").ok_or("no end")?;
+        Ok(file[start..at + length + 7].to_owned())
+    };
+    let both = [text("project_platform")?, text("idm_red_payload")?];
+    insta::assert_snapshot!(both.join("\n"));
+    Ok(())
+}
+
+#[test]
+fn evaluation_of_the_regressor() -> Result<(), Failure> {
+    let model = dualv()?;
+    let function = function(Family::IdmRedPlatform(Columns::Standard), From::Joints)?;
+    let state = &random_states(&model.mechanism, 1, 7)[0];
+    let values = evaluate(&function.program, &|name| match name {
+        "pose" => Some(&state.pose),
+        "joints" => Some(&state.joints),
+        "twist" => Some(&state.twist),
+        "acceleration" => Some(&state.acceleration),
+        _ => None,
+    })?;
+    let mut text = String::new();
+    for (column, parameter) in model.columns_of(function.family).iter().enumerate() {
+        write!(text, "{:<12}", model.parameter_name(*parameter))?;
+        for row in 0..3 {
+            write!(text, " {:>19}", digits(values[row * 64 + column]))?;
+        }
+        writeln!(text)?;
+    }
+    insta::assert_snapshot!(text);
+    Ok(())
+}
+
+/// Twelve significant digits; what is zero but for rounding is zero.
+fn digits(value: f64) -> String {
+    if value.abs() < 1e-14 {
+        "0".to_owned()
+    } else {
+        format!("{value:.11e}")
+    }
+}
+
+#[test]
+fn base_parameters_of_the_dualv() -> Result<(), Failure> {
+    let model = dualv()?;
+    let mut text = String::new();
+    for base in &model.base {
+        write!(text, "{}", model.base_name(base))?;
+        if !base.regrouped.is_empty() {
+            write!(text, " = {}", model.parameter_name(base.parameter))?;
+        }
+        for (parameter, coefficient) in &base.regrouped {
+            let sign = if *coefficient < 0.0 { '-' } else { '+' };
+            let size = coefficient.abs();
+            let name = model.parameter_name(*parameter);
+            write!(text, " {sign} {size:?} {name}")?;
+        }
+        writeln!(text)?;
+    }
+    insta::assert_snapshot!(text);
+    Ok(())
+}
