@@ -4,8 +4,8 @@
 //! A tree (a robot without platform) is served like any other: its pose are its joint positions and
 //! its twist their velocities.
 
-mod displacement;
 mod names;
+mod newton;
 
 use names::Names;
 use overact::{
@@ -38,8 +38,9 @@ struct Served {
     function: Function,
     /// Index among the model's functions.
     index: usize,
-    /// For each input of the program its place among the function's inputs.
-    inputs: Vec<usize>,
+    /// For each input of the program its place among the function's inputs; `None` for joints that
+    /// Newton's method has to find first.
+    inputs: Vec<Option<usize>>,
     workspaces: Pool<Workspace>,
 }
 
@@ -103,11 +104,15 @@ impl InterpretedRobot {
             .functions
             .iter()
             .position(|f| std::ptr::eq(f, wanted))?;
+        let finds_joints = self.model.finds_joints(wanted);
         let place = |array: &overact_codegen::lowering::Array| {
+            if finds_joints && array.name == "joints" {
+                return Some(None);
+            }
             let input = input_of(&array.name)?;
-            function.inputs().iter().position(|i| *i == input)
+            function.inputs().iter().position(|i| *i == input).map(Some)
         };
-        let inputs: Option<Vec<usize>> = wanted.program.inputs.iter().map(place).collect();
+        let inputs: Option<Vec<Option<usize>>> = wanted.program.inputs.iter().map(place).collect();
         let (rows, columns) = function.shape(&self.names.sizes);
         // A program that does not fit the trait is not offered rather than misread.
         let inputs = inputs
@@ -248,11 +253,24 @@ impl Model for InterpretedRobot {
             values: &[],
             shared: false,
         }; INPUTS];
+        let found = match served.inputs.contains(&None) {
+            true => self.find_joints(inputs[0])?,
+            false => Vec::new(),
+        };
+        if function == Function::Joints && !found.is_empty() {
+            output.copy_from_slice(&found);
+            return Ok(());
+        }
         for (slot, &at) in given.iter_mut().zip(&served.inputs) {
-            let shared = function.inputs()[at] == Input::Parameters;
-            *slot = Rows {
-                values: inputs[at],
-                shared,
+            *slot = match at {
+                Some(at) => Rows {
+                    values: inputs[at],
+                    shared: function.inputs()[at] == Input::Parameters,
+                },
+                None => Rows {
+                    values: &found,
+                    shared: false,
+                },
             };
         }
         let given = &given[..served.inputs.len()];
@@ -321,9 +339,9 @@ impl Model for InterpretedRobot {
             .as_ref()
             .map(|platform| platform.motion);
         if motion.is_some_and(overact_codegen::mechanism::Motion::has_quaternion) {
-            displacement::with_quaternion(pose, step);
+            forward::displace_quaternion(pose, step);
         } else {
-            displacement::plain(pose, step);
+            forward::displace(pose, step);
         }
     }
 }

@@ -1,9 +1,28 @@
 //! One function from mechanism to program: derivation in a graph of its own, then lowering.
 
 use crate::cas::Arena;
-use crate::derivation::{Columns, Family, From, GuardKind, Selection, Underivable, derive};
+use crate::derivation::{
+    Columns, Family, From, GuardKind, JointsBy, Selection, Underivable, derive,
+};
 use crate::lowering::{Array, Condition, GuardedExpr, Program, lower};
 use crate::mechanism::Mechanism;
+
+/// How the joints of a robot follow from its pose: by rule, if one fits every leg.
+///
+/// # Errors
+/// See [`Underivable`].
+pub fn joints_by(mechanism: &Mechanism, selection: &Selection) -> Result<JointsBy, Underivable> {
+    let from = if mechanism.platform.is_some() {
+        From::Pose
+    } else {
+        From::Joints
+    };
+    match program(mechanism, selection, Family::Joints, from, JointsBy::Rule) {
+        Ok(_) => Ok(JointsBy::Rule),
+        Err(Underivable::InverseKinematics { .. }) => Ok(JointsBy::Newton),
+        Err(error) => Err(error),
+    }
+}
 
 /// Derives and lowers one function.
 ///
@@ -14,9 +33,10 @@ pub fn program(
     selection: &Selection,
     family: Family,
     from: From,
+    joints: JointsBy,
 ) -> Result<Program, Underivable> {
     let arena = Arena::new();
-    let derived = derive(&arena, mechanism, selection, family, from)?;
+    let derived = derive(&arena, mechanism, selection, family, from, joints)?;
     let array = |name: &str, shape: Vec<usize>| Array {
         name: name.to_owned(),
         shape,
@@ -58,8 +78,9 @@ pub fn cheapest(
     selection: &Selection,
     family: Family,
     from: From,
+    joints: JointsBy,
 ) -> Result<Program, Underivable> {
-    let combined = program(mechanism, selection, family, from)?;
+    let combined = program(mechanism, selection, family, from, joints)?;
     if selection.combined.is_empty() || family.columns() != Some(Columns::Standard) {
         return Ok(combined);
     }
@@ -67,7 +88,7 @@ pub fn cheapest(
         combined: Vec::new(),
         ..selection.clone()
     };
-    let plain = program(mechanism, &plain, family, from)?;
+    let plain = program(mechanism, &plain, family, from, joints)?;
     let is_better = plain.cost().operations() < combined.cost().operations();
     Ok(if is_better { plain } else { combined })
 }

@@ -5,7 +5,7 @@ use crate::assemble::program;
 use crate::base::{BaseParameter, select, symmetric_order};
 use crate::cas::Arena;
 use crate::derivation::{
-    BodyParameter, Columns, Family, From, Robot, Selection, Underivable, derive,
+    BodyParameter, Columns, Family, From, JointsBy, Robot, Selection, Underivable, derive,
 };
 use crate::evaluation::{Rows, Workspace};
 use crate::lowering::Program;
@@ -33,7 +33,14 @@ pub fn present(
     let mut everything = selection.clone();
     everything.standard.clone_from(&all);
     everything.payload.clone_from(&all);
-    let derived = derive(&arena, mechanism, &everything, family, From::Joints)?;
+    let derived = derive(
+        &arena,
+        mechanism,
+        &everything,
+        family,
+        From::Joints,
+        JointsBy::Rule,
+    )?;
     let (rows, columns) = derived.shape;
     let is_present = |c: usize| (0..rows).any(|r| !derived.entries[r * columns + c].is_zero());
     Ok(all
@@ -53,7 +60,7 @@ pub fn base_parameters(
     selection: &Selection,
 ) -> Result<Vec<BaseParameter>, Underivable> {
     let family = Family::IdmRedPlatform(Columns::Standard);
-    let program = program(mechanism, selection, family, From::Joints)?;
+    let program = program(mechanism, selection, family, From::Joints, JointsBy::Rule)?;
     let columns = selection.standard.len();
     let count = 3 * columns / mechanism.dof().max(1) + 10;
     let states = random_states(mechanism, count, 1);

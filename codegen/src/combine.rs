@@ -9,7 +9,7 @@ use crate::assemble::program;
 use crate::base::{BaseParameter, nearby_ratio};
 use crate::cas::Number;
 use crate::derivation::{
-    BodyParameter, Columns, Combination, Family, From, Selection, Underivable,
+    BodyParameter, Columns, Combination, Family, From, JointsBy, Selection, Underivable,
 };
 use crate::mechanism::Mechanism;
 
@@ -28,7 +28,8 @@ pub fn cheaper_columns(
             ..selection.clone()
         };
         let family = Family::IdmRedPlatform(Columns::Standard);
-        program(mechanism, &trial, family, From::Joints).map(|p| p.cost().operations())
+        program(mechanism, &trial, family, From::Joints, JointsBy::Rule)
+            .map(|p| p.cost().operations())
     };
     let mut chosen: Vec<Combination> = Vec::new();
     let mut best = operations(&chosen)?;

@@ -1,6 +1,6 @@
 //! The stages of the generator, in order.
 
-use crate::assemble::cheapest;
+use crate::assemble::{cheapest, joints_by};
 use crate::columns::{base_parameters, present};
 use crate::combine::cheaper_columns;
 use crate::derivation::{Columns, Family, Selection, Underivable};
@@ -37,11 +37,12 @@ pub fn model(mechanism: Mechanism) -> Result<RobotModel, Underivable> {
     let base = base_parameters(&mechanism, &selection)?;
     selection.base = base.iter().map(|b| b.parameter).collect();
     selection.combined = cheaper_columns(&mechanism, &selection, &base)?;
+    let joints = joints_by(&mechanism, &selection)?;
     let tree = mechanism.platform.is_none();
-    let functions = Family::all(&mechanism)
+    let functions = Family::all(&mechanism, joints)
         .into_iter()
         .map(|(family, from)| {
-            let program = cheapest(&mechanism, &selection, family, from)?;
+            let program = cheapest(&mechanism, &selection, family, from, joints)?;
             Ok(Function {
                 name: family.function_name(from, tree),
                 family,
@@ -54,6 +55,7 @@ pub fn model(mechanism: Mechanism) -> Result<RobotModel, Underivable> {
         mechanism,
         selection,
         base,
+        joints,
         functions,
     })
 }

@@ -1,7 +1,7 @@
 //! A compiled robot: sizes, parameters and one program per function.
 
 use crate::base::BaseParameter;
-use crate::derivation::{BodyParameter, Columns, Family, From, Selection};
+use crate::derivation::{BodyParameter, Columns, Family, From, JointsBy, Selection};
 use crate::lowering::Program;
 use crate::mechanism::{JointKind, Mechanism};
 
@@ -28,6 +28,10 @@ pub struct RobotModel {
     pub selection: Selection,
     /// Base parameters with their regroupings, in the symmetric order (43).
     pub base: Vec<BaseParameter>,
+    /// How the joints follow from the pose. By Newton's method, programs from a pose or from
+    /// actuators have the joints as an input, which [`Family::ClosureError`] and
+    /// [`Family::LegsJacobian`] serve to find.
+    pub joints: JointsBy,
     /// All functions.
     pub functions: Vec<Function>,
 }
@@ -56,6 +60,12 @@ impl RobotModel {
     #[must_use]
     pub const fn is_tree(&self) -> bool {
         self.mechanism.platform.is_none()
+    }
+
+    /// Whether the function's joints are found by Newton's method before its program runs.
+    #[must_use]
+    pub fn finds_joints(&self, function: &Function) -> bool {
+        self.joints == JointsBy::Newton && function.from != From::Joints
     }
 
     /// The parameters that the columns of a function stand for.

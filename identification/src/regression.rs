@@ -282,8 +282,15 @@ fn full_rate(
                 model
                     .evaluate(Function::InverseJacobian, &[pose], &mut jacobians)
                     .map_err(at)?;
-                keep_actuators(&mut block, &jacobians, &kept, &scales, sizes.actuators, first)
-                    .map_err(|sample| singular(motion, sample))?;
+                keep_actuators(
+                    &mut block,
+                    &jacobians,
+                    &kept,
+                    &scales,
+                    sizes.actuators,
+                    first,
+                )
+                .map_err(|sample| singular(motion, sample))?;
             }
             Ok(block)
         })
@@ -301,7 +308,13 @@ fn home_scales(model: &dyn Model) -> Vec<f64> {
         let squares = (0..n).map(|row| jacobian[row * r + column].powi(2));
         squares.sum::<f64>().sqrt()
     };
-    let scale = |norm: f64| if evaluated.is_ok() && norm > 0.0 { 1.0 / norm } else { 1.0 };
+    let scale = |norm: f64| {
+        if evaluated.is_ok() && norm > 0.0 {
+            1.0 / norm
+        } else {
+            1.0
+        }
+    };
     (0..r).map(norm).map(scale).collect()
 }
 
@@ -329,7 +342,9 @@ fn keep_actuators(
             1.0
         } else {
             // Columns of J_a in units that compare metres with radians.
-            condition_number(&DMatrix::from_fn(r, r, |i, j| transposed[(i, j)] * scales[i]))
+            condition_number(&DMatrix::from_fn(r, r, |i, j| {
+                transposed[(i, j)] * scales[i]
+            }))
         };
         if !condition.is_finite() {
             return Err(first + index);

@@ -157,7 +157,7 @@ pub fn estimate(estimate: &Estimate) -> String {
         if truth {
             row.push(optional(parameter.true_value, 6));
         }
-        row.push(significant(parameter.value, 6));
+        row.push(significant(parameter.value, 7));
         row.push(significant(
             parameter.relative_standard_deviation_percent,
             4,

@@ -150,11 +150,21 @@ fn every_partition_recovers_the_truth() {
     }
 }
 
-/// The largest condition number of the kept rows, sample by sample.
+/// The largest condition number of the kept rows, sample by sample, with the columns of J_p^inv divided
+/// by their norms at home.
 fn worst_condition(motions: &[Motion], projection: &Projection) -> f64 {
     let Projection::Actuators(kept) = projection else {
         return 1.0;
     };
+    let mut home = [0.0; 6];
+    Point
+        .evaluate(
+            Function::InverseJacobian,
+            &[Point.info().home_pose],
+            &mut home,
+        )
+        .expect("a Jacobian");
+    let norms = [0, 1].map(|j| (0..3).map(|i| home[2 * i + j].powi(2)).sum::<f64>().sqrt());
     let mut worst = 0.0_f64;
     for motion in motions {
         let mut jacobians = vec![0.0; motion.samples * 6];
@@ -162,7 +172,7 @@ fn worst_condition(motions: &[Motion], projection: &Projection) -> f64 {
             .evaluate(Function::InverseJacobian, &[&motion.pose], &mut jacobians)
             .expect("a Jacobian");
         for jacobian in jacobians.chunks_exact(6) {
-            let rows = DMatrix::from_fn(2, 2, |i, j| jacobian[2 * kept[i] + j]);
+            let rows = DMatrix::from_fn(2, 2, |i, j| jacobian[2 * kept[i] + j] / norms[j]);
             let values = rows.svd(false, false).singular_values;
             worst = worst.max(values.max() / values.min());
         }

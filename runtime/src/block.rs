@@ -46,6 +46,13 @@ pub fn array<const N: usize>(slice: &[f64]) -> Result<&[f64; N], Error> {
     })
 }
 
+/// Writes an output into a slice of its length.
+pub fn write(value: &impl Flat, out: &mut [f64]) {
+    for (slot, value) in out.iter_mut().zip(value.flat()) {
+        *slot = *value;
+    }
+}
+
 /// Evaluates a function sample by sample; `size` is the number of its results.
 fn each<O: Flat>(
     size: usize,

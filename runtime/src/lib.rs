@@ -1,5 +1,6 @@
 //! What a generated robot model needs at run time, and nothing more: the [`Model`] trait, [`Error`],
-//! a few functions of [`math`], forward kinematics in [`forward`], and the macro
+//! a few functions of [`math`], forward kinematics in [`forward`], numeric
+//! inverse kinematics in [`inverse`], and the macro
 //! `#[redundant_robot("robot.toml")]`.
 //!
 //! The crate is `no_std` and allocates nothing. With the feature `std` (default) square roots and
@@ -10,6 +11,7 @@ pub mod block;
 pub mod error;
 pub mod forward;
 pub mod guard;
+pub mod inverse;
 pub mod math;
 pub mod model;
 

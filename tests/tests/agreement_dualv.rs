@@ -82,7 +82,13 @@ fn unwound(angle: f64, near: f64) -> f64 {
 
 fn case_1(is_chosen: impl Fn(Family) -> bool) -> Result<(), Failure> {
     let chosen = |family| is_chosen(family) && !is_partitioned(family);
-    agree(&robots::dualv(), &[0, 1, 2], Some(&Generated), false, chosen)
+    agree(
+        &robots::dualv(),
+        &[0, 1, 2],
+        Some(&Generated),
+        false,
+        chosen,
+    )
 }
 
 #[test]

@@ -1,16 +1,56 @@
 //! Damaged descriptions are answered with located errors or a model, never with a panic.
 
-use overact_codegen::{Source, compile};
+use overact_codegen::{Diagnostics, RobotModel, Source, compile};
 use overact_tests::support::description;
 use proptest::prelude::*;
+use std::sync::mpsc;
+use std::time::Duration;
+
+/// An answer is due in this time; a sound description takes a small part of it.
+const PATIENCE: Duration = Duration::from_secs(20);
 
 /// What stands in descriptions, to be put where it does not belong.
 const FRAGMENTS: [&str; 40] = [
-    "", "\"", "[", "]", "{", "}", "=", ",", "#", "\n", "0", "-1", "1e999", "nan", "\"nan m\"",
-    "\"1e308 m\"", "\"1/0\"", "\"-(\"", "\"q\"", "\"q - q\"", "\"2 * q\"", "\"q2\"", "\"sqrt(-1)\"",
-    "\"m\"", "\"1 kg\"", "\"prismatic\"", "\"fixed\"", "\"spatial\"", "\"point\"", "\"schoenflies\"",
-    "[[place]]", "[leg.arm]", "[platform]", "home = {}", "parameters = []", "actuated = false", "é",
-    "\u{0}", "[0, 0, 0]", "9007199254740993",
+    "",
+    "\"",
+    "[",
+    "]",
+    "{",
+    "}",
+    "=",
+    ",",
+    "#",
+    "\n",
+    "0",
+    "-1",
+    "1e999",
+    "nan",
+    "\"nan m\"",
+    "\"1e308 m\"",
+    "\"1/0\"",
+    "\"-(\"",
+    "\"q\"",
+    "\"q - q\"",
+    "\"2 * q\"",
+    "\"q2\"",
+    "\"sqrt(-1)\"",
+    "\"m\"",
+    "\"1 kg\"",
+    "\"prismatic\"",
+    "\"fixed\"",
+    "\"spatial\"",
+    "\"point\"",
+    "\"schoenflies\"",
+    "[[place]]",
+    "[leg.arm]",
+    "[platform]",
+    "home = {}",
+    "parameters = []",
+    "actuated = false",
+    "é",
+    "\u{0}",
+    "[0, 0, 0]",
+    "9007199254740993",
 ];
 
 /// A damage: at which part of the text, which kind, how long, which fragment.
@@ -78,8 +118,17 @@ fn text() -> String {
     source[..end].to_owned()
 }
 
+/// The answer of the generator; none if it panicked or takes too long.
+fn answer(source: &Source) -> Option<Result<RobotModel, Diagnostics>> {
+    let (sender, receiver) = mpsc::channel();
+    let source = source.clone();
+    // A thread that never ends is left behind: the test fails then anyway.
+    std::thread::spawn(move || sender.send(compile(&source)));
+    receiver.recv_timeout(PATIENCE).ok()
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 256, max_shrink_iters: 0, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn damaged_descriptions_never_panic(damages in prop::collection::vec(damage(), 1..4)) {
@@ -87,12 +136,32 @@ proptest! {
         prop_assert!(!whole.is_empty());
         let text = damages.iter().fold(whole, |text, damage| damaged(&text, damage));
         let source = Source::new("damaged.toml", text);
-        if let Err(errors) = compile(&source) {
+        let Some(answer) = answer(&source) else {
+            return Err(TestCaseError::fail(format!("no answer to {damages:?}")));
+        };
+        if let Err(errors) = answer {
             prop_assert!(!errors.is_empty(), "refused without a reason");
             prop_assert!(!errors.render_plain(&source).is_empty());
             for located in errors.located(&source) {
                 prop_assert!(!located.message.is_empty());
             }
         }
+    }
+}
+
+#[test]
+fn lengths_out_of_all_scale_are_answered() {
+    for (key, value) in [("l_oa", "1e308 m"), ("l_ab", "1e200 m"), ("r_p", "1e308 m")] {
+        let line = |line: &str| {
+            if line.starts_with(&format!("{key} = ")) {
+                format!("{key} = \"{value}\"\n")
+            } else {
+                format!("{line}\n")
+            }
+        };
+        let changed: String = text().lines().map(line).collect();
+        let answer = answer(&Source::new("huge.toml", changed));
+        assert!(answer.is_some(), "no answer to {key} = {value}");
+        assert!(answer.is_some_and(|a| a.is_err()), "{key} = {value} is a robot");
     }
 }

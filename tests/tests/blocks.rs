@@ -95,7 +95,10 @@ fn the_first_sample_out_of_reach_is_named() -> Result<(), Failure> {
     let failed = failed.err().ok_or("three metres are out of reach")?;
     assert_eq!(failed.sample, BLOCK + 3);
     let condition = &program.guards[failed.guard].condition;
-    assert!(matches!(condition, Condition::Reach { .. }), "{condition:?}");
+    assert!(
+        matches!(condition, Condition::Reach { .. }),
+        "{condition:?}"
+    );
     Ok(())
 }
 
@@ -104,8 +107,15 @@ fn compiled_functions_name_what_is_wrong() {
     use overact::Error;
     let still = [0.0; 3];
     let out_of_reach = DualV::joints(&[3.0, 0.0, 0.0]);
-    assert!(matches!(out_of_reach, Err(Error::OutOfReach { .. })), "{out_of_reach:?}");
-    for pose in [[f64::NAN, 0.0, 0.0], [0.0, f64::INFINITY, 0.0], [0.0, 0.0, f64::NAN]] {
+    assert!(
+        matches!(out_of_reach, Err(Error::OutOfReach { .. })),
+        "{out_of_reach:?}"
+    );
+    for pose in [
+        [f64::NAN, 0.0, 0.0],
+        [0.0, f64::INFINITY, 0.0],
+        [0.0, 0.0, f64::NAN],
+    ] {
         let found = DualV::idm_red_platform(&pose, &still, &still);
         assert!(found.is_err(), "{pose:?} gives {found:?}");
     }

@@ -53,7 +53,11 @@ fn generated_text_names_no_folder_of_this_machine() -> Result<(), Failure> {
     assert!(!file.contains(&*here));
     for entry in fs::read_dir(repository("generated/src"))? {
         let path = entry?.path();
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let name = path
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
         let text = fs::read_to_string(path)?;
         assert!(!text.contains(&*here), "generated/src/{name} holds {here}");
     }

@@ -56,7 +56,10 @@ fn rates_are_derivatives_of_joints() -> Result<(), Failure> {
         worst[0] = worst[0].max((first - &velocities).amax() / velocities.amax());
         worst[1] = worst[1].max((second - &accelerations).amax() / accelerations.amax());
     }
-    println!("velocities {:.1e}, accelerations {:.1e}", worst[0], worst[1]);
+    println!(
+        "velocities {:.1e}, accelerations {:.1e}",
+        worst[0], worst[1]
+    );
     // Rounding of the joints over the step, and over its square: 1e-15 / 3e-4 and 1e-15 / 9e-8,
     // and an error of order six in the step.
     assert!(worst[0] < 1e-9, "velocities {:e}", worst[0]);
@@ -110,9 +113,8 @@ fn power_balance_holds() -> Result<(), Failure> {
     let mut worst = 0.0_f64;
     for sample in &all {
         let (sample, chi) = without_friction(&mechanism, &expected, sample);
-        let energy = |state: &State| {
-            DVector::from_element(1, total_energy(&mechanism, state, &chi))
-        };
+        let energy =
+            |state: &State| DVector::from_element(1, total_energy(&mechanism, state, &chi));
         let change = trajectory::derivatives(&mechanism, &sample.state, energy)?.0[0];
         let torques = vector("inverse_dynamics", &sample)?;
         let rates = Generated.call("inverse_jacobian", &sample)? * &sample.state.twist;
@@ -132,7 +134,8 @@ fn mass_matrix_and_bias_make_up_the_inverse_dynamics() -> Result<(), Failure> {
     for sample in &all {
         let mass = Generated.call("mass_matrix", sample)?;
         let inputs = &mass * &sample.state.acceleration + vector("bias", sample)?;
-        let torques = DMatrix::from_column_slice(4, 1, vector("inverse_dynamics", sample)?.as_slice());
+        let torques =
+            DMatrix::from_column_slice(4, 1, vector("inverse_dynamics", sample)?.as_slice());
         let jacobian = Generated.call("inverse_jacobian", sample)?;
         let projected = jacobian.transpose() * &torques;
         let regressor = Generated.call("idm_red_platform", sample)?;
@@ -158,7 +161,8 @@ fn forward_kinematics_returns_to_the_pose() -> Result<(), Failure> {
         let exact = DualV::actuator_positions(array(&sample.state.pose)?)?;
         // Whole turns of an encoder must not matter.
         for turn in [0.0, std::f64::consts::TAU] {
-            let found = DualV::pose_from_actuators(&exact.map(|q| q + turn), array(&sample.start)?)?;
+            let found =
+                DualV::pose_from_actuators(&exact.map(|q| q + turn), array(&sample.start)?)?;
             for (found, expected) in found.iter().zip(&sample.state.pose) {
                 worst = worst.max((found - expected).abs());
             }
@@ -177,10 +181,16 @@ fn noisy_actuators_give_the_least_squares_pose() -> Result<(), Failure> {
         let noisy = DualV::actuator_positions(array(&sample.state.pose)?)?
             .map(|q| q + 1e-3 * generator.random_range(-1.0..1.0));
         let pose = DualV::pose_from_actuators(&noisy, array(&sample.start)?)?;
-        let (q, jacobian) = (DualV::actuator_positions(&pose)?, DualV::inverse_jacobian(&pose)?);
+        let (q, jacobian) = (
+            DualV::actuator_positions(&pose)?,
+            DualV::inverse_jacobian(&pose)?,
+        );
         let residual = DVector::from_fn(4, |at, _| wrap_angle(noisy[at] - q[at]));
         let jacobian = DMatrix::from_fn(4, 3, |row, column| jacobian[row][column]);
-        assert!(residual.amax() > 0.0, "four noisy angles fit no pose exactly");
+        assert!(
+            residual.amax() > 0.0,
+            "four noisy angles fit no pose exactly"
+        );
         // The gradient Jᵀ r vanishes where the next step of Gauss-Newton, J^+ r, does. The iteration
         // ends with a step below its tolerance, and every step is far smaller than the one before.
         let step = pseudo_inverse(&jacobian) * &residual;

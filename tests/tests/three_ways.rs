@@ -5,9 +5,7 @@
 use overact::{Function, Model, redundant_robot};
 use overact_codegen::emission;
 use overact_tests::support::sample::samples;
-use overact_tests::support::{
-    Backend, Failure, dualv, expected::Expected, model_of, repository,
-};
+use overact_tests::support::{Backend, Failure, dualv, expected::Expected, model_of, repository};
 use overact_tests::{compiled, redundant_backend, reference::robots};
 use proc_macro2::{Delimiter, Ident, Span, TokenStream, TokenTree};
 use std::fs;
@@ -76,7 +74,11 @@ fn build_script_and_checked_in_file_hold_the_tokens_of_the_emission() -> Result<
         ("generated/", checked_in.as_str()),
     ] {
         let difference = first_difference(&tokens, &parsed(text)?);
-        assert!(difference.is_none(), "{which}: {}", difference.unwrap_or_default());
+        assert!(
+            difference.is_none(),
+            "{which}: {}",
+            difference.unwrap_or_default()
+        );
     }
     Ok(())
 }
@@ -106,7 +108,10 @@ fn all_ways_give_bit_identical_results() -> Result<(), Failure> {
             for other in [&ByBuildScript as &dyn Backend, &Generated] {
                 let found = other.call(function, sample)?;
                 let same = found.shape() == by_macro.shape()
-                    && found.iter().zip(&by_macro).all(|(a, b)| a.to_bits() == b.to_bits());
+                    && found
+                        .iter()
+                        .zip(&by_macro)
+                        .all(|(a, b)| a.to_bits() == b.to_bits());
                 assert!(same, "{function}: macro and {} differ", other.label());
             }
         }
@@ -117,10 +122,16 @@ fn all_ways_give_bit_identical_results() -> Result<(), Failure> {
 #[test]
 fn models_say_the_same_of_the_robot() {
     let made = DualV.info();
-    for info in [compiled::kept_123::DualV.info(), overact_robots::DualV.info()] {
+    for info in [
+        compiled::kept_123::DualV.info(),
+        overact_robots::DualV.info(),
+    ] {
         assert_eq!(format!("{made:?}"), format!("{info:?}"));
     }
-    assert_eq!(DualV::BASE_PARAMETERS, overact_robots::DualV::BASE_PARAMETERS);
+    assert_eq!(
+        DualV::BASE_PARAMETERS,
+        overact_robots::DualV::BASE_PARAMETERS
+    );
 }
 
 #[test]
@@ -148,7 +159,10 @@ fn trait_and_functions_give_the_same_numbers() -> Result<(), Failure> {
     for function in functions {
         let (rows, columns) = function.shape(&sizes);
         for sample in &all {
-            let inputs = function.inputs().iter().map(|input| sample.input(argument(*input)));
+            let inputs = function
+                .inputs()
+                .iter()
+                .map(|input| sample.input(argument(*input)));
             let inputs = inputs.collect::<Result<Vec<_>, _>>()?;
             let mut output = vec![0.0; rows * columns];
             DualV.evaluate(function, &inputs, &mut output)?;
@@ -179,7 +193,10 @@ fn generated_modules_are_fresh() -> Result<(), Failure> {
     let mut compared = 0;
     for entry in fs::read_dir(repository("robots"))? {
         let path = entry?.path();
-        let stem = path.file_stem().and_then(|s| s.to_str()).unwrap_or_default();
+        let stem = path
+            .file_stem()
+            .and_then(|s| s.to_str())
+            .unwrap_or_default();
         let module = repository(&format!("generated/src/{stem}.rs"));
         if path.extension().is_some_and(|e| e == "toml") && module.exists() {
             let source = overact_tests::support::description(stem)?;

@@ -134,7 +134,7 @@ impl Arguments {
         if !problems.is_empty() {
             return Err(Failure::Problems(problems));
         }
-        simulate::warn(&without_effect);
+        simulate::warn(&without_effect, as_json);
         let records = simulate::records(robot, served, &virtual_experiment, as_json)?;
         let (validation, runs): (Vec<Record>, Vec<Record>) = records
             .into_iter()

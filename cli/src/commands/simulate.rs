@@ -62,7 +62,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         virtual_experiment.seed = seed;
     }
     let files = files(&virtual_experiment, arguments.output.as_deref(), as_json)?;
-    warn(&without_effect);
+    warn(&without_effect, as_json);
     let records = records(&robot, &served, &virtual_experiment, as_json)?;
     let logs = records.iter().map(csv).collect::<Result<Vec<_>, _>>()?;
     let summaries: Vec<Summary> = records.iter().zip(&files).map(summary).collect();
@@ -88,9 +88,10 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
 }
 
-/// Parameters that the simulation does not feel are mentioned once.
-pub(super) fn warn(without_effect: &[String]) {
-    if !without_effect.is_empty() {
+/// Parameters that the simulation does not feel are mentioned once; never beside a JSON document, whose
+/// errors share stderr with it.
+pub(super) fn warn(without_effect: &[String], as_json: bool) {
+    if !without_effect.is_empty() && !as_json {
         let names = without_effect.join(", ");
         // A closed stderr is no reason to stop.
         let _ = writeln!(io::stderr(), "note: without effect on the model: {names}");

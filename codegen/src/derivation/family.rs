@@ -1,6 +1,7 @@
 //! The functions that a robot has: names, meaning, equations, units.
 
 use super::configuration::From;
+use super::functions::JointsBy;
 use crate::mechanism::Mechanism;
 
 /// Which columns an identification model has.
@@ -35,6 +36,7 @@ pub enum Family {
     ClosureActuatorJacobian,
     LegsJacobian,
     LegsPlatformJacobian,
+    ClosureError,
     JointVelocities,
     JointAccelerations,
     TwistFromActuators,
@@ -66,6 +68,7 @@ impl Family {
             Self::ClosureActuatorJacobian => "closure_actuator_jacobian",
             Self::LegsJacobian => "legs_jacobian",
             Self::LegsPlatformJacobian => "legs_platform_jacobian",
+            Self::ClosureError => "closure_error",
             Self::JointVelocities => "joint_velocities",
             Self::JointAccelerations => "joint_accelerations",
             Self::TwistFromActuators => "twist_from_actuators",
@@ -110,6 +113,9 @@ impl Family {
             }
             Self::LegsPlatformJacobian => {
                 "J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate."
+            }
+            Self::ClosureError => {
+                "By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m, rad)."
             }
             Self::JointVelocities => "Velocities of all joints (m/s, rad/s), eq. (9).",
             Self::JointAccelerations => "Accelerations of all joints (m/s², rad/s²), eq. (10).",
@@ -167,6 +173,7 @@ impl Family {
             self,
             Self::Joints
                 | Self::ActuatorPositions
+                | Self::ClosureError
                 | Self::JointVelocities
                 | Self::JointAccelerations
                 | Self::TwistFromActuators
@@ -198,7 +205,7 @@ impl Family {
 
     /// All functions of a robot with what they are evaluated from.
     #[must_use]
-    pub fn all(mechanism: &Mechanism) -> Vec<(Self, From)> {
+    pub fn all(mechanism: &Mechanism, joints: JointsBy) -> Vec<(Self, From)> {
         use From::{Actuators, Joints, Pose};
         let tree = mechanism.platform.is_none();
         let redundant = mechanism.actuated().len() > mechanism.dof();
@@ -234,6 +241,9 @@ impl Family {
                 ],
                 &[Joints],
             );
+        }
+        if joints == JointsBy::Newton {
+            add(&[Self::ClosureError], &[Joints]);
         }
         add(&[Self::JointVelocities, Self::JointAccelerations], pose);
         add(

@@ -6,8 +6,8 @@ use super::family::{Columns, Family};
 use super::linear::{Factored, apply, null_space, product, pseudo_inverse, transposed};
 use super::regressor::{BodyParameter, Projection};
 use super::robot::{Guard, GuardKind, Robot, Underivable};
-use crate::cas::{Arena, Expr, Number};
-use crate::mechanism::{JointKind, Mechanism};
+use crate::cas::{Arena, Expr, Number, Ratio, Vector3};
+use crate::mechanism::{End, JointKind, Mechanism};
 
 /// A function as expressions.
 #[derive(Debug)]
@@ -46,6 +46,15 @@ pub struct Combination {
     pub of: Vec<(BodyParameter, Number)>,
 }
 
+/// How the joints follow from the pose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum JointsBy {
+    /// In closed form, as part of the function.
+    Rule,
+    /// By Newton's method, before the function is evaluated: joints are an input of the program.
+    Newton,
+}
+
 /// Derives a function in its own graph.
 ///
 /// # Errors
@@ -56,10 +65,15 @@ pub fn derive<'a>(
     selection: &Selection,
     family: Family,
     from: From,
+    joints: JointsBy,
 ) -> Result<Derived<'a>, Underivable> {
-    let robot = Robot::new(arena, mechanism, from)?;
+    let configuration = match (from, joints) {
+        (From::Pose | From::Actuators, JointsBy::Rule) => From::Pose,
+        _ => From::Joints,
+    };
+    let robot = Robot::new(arena, mechanism, configuration)?;
     let mut sheet = Sheet {
-        inputs: robot.configuration_inputs(from),
+        inputs: robot.configuration_inputs(configuration),
         robot,
         selection,
         from,
@@ -157,6 +171,7 @@ impl<'a> Sheet<'a, '_> {
             Family::ClosureActuatorJacobian => self.closure_matrices().1,
             Family::LegsJacobian => self.leg_matrices().0,
             Family::LegsPlatformJacobian => self.leg_matrices().1,
+            Family::ClosureError => self.closure_error(),
             Family::JointVelocities => {
                 let twist = self.twist();
                 let still = self.zeros();
@@ -488,6 +503,36 @@ impl<'a> Sheet<'a, '_> {
             .map(|i| (0..n).map(|j| diagonal(i, j)).collect())
             .collect();
         (platform, actuators)
+    }
+
+    /// By how much the legs' ends miss the platform, in the rows of J_k: positions (m), and half the
+    /// axial vector of the rotation that is left (rad for small ones).
+    fn closure_error(&mut self) -> Rows<'a> {
+        let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
+        let mut errors = Vec::new();
+        for (leg, state) in mechanism.legs.iter().zip(&self.robot.legs) {
+            let (Some(closure), Some(platform)) = (&state.closure, &self.robot.platform) else {
+                continue;
+            };
+            let Some(last) = state.frames.frames.last() else {
+                continue;
+            };
+            let base = Vector3::constant(arena, leg.base.at);
+            let position = platform.origin + closure.arm - base - last.origin;
+            let turn = match &leg.end {
+                Some(End::Rigid(placement)) => {
+                    let left = platform.orientation(placement) * last.rotation.transposed();
+                    let half = Number::ratio(Ratio::new(1, 2).unwrap_or(Ratio::ONE));
+                    let m = left.0;
+                    let axial = [m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]];
+                    Vector3(axial.map(|a| a * half))
+                }
+                _ => Vector3::zero(arena),
+            };
+            let rows = closure.rows.iter();
+            errors.extend(rows.map(|&row| [position, turn][row / 3].0[row % 3]));
+        }
+        column(errors)
     }
 
     /// J_k (n_t x n_t) and J_tk (n_t x r), eq. (9), in the base frame.

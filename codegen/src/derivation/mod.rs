@@ -14,6 +14,6 @@ pub mod robot;
 
 pub use configuration::From;
 pub use family::{Columns, Family};
-pub use functions::{Combination, Derived, Selection, derive};
+pub use functions::{Combination, Derived, JointsBy, Selection, derive};
 pub use regressor::BodyParameter;
 pub use robot::{Guard, GuardKind, Robot, Underivable};

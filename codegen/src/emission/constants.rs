@@ -169,10 +169,15 @@ fn parameters(name: &str, doc: &str, model: &RobotModel, of: &[BodyParameter]) -
         }
     });
     let (name, count) = (format_ident!("{name}"), Literal::usize_unsuffixed(of.len()));
+    let names = (!of.is_empty()).then(|| {
+        quote!(
+            use ::overact::{Parameter, Symbol};
+        )
+    });
     quote! {
         #[doc = #doc]
         pub const #name: [::overact::Parameter; #count] = {
-            use ::overact::{Parameter, Symbol};
+            #names
             [#(#entries),*]
         };
     }

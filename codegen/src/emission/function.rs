@@ -1,7 +1,7 @@
 //! One generated function: documentation, signature, body.
 
 use super::expression::Body;
-use crate::derivation::From;
+use crate::derivation::{Family, From};
 use crate::lowering::{Array, Program};
 use crate::model::{Function, RobotModel};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
@@ -10,19 +10,24 @@ use quote::{format_ident, quote};
 /// The function as an item of an `impl` block.
 #[must_use]
 pub fn item(model: &RobotModel, function: &Function) -> TokenStream {
+    if model.finds_joints(function) && function.family == Family::Joints {
+        return super::inverse::item(model);
+    }
     let program = &function.program;
     let (statements, value) = Body::write(program);
     let name = format_ident!("{}", function.name);
     let from_actuators = function.from == From::Actuators;
-    let fallible = is_fallible(function);
+    let finds_joints = model.finds_joints(function);
+    let fallible = is_fallible(model, function);
     let output = array_type(&program.output);
     let arguments = arguments(model, function);
     let documentation = documentation(model, function);
-    let prelude = from_actuators.then(|| {
+    let find_pose = from_actuators.then(|| {
         quote! {
-            let pose = Self::pose_from_actuators(actuators, start)?;
+            let pose = &Self::pose_from_actuators(actuators, start)?;
         }
     });
+    let find_joints = finds_joints.then(|| quote!(let joints = &Self::joints(pose)?;));
     let signature = if fallible {
         quote!(pub fn #name(#arguments) -> Result<#output, ::overact::Error>)
     } else {
@@ -32,7 +37,8 @@ pub fn item(model: &RobotModel, function: &Function) -> TokenStream {
     quote! {
         #(#[doc = #documentation])*
         #signature {
-            #prelude
+            #find_pose
+            #find_joints
             #statements
             #value
         }
@@ -41,8 +47,10 @@ pub fn item(model: &RobotModel, function: &Function) -> TokenStream {
 
 /// Whether the function returns a `Result`.
 #[must_use]
-pub fn is_fallible(function: &Function) -> bool {
-    function.from == From::Actuators || !function.program.guards.is_empty()
+pub fn is_fallible(model: &RobotModel, function: &Function) -> bool {
+    function.from == From::Actuators
+        || model.finds_joints(function)
+        || !function.program.guards.is_empty()
 }
 
 /// `[f64; 3]` or `[[f64; 64]; 3]`.
@@ -65,6 +73,9 @@ fn arguments(model: &RobotModel, function: &Function) -> TokenStream {
     let used = used_inputs(&function.program);
     let mut arguments = Vec::new();
     for (index, array) in function.program.inputs.iter().enumerate() {
+        if model.finds_joints(function) && array.name == "joints" {
+            continue;
+        }
         let pose_is_found = function.from == From::Actuators && array.name == "pose";
         let (name, array) = if pose_is_found {
             let actuators = model.mechanism.actuated().len();
@@ -75,7 +86,7 @@ fn arguments(model: &RobotModel, function: &Function) -> TokenStream {
                     shape: vec![actuators],
                 },
             )
-        } else if used[index] {
+        } else if used[index] || (model.finds_joints(function) && array.name == "pose") {
             (array.name.clone(), array.clone())
         } else {
             (format!("_{}", array.name), array.clone())
@@ -120,7 +131,8 @@ fn documentation(model: &RobotModel, function: &Function) -> Vec<String> {
     for array in &function.program.inputs {
         if let Some(text) = input_meaning(model, &array.name) {
             let pose_is_found = function.from == From::Actuators && array.name == "pose";
-            if !pose_is_found {
+            let joints_are_found = model.finds_joints(function) && array.name == "joints";
+            if !pose_is_found && !joints_are_found {
                 lines.push(format!(" - `{}`: {text}", array.name));
             }
         }
@@ -139,7 +151,7 @@ fn documentation(model: &RobotModel, function: &Function) -> Vec<String> {
     }
     lines.push(String::new());
     lines.push(format!(" {}.", function.program.cost()));
-    if is_fallible(function) {
+    if is_fallible(model, function) {
         lines.push(String::new());
         lines.push(" # Errors".to_owned());
         lines.push(" A pose out of reach, or a singular configuration.".to_owned());
@@ -148,7 +160,7 @@ fn documentation(model: &RobotModel, function: &Function) -> Vec<String> {
 }
 
 fn columns_constant(function: &Function) -> &'static str {
-    use crate::derivation::{Columns, Family};
+    use crate::derivation::Columns;
     match (function.family, function.family.columns()) {
         (Family::IdmRedPayload | Family::IdmRedPayloadActuators, _) => "`PAYLOAD_PARAMETERS`",
         (_, Some(Columns::Base)) => "`BASE_PARAMETERS`",

@@ -7,6 +7,7 @@
 pub mod constants;
 pub mod expression;
 pub mod function;
+pub mod inverse;
 pub mod layout;
 pub mod model_impl;
 

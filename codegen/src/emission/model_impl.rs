@@ -111,14 +111,11 @@ fn arm(model: &RobotModel, label: &str, family: Family) -> Option<TokenStream> {
     let function = model.plain(family)?;
     let (label, name) = (format_ident!("{label}"), format_ident!("{}", function.name));
     let size = Literal::usize_unsuffixed(function.program.entries.len());
-    let arguments: Vec<Ident> = function
-        .program
-        .inputs
-        .iter()
-        .map(|a| format_ident!("{}", a.name))
-        .collect();
+    let given = function.program.inputs.iter();
+    let given = given.filter(|a| !(model.finds_joints(function) && a.name == "joints"));
+    let arguments: Vec<Ident> = given.map(|a| format_ident!("{}", a.name)).collect();
     let map = format_ident!("map{}", arguments.len());
-    let call = if is_fallible(function) {
+    let call = if is_fallible(model, function) {
         quote!(Self::#name)
     } else {
         quote!(|#(#arguments),*| Ok(Self::#name(#(#arguments),*)))
@@ -156,7 +153,7 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
     } else {
         quote!(displace)
     };
-    let fallible = |family: Family| model.plain(family).is_some_and(is_fallible);
+    let fallible = |family: Family| model.plain(family).is_some_and(|f| is_fallible(model, f));
     let unwrap = |fallible: bool| fallible.then(|| quote!(?));
     let position = unwrap(fallible(Family::ActuatorPositions));
     let jacobian = unwrap(fallible(Family::InverseJacobian));

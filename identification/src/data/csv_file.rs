@@ -65,9 +65,10 @@ fn read_table(file: &str, input: impl io::Read, mapping: &Mapping) -> Result<Tab
     let mut problems = Vec::new();
     let mut record = StringRecord::new();
     while reader.read_record(&mut record).map_err(broken)? {
-        let line = record
-            .position()
-            .map_or(0, |position| position.line() as usize);
+        // The record's own position is before comments and empty lines that precede it; the
+        // reader's is behind its line break, if it has one.
+        let before = record.position().map_or(0, csv::Position::line);
+        let line = before.max(reader.position().line().saturating_sub(1)) as usize;
         lines.push(line);
         for ((name, index), column) in names.iter().zip(&indices).zip(&mut columns) {
             match number(record.get(*index)) {

@@ -30,7 +30,9 @@ impl Backend for Evaluated<'_> {
 
     fn call(&self, function: &str, sample: &Sample) -> Result<DMatrix<f64>, Failure> {
         let found = self.0.functions.iter().find(|f| f.name == function);
-        let program = &found.ok_or_else(|| format!("no function `{function}`"))?.program;
+        let program = &found
+            .ok_or_else(|| format!("no function `{function}`"))?
+            .program;
         let output = evaluate(program, &|name| sample.input(name).ok())?;
         let (rows, columns) = match program.output.shape[..] {
             [rows, columns] => (rows, columns),

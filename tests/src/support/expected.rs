@@ -95,9 +95,9 @@ impl Expected {
         let torques = DVector::from_column_slice(&sample.torques);
         let least_norm = || dynamics.least_norm_torques(chi);
         Ok(match family {
-            Family::IdmRedPlatform(columns) => {
-                dynamics.idm_red_platform()?.select_columns(self.chosen(columns))
-            }
+            Family::IdmRedPlatform(columns) => dynamics
+                .idm_red_platform()?
+                .select_columns(self.chosen(columns)),
             Family::IdmRedActuators(columns) => {
                 let partition = dynamics.idm_red_actuators(&self.kept)?;
                 partition.regressor.select_columns(self.chosen(columns))

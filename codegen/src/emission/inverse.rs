@@ -1,0 +1,52 @@
+//! Inverse kinematics of robots whose legs no rule solves: Newton's method on the generated closure.
+
+use crate::mechanism::Motion;
+use crate::model::RobotModel;
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+/// `joints(pose)` by Newton's method.
+#[must_use]
+pub fn item(model: &RobotModel) -> TokenStream {
+    let mechanism = &model.mechanism;
+    let counts = mechanism
+        .legs
+        .iter()
+        .map(|l| Literal::usize_unsuffixed(l.independent().count()));
+    let quaternion = mechanism
+        .platform
+        .as_ref()
+        .is_some_and(|p| Motion::has_quaternion(p.motion));
+    quote! {
+        #[doc = " Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration; by Newton's method."]
+        #[doc = ""]
+        #[doc = " # Errors"]
+        #[doc = " A pose out of reach, or a singular configuration on the way from home."]
+        pub fn joints(pose: &[f64; Self::POSE]) -> Result<[f64; Self::JOINTS], ::overact::Error> {
+            let mut joints = Self::HOME_JOINTS;
+            ::overact::inverse::solve(
+                ::overact::inverse::Legs {
+                    names: &Self::LEGS,
+                    joints: &[#(#counts),*],
+                    home_pose: &Self::HOME_POSE,
+                    home_joints: &Self::HOME_JOINTS,
+                    has_quaternion: #quaternion,
+                },
+                pose,
+                &mut joints,
+                ::overact::inverse::Workspace {
+                    error: &mut [0.0; Self::JOINTS],
+                    jacobian: &mut [0.0; Self::JOINTS * Self::JOINTS],
+                    pose: &mut [0.0; Self::POSE],
+                },
+                |pose, joints, error, jacobian| {
+                    let (pose, joints) = (::overact::block::array(pose)?, ::overact::block::array(joints)?);
+                    ::overact::block::write(&Self::closure_error_from_joints(pose, joints), error);
+                    ::overact::block::write(&Self::legs_jacobian_from_joints(pose, joints), jacobian);
+                    Ok(())
+                },
+            )?;
+            Ok(joints)
+        }
+    }
+}
