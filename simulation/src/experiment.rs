@@ -77,7 +77,7 @@ impl Default for Experiment {
             parameters: Vec::new(),
             nominal_parameters: None,
             runs: Vec::new(),
-            integration_steps: 2,
+            integration_steps: 1,
         }
     }
 }

@@ -187,7 +187,7 @@ fn joints_of_the_model_close_the_reference() -> Result<(), Failure> {
     for sample in samples(&mechanism, &expected.parameters(), STATES, 43, false)? {
         let joints = Generated.call("joints", &sample)?;
         let state = with_joints_of_model(&mechanism, &sample.state, joints.as_slice(), TOLERANCE)?;
-        let gap = (&state.q - &joints.column(0)).amax();
+        let gap = (&state.q - joints.column(0)).amax();
         assert!(gap < TOLERANCE, "{gap:e}");
     }
     Ok(())
