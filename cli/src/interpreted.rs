@@ -20,8 +20,9 @@ use overact_codegen::{
 };
 use std::sync::{Mutex, PoisonError};
 
-/// Most inputs that a function of [`overact::Model`] has.
-const INPUTS: usize = 4;
+/// Most inputs that a program has: those of a function of [`overact::Model`], and joints that are found
+/// before it runs.
+const INPUTS: usize = 5;
 
 /// A robot that is interpreted.
 #[derive(Debug)]

@@ -4,7 +4,7 @@
 //! twists and accelerations. Columns are taken in the symmetric order (43), platform first, then each
 //! parameter of all legs together, and orthogonalised one after the other; a column that leaves
 //! nothing behind is a constant combination of those before it. The coefficients are constants of the
-//! robot's geometry; those that are fractions are recognised.
+//! robot's geometry; [`combine`](crate::combine) makes them exact.
 
 use crate::cas::Ratio;
 use crate::derivation::BodyParameter;
@@ -77,8 +77,8 @@ pub fn select(
     let coefficients = combinations(matrix, &kept, &dependent);
     for (k, &column) in dependent.iter().enumerate() {
         for (row, base) in result.iter_mut().enumerate() {
-            let coefficient = recognised(coefficients[(row, k)]);
-            if coefficient != 0.0 {
+            let coefficient = coefficients[(row, k)];
+            if coefficient.abs() > NEGLIGIBLE {
                 base.regrouped.push((parameters[column], coefficient));
             }
         }
@@ -108,18 +108,8 @@ fn combinations(matrix: &DMatrix<f64>, kept: &[usize], dependent: &[usize]) -> D
     solved
 }
 
-/// The fraction with a denominator below a million that a coefficient is, or the coefficient.
-fn recognised(value: f64) -> f64 {
-    if value.abs() < NEGLIGIBLE {
-        return 0.0;
-    }
-    match nearby_ratio(value) {
-        Some(ratio) => ratio.value(),
-        None => value,
-    }
-}
-
-/// The simplest fraction within 1e-10 of a number, by its continued fraction.
+/// The simplest fraction within 1e-10 of a number, by its continued fraction: a guess, because nearly
+/// every number has a fraction of six digits as near as that.
 #[must_use]
 pub fn nearby_ratio(value: f64) -> Option<Ratio> {
     let (mut h0, mut h1, mut k0, mut k1) = (0_i128, 1_i128, 1_i128, 0_i128);
@@ -154,7 +144,6 @@ mod tests {
     fn a_geometric_constant_is_recognised() {
         let ratio = nearby_ratio(0.11 * 0.11 / 0.28).unwrap();
         assert_eq!((ratio.numerator(), ratio.denominator()), (121, 2800));
-        assert_eq!(nearby_ratio(std::f64::consts::PI), None);
         assert_eq!(nearby_ratio(-0.28).unwrap().to_string(), "-7/25");
     }
 }

@@ -4,8 +4,10 @@
 use crate::assemble::program;
 use crate::base::{BaseParameter, select, symmetric_order};
 use crate::cas::Arena;
+use crate::combine::exact_combinations;
 use crate::derivation::{
-    BodyParameter, Columns, Family, From, JointsBy, Robot, Selection, Underivable, derive,
+    BodyParameter, Columns, Combination, Family, From, JointsBy, Robot, Selection, Underivable,
+    derive,
 };
 use crate::evaluation::{Rows, Workspace};
 use crate::lowering::Program;
@@ -51,14 +53,15 @@ pub fn present(
         .collect())
 }
 
-/// Independent columns over random states, and what the others are made of.
+/// Independent columns over random states, and what the others are made of, with the combinations that
+/// are proved to be exact.
 ///
 /// # Errors
 /// See [`Underivable`].
 pub fn base_parameters(
     mechanism: &Mechanism,
     selection: &Selection,
-) -> Result<Vec<BaseParameter>, Underivable> {
+) -> Result<(Vec<BaseParameter>, Vec<Combination>), Underivable> {
     let family = Family::IdmRedPlatform(Columns::Standard);
     let program = program(mechanism, selection, family, From::Joints, JointsBy::Rule)?;
     let columns = selection.standard.len();
@@ -66,7 +69,9 @@ pub fn base_parameters(
     let states = random_states(mechanism, count, 1);
     let matrix = sample(&program, &states, mechanism.dof(), columns);
     let order = symmetric_order(mechanism, &selection.standard);
-    Ok(select(&matrix, &order, &selection.standard))
+    let mut base = select(&matrix, &order, &selection.standard);
+    let exact = exact_combinations(mechanism, selection, &mut base)?;
+    Ok((base, exact))
 }
 
 /// A model's rows over states, stacked.

@@ -7,9 +7,9 @@
 
 use crate::assemble::program;
 use crate::base::{BaseParameter, nearby_ratio};
-use crate::cas::Number;
+use crate::cas::{Arena, Number};
 use crate::derivation::{
-    BodyParameter, Columns, Combination, Family, From, JointsBy, Selection, Underivable,
+    BodyParameter, Columns, Combination, Family, From, JointsBy, Selection, Underivable, derive,
 };
 use crate::mechanism::Mechanism;
 
@@ -20,7 +20,7 @@ use crate::mechanism::Mechanism;
 pub fn cheaper_columns(
     mechanism: &Mechanism,
     selection: &Selection,
-    base: &[BaseParameter],
+    exact: &[Combination],
 ) -> Result<Vec<Combination>, Underivable> {
     let operations = |combined: &[Combination]| {
         let trial = Selection {
@@ -33,7 +33,9 @@ pub fn cheaper_columns(
     };
     let mut chosen: Vec<Combination> = Vec::new();
     let mut best = operations(&chosen)?;
-    for group in groups(mechanism, &candidates(base)) {
+    // Multiples of a single column are shared anyway.
+    let candidates: Vec<Combination> = exact.iter().filter(|c| c.of.len() > 1).cloned().collect();
+    for group in groups(mechanism, &candidates) {
         let trial: Vec<Combination> = chosen.iter().chain(&group).cloned().collect();
         let cost = operations(&trial)?;
         if cost < best {
@@ -43,9 +45,70 @@ pub fn cheaper_columns(
     Ok(chosen)
 }
 
-/// Dependent columns whose coefficients are all fractions. Multiples of a single column are shared
-/// anyway.
-fn candidates(base: &[BaseParameter]) -> Vec<Combination> {
+/// Guesses the fractions behind the coefficients of the regroupings and proves them: the combination
+/// must be the dependent column itself, as an expression. Coefficients that are proved become exact in
+/// `base`; the others stay as they were computed.
+///
+/// # Errors
+/// See [`Underivable`].
+pub fn exact_combinations(
+    mechanism: &Mechanism,
+    selection: &Selection,
+    base: &mut [BaseParameter],
+) -> Result<Vec<Combination>, Underivable> {
+    let arena = Arena::new();
+    let family = Family::IdmRedPlatform(Columns::Standard);
+    let derived = derive(
+        &arena,
+        mechanism,
+        selection,
+        family,
+        From::Joints,
+        JointsBy::Rule,
+    )?;
+    let (rows, width) = derived.shape;
+    let column = |parameter: BodyParameter| {
+        let at = selection.standard.iter().position(|p| *p == parameter)?;
+        Some(
+            (0..rows)
+                .map(|row| derived.entries[row * width + at])
+                .collect::<Vec<_>>(),
+        )
+    };
+    let is_exact = |combination: &Combination| {
+        let Some(wanted) = column(combination.parameter) else {
+            return false;
+        };
+        let terms: Option<Vec<_>> = combination
+            .of
+            .iter()
+            .map(|(p, c)| Some((column(*p)?, *c)))
+            .collect();
+        let Some(terms) = terms else { return false };
+        (0..rows).all(|row| {
+            let zero = arena.zero();
+            terms
+                .iter()
+                .fold(zero, |sum, (column, c)| sum + column[row] * *c)
+                == wanted[row]
+        })
+    };
+    let mut guesses = guesses(base);
+    guesses.retain(is_exact);
+    for combination in &guesses {
+        for (kept, coefficient) in &combination.of {
+            let of_kept = base.iter_mut().filter(|b| b.parameter == *kept);
+            let entries = of_kept.flat_map(|b| &mut b.regrouped);
+            for (_, value) in entries.filter(|(p, _)| *p == combination.parameter) {
+                *value = coefficient.value();
+            }
+        }
+    }
+    Ok(guesses)
+}
+
+/// Dependent columns all of whose coefficients are near fractions.
+fn guesses(base: &[BaseParameter]) -> Vec<Combination> {
     let mut all: Vec<Combination> = Vec::new();
     let mut inexact: Vec<BodyParameter> = Vec::new();
     for kept in base {
@@ -64,7 +127,7 @@ fn candidates(base: &[BaseParameter]) -> Vec<Combination> {
             }
         }
     }
-    all.retain(|c| c.of.len() > 1 && !inexact.contains(&c.parameter));
+    all.retain(|c| !inexact.contains(&c.parameter));
     all
 }
 

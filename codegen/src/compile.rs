@@ -34,9 +34,9 @@ pub fn model(mechanism: Mechanism) -> Result<RobotModel, Underivable> {
         Family::IdmRedPlatform(Columns::Standard),
     )?;
     selection.payload = present(&mechanism, &selection, Family::IdmRedPayload)?;
-    let base = base_parameters(&mechanism, &selection)?;
+    let (base, exact) = base_parameters(&mechanism, &selection)?;
     selection.base = base.iter().map(|b| b.parameter).collect();
-    selection.combined = cheaper_columns(&mechanism, &selection, &base)?;
+    selection.combined = cheaper_columns(&mechanism, &selection, &exact)?;
     let joints = joints_by(&mechanism, &selection)?;
     let tree = mechanism.platform.is_none();
     let functions = Family::all(&mechanism, joints)

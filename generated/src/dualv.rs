@@ -258,6 +258,7 @@ impl DualV {
         let t16 = t5 - t8 * t14;
         let t20 = 0.5 * t8 + t4 * t14;
         let t29 = t11 * t14;
+        ::overact::guard::leg(t29, 0.07839913810297301, "leg1")?;
         let t31 = t11 - 0.1568;
         let s12_leg1 = 3.5714285714285716 * (t4 - t16);
         let c12_leg1 = 3.5714285714285716 * (t8 - t20);
@@ -271,6 +272,7 @@ impl DualV {
         let t66 = t5 + t59 * t64;
         let t70 = 0.5 * t59 - t4 * t64;
         let t78 = t61 * t64;
+        ::overact::guard::leg(t78, 0.07839913810297301, "leg2")?;
         let t80 = t61 - 0.1568;
         let s12_leg2 = 3.5714285714285716 * (t4 - t66);
         let c12_leg2 = 3.5714285714285716 * (t59 - t70);
@@ -288,6 +290,7 @@ impl DualV {
         let t119 = t109 - t111 * t117;
         let t123 = 0.5 * t111 + t108 * t117;
         let t131 = t114 * t117;
+        ::overact::guard::leg(t131, 0.07839913810297301, "leg3")?;
         let t133 = t114 - 0.1568;
         let c12_leg3 = 3.5714285714285716 * (t111 - t123);
         let s12_leg3 = 3.5714285714285716 * (t108 - t119);
@@ -301,6 +304,7 @@ impl DualV {
         let t168 = 0.5 * t160 - t108 * t166;
         let t171 = t109 + t160 * t166;
         let t180 = t163 * t166;
+        ::overact::guard::leg(t180, 0.07839913810297301, "leg4")?;
         let t182 = t163 - 0.1568;
         let c12_leg4 = 3.5714285714285716 * (t160 - t168);
         let s12_leg4 = 3.5714285714285716 * (t108 - t171);
@@ -430,7 +434,7 @@ impl DualV {
     ///
     /// Output: 4 x 3.
     ///
-    /// 112 operations (58 additions, 46 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 106 intermediates.
+    /// 88 operations (38 additions, 42 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 82 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -442,70 +446,59 @@ impl DualV {
         let t6 = 0.11 * c_phi;
         let t8 = pose[1] + t6 - 0.10970563941232059;
         let t10 = t8 * t8;
-        let t13 = 0.0784 / (t4 * t4 + t10) - 0.25;
+        let t11 = t4 * t4 + t10;
+        let t13 = 0.0784 / t11 - 0.25;
         ::overact::guard::reach(t13, "leg1")?;
         let t14 = ::overact::math::sqrt(t13);
-        let t16 = 0.5 * t4 + t8 * t14;
-        let t17 = t4 - t16;
-        let t18 = 0.5 * t8;
-        let t20 = t18 - t4 * t14;
-        let t21 = t8 - t20;
-        let t28 = t21 * (t16 + t17 - t17) + t17 * (t21 - (t20 + t21));
-        ::overact::guard::leg(t28, 0.078399138102973, "leg1")?;
-        let t29 = 1.0 / t28;
-        let g1_vx_leg1 = t17 * t29;
-        let t31 = t3 + 0.3950502153918333;
-        let t36 = 0.0784 / (t31 * t31 + t10) - 0.25;
-        ::overact::guard::reach(t36, "leg2")?;
-        let t37 = ::overact::math::sqrt(t36);
-        let t39 = 0.5 * t31 - t8 * t37;
-        let t40 = t31 - t39;
-        let t42 = t18 + t31 * t37;
-        let t43 = t8 - t42;
-        let t50 = t43 * (t39 + t40 - t40) + t40 * (t43 - (t42 + t43));
-        ::overact::guard::leg(t50, 0.078399138102973, "leg2")?;
-        let t51 = 1.0 / t50;
-        let g1_vx_leg2 = t40 * t51;
-        let t53 = pose[0] + t2;
-        let t54 = t53 + 0.3950502153918333;
-        let t57 = pose[1] - t6 + 0.10970563941232059;
-        let t59 = t57 * t57;
-        let t62 = 0.0784 / (t54 * t54 + t59) - 0.25;
-        ::overact::guard::reach(t62, "leg3")?;
-        let t63 = ::overact::math::sqrt(t62);
-        let t65 = 0.5 * t54 + t57 * t63;
-        let t66 = t54 - t65;
-        let t67 = 0.5 * t57;
-        let t69 = t67 - t54 * t63;
-        let t70 = t57 - t69;
-        let t77 = t70 * (t65 + t66 - t66) + t66 * (t70 - (t69 + t70));
-        ::overact::guard::leg(t77, 0.078399138102973, "leg3")?;
-        let t78 = 1.0 / t77;
-        let g1_vx_leg3 = t66 * t78;
-        let t80 = t53 - 0.3950502153918333;
-        let t85 = 0.0784 / (t80 * t80 + t59) - 0.25;
-        ::overact::guard::reach(t85, "leg4")?;
-        let t86 = ::overact::math::sqrt(t85);
-        let t88 = 0.5 * t80 - t57 * t86;
-        let t89 = t80 - t88;
-        let t91 = t67 + t80 * t86;
-        let t92 = t57 - t91;
-        let t99 = t92 * (t88 + t89 - t89) + t89 * (t92 - (t91 + t92));
-        ::overact::guard::leg(t99, 0.078399138102973, "leg4")?;
-        let t100 = 1.0 / t99;
-        let g1_vx_leg4 = t89 * t100;
-        let g1_vy_leg1 = t21 * t29;
-        let g1_vy_leg2 = t43 * t51;
-        let g1_vy_leg3 = t70 * t78;
-        let g1_vy_leg4 = t92 * t100;
+        let t18 = t11 * t14;
+        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
+        let t19 = 1.0 / t18;
+        let g1_vx_leg1 = (t4 - (0.5 * t4 + t8 * t14)) * t19;
+        let t21 = t3 + 0.3950502153918333;
+        let t24 = t21 * t21 + t10;
+        let t26 = 0.0784 / t24 - 0.25;
+        ::overact::guard::reach(t26, "leg2")?;
+        let t27 = ::overact::math::sqrt(t26);
+        let t31 = t24 * t27;
+        ::overact::guard::leg(t31, 0.07839913810297301, "leg2")?;
+        let t32 = 1.0 / t31;
+        let minus_g1_vx_leg2 = (t21 - (0.5 * t21 - t8 * t27)) * t32;
+        let t34 = pose[0] + t2;
+        let t35 = t34 + 0.3950502153918333;
+        let t38 = pose[1] - t6 + 0.10970563941232059;
+        let t40 = t38 * t38;
+        let t41 = t35 * t35 + t40;
+        let t43 = 0.0784 / t41 - 0.25;
+        ::overact::guard::reach(t43, "leg3")?;
+        let t44 = ::overact::math::sqrt(t43);
+        let t48 = t41 * t44;
+        ::overact::guard::leg(t48, 0.07839913810297301, "leg3")?;
+        let t49 = 1.0 / t48;
+        let g1_vx_leg3 = (t35 - (0.5 * t35 + t38 * t44)) * t49;
+        let t51 = t34 - 0.3950502153918333;
+        let t54 = t51 * t51 + t40;
+        let t56 = 0.0784 / t54 - 0.25;
+        ::overact::guard::reach(t56, "leg4")?;
+        let t57 = ::overact::math::sqrt(t56);
+        let t61 = t54 * t57;
+        ::overact::guard::leg(t61, 0.07839913810297301, "leg4")?;
+        let t62 = 1.0 / t61;
+        let minus_g1_vx_leg4 = (t51 - (0.5 * t51 - t38 * t57)) * t62;
+        let t64 = 0.5 * t8;
+        let g1_vy_leg1 = (t8 - (t64 - t4 * t14)) * t19;
+        let minus_g1_vy_leg2 = (t8 - (t64 + t21 * t27)) * t32;
+        let t73 = 0.5 * t38;
+        let g1_vy_leg3 = (t38 - (t73 - t35 * t44)) * t49;
+        let minus_g1_vy_leg4 = (t38 - (t73 + t51 * t57)) * t62;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t6 * g1_vx_leg2;
+        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let g1_wz_leg4 = t2 * g1_vy_leg4 + t6 * g1_vx_leg4;
+        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
         Ok([
             [g1_vx_leg1, g1_vy_leg1, -minus_g1_wz_leg1],
-            [g1_vx_leg2, g1_vy_leg2, -minus_g1_wz_leg2], [g1_vx_leg3, g1_vy_leg3, g1_wz_leg3],
-            [g1_vx_leg4, g1_vy_leg4, g1_wz_leg4],
+            [-minus_g1_vx_leg2, -minus_g1_vy_leg2, g1_wz_leg2],
+            [g1_vx_leg3, g1_vy_leg3, g1_wz_leg3],
+            [-minus_g1_vx_leg4, -minus_g1_vy_leg4, -minus_g1_wz_leg4],
         ])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
@@ -572,7 +565,7 @@ impl DualV {
     ///
     /// Output: 3 x 4.
     ///
-    /// 228 operations (104 additions, 113 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 222 intermediates.
+    /// 204 operations (84 additions, 109 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 198 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -584,111 +577,99 @@ impl DualV {
         let t6 = 0.11 * c_phi;
         let t8 = pose[1] + t6 - 0.10970563941232059;
         let t10 = t8 * t8;
-        let t13 = 0.0784 / (t4 * t4 + t10) - 0.25;
+        let t11 = t4 * t4 + t10;
+        let t13 = 0.0784 / t11 - 0.25;
         ::overact::guard::reach(t13, "leg1")?;
         let t14 = ::overact::math::sqrt(t13);
-        let t16 = 0.5 * t4 + t8 * t14;
-        let t17 = t4 - t16;
-        let t18 = 0.5 * t8;
-        let t20 = t18 - t4 * t14;
-        let t21 = t8 - t20;
-        let t28 = t21 * (t16 + t17 - t17) + t17 * (t21 - (t20 + t21));
-        ::overact::guard::leg(t28, 0.078399138102973, "leg1")?;
-        let t29 = 1.0 / t28;
-        let g1_vx_leg1 = t17 * t29;
-        let t32 = t3 + 0.3950502153918333;
-        let t37 = 0.0784 / (t32 * t32 + t10) - 0.25;
-        ::overact::guard::reach(t37, "leg2")?;
-        let t38 = ::overact::math::sqrt(t37);
-        let t40 = 0.5 * t32 - t8 * t38;
-        let t41 = t32 - t40;
-        let t43 = t18 + t32 * t38;
-        let t44 = t8 - t43;
-        let t51 = t44 * (t40 + t41 - t41) + t41 * (t44 - (t43 + t44));
-        ::overact::guard::leg(t51, 0.078399138102973, "leg2")?;
+        let t18 = t11 * t14;
+        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
+        let t19 = 1.0 / t18;
+        let g1_vx_leg1 = (t4 - (0.5 * t4 + t8 * t14)) * t19;
+        let t22 = t3 + 0.3950502153918333;
+        let t25 = t22 * t22 + t10;
+        let t27 = 0.0784 / t25 - 0.25;
+        ::overact::guard::reach(t27, "leg2")?;
+        let t28 = ::overact::math::sqrt(t27);
+        let t32 = t25 * t28;
+        ::overact::guard::leg(t32, 0.07839913810297301, "leg2")?;
+        let t33 = 1.0 / t32;
+        let minus_g1_vx_leg2 = (t22 - (0.5 * t22 - t8 * t28)) * t33;
+        let t37 = pose[0] + t2;
+        let t38 = t37 + 0.3950502153918333;
+        let t41 = pose[1] - t6 + 0.10970563941232059;
+        let t43 = t41 * t41;
+        let t44 = t38 * t38 + t43;
+        let t46 = 0.0784 / t44 - 0.25;
+        ::overact::guard::reach(t46, "leg3")?;
+        let t47 = ::overact::math::sqrt(t46);
+        let t51 = t44 * t47;
+        ::overact::guard::leg(t51, 0.07839913810297301, "leg3")?;
         let t52 = 1.0 / t51;
-        let g1_vx_leg2 = t41 * t52;
-        let t56 = pose[0] + t2;
-        let t57 = t56 + 0.3950502153918333;
-        let t60 = pose[1] - t6 + 0.10970563941232059;
-        let t62 = t60 * t60;
-        let t65 = 0.0784 / (t57 * t57 + t62) - 0.25;
-        ::overact::guard::reach(t65, "leg3")?;
-        let t66 = ::overact::math::sqrt(t65);
-        let t68 = 0.5 * t57 + t60 * t66;
-        let t69 = t57 - t68;
-        let t70 = 0.5 * t60;
-        let t72 = t70 - t57 * t66;
-        let t73 = t60 - t72;
-        let t80 = t73 * (t68 + t69 - t69) + t69 * (t73 - (t72 + t73));
-        ::overact::guard::leg(t80, 0.078399138102973, "leg3")?;
-        let t81 = 1.0 / t80;
-        let g1_vx_leg3 = t69 * t81;
-        let t85 = t56 - 0.3950502153918333;
-        let t90 = 0.0784 / (t85 * t85 + t62) - 0.25;
-        ::overact::guard::reach(t90, "leg4")?;
-        let t91 = ::overact::math::sqrt(t90);
-        let t93 = 0.5 * t85 - t60 * t91;
-        let t94 = t85 - t93;
-        let t96 = t70 + t85 * t91;
-        let t97 = t60 - t96;
-        let t104 = t97 * (t93 + t94 - t94) + t94 * (t97 - (t96 + t97));
-        ::overact::guard::leg(t104, 0.078399138102973, "leg4")?;
-        let t105 = 1.0 / t104;
-        let g1_vx_leg4 = t94 * t105;
-        let t108 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t108, 25.429161076750646, "actuators")?;
-        let t109 = 1.0 / t108;
-        let g1_vy_leg1 = t21 * t29;
-        let g1_vy_leg2 = t44 * t52;
-        let g1_vy_leg3 = t73 * t81;
-        let g1_vy_leg4 = t97 * t105;
-        let t121 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
-        let t122 = t121 * t109;
-        let t131 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t121 * t122;
-        ::overact::guard::platform(t131, 25.59236889935335, "actuators")?;
-        let t132 = 1.0 / t131;
-        let t134 = g1_vy_leg1 - g1_vx_leg1 * t122;
+        let g1_vx_leg3 = (t38 - (0.5 * t38 + t41 * t47)) * t52;
+        let t56 = t37 - 0.3950502153918333;
+        let t59 = t56 * t56 + t43;
+        let t61 = 0.0784 / t59 - 0.25;
+        ::overact::guard::reach(t61, "leg4")?;
+        let t62 = ::overact::math::sqrt(t61);
+        let t66 = t59 * t62;
+        ::overact::guard::leg(t66, 0.07839913810297301, "leg4")?;
+        let t67 = 1.0 / t66;
+        let minus_g1_vx_leg4 = (t56 - (0.5 * t56 - t41 * t62)) * t67;
+        let t70 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t70, 25.429161076750646, "actuators")?;
+        let t71 = 1.0 / t70;
+        let t73 = 0.5 * t8;
+        let g1_vy_leg1 = (t8 - (t73 - t4 * t14)) * t19;
+        let minus_g1_vy_leg2 = (t8 - (t73 + t22 * t28)) * t33;
+        let t85 = 0.5 * t41;
+        let g1_vy_leg3 = (t41 - (t85 - t38 * t47)) * t52;
+        let minus_g1_vy_leg4 = (t41 - (t85 + t56 * t62)) * t67;
+        let t97 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+        let t98 = t97 * t71;
+        let t107 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4 - t97 * t98;
+        ::overact::guard::platform(t107, 25.592368899353342, "actuators")?;
+        let t108 = 1.0 / t107;
+        let t110 = g1_vy_leg1 - g1_vx_leg1 * t98;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t6 * g1_vx_leg2;
-        let g1_wz_leg4 = t2 * g1_vy_leg4 + t6 * g1_vx_leg4;
-        let t161 = g1_vx_leg3 * g1_wz_leg3
-            - (g1_vx_leg1 * minus_g1_wz_leg1 + g1_vx_leg2 * minus_g1_wz_leg2)
-            + g1_vx_leg4 * g1_wz_leg4;
-        let t162 = t161 * t109;
-        let t164 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
-            + g1_vy_leg4 * g1_wz_leg4 - t121 * t162;
-        let t165 = t164 * t132;
-        let t176 = minus_g1_wz_leg1 * minus_g1_wz_leg1
-            + minus_g1_wz_leg2 * minus_g1_wz_leg2 + g1_wz_leg3 * g1_wz_leg3
-            + g1_wz_leg4 * g1_wz_leg4 - t161 * t162 - t164 * t165;
-        ::overact::guard::platform(t176, 0.3076928490286828, "actuators")?;
-        let t177 = 1.0 / t176;
-        let t182 = t177 * (minus_g1_wz_leg1 + g1_vx_leg1 * t162 + t165 * t134);
-        let t184 = t132 * t134 + t165 * t182;
-        let t191 = g1_vy_leg2 - g1_vx_leg2 * t122;
-        let t197 = t177 * (minus_g1_wz_leg2 + g1_vx_leg2 * t162 + t165 * t191);
-        let t199 = t132 * t191 + t165 * t197;
-        let t206 = g1_vy_leg3 - g1_vx_leg3 * t122;
-        let t212 = t177 * (g1_wz_leg3 - g1_vx_leg3 * t162 - t165 * t206);
-        let t214 = t132 * t206 - t165 * t212;
-        let t221 = g1_vy_leg4 - g1_vx_leg4 * t122;
-        let t227 = t177 * (g1_wz_leg4 - g1_vx_leg4 * t162 - t165 * t221);
-        let t229 = t132 * t221 - t165 * t227;
+        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
+        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
+        let t137 = g1_vx_leg3 * g1_wz_leg3
+            - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+            + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+        let t138 = t137 * t71;
+        let t140 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t97 * t138;
+        let t141 = t140 * t108;
+        let t152 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t137 * t138
+            - t140 * t141;
+        ::overact::guard::platform(t152, 0.3076928490286828, "actuators")?;
+        let t153 = 1.0 / t152;
+        let t158 = t153 * (minus_g1_wz_leg1 + g1_vx_leg1 * t138 + t141 * t110);
+        let t160 = t108 * t110 + t141 * t158;
+        let t167 = minus_g1_vx_leg2 * t98 - minus_g1_vy_leg2;
+        let t173 = t153 * (g1_wz_leg2 + minus_g1_vx_leg2 * t138 - t141 * t167);
+        let t175 = t108 * t167 - t141 * t173;
+        let t182 = g1_vy_leg3 - g1_vx_leg3 * t98;
+        let t188 = t153 * (g1_wz_leg3 - g1_vx_leg3 * t138 - t141 * t182);
+        let t190 = t108 * t182 - t141 * t188;
+        let t197 = minus_g1_vx_leg4 * t98 - minus_g1_vy_leg4;
+        let t203 = t153 * (minus_g1_vx_leg4 * t138 - minus_g1_wz_leg4 - t141 * t197);
+        let t205 = t108 * t197 - t141 * t203;
         Ok([
             [
-                g1_vx_leg1 * t109 - t122 * t184 + t162 * t182,
-                g1_vx_leg2 * t109 - t122 * t199 + t162 * t197,
-                g1_vx_leg3 * t109 - t122 * t214 - t162 * t212,
-                g1_vx_leg4 * t109 - t122 * t229 - t162 * t227,
+                g1_vx_leg1 * t71 - t98 * t160 + t138 * t158,
+                -(minus_g1_vx_leg2 * t71 + t98 * t175 + t138 * t173),
+                g1_vx_leg3 * t71 - t98 * t190 - t138 * t188,
+                -(minus_g1_vx_leg4 * t71 + t98 * t205 + t138 * t203),
             ],
-            [t184, t199, t214, t229],
-            [-t182, -t197, t212, t227],
+            [t160, t175, t190, t205],
+            [-t158, t173, t188, t203],
         ])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -831,14 +812,10 @@ impl DualV {
         let g1_vx_leg4 = c12_leg4 * t53;
         let g1_wz_leg4 = t26 * g1_vy_leg4 + t29 * g1_vx_leg4;
         Ok([
-            [
-                -(0.28 * c12_leg1), -(0.28 * s12_leg1), 0.0784 * s2_leg1 * minus_g1_wz_leg1,
-            ],
-            [
-                -(0.28 * c12_leg2), -(0.28 * s12_leg2), 0.0784 * s2_leg2 * minus_g1_wz_leg2,
-            ],
-            [-(0.28 * c12_leg3), -(0.28 * s12_leg3), -(0.0784 * s2_leg3 * g1_wz_leg3)],
-            [-(0.28 * c12_leg4), -(0.28 * s12_leg4), -(0.0784 * s2_leg4 * g1_wz_leg4)],
+            [0.28 * c12_leg1, 0.28 * s12_leg1, -(0.0784 * s2_leg1 * minus_g1_wz_leg1)],
+            [0.28 * c12_leg2, 0.28 * s12_leg2, -(0.0784 * s2_leg2 * minus_g1_wz_leg2)],
+            [0.28 * c12_leg3, 0.28 * s12_leg3, 0.0784 * s2_leg3 * g1_wz_leg3],
+            [0.28 * c12_leg4, 0.28 * s12_leg4, 0.0784 * s2_leg4 * g1_wz_leg4],
         ])
     }
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
@@ -866,8 +843,8 @@ impl DualV {
         let s2_leg4 = ::overact::math::sin_cos(joints[10]).0;
         ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
         Ok([
-            [0.0784 * s2_leg1, 0.0, 0.0, 0.0], [0.0, 0.0784 * s2_leg2, 0.0, 0.0],
-            [0.0, 0.0, 0.0784 * s2_leg3, 0.0], [0.0, 0.0, 0.0, 0.0784 * s2_leg4],
+            [-(0.0784 * s2_leg1), 0.0, 0.0, 0.0], [0.0, -(0.0784 * s2_leg2), 0.0, 0.0],
+            [0.0, 0.0, -(0.0784 * s2_leg3), 0.0], [0.0, 0.0, 0.0, -(0.0784 * s2_leg4)],
         ])
     }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
@@ -878,7 +855,7 @@ impl DualV {
     ///
     /// Output: 12.
     ///
-    /// 146 operations (74 additions, 64 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 140 intermediates.
+    /// 122 operations (54 additions, 60 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 116 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -893,97 +870,85 @@ impl DualV {
         let t6 = 0.11 * c_phi;
         let t8 = pose[1] + t6 - 0.10970563941232059;
         let t10 = t8 * t8;
-        let t13 = 0.0784 / (t4 * t4 + t10) - 0.25;
+        let t11 = t4 * t4 + t10;
+        let t13 = 0.0784 / t11 - 0.25;
         ::overact::guard::reach(t13, "leg1")?;
         let t14 = ::overact::math::sqrt(t13);
         let t16 = 0.5 * t4 + t8 * t14;
-        let t17 = t4 - t16;
-        let t18 = 0.5 * t8;
-        let t20 = t18 - t4 * t14;
-        let t21 = t8 - t20;
-        let t23 = t16 + t17 - t17;
-        let t26 = t21 - (t20 + t21);
-        let t28 = t21 * t23 + t17 * t26;
-        ::overact::guard::leg(t28, 0.078399138102973, "leg1")?;
-        let t29 = 1.0 / t28;
-        let g1_vx_leg1 = t17 * t29;
-        let t31 = t6 * twist[2];
-        let t32 = twist[0] - t31;
-        let g1_vy_leg1 = t21 * t29;
-        let t35 = t2 * twist[2];
-        let t36 = twist[1] - t35;
-        let rate_1_leg1 = g1_vx_leg1 * t32 + g1_vy_leg1 * t36;
-        let g2_vy_leg1 = t26 * t29;
-        let minus_g2_vx_leg1 = t23 * t29;
-        let rate_2_leg1 = g2_vy_leg1 * t36 - minus_g2_vx_leg1 * t32;
-        let t46 = t3 + 0.3950502153918333;
-        let t51 = 0.0784 / (t46 * t46 + t10) - 0.25;
-        ::overact::guard::reach(t51, "leg2")?;
-        let t52 = ::overact::math::sqrt(t51);
-        let t54 = 0.5 * t46 - t8 * t52;
-        let t55 = t46 - t54;
-        let t57 = t18 + t46 * t52;
-        let t58 = t8 - t57;
-        let t60 = t54 + t55 - t55;
-        let t63 = t58 - (t57 + t58);
-        let t65 = t58 * t60 + t55 * t63;
-        ::overact::guard::leg(t65, 0.078399138102973, "leg2")?;
-        let t66 = 1.0 / t65;
-        let g1_vx_leg2 = t55 * t66;
-        let g1_vy_leg2 = t58 * t66;
-        let rate_1_leg2 = g1_vx_leg2 * t32 + g1_vy_leg2 * t36;
-        let g2_vy_leg2 = t63 * t66;
-        let minus_g2_vx_leg2 = t60 * t66;
-        let rate_2_leg2 = g2_vy_leg2 * t36 - minus_g2_vx_leg2 * t32;
-        let t79 = pose[0] + t2;
-        let t80 = t79 + 0.3950502153918333;
-        let t83 = pose[1] - t6 + 0.10970563941232059;
-        let t85 = t83 * t83;
-        let t88 = 0.0784 / (t80 * t80 + t85) - 0.25;
-        ::overact::guard::reach(t88, "leg3")?;
-        let t89 = ::overact::math::sqrt(t88);
-        let t91 = 0.5 * t80 + t83 * t89;
-        let t92 = t80 - t91;
-        let t93 = 0.5 * t83;
-        let t95 = t93 - t80 * t89;
-        let t96 = t83 - t95;
-        let t98 = t91 + t92 - t92;
-        let t101 = t96 - (t95 + t96);
-        let t103 = t96 * t98 + t92 * t101;
-        ::overact::guard::leg(t103, 0.078399138102973, "leg3")?;
-        let t104 = 1.0 / t103;
-        let g1_vx_leg3 = t92 * t104;
-        let t106 = twist[0] + t31;
-        let g1_vy_leg3 = t96 * t104;
-        let t109 = twist[1] + t35;
-        let rate_1_leg3 = g1_vx_leg3 * t106 + g1_vy_leg3 * t109;
-        let g2_vy_leg3 = t101 * t104;
-        let minus_g2_vx_leg3 = t98 * t104;
-        let rate_2_leg3 = g2_vy_leg3 * t109 - minus_g2_vx_leg3 * t106;
-        let t119 = t79 - 0.3950502153918333;
-        let t124 = 0.0784 / (t119 * t119 + t85) - 0.25;
-        ::overact::guard::reach(t124, "leg4")?;
-        let t125 = ::overact::math::sqrt(t124);
-        let t127 = 0.5 * t119 - t83 * t125;
-        let t128 = t119 - t127;
-        let t130 = t93 + t119 * t125;
-        let t131 = t83 - t130;
-        let t133 = t127 + t128 - t128;
-        let t136 = t131 - (t130 + t131);
-        let t138 = t131 * t133 + t128 * t136;
-        ::overact::guard::leg(t138, 0.078399138102973, "leg4")?;
-        let t139 = 1.0 / t138;
-        let g1_vx_leg4 = t128 * t139;
-        let g1_vy_leg4 = t131 * t139;
-        let rate_1_leg4 = g1_vx_leg4 * t106 + g1_vy_leg4 * t109;
-        let g2_vy_leg4 = t136 * t139;
-        let minus_g2_vx_leg4 = t133 * t139;
-        let rate_2_leg4 = g2_vy_leg4 * t109 - minus_g2_vx_leg4 * t106;
+        let t18 = t11 * t14;
+        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
+        let t19 = 1.0 / t18;
+        let g1_vx_leg1 = (t4 - t16) * t19;
+        let t21 = t6 * twist[2];
+        let t22 = twist[0] - t21;
+        let t24 = 0.5 * t8;
+        let t26 = t24 - t4 * t14;
+        let g1_vy_leg1 = (t8 - t26) * t19;
+        let t29 = t2 * twist[2];
+        let t30 = twist[1] - t29;
+        let rate_1_leg1 = g1_vx_leg1 * t22 + g1_vy_leg1 * t30;
+        let minus_g2_vx_leg1 = t16 * t19;
+        let minus_g2_vy_leg1 = t26 * t19;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t22 + minus_g2_vy_leg1 * t30;
+        let t40 = t3 + 0.3950502153918333;
+        let t43 = t40 * t40 + t10;
+        let t45 = 0.0784 / t43 - 0.25;
+        ::overact::guard::reach(t45, "leg2")?;
+        let t46 = ::overact::math::sqrt(t45);
+        let t48 = 0.5 * t40 - t8 * t46;
+        let t50 = t43 * t46;
+        ::overact::guard::leg(t50, 0.07839913810297301, "leg2")?;
+        let t51 = 1.0 / t50;
+        let minus_g1_vx_leg2 = (t40 - t48) * t51;
+        let t55 = t24 + t40 * t46;
+        let minus_g1_vy_leg2 = (t8 - t55) * t51;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t22 + minus_g1_vy_leg2 * t30;
+        let g2_vx_leg2 = t48 * t51;
+        let g2_vy_leg2 = t55 * t51;
+        let rate_2_leg2 = g2_vx_leg2 * t22 + g2_vy_leg2 * t30;
+        let t67 = pose[0] + t2;
+        let t68 = t67 + 0.3950502153918333;
+        let t71 = pose[1] - t6 + 0.10970563941232059;
+        let t73 = t71 * t71;
+        let t74 = t68 * t68 + t73;
+        let t76 = 0.0784 / t74 - 0.25;
+        ::overact::guard::reach(t76, "leg3")?;
+        let t77 = ::overact::math::sqrt(t76);
+        let t79 = 0.5 * t68 + t71 * t77;
+        let t81 = t74 * t77;
+        ::overact::guard::leg(t81, 0.07839913810297301, "leg3")?;
+        let t82 = 1.0 / t81;
+        let g1_vx_leg3 = (t68 - t79) * t82;
+        let t84 = twist[0] + t21;
+        let t86 = 0.5 * t71;
+        let t88 = t86 - t68 * t77;
+        let g1_vy_leg3 = (t71 - t88) * t82;
+        let t91 = twist[1] + t29;
+        let rate_1_leg3 = g1_vx_leg3 * t84 + g1_vy_leg3 * t91;
+        let minus_g2_vx_leg3 = t79 * t82;
+        let minus_g2_vy_leg3 = t88 * t82;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t84 + minus_g2_vy_leg3 * t91;
+        let t101 = t67 - 0.3950502153918333;
+        let t104 = t101 * t101 + t73;
+        let t106 = 0.0784 / t104 - 0.25;
+        ::overact::guard::reach(t106, "leg4")?;
+        let t107 = ::overact::math::sqrt(t106);
+        let t109 = 0.5 * t101 - t71 * t107;
+        let t111 = t104 * t107;
+        ::overact::guard::leg(t111, 0.07839913810297301, "leg4")?;
+        let t112 = 1.0 / t111;
+        let minus_g1_vx_leg4 = (t101 - t109) * t112;
+        let t116 = t86 + t101 * t107;
+        let minus_g1_vy_leg4 = (t71 - t116) * t112;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t84 + minus_g1_vy_leg4 * t91;
+        let g2_vx_leg4 = t109 * t112;
+        let g2_vy_leg4 = t116 * t112;
+        let rate_2_leg4 = g2_vx_leg4 * t84 + g2_vy_leg4 * t91;
         Ok([
-            rate_1_leg1, rate_2_leg1 - rate_1_leg1, twist[2] - rate_2_leg1, rate_1_leg2,
-            rate_2_leg2 - rate_1_leg2, twist[2] - rate_2_leg2, rate_1_leg3,
-            rate_2_leg3 - rate_1_leg3, twist[2] - rate_2_leg3, rate_1_leg4,
-            rate_2_leg4 - rate_1_leg4, twist[2] - rate_2_leg4,
+            rate_1_leg1, -(rate_1_leg1 + minus_rate_2_leg1), minus_rate_2_leg1 + twist[2],
+            -minus_rate_1_leg2, minus_rate_1_leg2 + rate_2_leg2, twist[2] - rate_2_leg2,
+            rate_1_leg3, -(rate_1_leg3 + minus_rate_2_leg3), minus_rate_2_leg3 + twist[2],
+            -minus_rate_1_leg4, minus_rate_1_leg4 + rate_2_leg4, twist[2] - rate_2_leg4,
         ])
     }
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
@@ -995,7 +960,7 @@ impl DualV {
     ///
     /// Output: 12.
     ///
-    /// 230 operations (114 additions, 108 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 224 intermediates.
+    /// 214 operations (90 additions, 116 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 208 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1010,134 +975,130 @@ impl DualV {
         let t4 = t3 - 0.3950502153918333;
         let t6 = 0.11 * c_phi;
         let t8 = pose[1] + t6 - 0.10970563941232059;
-        let t10 = t8 * t8;
-        let t13 = 0.0784 / (t4 * t4 + t10) - 0.25;
-        ::overact::guard::reach(t13, "leg1")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t16 = 0.5 * t4 + t8 * t14;
-        let t17 = t4 - t16;
-        let t18 = 0.5 * t8;
-        let t20 = t18 - t4 * t14;
-        let t21 = t8 - t20;
-        let t23 = t16 + t17 - t17;
-        let t26 = t21 - (t20 + t21);
-        let t28 = t21 * t23 + t17 * t26;
-        ::overact::guard::leg(t28, 0.078399138102973, "leg1")?;
-        let t29 = 1.0 / t28;
-        let g1_vx_leg1 = t17 * t29;
-        let t31 = t6 * acceleration[2];
-        let t33 = t2 * twist[2];
-        let t34 = twist[2] * t33;
-        let t35 = acceleration[0] - t31 + t34;
-        let t36 = t6 * twist[2];
-        let t37 = twist[0] - t36;
-        let g1_vy_leg1 = t21 * t29;
-        let t40 = twist[1] - t33;
-        let rate_1_leg1 = g1_vx_leg1 * t37 + g1_vy_leg1 * t40;
-        let t43 = rate_1_leg1 * rate_1_leg1;
-        let g2_vy_leg1 = t26 * t29;
-        let minus_g2_vx_leg1 = t23 * t29;
-        let rate_2_leg1 = g2_vy_leg1 * t40 - minus_g2_vx_leg1 * t37;
-        let t51 = rate_1_leg1 + rate_2_leg1 - rate_1_leg1;
-        let t52 = t51 * t51;
-        let t55 = t35 + t16 * t43 + t17 * t52;
-        let t57 = t2 * acceleration[2];
-        let t59 = twist[2] * t36;
-        let t60 = acceleration[1] - t57 - t59;
-        let t64 = t60 + t20 * t43 + t21 * t52;
-        let rate_dot_1_leg1 = g1_vx_leg1 * t55 + g1_vy_leg1 * t64;
-        let rate_dot_2_leg1 = g2_vy_leg1 * t64 - minus_g2_vx_leg1 * t55;
-        let t72 = t3 + 0.3950502153918333;
-        let t77 = 0.0784 / (t72 * t72 + t10) - 0.25;
-        ::overact::guard::reach(t77, "leg2")?;
-        let t78 = ::overact::math::sqrt(t77);
-        let t80 = 0.5 * t72 - t8 * t78;
-        let t81 = t72 - t80;
-        let t83 = t18 + t72 * t78;
-        let t84 = t8 - t83;
-        let t86 = t80 + t81 - t81;
-        let t89 = t84 - (t83 + t84);
-        let t91 = t84 * t86 + t81 * t89;
-        ::overact::guard::leg(t91, 0.078399138102973, "leg2")?;
-        let t92 = 1.0 / t91;
-        let g1_vx_leg2 = t81 * t92;
-        let g1_vy_leg2 = t84 * t92;
-        let rate_1_leg2 = g1_vx_leg2 * t37 + g1_vy_leg2 * t40;
-        let t98 = rate_1_leg2 * rate_1_leg2;
-        let g2_vy_leg2 = t89 * t92;
-        let minus_g2_vx_leg2 = t86 * t92;
-        let rate_2_leg2 = g2_vy_leg2 * t40 - minus_g2_vx_leg2 * t37;
-        let t106 = rate_1_leg2 + rate_2_leg2 - rate_1_leg2;
-        let t107 = t106 * t106;
-        let t110 = t35 + t80 * t98 + t81 * t107;
-        let t115 = t60 + t83 * t98 + t84 * t107;
-        let rate_dot_1_leg2 = g1_vx_leg2 * t110 + g1_vy_leg2 * t115;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t115 - minus_g2_vx_leg2 * t110;
-        let t123 = pose[0] + t2;
-        let t124 = t123 + 0.3950502153918333;
-        let t127 = pose[1] - t6 + 0.10970563941232059;
-        let t129 = t127 * t127;
-        let t132 = 0.0784 / (t124 * t124 + t129) - 0.25;
-        ::overact::guard::reach(t132, "leg3")?;
-        let t133 = ::overact::math::sqrt(t132);
-        let t135 = 0.5 * t124 + t127 * t133;
-        let t136 = t124 - t135;
-        let t137 = 0.5 * t127;
-        let t139 = t137 - t124 * t133;
-        let t140 = t127 - t139;
-        let t142 = t135 + t136 - t136;
-        let t145 = t140 - (t139 + t140);
-        let t147 = t140 * t142 + t136 * t145;
-        ::overact::guard::leg(t147, 0.078399138102973, "leg3")?;
-        let t148 = 1.0 / t147;
-        let g1_vx_leg3 = t136 * t148;
-        let t151 = acceleration[0] + t31 - t34;
-        let t152 = twist[0] + t36;
-        let g1_vy_leg3 = t140 * t148;
-        let t155 = twist[1] + t33;
-        let rate_1_leg3 = g1_vx_leg3 * t152 + g1_vy_leg3 * t155;
-        let t158 = rate_1_leg3 * rate_1_leg3;
-        let g2_vy_leg3 = t145 * t148;
-        let minus_g2_vx_leg3 = t142 * t148;
-        let rate_2_leg3 = g2_vy_leg3 * t155 - minus_g2_vx_leg3 * t152;
-        let t166 = rate_1_leg3 + rate_2_leg3 - rate_1_leg3;
-        let t167 = t166 * t166;
-        let t170 = t151 + t135 * t158 + t136 * t167;
-        let t173 = acceleration[1] + t57 + t59;
-        let t177 = t173 + t139 * t158 + t140 * t167;
-        let rate_dot_1_leg3 = g1_vx_leg3 * t170 + g1_vy_leg3 * t177;
-        let rate_dot_2_leg3 = g2_vy_leg3 * t177 - minus_g2_vx_leg3 * t170;
-        let t185 = t123 - 0.3950502153918333;
-        let t190 = 0.0784 / (t185 * t185 + t129) - 0.25;
-        ::overact::guard::reach(t190, "leg4")?;
-        let t191 = ::overact::math::sqrt(t190);
-        let t193 = 0.5 * t185 - t127 * t191;
-        let t194 = t185 - t193;
-        let t196 = t137 + t185 * t191;
-        let t197 = t127 - t196;
-        let t199 = t193 + t194 - t194;
-        let t202 = t197 - (t196 + t197);
-        let t204 = t197 * t199 + t194 * t202;
-        ::overact::guard::leg(t204, 0.078399138102973, "leg4")?;
-        let t205 = 1.0 / t204;
-        let g1_vx_leg4 = t194 * t205;
-        let g1_vy_leg4 = t197 * t205;
-        let rate_1_leg4 = g1_vx_leg4 * t152 + g1_vy_leg4 * t155;
-        let t211 = rate_1_leg4 * rate_1_leg4;
-        let g2_vy_leg4 = t202 * t205;
-        let minus_g2_vx_leg4 = t199 * t205;
-        let rate_2_leg4 = g2_vy_leg4 * t155 - minus_g2_vx_leg4 * t152;
-        let t219 = rate_1_leg4 + rate_2_leg4 - rate_1_leg4;
-        let t220 = t219 * t219;
-        let t223 = t151 + t193 * t211 + t194 * t220;
-        let t228 = t173 + t196 * t211 + t197 * t220;
-        let rate_dot_1_leg4 = g1_vx_leg4 * t223 + g1_vy_leg4 * t228;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t228 - minus_g2_vx_leg4 * t223;
+        let t9 = t8 * t8;
+        let t10 = t4 * t4 + t9;
+        let t12 = 0.0784 / t10 - 0.25;
+        ::overact::guard::reach(t12, "leg1")?;
+        let t13 = ::overact::math::sqrt(t12);
+        let t14 = t10 * t13;
+        ::overact::guard::leg(t14, 0.07839913810297301, "leg1")?;
+        let t15 = 1.0 / t14;
+        let t18 = 0.5 * t4 + t8 * t13;
+        let t19 = t4 - t18;
+        let t20 = t6 * acceleration[2];
+        let t22 = t2 * twist[2];
+        let t23 = twist[2] * t22;
+        let t24 = acceleration[0] - t20 + t23;
+        let t26 = 0.5 * t8;
+        let t28 = t26 - t4 * t13;
+        let t29 = t8 - t28;
+        let t30 = t2 * acceleration[2];
+        let t32 = t6 * twist[2];
+        let t33 = twist[2] * t32;
+        let t34 = acceleration[1] - t30 - t33;
+        let minus_g2_vx_leg1 = t18 * t15;
+        let t38 = twist[0] - t32;
+        let minus_g2_vy_leg1 = t28 * t15;
+        let t41 = twist[1] - t22;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t38 + minus_g2_vy_leg1 * t41;
+        let t44 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let g1_vx_leg1 = t19 * t15;
+        let g1_vy_leg1 = t29 * t15;
+        let rate_1_leg1 = g1_vx_leg1 * t38 + g1_vy_leg1 * t41;
+        let t52 = rate_1_leg1 * rate_1_leg1;
+        let t54 = 0.5 * (t10 - 0.1568);
+        let rate_dot_1_leg1 = t15 * (t19 * t24 + t29 * t34 + 0.0784 * t44 + t52 * t54);
+        let minus_rate_dot_2_leg1 = t15
+            * (t18 * t24 + t28 * t34 + 0.0784 * t52 + t44 * t54);
+        let t68 = t3 + 0.3950502153918333;
+        let t70 = t68 * t68 + t9;
+        let t72 = 0.0784 / t70 - 0.25;
+        ::overact::guard::reach(t72, "leg2")?;
+        let t73 = ::overact::math::sqrt(t72);
+        let t74 = t70 * t73;
+        ::overact::guard::leg(t74, 0.07839913810297301, "leg2")?;
+        let t75 = 1.0 / t74;
+        let t78 = 0.5 * t68 - t8 * t73;
+        let t79 = t68 - t78;
+        let t82 = t26 + t68 * t73;
+        let t83 = t8 - t82;
+        let g2_vx_leg2 = t78 * t75;
+        let g2_vy_leg2 = t82 * t75;
+        let rate_2_leg2 = g2_vx_leg2 * t38 + g2_vy_leg2 * t41;
+        let t91 = rate_2_leg2 * rate_2_leg2;
+        let minus_g1_vx_leg2 = t79 * t75;
+        let minus_g1_vy_leg2 = t83 * t75;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t38 + minus_g1_vy_leg2 * t41;
+        let t99 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t101 = 0.5 * (t70 - 0.1568);
+        let minus_rate_dot_1_leg2 = t75
+            * (t79 * t24 + t83 * t34 + 0.0784 * t91 + t99 * t101);
+        let rate_dot_2_leg2 = t75 * (t78 * t24 + t82 * t34 + 0.0784 * t99 + t91 * t101);
+        let t115 = pose[0] + t2;
+        let t116 = t115 + 0.3950502153918333;
+        let t119 = pose[1] - t6 + 0.10970563941232059;
+        let t120 = t119 * t119;
+        let t121 = t116 * t116 + t120;
+        let t123 = 0.0784 / t121 - 0.25;
+        ::overact::guard::reach(t123, "leg3")?;
+        let t124 = ::overact::math::sqrt(t123);
+        let t125 = t121 * t124;
+        ::overact::guard::leg(t125, 0.07839913810297301, "leg3")?;
+        let t126 = 1.0 / t125;
+        let t129 = 0.5 * t116 + t119 * t124;
+        let t130 = t116 - t129;
+        let t132 = acceleration[0] + t20 - t23;
+        let t134 = 0.5 * t119;
+        let t136 = t134 - t116 * t124;
+        let t137 = t119 - t136;
+        let t139 = acceleration[1] + t30 + t33;
+        let minus_g2_vx_leg3 = t129 * t126;
+        let t143 = twist[0] + t32;
+        let minus_g2_vy_leg3 = t136 * t126;
+        let t146 = twist[1] + t22;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t143 + minus_g2_vy_leg3 * t146;
+        let t149 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let g1_vx_leg3 = t130 * t126;
+        let g1_vy_leg3 = t137 * t126;
+        let rate_1_leg3 = g1_vx_leg3 * t143 + g1_vy_leg3 * t146;
+        let t157 = rate_1_leg3 * rate_1_leg3;
+        let t159 = 0.5 * (t121 - 0.1568);
+        let rate_dot_1_leg3 = t126
+            * (t130 * t132 + t137 * t139 + 0.0784 * t149 + t157 * t159);
+        let minus_rate_dot_2_leg3 = t126
+            * (t129 * t132 + t136 * t139 + 0.0784 * t157 + t149 * t159);
+        let t173 = t115 - 0.3950502153918333;
+        let t175 = t173 * t173 + t120;
+        let t177 = 0.0784 / t175 - 0.25;
+        ::overact::guard::reach(t177, "leg4")?;
+        let t178 = ::overact::math::sqrt(t177);
+        let t179 = t175 * t178;
+        ::overact::guard::leg(t179, 0.07839913810297301, "leg4")?;
+        let t180 = 1.0 / t179;
+        let t183 = 0.5 * t173 - t119 * t178;
+        let t184 = t173 - t183;
+        let t187 = t134 + t173 * t178;
+        let t188 = t119 - t187;
+        let g2_vx_leg4 = t183 * t180;
+        let g2_vy_leg4 = t187 * t180;
+        let rate_2_leg4 = g2_vx_leg4 * t143 + g2_vy_leg4 * t146;
+        let t196 = rate_2_leg4 * rate_2_leg4;
+        let minus_g1_vx_leg4 = t184 * t180;
+        let minus_g1_vy_leg4 = t188 * t180;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t143 + minus_g1_vy_leg4 * t146;
+        let t204 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t206 = 0.5 * (t175 - 0.1568);
+        let minus_rate_dot_1_leg4 = t180
+            * (t184 * t132 + t188 * t139 + 0.0784 * t196 + t204 * t206);
+        let rate_dot_2_leg4 = t180
+            * (t183 * t132 + t187 * t139 + 0.0784 * t204 + t196 * t206);
         Ok([
-            rate_dot_1_leg1, rate_dot_2_leg1 - rate_dot_1_leg1, acceleration[2] - rate_dot_2_leg1,
-            rate_dot_1_leg2, rate_dot_2_leg2 - rate_dot_1_leg2, acceleration[2] - rate_dot_2_leg2,
-            rate_dot_1_leg3, rate_dot_2_leg3 - rate_dot_1_leg3, acceleration[2] - rate_dot_2_leg3,
-            rate_dot_1_leg4, rate_dot_2_leg4 - rate_dot_1_leg4, acceleration[2] - rate_dot_2_leg4,
+            rate_dot_1_leg1, -(rate_dot_1_leg1 + minus_rate_dot_2_leg1),
+            minus_rate_dot_2_leg1 + acceleration[2], -minus_rate_dot_1_leg2,
+            minus_rate_dot_1_leg2 + rate_dot_2_leg2, acceleration[2] - rate_dot_2_leg2,
+            rate_dot_1_leg3, -(rate_dot_1_leg3 + minus_rate_dot_2_leg3),
+            minus_rate_dot_2_leg3 + acceleration[2], -minus_rate_dot_1_leg4,
+            minus_rate_dot_1_leg4 + rate_dot_2_leg4, acceleration[2] - rate_dot_2_leg4,
         ])
     }
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
@@ -1148,7 +1109,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 203 operations (95 additions, 97 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 206 intermediates.
+    /// 179 operations (75 additions, 93 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 182 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1163,102 +1124,93 @@ impl DualV {
         let t6 = 0.11 * c_phi;
         let t8 = pose[1] + t6 - 0.10970563941232059;
         let t10 = t8 * t8;
-        let t13 = 0.0784 / (t4 * t4 + t10) - 0.25;
+        let t11 = t4 * t4 + t10;
+        let t13 = 0.0784 / t11 - 0.25;
         ::overact::guard::reach(t13, "leg1")?;
         let t14 = ::overact::math::sqrt(t13);
-        let t16 = 0.5 * t4 + t8 * t14;
-        let t17 = t4 - t16;
-        let t18 = 0.5 * t8;
-        let t20 = t18 - t4 * t14;
-        let t21 = t8 - t20;
-        let t28 = t21 * (t16 + t17 - t17) + t17 * (t21 - (t20 + t21));
-        ::overact::guard::leg(t28, 0.078399138102973, "leg1")?;
-        let t29 = 1.0 / t28;
-        let g1_vx_leg1 = t17 * t29;
-        let t32 = t3 + 0.3950502153918333;
-        let t37 = 0.0784 / (t32 * t32 + t10) - 0.25;
-        ::overact::guard::reach(t37, "leg2")?;
-        let t38 = ::overact::math::sqrt(t37);
-        let t40 = 0.5 * t32 - t8 * t38;
-        let t41 = t32 - t40;
-        let t43 = t18 + t32 * t38;
-        let t44 = t8 - t43;
-        let t51 = t44 * (t40 + t41 - t41) + t41 * (t44 - (t43 + t44));
-        ::overact::guard::leg(t51, 0.078399138102973, "leg2")?;
+        let t18 = t11 * t14;
+        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
+        let t19 = 1.0 / t18;
+        let g1_vx_leg1 = (t4 - (0.5 * t4 + t8 * t14)) * t19;
+        let t22 = t3 + 0.3950502153918333;
+        let t25 = t22 * t22 + t10;
+        let t27 = 0.0784 / t25 - 0.25;
+        ::overact::guard::reach(t27, "leg2")?;
+        let t28 = ::overact::math::sqrt(t27);
+        let t32 = t25 * t28;
+        ::overact::guard::leg(t32, 0.07839913810297301, "leg2")?;
+        let t33 = 1.0 / t32;
+        let minus_g1_vx_leg2 = (t22 - (0.5 * t22 - t8 * t28)) * t33;
+        let t37 = pose[0] + t2;
+        let t38 = t37 + 0.3950502153918333;
+        let t41 = pose[1] - t6 + 0.10970563941232059;
+        let t43 = t41 * t41;
+        let t44 = t38 * t38 + t43;
+        let t46 = 0.0784 / t44 - 0.25;
+        ::overact::guard::reach(t46, "leg3")?;
+        let t47 = ::overact::math::sqrt(t46);
+        let t51 = t44 * t47;
+        ::overact::guard::leg(t51, 0.07839913810297301, "leg3")?;
         let t52 = 1.0 / t51;
-        let g1_vx_leg2 = t41 * t52;
-        let t56 = pose[0] + t2;
-        let t57 = t56 + 0.3950502153918333;
-        let t60 = pose[1] - t6 + 0.10970563941232059;
-        let t62 = t60 * t60;
-        let t65 = 0.0784 / (t57 * t57 + t62) - 0.25;
-        ::overact::guard::reach(t65, "leg3")?;
-        let t66 = ::overact::math::sqrt(t65);
-        let t68 = 0.5 * t57 + t60 * t66;
-        let t69 = t57 - t68;
-        let t70 = 0.5 * t60;
-        let t72 = t70 - t57 * t66;
-        let t73 = t60 - t72;
-        let t80 = t73 * (t68 + t69 - t69) + t69 * (t73 - (t72 + t73));
-        ::overact::guard::leg(t80, 0.078399138102973, "leg3")?;
-        let t81 = 1.0 / t80;
-        let g1_vx_leg3 = t69 * t81;
-        let t85 = t56 - 0.3950502153918333;
-        let t90 = 0.0784 / (t85 * t85 + t62) - 0.25;
-        ::overact::guard::reach(t90, "leg4")?;
-        let t91 = ::overact::math::sqrt(t90);
-        let t93 = 0.5 * t85 - t60 * t91;
-        let t94 = t85 - t93;
-        let t96 = t70 + t85 * t91;
-        let t97 = t60 - t96;
-        let t104 = t97 * (t93 + t94 - t94) + t94 * (t97 - (t96 + t97));
-        ::overact::guard::leg(t104, 0.078399138102973, "leg4")?;
-        let t105 = 1.0 / t104;
-        let g1_vx_leg4 = t94 * t105;
-        let t108 = g1_vx_leg1 * actuator_velocities[0]
-            + g1_vx_leg2 * actuator_velocities[1] + g1_vx_leg3 * actuator_velocities[2]
-            + g1_vx_leg4 * actuator_velocities[3];
-        let t115 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t115, 25.429161076750646, "actuators")?;
-        let t116 = 1.0 / t115;
-        let g1_vy_leg1 = t21 * t29;
-        let g1_vy_leg2 = t44 * t52;
-        let g1_vy_leg3 = t73 * t81;
-        let g1_vy_leg4 = t97 * t105;
-        let t128 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
-        let t129 = t128 * t116;
-        let t138 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t128 * t129;
-        ::overact::guard::platform(t138, 25.59236889935335, "actuators")?;
-        let t139 = 1.0 / t138;
-        let t148 = g1_vy_leg1 * actuator_velocities[0]
-            + g1_vy_leg2 * actuator_velocities[1] + g1_vy_leg3 * actuator_velocities[2]
-            + g1_vy_leg4 * actuator_velocities[3] - t108 * t129;
+        let g1_vx_leg3 = (t38 - (0.5 * t38 + t41 * t47)) * t52;
+        let t56 = t37 - 0.3950502153918333;
+        let t59 = t56 * t56 + t43;
+        let t61 = 0.0784 / t59 - 0.25;
+        ::overact::guard::reach(t61, "leg4")?;
+        let t62 = ::overact::math::sqrt(t61);
+        let t66 = t59 * t62;
+        ::overact::guard::leg(t66, 0.07839913810297301, "leg4")?;
+        let t67 = 1.0 / t66;
+        let minus_g1_vx_leg4 = (t56 - (0.5 * t56 - t41 * t62)) * t67;
+        let t70 = g1_vx_leg1 * actuator_velocities[0]
+            - minus_g1_vx_leg2 * actuator_velocities[1]
+            + g1_vx_leg3 * actuator_velocities[2]
+            - minus_g1_vx_leg4 * actuator_velocities[3];
+        let t77 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t77, 25.429161076750646, "actuators")?;
+        let t78 = 1.0 / t77;
+        let t80 = 0.5 * t8;
+        let g1_vy_leg1 = (t8 - (t80 - t4 * t14)) * t19;
+        let minus_g1_vy_leg2 = (t8 - (t80 + t22 * t28)) * t33;
+        let t92 = 0.5 * t41;
+        let g1_vy_leg3 = (t41 - (t92 - t38 * t47)) * t52;
+        let minus_g1_vy_leg4 = (t41 - (t92 + t56 * t62)) * t67;
+        let t104 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+        let t105 = t104 * t78;
+        let t114 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
+            - t104 * t105;
+        ::overact::guard::platform(t114, 25.592368899353342, "actuators")?;
+        let t115 = 1.0 / t114;
+        let t124 = g1_vy_leg1 * actuator_velocities[0]
+            - minus_g1_vy_leg2 * actuator_velocities[1]
+            + g1_vy_leg3 * actuator_velocities[2]
+            - minus_g1_vy_leg4 * actuator_velocities[3] - t70 * t105;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t6 * g1_vx_leg2;
-        let g1_wz_leg4 = t2 * g1_vy_leg4 + t6 * g1_vx_leg4;
-        let t175 = g1_vx_leg3 * g1_wz_leg3
-            - (g1_vx_leg1 * minus_g1_wz_leg1 + g1_vx_leg2 * minus_g1_wz_leg2)
-            + g1_vx_leg4 * g1_wz_leg4;
-        let t176 = t175 * t116;
-        let t178 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
-            + g1_vy_leg4 * g1_wz_leg4 - t128 * t176;
-        let t179 = t178 * t139;
-        let t190 = minus_g1_wz_leg1 * minus_g1_wz_leg1
-            + minus_g1_wz_leg2 * minus_g1_wz_leg2 + g1_wz_leg3 * g1_wz_leg3
-            + g1_wz_leg4 * g1_wz_leg4 - t175 * t176 - t178 * t179;
-        ::overact::guard::platform(t190, 0.3076928490286828, "actuators")?;
-        let t201 = g1_wz_leg3 * actuator_velocities[2]
-            - (minus_g1_wz_leg1 * actuator_velocities[0]
-                + minus_g1_wz_leg2 * actuator_velocities[1])
-            + g1_wz_leg4 * actuator_velocities[3] - t108 * t176 - t179 * t148;
-        let t202 = t201 / t190;
-        let t204 = t139 * t148 - t179 * t202;
-        Ok([t108 * t116 - t129 * t204 - t176 * t202, t204, t202])
+        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
+        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
+        let t151 = g1_vx_leg3 * g1_wz_leg3
+            - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+            + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+        let t152 = t151 * t78;
+        let t154 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t104 * t152;
+        let t155 = t154 * t115;
+        let t166 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t151 * t152
+            - t154 * t155;
+        ::overact::guard::platform(t166, 0.3076928490286828, "actuators")?;
+        let t177 = g1_wz_leg2 * actuator_velocities[1]
+            - minus_g1_wz_leg1 * actuator_velocities[0]
+            + g1_wz_leg3 * actuator_velocities[2]
+            - minus_g1_wz_leg4 * actuator_velocities[3] - t70 * t152 - t155 * t124;
+        let t178 = t177 / t166;
+        let t180 = t115 * t124 - t155 * t178;
+        Ok([t70 * t78 - t105 * t180 - t152 * t178, t180, t178])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1269,7 +1221,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 307 operations (139 additions, 157 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 310 intermediates.
+    /// 271 operations (107 additions, 153 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 274 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1285,154 +1237,145 @@ impl DualV {
         let t6 = 0.11 * c_phi;
         let t8 = pose[1] + t6 - 0.10970563941232059;
         let t10 = t8 * t8;
-        let t13 = 0.0784 / (t4 * t4 + t10) - 0.25;
+        let t11 = t4 * t4 + t10;
+        let t13 = 0.0784 / t11 - 0.25;
         ::overact::guard::reach(t13, "leg1")?;
         let t14 = ::overact::math::sqrt(t13);
         let t16 = 0.5 * t4 + t8 * t14;
         let t17 = t4 - t16;
-        let t18 = 0.5 * t8;
-        let t20 = t18 - t4 * t14;
-        let t21 = t8 - t20;
-        let t23 = t16 + t17 - t17;
-        let t26 = t21 - (t20 + t21);
-        let t28 = t21 * t23 + t17 * t26;
-        ::overact::guard::leg(t28, 0.078399138102973, "leg1")?;
-        let t29 = 1.0 / t28;
-        let g1_vx_leg1 = t17 * t29;
-        let t31 = t2 * twist[2];
-        let t32 = twist[2] * t31;
-        let t33 = t6 * twist[2];
-        let t34 = twist[0] - t33;
-        let g1_vy_leg1 = t21 * t29;
-        let t37 = twist[1] - t31;
-        let rate_1_leg1 = g1_vx_leg1 * t34 + g1_vy_leg1 * t37;
-        let t40 = rate_1_leg1 * rate_1_leg1;
-        let g2_vy_leg1 = t26 * t29;
-        let minus_g2_vx_leg1 = t23 * t29;
-        let rate_2_leg1 = g2_vy_leg1 * t37 - minus_g2_vx_leg1 * t34;
-        let t48 = rate_1_leg1 + rate_2_leg1 - rate_1_leg1;
-        let t49 = t48 * t48;
-        let t57 = twist[2] * t33;
-        let rate_dot_1_leg1 = g1_vx_leg1 * (t32 + t16 * t40 + t17 * t49)
-            + g1_vy_leg1 * (t20 * t40 + t21 * t49 - t57);
-        let t61 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t63 = t3 + 0.3950502153918333;
-        let t68 = 0.0784 / (t63 * t63 + t10) - 0.25;
-        ::overact::guard::reach(t68, "leg2")?;
-        let t69 = ::overact::math::sqrt(t68);
-        let t71 = 0.5 * t63 - t8 * t69;
-        let t72 = t63 - t71;
-        let t74 = t18 + t63 * t69;
-        let t75 = t8 - t74;
-        let t77 = t71 + t72 - t72;
-        let t80 = t75 - (t74 + t75);
-        let t82 = t75 * t77 + t72 * t80;
-        ::overact::guard::leg(t82, 0.078399138102973, "leg2")?;
-        let t83 = 1.0 / t82;
-        let g1_vx_leg2 = t72 * t83;
-        let g1_vy_leg2 = t75 * t83;
-        let rate_1_leg2 = g1_vx_leg2 * t34 + g1_vy_leg2 * t37;
-        let t89 = rate_1_leg2 * rate_1_leg2;
-        let g2_vy_leg2 = t80 * t83;
-        let minus_g2_vx_leg2 = t77 * t83;
-        let rate_2_leg2 = g2_vy_leg2 * t37 - minus_g2_vx_leg2 * t34;
-        let t97 = rate_1_leg2 + rate_2_leg2 - rate_1_leg2;
-        let t98 = t97 * t97;
-        let rate_dot_1_leg2 = g1_vx_leg2 * (t32 + t71 * t89 + t72 * t98)
-            + g1_vy_leg2 * (t74 * t89 + t75 * t98 - t57);
-        let t109 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let t112 = pose[0] + t2;
-        let t113 = t112 + 0.3950502153918333;
-        let t116 = pose[1] - t6 + 0.10970563941232059;
-        let t118 = t116 * t116;
-        let t121 = 0.0784 / (t113 * t113 + t118) - 0.25;
-        ::overact::guard::reach(t121, "leg3")?;
-        let t122 = ::overact::math::sqrt(t121);
-        let t124 = 0.5 * t113 + t116 * t122;
-        let t125 = t113 - t124;
-        let t126 = 0.5 * t116;
-        let t128 = t126 - t113 * t122;
-        let t129 = t116 - t128;
-        let t131 = t124 + t125 - t125;
-        let t134 = t129 - (t128 + t129);
-        let t136 = t129 * t131 + t125 * t134;
-        ::overact::guard::leg(t136, 0.078399138102973, "leg3")?;
-        let t137 = 1.0 / t136;
-        let g1_vx_leg3 = t125 * t137;
-        let t139 = twist[0] + t33;
-        let g1_vy_leg3 = t129 * t137;
-        let t142 = twist[1] + t31;
-        let rate_1_leg3 = g1_vx_leg3 * t139 + g1_vy_leg3 * t142;
-        let t145 = rate_1_leg3 * rate_1_leg3;
-        let g2_vy_leg3 = t134 * t137;
-        let minus_g2_vx_leg3 = t131 * t137;
-        let rate_2_leg3 = g2_vy_leg3 * t142 - minus_g2_vx_leg3 * t139;
-        let t153 = rate_1_leg3 + rate_2_leg3 - rate_1_leg3;
-        let t154 = t153 * t153;
-        let rate_dot_1_leg3 = g1_vx_leg3 * (t124 * t145 + t125 * t154 - t32)
-            + g1_vy_leg3 * (t57 + t128 * t145 + t129 * t154);
-        let t165 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t168 = t112 - 0.3950502153918333;
-        let t173 = 0.0784 / (t168 * t168 + t118) - 0.25;
-        ::overact::guard::reach(t173, "leg4")?;
-        let t174 = ::overact::math::sqrt(t173);
-        let t176 = 0.5 * t168 - t116 * t174;
-        let t177 = t168 - t176;
-        let t179 = t126 + t168 * t174;
-        let t180 = t116 - t179;
-        let t182 = t176 + t177 - t177;
-        let t185 = t180 - (t179 + t180);
-        let t187 = t180 * t182 + t177 * t185;
-        ::overact::guard::leg(t187, 0.078399138102973, "leg4")?;
+        let t18 = t11 * t14;
+        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
+        let t19 = 1.0 / t18;
+        let g1_vx_leg1 = t17 * t19;
+        let t21 = 0.5 * t8;
+        let t23 = t21 - t4 * t14;
+        let t24 = t8 - t23;
+        let t25 = t6 * twist[2];
+        let t26 = twist[2] * t25;
+        let t28 = t2 * twist[2];
+        let t29 = twist[2] * t28;
+        let minus_g2_vx_leg1 = t16 * t19;
+        let t33 = twist[0] - t25;
+        let minus_g2_vy_leg1 = t23 * t19;
+        let t36 = twist[1] - t28;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t33 + minus_g2_vy_leg1 * t36;
+        let g1_vy_leg1 = t24 * t19;
+        let rate_1_leg1 = g1_vx_leg1 * t33 + g1_vy_leg1 * t36;
+        let t50 = t24 * t26 - t17 * t29
+            - 0.0784 * (minus_rate_2_leg1 * minus_rate_2_leg1)
+            - rate_1_leg1 * rate_1_leg1 * (0.5 * (t11 - 0.1568));
+        let minus_rate_dot_1_leg1 = t19 * t50;
+        let t52 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let t54 = t3 + 0.3950502153918333;
+        let t57 = t54 * t54 + t10;
+        let t59 = 0.0784 / t57 - 0.25;
+        ::overact::guard::reach(t59, "leg2")?;
+        let t60 = ::overact::math::sqrt(t59);
+        let t62 = 0.5 * t54 - t8 * t60;
+        let t63 = t54 - t62;
+        let t64 = t57 * t60;
+        ::overact::guard::leg(t64, 0.07839913810297301, "leg2")?;
+        let t65 = 1.0 / t64;
+        let minus_g1_vx_leg2 = t63 * t65;
+        let t68 = t21 + t54 * t60;
+        let t69 = t8 - t68;
+        let g2_vx_leg2 = t62 * t65;
+        let g2_vy_leg2 = t68 * t65;
+        let rate_2_leg2 = g2_vx_leg2 * t33 + g2_vy_leg2 * t36;
+        let minus_g1_vy_leg2 = t69 * t65;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t33 + minus_g1_vy_leg2 * t36;
+        let t89 = t69 * t26 - t63 * t29 - 0.0784 * (rate_2_leg2 * rate_2_leg2)
+            - minus_rate_1_leg2 * minus_rate_1_leg2 * (0.5 * (t57 - 0.1568));
+        let rate_dot_1_leg2 = t65 * t89;
+        let t91 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let t94 = pose[0] + t2;
+        let t95 = t94 + 0.3950502153918333;
+        let t98 = pose[1] - t6 + 0.10970563941232059;
+        let t100 = t98 * t98;
+        let t101 = t95 * t95 + t100;
+        let t103 = 0.0784 / t101 - 0.25;
+        ::overact::guard::reach(t103, "leg3")?;
+        let t104 = ::overact::math::sqrt(t103);
+        let t106 = 0.5 * t95 + t98 * t104;
+        let t107 = t95 - t106;
+        let t108 = t101 * t104;
+        ::overact::guard::leg(t108, 0.07839913810297301, "leg3")?;
+        let t109 = 1.0 / t108;
+        let g1_vx_leg3 = t107 * t109;
+        let t112 = 0.5 * t98;
+        let t114 = t112 - t95 * t104;
+        let t115 = t98 - t114;
+        let minus_g2_vx_leg3 = t106 * t109;
+        let t119 = twist[0] + t25;
+        let minus_g2_vy_leg3 = t114 * t109;
+        let t122 = twist[1] + t28;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t119 + minus_g2_vy_leg3 * t122;
+        let g1_vy_leg3 = t115 * t109;
+        let rate_1_leg3 = g1_vx_leg3 * t119 + g1_vy_leg3 * t122;
+        let t136 = t107 * t29 - t115 * t26
+            - 0.0784 * (minus_rate_2_leg3 * minus_rate_2_leg3)
+            - rate_1_leg3 * rate_1_leg3 * (0.5 * (t101 - 0.1568));
+        let minus_rate_dot_1_leg3 = t109 * t136;
+        let t138 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let t141 = t94 - 0.3950502153918333;
+        let t144 = t141 * t141 + t100;
+        let t146 = 0.0784 / t144 - 0.25;
+        ::overact::guard::reach(t146, "leg4")?;
+        let t147 = ::overact::math::sqrt(t146);
+        let t149 = 0.5 * t141 - t98 * t147;
+        let t150 = t141 - t149;
+        let t151 = t144 * t147;
+        ::overact::guard::leg(t151, 0.07839913810297301, "leg4")?;
+        let t152 = 1.0 / t151;
+        let minus_g1_vx_leg4 = t150 * t152;
+        let t156 = t112 + t141 * t147;
+        let t157 = t98 - t156;
+        let g2_vx_leg4 = t149 * t152;
+        let g2_vy_leg4 = t156 * t152;
+        let rate_2_leg4 = g2_vx_leg4 * t119 + g2_vy_leg4 * t122;
+        let minus_g1_vy_leg4 = t157 * t152;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t119 + minus_g1_vy_leg4 * t122;
+        let t176 = t150 * t29 - t157 * t26 - 0.0784 * (rate_2_leg4 * rate_2_leg4)
+            - minus_rate_1_leg4 * minus_rate_1_leg4 * (0.5 * (t144 - 0.1568));
+        let rate_dot_1_leg4 = t152 * t176;
+        let t178 = actuator_accelerations[3] - rate_dot_1_leg4;
+        let t180 = g1_vx_leg1 * t52 - minus_g1_vx_leg2 * t91 + g1_vx_leg3 * t138
+            - minus_g1_vx_leg4 * t178;
+        let t187 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t187, 25.429161076750646, "actuators")?;
         let t188 = 1.0 / t187;
-        let g1_vx_leg4 = t177 * t188;
-        let g1_vy_leg4 = t180 * t188;
-        let rate_1_leg4 = g1_vx_leg4 * t139 + g1_vy_leg4 * t142;
-        let t194 = rate_1_leg4 * rate_1_leg4;
-        let g2_vy_leg4 = t185 * t188;
-        let minus_g2_vx_leg4 = t182 * t188;
-        let rate_2_leg4 = g2_vy_leg4 * t142 - minus_g2_vx_leg4 * t139;
-        let t202 = rate_1_leg4 + rate_2_leg4 - rate_1_leg4;
-        let t203 = t202 * t202;
-        let rate_dot_1_leg4 = g1_vx_leg4 * (t176 * t194 + t177 * t203 - t32)
-            + g1_vy_leg4 * (t57 + t179 * t194 + t180 * t203);
-        let t214 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t216 = g1_vx_leg1 * t61 + g1_vx_leg2 * t109 + g1_vx_leg3 * t165
-            + g1_vx_leg4 * t214;
-        let t223 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t223, 25.429161076750646, "actuators")?;
-        let t224 = 1.0 / t223;
-        let t232 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
-        let t233 = t232 * t224;
-        let t242 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t232 * t233;
-        ::overact::guard::platform(t242, 25.59236889935335, "actuators")?;
-        let t243 = 1.0 / t242;
-        let t252 = g1_vy_leg1 * t61 + g1_vy_leg2 * t109 + g1_vy_leg3 * t165
-            + g1_vy_leg4 * t214 - t216 * t233;
+        let t196 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+        let t197 = t196 * t188;
+        let t206 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
+            - t196 * t197;
+        ::overact::guard::platform(t206, 25.592368899353342, "actuators")?;
+        let t207 = 1.0 / t206;
+        let t216 = g1_vy_leg1 * t52 - minus_g1_vy_leg2 * t91 + g1_vy_leg3 * t138
+            - minus_g1_vy_leg4 * t178 - t180 * t197;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t6 * g1_vx_leg2;
-        let g1_wz_leg4 = t2 * g1_vy_leg4 + t6 * g1_vx_leg4;
-        let t279 = g1_vx_leg3 * g1_wz_leg3
-            - (g1_vx_leg1 * minus_g1_wz_leg1 + g1_vx_leg2 * minus_g1_wz_leg2)
-            + g1_vx_leg4 * g1_wz_leg4;
-        let t280 = t279 * t224;
-        let t282 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
-            + g1_vy_leg4 * g1_wz_leg4 - t232 * t280;
-        let t283 = t282 * t243;
-        let t294 = minus_g1_wz_leg1 * minus_g1_wz_leg1
-            + minus_g1_wz_leg2 * minus_g1_wz_leg2 + g1_wz_leg3 * g1_wz_leg3
-            + g1_wz_leg4 * g1_wz_leg4 - t279 * t280 - t282 * t283;
-        ::overact::guard::platform(t294, 0.3076928490286828, "actuators")?;
-        let t305 = g1_wz_leg3 * t165 - (minus_g1_wz_leg1 * t61 + minus_g1_wz_leg2 * t109)
-            + g1_wz_leg4 * t214 - t216 * t280 - t283 * t252;
-        let t306 = t305 / t294;
-        let t308 = t243 * t252 - t283 * t306;
-        Ok([t216 * t224 - t233 * t308 - t280 * t306, t308, t306])
+        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
+        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
+        let t243 = g1_vx_leg3 * g1_wz_leg3
+            - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+            + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+        let t244 = t243 * t188;
+        let t246 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t196 * t244;
+        let t247 = t246 * t207;
+        let t258 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t243 * t244
+            - t246 * t247;
+        ::overact::guard::platform(t258, 0.3076928490286828, "actuators")?;
+        let t269 = g1_wz_leg2 * t91 - minus_g1_wz_leg1 * t52 + g1_wz_leg3 * t138
+            - minus_g1_wz_leg4 * t178 - t180 * t244 - t247 * t216;
+        let t270 = t269 / t258;
+        let t272 = t207 * t216 - t247 * t270;
+        Ok([t180 * t188 - t197 * t272 - t244 * t270, t272, t270])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1444,7 +1387,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 517 operations (204 additions, 305 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 387 intermediates.
+    /// 456 operations (150 additions, 298 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 326 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1466,303 +1409,276 @@ impl DualV {
         let t14 = ::overact::math::sqrt(t13);
         let t16 = 0.5 * t4 + t8 * t14;
         let t17 = t4 - t16;
-        let t18 = 0.5 * t8;
-        let t20 = t18 - t4 * t14;
-        let t21 = t8 - t20;
-        let t23 = t16 + t17 - t17;
-        let t26 = t21 - (t20 + t21);
-        let t28 = t21 * t23 + t17 * t26;
-        ::overact::guard::leg(t28, 0.078399138102973, "leg1")?;
-        let t29 = 1.0 / t28;
-        let g1_vx_leg1 = t17 * t29;
-        let t31 = t6 * acceleration[2];
-        let t33 = t2 * twist[2];
+        let t18 = t11 * t14;
+        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
+        let t19 = 1.0 / t18;
+        let g1_vx_leg1 = t17 * t19;
+        let t21 = t6 * acceleration[2];
+        let t23 = t2 * twist[2];
+        let t24 = twist[2] * t23;
+        let t25 = acceleration[0] - t21 + t24;
+        let t27 = 0.5 * t8;
+        let t29 = t27 - t4 * t14;
+        let t30 = t8 - t29;
+        let t31 = t2 * acceleration[2];
+        let t33 = t6 * twist[2];
         let t34 = twist[2] * t33;
-        let t35 = acceleration[0] - t31 + t34;
-        let t36 = t6 * twist[2];
-        let t37 = twist[0] - t36;
-        let g1_vy_leg1 = t21 * t29;
-        let t40 = twist[1] - t33;
-        let rate_1_leg1 = g1_vx_leg1 * t37 + g1_vy_leg1 * t40;
-        let t43 = rate_1_leg1 * rate_1_leg1;
-        let g2_vy_leg1 = t26 * t29;
-        let minus_g2_vx_leg1 = t23 * t29;
-        let rate_2_leg1 = g2_vy_leg1 * t40 - minus_g2_vx_leg1 * t37;
-        let t50 = rate_2_leg1 - rate_1_leg1;
-        let t51 = rate_1_leg1 + t50;
-        let t52 = t51 * t51;
-        let t55 = t35 + t16 * t43 + t17 * t52;
-        let t57 = t2 * acceleration[2];
-        let t59 = twist[2] * t36;
-        let t60 = acceleration[1] - t57 - t59;
-        let t64 = t60 + t20 * t43 + t21 * t52;
-        let rate_dot_1_leg1 = g1_vx_leg1 * t55 + g1_vy_leg1 * t64;
-        let t67 = g1_vx_leg1 * rate_dot_1_leg1;
-        let t68 = g1_vy_leg1 * rate_dot_1_leg1;
+        let t35 = acceleration[1] - t31 - t34;
+        let minus_g2_vx_leg1 = t16 * t19;
+        let t39 = twist[0] - t33;
+        let minus_g2_vy_leg1 = t29 * t19;
+        let t42 = twist[1] - t23;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t39 + minus_g2_vy_leg1 * t42;
+        let t45 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t47 = t17 * t25 + t30 * t35 + 0.0784 * t45;
+        let g1_vy_leg1 = t30 * t19;
+        let rate_1_leg1 = g1_vx_leg1 * t39 + g1_vy_leg1 * t42;
+        let t52 = rate_1_leg1 * rate_1_leg1;
+        let t53 = t11 - 0.1568;
+        let t54 = 0.5 * t53;
+        let rate_dot_1_leg1 = t19 * (t47 + t52 * t54);
+        let t58 = g1_vx_leg1 * rate_dot_1_leg1;
+        let t59 = g1_vy_leg1 * rate_dot_1_leg1;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let t72 = minus_g1_wz_leg1 * rate_dot_1_leg1;
-        let rate_dot_2_leg1 = g2_vy_leg1 * t64 - minus_g2_vx_leg1 * t55;
-        let t83 = rate_dot_1_leg1 + rate_dot_2_leg1 - rate_dot_1_leg1;
-        let t84 = minus_g2_vx_leg1 * t83;
-        let t85 = g2_vy_leg1 * t83;
-        let g2_wz_leg1 = t6 * minus_g2_vx_leg1 - t2 * g2_vy_leg1;
-        let t89 = g2_wz_leg1 * t83;
-        let t90 = 3.5714285714285716 * t35;
-        let t94 = 3.5714285714285716 * t60;
-        let t100 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t101 = 9.090909090909092 * t100;
-        let t103 = 0.04321428571428571 * (acceleration[2] - t101);
-        let t107 = t11 * t14;
-        let t110 = t11 - 0.1568;
-        let t113 = 3.5714285714285716 * (t107 * rate_dot_1_leg1)
-            - 1.7857142857142858 * (t110 * t43);
-        let t115 = 3.5714285714285716 * t107;
-        let t117 = 1.7857142857142858 * t110;
-        let t119 = t83 * t115 + t52 * t117;
-        let t135 = t113 * t115
-            + (3.5714285714285716 * (t107 * t43)
-                + 1.7857142857142858 * (t110 * rate_dot_1_leg1)) * t117;
-        let t139 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t141 = g2_vy_leg1 - g1_vy_leg1;
-        let t143 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t148 = twist[2] - rate_2_leg1;
-        let t151 = 1.0 - g2_wz_leg1;
-        let t156 = t3 + 0.3950502153918333;
-        let t159 = t156 * t156 + t10;
-        let t161 = 0.0784 / t159 - 0.25;
-        ::overact::guard::reach(t161, "leg2")?;
-        let t162 = ::overact::math::sqrt(t161);
-        let t164 = 0.5 * t156 - t8 * t162;
-        let t165 = t156 - t164;
-        let t167 = t18 + t156 * t162;
-        let t168 = t8 - t167;
-        let t170 = t164 + t165 - t165;
-        let t173 = t168 - (t167 + t168);
-        let t175 = t168 * t170 + t165 * t173;
-        ::overact::guard::leg(t175, 0.078399138102973, "leg2")?;
-        let t176 = 1.0 / t175;
-        let g1_vx_leg2 = t165 * t176;
-        let g1_vy_leg2 = t168 * t176;
-        let rate_1_leg2 = g1_vx_leg2 * t37 + g1_vy_leg2 * t40;
-        let t182 = rate_1_leg2 * rate_1_leg2;
-        let g2_vy_leg2 = t173 * t176;
-        let minus_g2_vx_leg2 = t170 * t176;
-        let rate_2_leg2 = g2_vy_leg2 * t40 - minus_g2_vx_leg2 * t37;
-        let t189 = rate_2_leg2 - rate_1_leg2;
-        let t190 = rate_1_leg2 + t189;
-        let t191 = t190 * t190;
-        let t194 = t35 + t164 * t182 + t165 * t191;
-        let t199 = t60 + t167 * t182 + t168 * t191;
-        let rate_dot_1_leg2 = g1_vx_leg2 * t194 + g1_vy_leg2 * t199;
-        let t202 = g1_vx_leg2 * rate_dot_1_leg2;
-        let t203 = g1_vy_leg2 * rate_dot_1_leg2;
-        let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t6 * g1_vx_leg2;
-        let t207 = minus_g1_wz_leg2 * rate_dot_1_leg2;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t199 - minus_g2_vx_leg2 * t194;
-        let t218 = rate_dot_1_leg2 + rate_dot_2_leg2 - rate_dot_1_leg2;
-        let t219 = minus_g2_vx_leg2 * t218;
-        let t220 = g2_vy_leg2 * t218;
-        let g2_wz_leg2 = t6 * minus_g2_vx_leg2 - t2 * g2_vy_leg2;
-        let t224 = g2_wz_leg2 * t218;
-        let t234 = t159 * t162;
-        let t235 = 3.5714285714285716 * t234;
-        let t237 = t159 - 0.1568;
-        let t238 = 1.7857142857142858 * t237;
-        let t240 = t218 * t235 - t191 * t238;
-        let t246 = 1.7857142857142858 * (t237 * t182)
-            + 3.5714285714285716 * (t234 * rate_dot_1_leg2);
-        let t262 = t246 * t235
-            + (1.7857142857142858 * (t237 * rate_dot_1_leg2)
-                - 3.5714285714285716 * (t234 * t182)) * t238;
-        let t266 = g1_vx_leg2 + minus_g2_vx_leg2;
-        let t268 = g2_vy_leg2 - g1_vy_leg2;
-        let t270 = minus_g1_wz_leg2 + g2_wz_leg2;
-        let t275 = twist[2] - rate_2_leg2;
-        let t278 = 1.0 - g2_wz_leg2;
-        let t283 = pose[0] + t2;
-        let t284 = t283 + 0.3950502153918333;
-        let t287 = pose[1] - t6 + 0.10970563941232059;
-        let t289 = t287 * t287;
-        let t290 = t284 * t284 + t289;
-        let t292 = 0.0784 / t290 - 0.25;
-        ::overact::guard::reach(t292, "leg3")?;
-        let t293 = ::overact::math::sqrt(t292);
-        let t295 = 0.5 * t284 + t287 * t293;
-        let t296 = t284 - t295;
-        let t297 = 0.5 * t287;
-        let t299 = t297 - t284 * t293;
-        let t300 = t287 - t299;
-        let t302 = t295 + t296 - t296;
-        let t305 = t300 - (t299 + t300);
-        let t307 = t300 * t302 + t296 * t305;
-        ::overact::guard::leg(t307, 0.078399138102973, "leg3")?;
-        let t308 = 1.0 / t307;
-        let g1_vx_leg3 = t296 * t308;
-        let t311 = acceleration[0] + t31 - t34;
-        let t312 = twist[0] + t36;
-        let g1_vy_leg3 = t300 * t308;
-        let t315 = twist[1] + t33;
-        let rate_1_leg3 = g1_vx_leg3 * t312 + g1_vy_leg3 * t315;
-        let t318 = rate_1_leg3 * rate_1_leg3;
-        let g2_vy_leg3 = t305 * t308;
-        let minus_g2_vx_leg3 = t302 * t308;
-        let rate_2_leg3 = g2_vy_leg3 * t315 - minus_g2_vx_leg3 * t312;
-        let t325 = rate_2_leg3 - rate_1_leg3;
-        let t326 = rate_1_leg3 + t325;
-        let t327 = t326 * t326;
-        let t330 = t311 + t295 * t318 + t296 * t327;
-        let t333 = acceleration[1] + t57 + t59;
-        let t337 = t333 + t299 * t318 + t300 * t327;
-        let rate_dot_1_leg3 = g1_vx_leg3 * t330 + g1_vy_leg3 * t337;
-        let t340 = g1_vx_leg3 * rate_dot_1_leg3;
-        let t341 = g1_vy_leg3 * rate_dot_1_leg3;
+        let t63 = minus_g1_wz_leg1 * rate_dot_1_leg1;
+        let t74 = t16 * t25 + t29 * t35 + 0.0784 * t52;
+        let minus_rate_dot_2_leg1 = t19 * (t74 + t45 * t54);
+        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
+        let t88 = t45 * (3.5714285714285716 * t18)
+            + minus_rate_dot_2_leg1 * (1.7857142857142858 * t53);
+        let t94 = 3.5714285714285716 * (t18 * t52)
+            + 1.7857142857142858 * (t53 * rate_dot_1_leg1);
+        let t103 = 3.5714285714285716 * t74;
+        let t105 = 3.5714285714285716 * t47;
+        let t117 = rate_1_leg1 + minus_rate_2_leg1;
+        let t118 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let t120 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let t122 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t127 = minus_rate_2_leg1 + twist[2];
+        let t130 = 1.0 - g2_wz_leg1;
+        let t135 = t3 + 0.3950502153918333;
+        let t138 = t135 * t135 + t10;
+        let t140 = 0.0784 / t138 - 0.25;
+        ::overact::guard::reach(t140, "leg2")?;
+        let t141 = ::overact::math::sqrt(t140);
+        let t143 = 0.5 * t135 - t8 * t141;
+        let t144 = t135 - t143;
+        let t145 = t138 * t141;
+        ::overact::guard::leg(t145, 0.07839913810297301, "leg2")?;
+        let t146 = 1.0 / t145;
+        let minus_g1_vx_leg2 = t144 * t146;
+        let t150 = t27 + t135 * t141;
+        let t151 = t8 - t150;
+        let g2_vx_leg2 = t143 * t146;
+        let g2_vy_leg2 = t150 * t146;
+        let rate_2_leg2 = g2_vx_leg2 * t39 + g2_vy_leg2 * t42;
+        let t159 = rate_2_leg2 * rate_2_leg2;
+        let t161 = t144 * t25 + t151 * t35 + 0.0784 * t159;
+        let minus_g1_vy_leg2 = t151 * t146;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t39 + minus_g1_vy_leg2 * t42;
+        let t166 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t167 = t138 - 0.1568;
+        let t168 = 0.5 * t167;
+        let minus_rate_dot_1_leg2 = t146 * (t161 + t166 * t168);
+        let t172 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let t173 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
+        let t177 = g1_wz_leg2 * minus_rate_dot_1_leg2;
+        let t188 = t143 * t25 + t150 * t35 + 0.0784 * t166;
+        let rate_dot_2_leg2 = t146 * (t188 + t159 * t168);
+        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
+        let t202 = t159 * (3.5714285714285716 * t145)
+            + rate_dot_2_leg2 * (1.7857142857142858 * t167);
+        let t208 = 3.5714285714285716 * (t145 * t166)
+            + 1.7857142857142858 * (t167 * minus_rate_dot_1_leg2);
+        let t217 = 3.5714285714285716 * t188;
+        let t219 = 3.5714285714285716 * t161;
+        let t231 = minus_rate_1_leg2 + rate_2_leg2;
+        let t232 = minus_g1_vx_leg2 + g2_vx_leg2;
+        let t234 = minus_g1_vy_leg2 + g2_vy_leg2;
+        let t236 = g1_wz_leg2 + minus_g2_wz_leg2;
+        let t241 = twist[2] - rate_2_leg2;
+        let t244 = minus_g2_wz_leg2 + 1.0;
+        let t249 = pose[0] + t2;
+        let t250 = t249 + 0.3950502153918333;
+        let t253 = pose[1] - t6 + 0.10970563941232059;
+        let t255 = t253 * t253;
+        let t256 = t250 * t250 + t255;
+        let t258 = 0.0784 / t256 - 0.25;
+        ::overact::guard::reach(t258, "leg3")?;
+        let t259 = ::overact::math::sqrt(t258);
+        let t261 = 0.5 * t250 + t253 * t259;
+        let t262 = t250 - t261;
+        let t263 = t256 * t259;
+        ::overact::guard::leg(t263, 0.07839913810297301, "leg3")?;
+        let t264 = 1.0 / t263;
+        let g1_vx_leg3 = t262 * t264;
+        let t267 = acceleration[0] + t21 - t24;
+        let t269 = 0.5 * t253;
+        let t271 = t269 - t250 * t259;
+        let t272 = t253 - t271;
+        let t274 = acceleration[1] + t31 + t34;
+        let minus_g2_vx_leg3 = t261 * t264;
+        let t278 = twist[0] + t33;
+        let minus_g2_vy_leg3 = t271 * t264;
+        let t281 = twist[1] + t23;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t278 + minus_g2_vy_leg3 * t281;
+        let t284 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t286 = t262 * t267 + t272 * t274 + 0.0784 * t284;
+        let g1_vy_leg3 = t272 * t264;
+        let rate_1_leg3 = g1_vx_leg3 * t278 + g1_vy_leg3 * t281;
+        let t291 = rate_1_leg3 * rate_1_leg3;
+        let t292 = t256 - 0.1568;
+        let t293 = 0.5 * t292;
+        let rate_dot_1_leg3 = t264 * (t286 + t291 * t293);
+        let t297 = g1_vx_leg3 * rate_dot_1_leg3;
+        let t298 = g1_vy_leg3 * rate_dot_1_leg3;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let t345 = g1_wz_leg3 * rate_dot_1_leg3;
-        let rate_dot_2_leg3 = g2_vy_leg3 * t337 - minus_g2_vx_leg3 * t330;
-        let t356 = rate_dot_1_leg3 + rate_dot_2_leg3 - rate_dot_1_leg3;
-        let t357 = minus_g2_vx_leg3 * t356;
-        let t358 = g2_vy_leg3 * t356;
-        let g2_wz_leg3 = t2 * g2_vy_leg3 - t6 * minus_g2_vx_leg3;
-        let t362 = g2_wz_leg3 * t356;
-        let t363 = 3.5714285714285716 * t311;
-        let t367 = 3.5714285714285716 * t333;
-        let t372 = 0.04321428571428571 * (acceleration[2] + t101);
-        let t376 = t290 * t293;
-        let t379 = t290 - 0.1568;
-        let t382 = 3.5714285714285716 * (t376 * rate_dot_1_leg3)
-            - 1.7857142857142858 * (t379 * t318);
-        let t384 = 3.5714285714285716 * t376;
-        let t386 = 1.7857142857142858 * t379;
-        let t388 = t356 * t384 + t327 * t386;
-        let t404 = t382 * t384
-            + (3.5714285714285716 * (t376 * t318)
-                + 1.7857142857142858 * (t379 * rate_dot_1_leg3)) * t386;
-        let t408 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t410 = g2_vy_leg3 - g1_vy_leg3;
-        let t412 = g2_wz_leg3 - g1_wz_leg3;
-        let t417 = twist[2] - rate_2_leg3;
-        let t420 = 1.0 - g2_wz_leg3;
-        let t425 = t283 - 0.3950502153918333;
-        let t428 = t425 * t425 + t289;
-        let t430 = 0.0784 / t428 - 0.25;
-        ::overact::guard::reach(t430, "leg4")?;
-        let t431 = ::overact::math::sqrt(t430);
-        let t433 = 0.5 * t425 - t287 * t431;
-        let t434 = t425 - t433;
-        let t436 = t297 + t425 * t431;
-        let t437 = t287 - t436;
-        let t439 = t433 + t434 - t434;
-        let t442 = t437 - (t436 + t437);
-        let t444 = t437 * t439 + t434 * t442;
-        ::overact::guard::leg(t444, 0.078399138102973, "leg4")?;
-        let t445 = 1.0 / t444;
-        let g1_vx_leg4 = t434 * t445;
-        let g1_vy_leg4 = t437 * t445;
-        let rate_1_leg4 = g1_vx_leg4 * t312 + g1_vy_leg4 * t315;
-        let t451 = rate_1_leg4 * rate_1_leg4;
-        let g2_vy_leg4 = t442 * t445;
-        let minus_g2_vx_leg4 = t439 * t445;
-        let rate_2_leg4 = g2_vy_leg4 * t315 - minus_g2_vx_leg4 * t312;
-        let t458 = rate_2_leg4 - rate_1_leg4;
-        let t459 = rate_1_leg4 + t458;
-        let t460 = t459 * t459;
-        let t463 = t311 + t433 * t451 + t434 * t460;
-        let t468 = t333 + t436 * t451 + t437 * t460;
-        let rate_dot_1_leg4 = g1_vx_leg4 * t463 + g1_vy_leg4 * t468;
-        let t471 = g1_vx_leg4 * rate_dot_1_leg4;
-        let t472 = g1_vy_leg4 * rate_dot_1_leg4;
-        let g1_wz_leg4 = t2 * g1_vy_leg4 + t6 * g1_vx_leg4;
-        let t476 = g1_wz_leg4 * rate_dot_1_leg4;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t468 - minus_g2_vx_leg4 * t463;
-        let t487 = rate_dot_1_leg4 + rate_dot_2_leg4 - rate_dot_1_leg4;
-        let t488 = minus_g2_vx_leg4 * t487;
-        let t489 = g2_vy_leg4 * t487;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 - t6 * minus_g2_vx_leg4;
-        let t493 = g2_wz_leg4 * t487;
-        let t503 = t428 * t431;
-        let t504 = 3.5714285714285716 * t503;
-        let t506 = t428 - 0.1568;
-        let t507 = 1.7857142857142858 * t506;
-        let t509 = t487 * t504 - t460 * t507;
-        let t515 = 1.7857142857142858 * (t506 * t451)
-            + 3.5714285714285716 * (t503 * rate_dot_1_leg4);
-        let t531 = t515 * t504
-            + (1.7857142857142858 * (t506 * rate_dot_1_leg4)
-                - 3.5714285714285716 * (t503 * t451)) * t507;
-        let t535 = g1_vx_leg4 + minus_g2_vx_leg4;
-        let t537 = g2_vy_leg4 - g1_vy_leg4;
-        let t539 = g2_wz_leg4 - g1_wz_leg4;
-        let t544 = twist[2] - rate_2_leg4;
-        let t547 = 1.0 - g2_wz_leg4;
-        let t553 = 9.090909090909092 * (t59 + t57);
-        let t555 = 9.090909090909092 * (t31 - t34);
+        let t302 = g1_wz_leg3 * rate_dot_1_leg3;
+        let t313 = t261 * t267 + t271 * t274 + 0.0784 * t291;
+        let minus_rate_dot_2_leg3 = t264 * (t313 + t284 * t293);
+        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
+        let t327 = t284 * (3.5714285714285716 * t263)
+            + minus_rate_dot_2_leg3 * (1.7857142857142858 * t292);
+        let t333 = 3.5714285714285716 * (t263 * t291)
+            + 1.7857142857142858 * (t292 * rate_dot_1_leg3);
+        let t342 = 3.5714285714285716 * t313;
+        let t344 = 3.5714285714285716 * t286;
+        let t356 = rate_1_leg3 + minus_rate_2_leg3;
+        let t357 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t359 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let t361 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let t366 = minus_rate_2_leg3 + twist[2];
+        let t369 = minus_g2_wz_leg3 + 1.0;
+        let t374 = t249 - 0.3950502153918333;
+        let t377 = t374 * t374 + t255;
+        let t379 = 0.0784 / t377 - 0.25;
+        ::overact::guard::reach(t379, "leg4")?;
+        let t380 = ::overact::math::sqrt(t379);
+        let t382 = 0.5 * t374 - t253 * t380;
+        let t383 = t374 - t382;
+        let t384 = t377 * t380;
+        ::overact::guard::leg(t384, 0.07839913810297301, "leg4")?;
+        let t385 = 1.0 / t384;
+        let minus_g1_vx_leg4 = t383 * t385;
+        let t389 = t269 + t374 * t380;
+        let t390 = t253 - t389;
+        let g2_vx_leg4 = t382 * t385;
+        let g2_vy_leg4 = t389 * t385;
+        let rate_2_leg4 = g2_vx_leg4 * t278 + g2_vy_leg4 * t281;
+        let t398 = rate_2_leg4 * rate_2_leg4;
+        let t400 = t383 * t267 + t390 * t274 + 0.0784 * t398;
+        let minus_g1_vy_leg4 = t390 * t385;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t278 + minus_g1_vy_leg4 * t281;
+        let t405 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t406 = t377 - 0.1568;
+        let t407 = 0.5 * t406;
+        let minus_rate_dot_1_leg4 = t385 * (t400 + t405 * t407);
+        let t411 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
+        let t412 = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
+        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
+        let t416 = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
+        let t427 = t382 * t267 + t389 * t274 + 0.0784 * t405;
+        let rate_dot_2_leg4 = t385 * (t427 + t398 * t407);
+        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
+        let t441 = t398 * (3.5714285714285716 * t384)
+            + rate_dot_2_leg4 * (1.7857142857142858 * t406);
+        let t447 = 3.5714285714285716 * (t384 * t405)
+            + 1.7857142857142858 * (t406 * minus_rate_dot_1_leg4);
+        let t456 = 3.5714285714285716 * t427;
+        let t458 = 3.5714285714285716 * t400;
+        let t470 = minus_rate_1_leg4 + rate_2_leg4;
+        let t471 = minus_g1_vx_leg4 + g2_vx_leg4;
+        let t473 = minus_g1_vy_leg4 + g2_vy_leg4;
+        let t475 = minus_g1_wz_leg4 + g2_wz_leg4;
+        let t480 = twist[2] - rate_2_leg4;
+        let t483 = 1.0 - g2_wz_leg4;
+        let t489 = 9.090909090909092 * (t34 + t31);
+        let t491 = 9.090909090909092 * (t21 - t24);
         Ok([
             [
-                t67, t67, g1_vx_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, -t84,
-                t90 - 0.28 * (t67 - t84), minus_g2_vx_leg1 * t113 - g1_vx_leg1 * t119,
-                g1_vx_leg1 * t135, -(t50 * t139), -::overact::math::signed(t139, t50), -t139,
-                minus_g2_vx_leg1 * t148, ::overact::math::signed(minus_g2_vx_leg1, t148),
-                minus_g2_vx_leg1, t202, t202, g1_vx_leg2 * rate_1_leg2,
-                ::overact::math::signed(g1_vx_leg2, rate_1_leg2), g1_vx_leg2, -t219,
-                t90 - 0.28 * (t202 - t219), g1_vx_leg2 * t240 - minus_g2_vx_leg2 * t246,
-                g1_vx_leg2 * t262, -(t189 * t266), -::overact::math::signed(t266, t189), -t266,
-                minus_g2_vx_leg2 * t275, ::overact::math::signed(minus_g2_vx_leg2, t275),
-                minus_g2_vx_leg2, t340, t340, g1_vx_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3, -t357,
-                t363 - 0.28 * (t340 - t357), minus_g2_vx_leg3 * t382 - g1_vx_leg3 * t388,
-                g1_vx_leg3 * t404, -(t325 * t408), -::overact::math::signed(t408, t325), -t408,
-                minus_g2_vx_leg3 * t417, ::overact::math::signed(minus_g2_vx_leg3, t417),
-                minus_g2_vx_leg3, t471, t471, g1_vx_leg4 * rate_1_leg4,
-                ::overact::math::signed(g1_vx_leg4, rate_1_leg4), g1_vx_leg4, -t488,
-                t363 - 0.28 * (t471 - t488), g1_vx_leg4 * t509 - minus_g2_vx_leg4 * t515,
-                g1_vx_leg4 * t531, -(t458 * t535), -::overact::math::signed(t535, t458), -t535,
-                minus_g2_vx_leg4 * t544, ::overact::math::signed(minus_g2_vx_leg4, t544),
-                minus_g2_vx_leg4, 0.0, -t553, -t555, acceleration[0],
+                t58, t58, g1_vx_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1,
+                minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
+                -(g1_vx_leg1 * t88 + minus_g2_vx_leg1 * t94),
+                g1_vx_leg1 * t103 + minus_g2_vx_leg1 * t105, 0.0784 * t58, t117 * t118,
+                ::overact::math::signed(t118, t117), -t118, minus_g2_vx_leg1 * t127,
+                ::overact::math::signed(minus_g2_vx_leg1, t127), minus_g2_vx_leg1, t172, t172,
+                minus_g1_vx_leg2 * minus_rate_1_leg2,
+                ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
+                g2_vx_leg2 * rate_dot_2_leg2, -(minus_g1_vx_leg2 * t202 + g2_vx_leg2 * t208),
+                -(minus_g1_vx_leg2 * t217 + g2_vx_leg2 * t219), 0.0784 * t172, t231 * t232,
+                ::overact::math::signed(t232, t231), t232, -(g2_vx_leg2 * t241),
+                -::overact::math::signed(g2_vx_leg2, t241), -g2_vx_leg2, t297, t297,
+                g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
+                g1_vx_leg3, minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
+                -(g1_vx_leg3 * t327 + minus_g2_vx_leg3 * t333),
+                g1_vx_leg3 * t342 + minus_g2_vx_leg3 * t344, 0.0784 * t297, t356 * t357,
+                ::overact::math::signed(t357, t356), -t357, minus_g2_vx_leg3 * t366,
+                ::overact::math::signed(minus_g2_vx_leg3, t366), minus_g2_vx_leg3, t411, t411,
+                minus_g1_vx_leg4 * minus_rate_1_leg4,
+                ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4), -minus_g1_vx_leg4,
+                g2_vx_leg4 * rate_dot_2_leg4, -(minus_g1_vx_leg4 * t441 + g2_vx_leg4 * t447),
+                -(minus_g1_vx_leg4 * t456 + g2_vx_leg4 * t458), 0.0784 * t411, t470 * t471,
+                ::overact::math::signed(t471, t470), t471, -(g2_vx_leg4 * t480),
+                -::overact::math::signed(g2_vx_leg4, t480), -g2_vx_leg4, 0.0, -t489, -t491,
+                acceleration[0],
             ],
             [
-                t68, t68, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t85,
-                t94 - 0.28 * (t68 + t85), -(g1_vy_leg1 * t119 + g2_vy_leg1 * t113),
-                g1_vy_leg1 * t135, t50 * t141, ::overact::math::signed(t141, t50), t141,
-                -(g2_vy_leg1 * t148), -::overact::math::signed(g2_vy_leg1, t148), -g2_vy_leg1, t203,
-                t203, g1_vy_leg2 * rate_1_leg2, ::overact::math::signed(g1_vy_leg2, rate_1_leg2),
-                g1_vy_leg2, t220, t94 - 0.28 * (t203 + t220), g1_vy_leg2 * t240 + g2_vy_leg2 * t246,
-                g1_vy_leg2 * t262, t189 * t268, ::overact::math::signed(t268, t189), t268,
-                -(g2_vy_leg2 * t275), -::overact::math::signed(g2_vy_leg2, t275), -g2_vy_leg2, t341,
-                t341, g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
-                g1_vy_leg3, t358, t367 - 0.28 * (t341 + t358),
-                -(g1_vy_leg3 * t388 + g2_vy_leg3 * t382), g1_vy_leg3 * t404, t325 * t410,
-                ::overact::math::signed(t410, t325), t410, -(g2_vy_leg3 * t417),
-                -::overact::math::signed(g2_vy_leg3, t417), -g2_vy_leg3, t472, t472,
-                g1_vy_leg4 * rate_1_leg4, ::overact::math::signed(g1_vy_leg4, rate_1_leg4),
-                g1_vy_leg4, t489, t367 - 0.28 * (t472 + t489),
-                g1_vy_leg4 * t509 + g2_vy_leg4 * t515, g1_vy_leg4 * t531, t458 * t537,
-                ::overact::math::signed(t537, t458), t537, -(g2_vy_leg4 * t544),
-                -::overact::math::signed(g2_vy_leg4, t544), -g2_vy_leg4, 0.0, t555, -t553,
+                t59, t59, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1,
+                minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
+                -(g1_vy_leg1 * t88 + minus_g2_vy_leg1 * t94),
+                g1_vy_leg1 * t103 + minus_g2_vy_leg1 * t105, 0.0784 * t59, t117 * t120,
+                ::overact::math::signed(t120, t117), -t120, minus_g2_vy_leg1 * t127,
+                ::overact::math::signed(minus_g2_vy_leg1, t127), minus_g2_vy_leg1, t173, t173,
+                minus_g1_vy_leg2 * minus_rate_1_leg2,
+                ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
+                g2_vy_leg2 * rate_dot_2_leg2, -(minus_g1_vy_leg2 * t202 + g2_vy_leg2 * t208),
+                -(minus_g1_vy_leg2 * t217 + g2_vy_leg2 * t219), 0.0784 * t173, t231 * t234,
+                ::overact::math::signed(t234, t231), t234, -(g2_vy_leg2 * t241),
+                -::overact::math::signed(g2_vy_leg2, t241), -g2_vy_leg2, t298, t298,
+                g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
+                g1_vy_leg3, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
+                -(g1_vy_leg3 * t327 + minus_g2_vy_leg3 * t333),
+                g1_vy_leg3 * t342 + minus_g2_vy_leg3 * t344, 0.0784 * t298, t356 * t359,
+                ::overact::math::signed(t359, t356), -t359, minus_g2_vy_leg3 * t366,
+                ::overact::math::signed(minus_g2_vy_leg3, t366), minus_g2_vy_leg3, t412, t412,
+                minus_g1_vy_leg4 * minus_rate_1_leg4,
+                ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4), -minus_g1_vy_leg4,
+                g2_vy_leg4 * rate_dot_2_leg4, -(minus_g1_vy_leg4 * t441 + g2_vy_leg4 * t447),
+                -(minus_g1_vy_leg4 * t456 + g2_vy_leg4 * t458), 0.0784 * t412, t470 * t473,
+                ::overact::math::signed(t473, t470), t473, -(g2_vy_leg4 * t480),
+                -::overact::math::signed(g2_vy_leg4, t480), -g2_vy_leg4, 0.0, t491, -t489,
                 acceleration[1],
             ],
             [
-                -t72, -t72, -(minus_g1_wz_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1, t89,
-                t103 - 0.28 * (t89 - t72), minus_g1_wz_leg1 * t119 - g2_wz_leg1 * t113,
-                -(minus_g1_wz_leg1 * t135), t50 * t143, ::overact::math::signed(t143, t50), t143,
-                t148 * t151, ::overact::math::signed(t151, t148), t151, -t207, -t207,
-                -(minus_g1_wz_leg2 * rate_1_leg2),
-                -::overact::math::signed(minus_g1_wz_leg2, rate_1_leg2), -minus_g1_wz_leg2, t224,
-                t103 - 0.28 * (t224 - t207), g2_wz_leg2 * t246 - minus_g1_wz_leg2 * t240,
-                -(minus_g1_wz_leg2 * t262), t189 * t270, ::overact::math::signed(t270, t189), t270,
-                t275 * t278, ::overact::math::signed(t278, t275), t278, t345, t345,
-                g1_wz_leg3 * rate_1_leg3, ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
-                g1_wz_leg3, t362, t372 - 0.28 * (t345 + t362),
-                -(g1_wz_leg3 * t388 + g2_wz_leg3 * t382), g1_wz_leg3 * t404, t325 * t412,
-                ::overact::math::signed(t412, t325), t412, t417 * t420,
-                ::overact::math::signed(t420, t417), t420, t476, t476, g1_wz_leg4 * rate_1_leg4,
-                ::overact::math::signed(g1_wz_leg4, rate_1_leg4), g1_wz_leg4, t493,
-                t372 - 0.28 * (t476 + t493), g1_wz_leg4 * t509 + g2_wz_leg4 * t515,
-                g1_wz_leg4 * t531, t458 * t539, ::overact::math::signed(t539, t458), t539,
-                t544 * t547, ::overact::math::signed(t547, t544), t547, acceleration[2],
-                c_phi * acceleration[1] - s_phi * acceleration[0], -t100, 0.0,
+                -t63, -t63, -(minus_g1_wz_leg1 * rate_1_leg1),
+                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1,
+                -(g2_wz_leg1 * minus_rate_dot_2_leg1), minus_g1_wz_leg1 * t88 + g2_wz_leg1 * t94,
+                -(minus_g1_wz_leg1 * t103 + g2_wz_leg1 * t105), -(0.0784 * t63), -(t117 * t122),
+                -::overact::math::signed(t122, t117), t122, t127 * t130,
+                ::overact::math::signed(t130, t127), t130, -t177, -t177,
+                -(g1_wz_leg2 * minus_rate_1_leg2),
+                -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2,
+                -(minus_g2_wz_leg2 * rate_dot_2_leg2), g1_wz_leg2 * t202 + minus_g2_wz_leg2 * t208,
+                g1_wz_leg2 * t217 + minus_g2_wz_leg2 * t219, -(0.0784 * t177), -(t231 * t236),
+                -::overact::math::signed(t236, t231), -t236, t241 * t244,
+                ::overact::math::signed(t244, t241), t244, t302, t302, g1_wz_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_wz_leg3, rate_1_leg3), g1_wz_leg3,
+                minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
+                -(g1_wz_leg3 * t327 + minus_g2_wz_leg3 * t333),
+                g1_wz_leg3 * t342 + minus_g2_wz_leg3 * t344, 0.0784 * t302, t356 * t361,
+                ::overact::math::signed(t361, t356), -t361, t366 * t369,
+                ::overact::math::signed(t369, t366), t369, t416, t416,
+                minus_g1_wz_leg4 * minus_rate_1_leg4,
+                ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4), -minus_g1_wz_leg4,
+                g2_wz_leg4 * rate_dot_2_leg4, -(minus_g1_wz_leg4 * t441 + g2_wz_leg4 * t447),
+                -(minus_g1_wz_leg4 * t456 + g2_wz_leg4 * t458), 0.0784 * t416, t470 * t475,
+                ::overact::math::signed(t475, t470), t475, t480 * t483,
+                ::overact::math::signed(t483, t480), t483, acceleration[2],
+                c_phi * acceleration[1] - s_phi * acceleration[0],
+                -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
             ],
         ])
     }
@@ -2022,11 +1938,13 @@ impl DualV {
     /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
+    /// - `actuators`: q, positions of the actuated joints (m, rad)
+    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
     ///
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 683 operations (266 additions, 406 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 548 intermediates.
+    /// 612 operations (218 additions, 383 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 479 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2050,361 +1968,341 @@ impl DualV {
         let t14 = ::overact::math::sqrt(t13);
         let t16 = 0.5 * t4 + t8 * t14;
         let t17 = t4 - t16;
-        let t18 = 0.5 * t8;
-        let t20 = t18 - t4 * t14;
-        let t21 = t8 - t20;
-        let t23 = t16 + t17 - t17;
-        let t26 = t21 - (t20 + t21);
-        let t28 = t21 * t23 + t17 * t26;
-        ::overact::guard::leg(t28, 0.078399138102973, "leg1")?;
-        let t29 = 1.0 / t28;
-        let g1_vx_leg1 = t17 * t29;
-        let t32 = t3 + 0.3950502153918333;
-        let t35 = t32 * t32 + t10;
-        let t37 = 0.0784 / t35 - 0.25;
-        ::overact::guard::reach(t37, "leg2")?;
-        let t38 = ::overact::math::sqrt(t37);
-        let t40 = 0.5 * t32 - t8 * t38;
-        let t41 = t32 - t40;
-        let t43 = t18 + t32 * t38;
-        let t44 = t8 - t43;
-        let t46 = t40 + t41 - t41;
-        let t49 = t44 - (t43 + t44);
-        let t51 = t44 * t46 + t41 * t49;
-        ::overact::guard::leg(t51, 0.078399138102973, "leg2")?;
+        let t18 = t11 * t14;
+        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
+        let t19 = 1.0 / t18;
+        let g1_vx_leg1 = t17 * t19;
+        let t22 = t3 + 0.3950502153918333;
+        let t25 = t22 * t22 + t10;
+        let t27 = 0.0784 / t25 - 0.25;
+        ::overact::guard::reach(t27, "leg2")?;
+        let t28 = ::overact::math::sqrt(t27);
+        let t30 = 0.5 * t22 - t8 * t28;
+        let t31 = t22 - t30;
+        let t32 = t25 * t28;
+        ::overact::guard::leg(t32, 0.07839913810297301, "leg2")?;
+        let t33 = 1.0 / t32;
+        let minus_g1_vx_leg2 = t31 * t33;
+        let t37 = pose[0] + t2;
+        let t38 = t37 + 0.3950502153918333;
+        let t41 = pose[1] - t6 + 0.10970563941232059;
+        let t43 = t41 * t41;
+        let t44 = t38 * t38 + t43;
+        let t46 = 0.0784 / t44 - 0.25;
+        ::overact::guard::reach(t46, "leg3")?;
+        let t47 = ::overact::math::sqrt(t46);
+        let t49 = 0.5 * t38 + t41 * t47;
+        let t50 = t38 - t49;
+        let t51 = t44 * t47;
+        ::overact::guard::leg(t51, 0.07839913810297301, "leg3")?;
         let t52 = 1.0 / t51;
-        let g1_vx_leg2 = t41 * t52;
-        let t56 = pose[0] + t2;
-        let t57 = t56 + 0.3950502153918333;
-        let t60 = pose[1] - t6 + 0.10970563941232059;
-        let t62 = t60 * t60;
-        let t63 = t57 * t57 + t62;
-        let t65 = 0.0784 / t63 - 0.25;
-        ::overact::guard::reach(t65, "leg3")?;
-        let t66 = ::overact::math::sqrt(t65);
-        let t68 = 0.5 * t57 + t60 * t66;
-        let t69 = t57 - t68;
-        let t70 = 0.5 * t60;
-        let t72 = t70 - t57 * t66;
-        let t73 = t60 - t72;
-        let t75 = t68 + t69 - t69;
-        let t78 = t73 - (t72 + t73);
-        let t80 = t73 * t75 + t69 * t78;
-        ::overact::guard::leg(t80, 0.078399138102973, "leg3")?;
-        let t81 = 1.0 / t80;
-        let g1_vx_leg3 = t69 * t81;
-        let t85 = t56 - 0.3950502153918333;
-        let t88 = t85 * t85 + t62;
-        let t90 = 0.0784 / t88 - 0.25;
-        ::overact::guard::reach(t90, "leg4")?;
-        let t91 = ::overact::math::sqrt(t90);
-        let t93 = 0.5 * t85 - t60 * t91;
-        let t94 = t85 - t93;
-        let t96 = t70 + t85 * t91;
-        let t97 = t60 - t96;
-        let t99 = t93 + t94 - t94;
-        let t102 = t97 - (t96 + t97);
-        let t104 = t97 * t99 + t94 * t102;
-        ::overact::guard::leg(t104, 0.078399138102973, "leg4")?;
-        let t105 = 1.0 / t104;
-        let g1_vx_leg4 = t94 * t105;
-        let t108 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t108, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(t108, 25.429161076750646, "actuators")?;
-        let t109 = 1.0 / t108;
-        let g1_vy_leg1 = t21 * t29;
+        let g1_vx_leg3 = t50 * t52;
+        let t56 = t37 - 0.3950502153918333;
+        let t59 = t56 * t56 + t43;
+        let t61 = 0.0784 / t59 - 0.25;
+        ::overact::guard::reach(t61, "leg4")?;
+        let t62 = ::overact::math::sqrt(t61);
+        let t64 = 0.5 * t56 - t41 * t62;
+        let t65 = t56 - t64;
+        let t66 = t59 * t62;
+        ::overact::guard::leg(t66, 0.07839913810297301, "leg4")?;
+        let t67 = 1.0 / t66;
+        let minus_g1_vx_leg4 = t65 * t67;
+        let t70 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t70, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(t70, 25.429161076750646, "actuators")?;
+        let t71 = 1.0 / t70;
+        let t72 = 0.5 * t8;
+        let t74 = t72 - t4 * t14;
+        let t75 = t8 - t74;
+        let g1_vy_leg1 = t75 * t19;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let g1_vy_leg2 = t44 * t52;
-        let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t6 * g1_vx_leg2;
-        let g1_vy_leg3 = t73 * t81;
+        let t82 = t72 + t22 * t28;
+        let t83 = t8 - t82;
+        let minus_g1_vy_leg2 = t83 * t33;
+        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
+        let t90 = 0.5 * t41;
+        let t92 = t90 - t38 * t47;
+        let t93 = t41 - t92;
+        let g1_vy_leg3 = t93 * t52;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let g1_vy_leg4 = t97 * t105;
-        let g1_wz_leg4 = t2 * g1_vy_leg4 + t6 * g1_vx_leg4;
-        let t139 = g1_vx_leg3 * g1_wz_leg3
-            - (g1_vx_leg1 * minus_g1_wz_leg1 + g1_vx_leg2 * minus_g1_wz_leg2)
-            + g1_vx_leg4 * g1_wz_leg4;
-        let t140 = t139 * t109;
-        let t156 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
-        let t158 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
-            + g1_vy_leg4 * g1_wz_leg4 - t156 * t140;
-        let t166 = t156 * t109;
-        let t168 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t156 * t166;
-        ::overact::guard::platform(t168, 25.59236889935335, "actuators")?;
-        ::overact::guard::platform(t168, 25.59236889935335, "actuators")?;
-        let t169 = 1.0 / t168;
-        let t170 = t158 * t169;
-        let t172 = minus_g1_wz_leg1 * minus_g1_wz_leg1
-            + minus_g1_wz_leg2 * minus_g1_wz_leg2 + g1_wz_leg3 * g1_wz_leg3
-            + g1_wz_leg4 * g1_wz_leg4 - t139 * t140 - t158 * t170;
-        ::overact::guard::platform(t172, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t172, 0.3076928490286828, "actuators")?;
-        let t173 = 1.0 / t172;
-        let t187 = g1_vx_leg1 * actuator_velocities[0]
-            + g1_vx_leg2 * actuator_velocities[1] + g1_vx_leg3 * actuator_velocities[2]
-            + g1_vx_leg4 * actuator_velocities[3];
-        let t198 = g1_vy_leg1 * actuator_velocities[0]
-            + g1_vy_leg2 * actuator_velocities[1] + g1_vy_leg3 * actuator_velocities[2]
-            + g1_vy_leg4 * actuator_velocities[3] - t187 * t166;
-        let t200 = g1_wz_leg3 * actuator_velocities[2]
-            - (minus_g1_wz_leg1 * actuator_velocities[0]
-                + minus_g1_wz_leg2 * actuator_velocities[1])
-            + g1_wz_leg4 * actuator_velocities[3] - t187 * t140 - t170 * t198;
-        let rate_3_leg1 = t173 * t200;
-        let t202 = t2 * rate_3_leg1;
-        let t203 = rate_3_leg1 * t202;
-        let t207 = t169 * t198 - t170 * rate_3_leg1;
-        let t211 = t187 * t109 - t166 * t207 - t140 * rate_3_leg1;
-        let t212 = t6 * rate_3_leg1;
-        let t213 = t211 - t212;
-        let t215 = t207 - t202;
-        let rate_1_leg1 = g1_vx_leg1 * t213 + g1_vy_leg1 * t215;
-        let t218 = rate_1_leg1 * rate_1_leg1;
-        let g2_vy_leg1 = t26 * t29;
-        let minus_g2_vx_leg1 = t23 * t29;
-        let rate_2_leg1 = g2_vy_leg1 * t215 - minus_g2_vx_leg1 * t213;
-        let t225 = rate_2_leg1 - rate_1_leg1;
-        let t226 = rate_1_leg1 + t225;
-        let t227 = t226 * t226;
-        let t229 = t16 * t218 + t17 * t227;
-        let t234 = t20 * t218 + t21 * t227;
-        let t235 = rate_3_leg1 * t212;
-        let rate_dot_1_leg1 = g1_vx_leg1 * (t203 + t229) + g1_vy_leg1 * (t234 - t235);
-        let t239 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let rate_1_leg2 = g1_vx_leg2 * t213 + g1_vy_leg2 * t215;
-        let t244 = rate_1_leg2 * rate_1_leg2;
-        let g2_vy_leg2 = t49 * t52;
-        let minus_g2_vx_leg2 = t46 * t52;
-        let rate_2_leg2 = g2_vy_leg2 * t215 - minus_g2_vx_leg2 * t213;
-        let t251 = rate_2_leg2 - rate_1_leg2;
-        let t252 = rate_1_leg2 + t251;
-        let t253 = t252 * t252;
-        let t255 = t40 * t244 + t41 * t253;
-        let t260 = t43 * t244 + t44 * t253;
-        let rate_dot_1_leg2 = g1_vx_leg2 * (t203 + t255) + g1_vy_leg2 * (t260 - t235);
-        let t264 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let t267 = t211 + t212;
-        let t269 = t207 + t202;
-        let rate_1_leg3 = g1_vx_leg3 * t267 + g1_vy_leg3 * t269;
-        let t272 = rate_1_leg3 * rate_1_leg3;
-        let g2_vy_leg3 = t78 * t81;
-        let minus_g2_vx_leg3 = t75 * t81;
-        let rate_2_leg3 = g2_vy_leg3 * t269 - minus_g2_vx_leg3 * t267;
-        let t279 = rate_2_leg3 - rate_1_leg3;
-        let t280 = rate_1_leg3 + t279;
-        let t281 = t280 * t280;
-        let t283 = t68 * t272 + t69 * t281;
-        let t288 = t72 * t272 + t73 * t281;
-        let rate_dot_1_leg3 = g1_vx_leg3 * (t283 - t203) + g1_vy_leg3 * (t235 + t288);
-        let t292 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let rate_1_leg4 = g1_vx_leg4 * t267 + g1_vy_leg4 * t269;
-        let t298 = rate_1_leg4 * rate_1_leg4;
-        let g2_vy_leg4 = t102 * t105;
-        let minus_g2_vx_leg4 = t99 * t105;
-        let rate_2_leg4 = g2_vy_leg4 * t269 - minus_g2_vx_leg4 * t267;
-        let t305 = rate_2_leg4 - rate_1_leg4;
-        let t306 = rate_1_leg4 + t305;
-        let t307 = t306 * t306;
-        let t309 = t93 * t298 + t94 * t307;
-        let t314 = t96 * t298 + t97 * t307;
-        let rate_dot_1_leg4 = g1_vx_leg4 * (t309 - t203) + g1_vy_leg4 * (t235 + t314);
-        let t318 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t320 = g1_vx_leg1 * t239 + g1_vx_leg2 * t264 + g1_vx_leg3 * t292
-            + g1_vx_leg4 * t318;
-        let t330 = g1_vy_leg1 * t239 + g1_vy_leg2 * t264 + g1_vy_leg3 * t292
-            + g1_vy_leg4 * t318 - t166 * t320;
-        let t342 = g1_wz_leg3 * t292
-            - (minus_g1_wz_leg1 * t239 + minus_g1_wz_leg2 * t264) + g1_wz_leg4 * t318
-            - t140 * t320 - t170 * t330;
-        let rate_dot_3_leg1 = t173 * t342;
-        let t345 = t169 * t330 - t170 * rate_dot_3_leg1;
-        let t349 = t109 * t320 - t166 * t345 - t140 * rate_dot_3_leg1;
-        let t350 = t6 * rate_dot_3_leg1;
-        let t352 = t349 - t350 + t203;
-        let t353 = t352 + t229;
-        let t355 = t2 * rate_dot_3_leg1;
-        let t357 = t345 - t355 - t235;
-        let t358 = t357 + t234;
-        let rate_dot_1_leg1_2 = g1_vx_leg1 * t353 + g1_vy_leg1 * t358;
-        let t361 = g1_vx_leg1 * rate_dot_1_leg1_2;
-        let t362 = g1_vy_leg1 * rate_dot_1_leg1_2;
-        let t363 = minus_g1_wz_leg1 * rate_dot_1_leg1_2;
-        let rate_dot_2_leg1 = g2_vy_leg1 * t358 - minus_g2_vx_leg1 * t353;
-        let t374 = rate_dot_1_leg1_2 + rate_dot_2_leg1 - rate_dot_1_leg1_2;
-        let g2_wz_leg1 = t6 * minus_g2_vx_leg1 - t2 * g2_vy_leg1;
-        let t381 = t11 - 0.1568;
-        let t382 = 1.7857142857142858 * t381;
-        let t384 = t11 * t14;
-        let t385 = 3.5714285714285716 * t384;
-        let t387 = t382 * t374 - t227 * t385;
-        let t393 = 3.5714285714285716 * (t384 * t218)
-            + 1.7857142857142858 * (t381 * rate_dot_1_leg1_2);
-        let t406 = 3.5714285714285716 * (t384 * rate_dot_1_leg1_2)
-            - 1.7857142857142858 * (t381 * t218);
-        let t410 = t385 * t374 + t227 * t382;
-        let t421 = t385 * t406 + t382 * t393;
-        let t425 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t427 = g2_vy_leg1 - g1_vy_leg1;
-        let t429 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t434 = rate_3_leg1 - rate_2_leg1;
-        let t437 = 1.0 - g2_wz_leg1;
-        let t442 = t352 + t255;
-        let t444 = t357 + t260;
-        let rate_dot_1_leg2_2 = g1_vx_leg2 * t442 + g1_vy_leg2 * t444;
-        let t447 = g1_vx_leg2 * rate_dot_1_leg2_2;
-        let t448 = g1_vy_leg2 * rate_dot_1_leg2_2;
-        let t449 = minus_g1_wz_leg2 * rate_dot_1_leg2_2;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t444 - minus_g2_vx_leg2 * t442;
-        let t460 = rate_dot_1_leg2_2 + rate_dot_2_leg2 - rate_dot_1_leg2_2;
-        let g2_wz_leg2 = t6 * minus_g2_vx_leg2 - t2 * g2_vy_leg2;
-        let t467 = t35 * t38;
-        let t468 = 3.5714285714285716 * t467;
-        let t470 = t35 - 0.1568;
-        let t471 = 1.7857142857142858 * t470;
-        let t473 = t253 * t468 + t471 * t460;
-        let t479 = 1.7857142857142858 * (t470 * rate_dot_1_leg2_2)
-            - 3.5714285714285716 * (t467 * t244);
-        let t490 = t468 * t460 - t253 * t471;
-        let t496 = 1.7857142857142858 * (t470 * t244)
-            + 3.5714285714285716 * (t467 * rate_dot_1_leg2_2);
-        let t507 = t468 * t496 + t471 * t479;
-        let t511 = g1_vx_leg2 + minus_g2_vx_leg2;
-        let t513 = g2_vy_leg2 - g1_vy_leg2;
-        let t515 = minus_g1_wz_leg2 + g2_wz_leg2;
-        let t520 = rate_3_leg1 - rate_2_leg2;
-        let t523 = 1.0 - g2_wz_leg2;
-        let t529 = t349 + t350 - t203;
-        let t530 = t529 + t283;
-        let t533 = t345 + t355 + t235;
-        let t534 = t533 + t288;
-        let rate_dot_1_leg3_2 = g1_vx_leg3 * t530 + g1_vy_leg3 * t534;
-        let t537 = g1_vx_leg3 * rate_dot_1_leg3_2;
-        let t538 = g1_vy_leg3 * rate_dot_1_leg3_2;
-        let t539 = g1_wz_leg3 * rate_dot_1_leg3_2;
-        let rate_dot_2_leg3 = g2_vy_leg3 * t534 - minus_g2_vx_leg3 * t530;
-        let t550 = rate_dot_1_leg3_2 + rate_dot_2_leg3 - rate_dot_1_leg3_2;
-        let g2_wz_leg3 = t2 * g2_vy_leg3 - t6 * minus_g2_vx_leg3;
-        let t557 = t63 - 0.1568;
-        let t558 = 1.7857142857142858 * t557;
-        let t560 = t63 * t66;
-        let t561 = 3.5714285714285716 * t560;
-        let t563 = t558 * t550 - t281 * t561;
-        let t569 = 3.5714285714285716 * (t560 * t272)
-            + 1.7857142857142858 * (t557 * rate_dot_1_leg3_2);
-        let t582 = 3.5714285714285716 * (t560 * rate_dot_1_leg3_2)
-            - 1.7857142857142858 * (t557 * t272);
-        let t586 = t561 * t550 + t281 * t558;
-        let t597 = t561 * t582 + t558 * t569;
-        let t601 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t603 = g2_vy_leg3 - g1_vy_leg3;
-        let t605 = g2_wz_leg3 - g1_wz_leg3;
-        let t610 = rate_3_leg1 - rate_2_leg3;
-        let t613 = 1.0 - g2_wz_leg3;
-        let t618 = t529 + t309;
-        let t620 = t533 + t314;
-        let rate_dot_1_leg4_2 = g1_vx_leg4 * t618 + g1_vy_leg4 * t620;
-        let t623 = g1_vx_leg4 * rate_dot_1_leg4_2;
-        let t624 = g1_vy_leg4 * rate_dot_1_leg4_2;
-        let t625 = g1_wz_leg4 * rate_dot_1_leg4_2;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t620 - minus_g2_vx_leg4 * t618;
-        let t636 = rate_dot_1_leg4_2 + rate_dot_2_leg4 - rate_dot_1_leg4_2;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 - t6 * minus_g2_vx_leg4;
-        let t643 = t88 * t91;
-        let t644 = 3.5714285714285716 * t643;
-        let t646 = t88 - 0.1568;
-        let t647 = 1.7857142857142858 * t646;
-        let t649 = t307 * t644 + t647 * t636;
-        let t655 = 1.7857142857142858 * (t646 * rate_dot_1_leg4_2)
-            - 3.5714285714285716 * (t643 * t298);
-        let t666 = t644 * t636 - t307 * t647;
-        let t672 = 1.7857142857142858 * (t646 * t298)
-            + 3.5714285714285716 * (t643 * rate_dot_1_leg4_2);
-        let t683 = t644 * t672 + t647 * t655;
-        let t687 = g1_vx_leg4 + minus_g2_vx_leg4;
-        let t689 = g2_vy_leg4 - g1_vy_leg4;
-        let t691 = g2_wz_leg4 - g1_wz_leg4;
-        let t696 = rate_3_leg1 - rate_2_leg4;
-        let t699 = 1.0 - g2_wz_leg4;
-        let t704 = rate_3_leg1 * rate_3_leg1;
-        let t705 = c_phi * t704;
-        let t706 = s_phi * rate_dot_3_leg1;
-        let t708 = c_phi * rate_dot_3_leg1;
-        let t709 = s_phi * t704;
-        let t713 = c_phi * t345 - s_phi * t349;
-        let t718 = c_phi * t349 + s_phi * t345;
+        let t101 = t90 + t56 * t62;
+        let t102 = t41 - t101;
+        let minus_g1_vy_leg4 = t102 * t67;
+        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
+        let t115 = g1_vx_leg3 * g1_wz_leg3
+            - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+            + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+        let t116 = t115 * t71;
+        let t132 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+        let t134 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t132 * t116;
+        let t142 = t132 * t71;
+        let t144 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
+            - t132 * t142;
+        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
+        let t145 = 1.0 / t144;
+        let t146 = t134 * t145;
+        let t148 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t115 * t116
+            - t134 * t146;
+        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
+        let t149 = 1.0 / t148;
+        let t163 = g1_vx_leg1 * actuator_velocities[0]
+            - minus_g1_vx_leg2 * actuator_velocities[1]
+            + g1_vx_leg3 * actuator_velocities[2]
+            - minus_g1_vx_leg4 * actuator_velocities[3];
+        let t174 = g1_vy_leg1 * actuator_velocities[0]
+            - minus_g1_vy_leg2 * actuator_velocities[1]
+            + g1_vy_leg3 * actuator_velocities[2]
+            - minus_g1_vy_leg4 * actuator_velocities[3] - t163 * t142;
+        let t176 = g1_wz_leg2 * actuator_velocities[1]
+            - minus_g1_wz_leg1 * actuator_velocities[0]
+            + g1_wz_leg3 * actuator_velocities[2]
+            - minus_g1_wz_leg4 * actuator_velocities[3] - t163 * t116 - t146 * t174;
+        let rate_3_leg1 = t149 * t176;
+        let t178 = t6 * rate_3_leg1;
+        let t179 = rate_3_leg1 * t178;
+        let t181 = t2 * rate_3_leg1;
+        let t182 = rate_3_leg1 * t181;
+        let minus_g2_vx_leg1 = t16 * t19;
+        let t189 = t145 * t174 - t146 * rate_3_leg1;
+        let t193 = t163 * t71 - t142 * t189 - t116 * rate_3_leg1;
+        let t194 = t193 - t178;
+        let minus_g2_vy_leg1 = t74 * t19;
+        let t197 = t189 - t181;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t194 + minus_g2_vy_leg1 * t197;
+        let t200 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t201 = 0.0784 * t200;
+        let rate_1_leg1 = g1_vx_leg1 * t194 + g1_vy_leg1 * t197;
+        let t206 = rate_1_leg1 * rate_1_leg1;
+        let t207 = t11 - 0.1568;
+        let t208 = 0.5 * t207;
+        let t209 = t206 * t208;
+        let minus_rate_dot_1_leg1 = t19 * (t75 * t179 - t17 * t182 - t201 - t209);
+        let t212 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let g2_vx_leg2 = t30 * t33;
+        let g2_vy_leg2 = t82 * t33;
+        let rate_2_leg2 = g2_vx_leg2 * t194 + g2_vy_leg2 * t197;
+        let t222 = rate_2_leg2 * rate_2_leg2;
+        let t223 = 0.0784 * t222;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t194 + minus_g1_vy_leg2 * t197;
+        let t228 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t229 = t25 - 0.1568;
+        let t230 = 0.5 * t229;
+        let t231 = t228 * t230;
+        let rate_dot_1_leg2 = t33 * (t83 * t179 - t31 * t182 - t223 - t231);
+        let t234 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let minus_g2_vx_leg3 = t49 * t52;
+        let t241 = t193 + t178;
+        let minus_g2_vy_leg3 = t92 * t52;
+        let t244 = t189 + t181;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t241 + minus_g2_vy_leg3 * t244;
+        let t247 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t248 = 0.0784 * t247;
+        let rate_1_leg3 = g1_vx_leg3 * t241 + g1_vy_leg3 * t244;
+        let t253 = rate_1_leg3 * rate_1_leg3;
+        let t254 = t44 - 0.1568;
+        let t255 = 0.5 * t254;
+        let t256 = t253 * t255;
+        let minus_rate_dot_1_leg3 = t52 * (t50 * t182 - t93 * t179 - t248 - t256);
+        let t259 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = t64 * t67;
+        let g2_vy_leg4 = t101 * t67;
+        let rate_2_leg4 = g2_vx_leg4 * t241 + g2_vy_leg4 * t244;
+        let t270 = rate_2_leg4 * rate_2_leg4;
+        let t271 = 0.0784 * t270;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t241 + minus_g1_vy_leg4 * t244;
+        let t276 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t277 = t59 - 0.1568;
+        let t278 = 0.5 * t277;
+        let t279 = t276 * t278;
+        let rate_dot_1_leg4 = t67 * (t65 * t182 - t102 * t179 - t271 - t279);
+        let t282 = actuator_accelerations[3] - rate_dot_1_leg4;
+        let t284 = g1_vx_leg1 * t212 - minus_g1_vx_leg2 * t234 + g1_vx_leg3 * t259
+            - minus_g1_vx_leg4 * t282;
+        let t294 = g1_vy_leg1 * t212 - minus_g1_vy_leg2 * t234 + g1_vy_leg3 * t259
+            - minus_g1_vy_leg4 * t282 - t142 * t284;
+        let t306 = g1_wz_leg2 * t234 - minus_g1_wz_leg1 * t212 + g1_wz_leg3 * t259
+            - minus_g1_wz_leg4 * t282 - t116 * t284 - t146 * t294;
+        let rate_dot_3_leg1 = t149 * t306;
+        let t309 = t145 * t294 - t146 * rate_dot_3_leg1;
+        let t313 = t71 * t284 - t142 * t309 - t116 * rate_dot_3_leg1;
+        let t314 = t6 * rate_dot_3_leg1;
+        let t316 = t313 - t314 + t182;
+        let t318 = t2 * rate_dot_3_leg1;
+        let t320 = t309 - t318 - t179;
+        let t323 = t17 * t316 + t75 * t320 + t201;
+        let rate_dot_1_leg1 = t19 * (t323 + t209);
+        let t326 = g1_vx_leg1 * rate_dot_1_leg1;
+        let t327 = g1_vy_leg1 * rate_dot_1_leg1;
+        let t328 = minus_g1_wz_leg1 * rate_dot_1_leg1;
+        let t339 = t16 * t316 + t74 * t320 + 0.0784 * t206;
+        let minus_rate_dot_2_leg1 = t19 * (t339 + t200 * t208);
+        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
+        let t353 = t200 * (3.5714285714285716 * t18)
+            + 1.7857142857142858 * t207 * minus_rate_dot_2_leg1;
+        let t359 = 3.5714285714285716 * (t18 * t206)
+            + 1.7857142857142858 * (t207 * rate_dot_1_leg1);
+        let t368 = 3.5714285714285716 * t339;
+        let t370 = 3.5714285714285716 * t323;
+        let t382 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let t383 = rate_1_leg1 + minus_rate_2_leg1;
+        let t385 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let t387 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t392 = minus_rate_2_leg1 + rate_3_leg1;
+        let t395 = 1.0 - g2_wz_leg1;
+        let t403 = t31 * t316 + t83 * t320 + t223;
+        let minus_rate_dot_1_leg2 = t33 * (t403 + t231);
+        let t406 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let t407 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let t408 = g1_wz_leg2 * minus_rate_dot_1_leg2;
+        let t419 = t30 * t316 + t82 * t320 + 0.0784 * t228;
+        let rate_dot_2_leg2 = t33 * (t419 + t222 * t230);
+        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
+        let t433 = t222 * (3.5714285714285716 * t32)
+            + 1.7857142857142858 * t229 * rate_dot_2_leg2;
+        let t439 = 3.5714285714285716 * (t32 * t228)
+            + 1.7857142857142858 * (t229 * minus_rate_dot_1_leg2);
+        let t448 = 3.5714285714285716 * t419;
+        let t450 = 3.5714285714285716 * t403;
+        let t462 = minus_g1_vx_leg2 + g2_vx_leg2;
+        let t463 = minus_rate_1_leg2 + rate_2_leg2;
+        let t465 = minus_g1_vy_leg2 + g2_vy_leg2;
+        let t467 = g1_wz_leg2 + minus_g2_wz_leg2;
+        let t472 = rate_3_leg1 - rate_2_leg2;
+        let t475 = minus_g2_wz_leg2 + 1.0;
+        let t481 = t313 + t314 - t182;
+        let t484 = t309 + t318 + t179;
+        let t487 = t50 * t481 + t93 * t484 + t248;
+        let rate_dot_1_leg3 = t52 * (t487 + t256);
+        let t490 = g1_vx_leg3 * rate_dot_1_leg3;
+        let t491 = g1_vy_leg3 * rate_dot_1_leg3;
+        let t492 = g1_wz_leg3 * rate_dot_1_leg3;
+        let t503 = t49 * t481 + t92 * t484 + 0.0784 * t253;
+        let minus_rate_dot_2_leg3 = t52 * (t503 + t247 * t255);
+        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
+        let t517 = t247 * (3.5714285714285716 * t51)
+            + 1.7857142857142858 * t254 * minus_rate_dot_2_leg3;
+        let t523 = 3.5714285714285716 * (t51 * t253)
+            + 1.7857142857142858 * (t254 * rate_dot_1_leg3);
+        let t532 = 3.5714285714285716 * t503;
+        let t534 = 3.5714285714285716 * t487;
+        let t546 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t547 = rate_1_leg3 + minus_rate_2_leg3;
+        let t549 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let t551 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let t556 = minus_rate_2_leg3 + rate_3_leg1;
+        let t559 = minus_g2_wz_leg3 + 1.0;
+        let t567 = t65 * t481 + t102 * t484 + t271;
+        let minus_rate_dot_1_leg4 = t67 * (t567 + t279);
+        let t570 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
+        let t571 = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
+        let t572 = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
+        let t583 = t64 * t481 + t101 * t484 + 0.0784 * t276;
+        let rate_dot_2_leg4 = t67 * (t583 + t270 * t278);
+        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
+        let t597 = t270 * (3.5714285714285716 * t66)
+            + 1.7857142857142858 * t277 * rate_dot_2_leg4;
+        let t603 = 3.5714285714285716 * (t66 * t276)
+            + 1.7857142857142858 * (t277 * minus_rate_dot_1_leg4);
+        let t612 = 3.5714285714285716 * t583;
+        let t614 = 3.5714285714285716 * t567;
+        let t626 = minus_g1_vx_leg4 + g2_vx_leg4;
+        let t627 = minus_rate_1_leg4 + rate_2_leg4;
+        let t629 = minus_g1_vy_leg4 + g2_vy_leg4;
+        let t631 = minus_g1_wz_leg4 + g2_wz_leg4;
+        let t636 = rate_3_leg1 - rate_2_leg4;
+        let t639 = 1.0 - g2_wz_leg4;
+        let t645 = 9.090909090909092 * (t179 + t318);
+        let t647 = 9.090909090909092 * (t314 - t182);
         Ok([
             [
-                t361, t361, g1_vx_leg1 * rate_1_leg1,
+                t326, t326, g1_vx_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1,
-                -(minus_g2_vx_leg1 * t374), g1_vx_leg1 * t387 - minus_g2_vx_leg1 * t393,
-                minus_g2_vx_leg1 * t406 - g1_vx_leg1 * t410, g1_vx_leg1 * t421, -(t425 * t225),
-                -::overact::math::signed(t425, t225), -t425, minus_g2_vx_leg1 * t434,
-                ::overact::math::signed(minus_g2_vx_leg1, t434), minus_g2_vx_leg1, t447, t447,
-                g1_vx_leg2 * rate_1_leg2, ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
-                g1_vx_leg2, -(minus_g2_vx_leg2 * t460), g1_vx_leg2 * t473 - minus_g2_vx_leg2 * t479,
-                g1_vx_leg2 * t490 - minus_g2_vx_leg2 * t496, g1_vx_leg2 * t507, -(t511 * t251),
-                -::overact::math::signed(t511, t251), -t511, minus_g2_vx_leg2 * t520,
-                ::overact::math::signed(minus_g2_vx_leg2, t520), minus_g2_vx_leg2, t537, t537,
+                minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
+                -(g1_vx_leg1 * t353 + minus_g2_vx_leg1 * t359),
+                g1_vx_leg1 * t368 + minus_g2_vx_leg1 * t370, 0.0784 * t326, t382 * t383,
+                ::overact::math::signed(t382, t383), -t382, minus_g2_vx_leg1 * t392,
+                ::overact::math::signed(minus_g2_vx_leg1, t392), minus_g2_vx_leg1, t406, t406,
+                minus_g1_vx_leg2 * minus_rate_1_leg2,
+                ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
+                g2_vx_leg2 * rate_dot_2_leg2, -(minus_g1_vx_leg2 * t433 + g2_vx_leg2 * t439),
+                -(minus_g1_vx_leg2 * t448 + g2_vx_leg2 * t450), 0.0784 * t406, t462 * t463,
+                ::overact::math::signed(t462, t463), t462, -(g2_vx_leg2 * t472),
+                -::overact::math::signed(g2_vx_leg2, t472), -g2_vx_leg2, t490, t490,
                 g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                g1_vx_leg3, -(minus_g2_vx_leg3 * t550), g1_vx_leg3 * t563 - minus_g2_vx_leg3 * t569,
-                minus_g2_vx_leg3 * t582 - g1_vx_leg3 * t586, g1_vx_leg3 * t597, -(t601 * t279),
-                -::overact::math::signed(t601, t279), -t601, minus_g2_vx_leg3 * t610,
-                ::overact::math::signed(minus_g2_vx_leg3, t610), minus_g2_vx_leg3, t623, t623,
-                g1_vx_leg4 * rate_1_leg4, ::overact::math::signed(g1_vx_leg4, rate_1_leg4),
-                g1_vx_leg4, -(minus_g2_vx_leg4 * t636), g1_vx_leg4 * t649 - minus_g2_vx_leg4 * t655,
-                g1_vx_leg4 * t666 - minus_g2_vx_leg4 * t672, g1_vx_leg4 * t683, -(t687 * t305),
-                -::overact::math::signed(t687, t305), -t687, minus_g2_vx_leg4 * t696,
-                ::overact::math::signed(minus_g2_vx_leg4, t696), minus_g2_vx_leg4, 0.0,
-                -(t705 + t706), t709 - t708, c_phi * t718 - s_phi * t713,
+                g1_vx_leg3, minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
+                -(g1_vx_leg3 * t517 + minus_g2_vx_leg3 * t523),
+                g1_vx_leg3 * t532 + minus_g2_vx_leg3 * t534, 0.0784 * t490, t546 * t547,
+                ::overact::math::signed(t546, t547), -t546, minus_g2_vx_leg3 * t556,
+                ::overact::math::signed(minus_g2_vx_leg3, t556), minus_g2_vx_leg3, t570, t570,
+                minus_g1_vx_leg4 * minus_rate_1_leg4,
+                ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4), -minus_g1_vx_leg4,
+                g2_vx_leg4 * rate_dot_2_leg4, -(minus_g1_vx_leg4 * t597 + g2_vx_leg4 * t603),
+                -(minus_g1_vx_leg4 * t612 + g2_vx_leg4 * t614), 0.0784 * t570, t626 * t627,
+                ::overact::math::signed(t626, t627), t626, -(g2_vx_leg4 * t636),
+                -::overact::math::signed(g2_vx_leg4, t636), -g2_vx_leg4, 0.0, -t645, -t647, t313,
             ],
             [
-                t362, t362, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, g2_vy_leg1 * t374,
-                g1_vy_leg1 * t387 + g2_vy_leg1 * t393, -(g1_vy_leg1 * t410 + g2_vy_leg1 * t406),
-                g1_vy_leg1 * t421, t427 * t225, ::overact::math::signed(t427, t225), t427,
-                -(g2_vy_leg1 * t434), -::overact::math::signed(g2_vy_leg1, t434), -g2_vy_leg1, t448,
-                t448, g1_vy_leg2 * rate_1_leg2, ::overact::math::signed(g1_vy_leg2, rate_1_leg2),
-                g1_vy_leg2, g2_vy_leg2 * t460, g1_vy_leg2 * t473 + g2_vy_leg2 * t479,
-                g1_vy_leg2 * t490 + g2_vy_leg2 * t496, g1_vy_leg2 * t507, t513 * t251,
-                ::overact::math::signed(t513, t251), t513, -(g2_vy_leg2 * t520),
-                -::overact::math::signed(g2_vy_leg2, t520), -g2_vy_leg2, t538, t538,
+                t327, t327, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1,
+                minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
+                -(g1_vy_leg1 * t353 + minus_g2_vy_leg1 * t359),
+                g1_vy_leg1 * t368 + minus_g2_vy_leg1 * t370, 0.0784 * t327, t385 * t383,
+                ::overact::math::signed(t385, t383), -t385, minus_g2_vy_leg1 * t392,
+                ::overact::math::signed(minus_g2_vy_leg1, t392), minus_g2_vy_leg1, t407, t407,
+                minus_g1_vy_leg2 * minus_rate_1_leg2,
+                ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
+                g2_vy_leg2 * rate_dot_2_leg2, -(minus_g1_vy_leg2 * t433 + g2_vy_leg2 * t439),
+                -(minus_g1_vy_leg2 * t448 + g2_vy_leg2 * t450), 0.0784 * t407, t465 * t463,
+                ::overact::math::signed(t465, t463), t465, -(g2_vy_leg2 * t472),
+                -::overact::math::signed(g2_vy_leg2, t472), -g2_vy_leg2, t491, t491,
                 g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
-                g1_vy_leg3, g2_vy_leg3 * t550, g1_vy_leg3 * t563 + g2_vy_leg3 * t569,
-                -(g1_vy_leg3 * t586 + g2_vy_leg3 * t582), g1_vy_leg3 * t597, t603 * t279,
-                ::overact::math::signed(t603, t279), t603, -(g2_vy_leg3 * t610),
-                -::overact::math::signed(g2_vy_leg3, t610), -g2_vy_leg3, t624, t624,
-                g1_vy_leg4 * rate_1_leg4, ::overact::math::signed(g1_vy_leg4, rate_1_leg4),
-                g1_vy_leg4, g2_vy_leg4 * t636, g1_vy_leg4 * t649 + g2_vy_leg4 * t655,
-                g1_vy_leg4 * t666 + g2_vy_leg4 * t672, g1_vy_leg4 * t683, t689 * t305,
-                ::overact::math::signed(t689, t305), t689, -(g2_vy_leg4 * t696),
-                -::overact::math::signed(g2_vy_leg4, t696), -g2_vy_leg4, 0.0, t708 - t709,
-                -(t706 + t705), s_phi * t718 + c_phi * t713,
+                g1_vy_leg3, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
+                -(g1_vy_leg3 * t517 + minus_g2_vy_leg3 * t523),
+                g1_vy_leg3 * t532 + minus_g2_vy_leg3 * t534, 0.0784 * t491, t549 * t547,
+                ::overact::math::signed(t549, t547), -t549, minus_g2_vy_leg3 * t556,
+                ::overact::math::signed(minus_g2_vy_leg3, t556), minus_g2_vy_leg3, t571, t571,
+                minus_g1_vy_leg4 * minus_rate_1_leg4,
+                ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4), -minus_g1_vy_leg4,
+                g2_vy_leg4 * rate_dot_2_leg4, -(minus_g1_vy_leg4 * t597 + g2_vy_leg4 * t603),
+                -(minus_g1_vy_leg4 * t612 + g2_vy_leg4 * t614), 0.0784 * t571, t629 * t627,
+                ::overact::math::signed(t629, t627), t629, -(g2_vy_leg4 * t636),
+                -::overact::math::signed(g2_vy_leg4, t636), -g2_vy_leg4, 0.0, t647, -t645, t309,
             ],
             [
-                -t363, -t363, -(minus_g1_wz_leg1 * rate_1_leg1),
+                -t328, -t328, -(minus_g1_wz_leg1 * rate_1_leg1),
                 -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1,
-                g2_wz_leg1 * t374, g2_wz_leg1 * t393 - minus_g1_wz_leg1 * t387,
-                minus_g1_wz_leg1 * t410 - g2_wz_leg1 * t406, -(minus_g1_wz_leg1 * t421),
-                t429 * t225, ::overact::math::signed(t429, t225), t429, t437 * t434,
-                ::overact::math::signed(t437, t434), t437, -t449, -t449,
-                -(minus_g1_wz_leg2 * rate_1_leg2),
-                -::overact::math::signed(minus_g1_wz_leg2, rate_1_leg2), -minus_g1_wz_leg2,
-                g2_wz_leg2 * t460, g2_wz_leg2 * t479 - minus_g1_wz_leg2 * t473,
-                g2_wz_leg2 * t496 - minus_g1_wz_leg2 * t490, -(minus_g1_wz_leg2 * t507),
-                t515 * t251, ::overact::math::signed(t515, t251), t515, t523 * t520,
-                ::overact::math::signed(t523, t520), t523, t539, t539, g1_wz_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_wz_leg3, rate_1_leg3), g1_wz_leg3, g2_wz_leg3 * t550,
-                g1_wz_leg3 * t563 + g2_wz_leg3 * t569, -(g1_wz_leg3 * t586 + g2_wz_leg3 * t582),
-                g1_wz_leg3 * t597, t605 * t279, ::overact::math::signed(t605, t279), t605,
-                t613 * t610, ::overact::math::signed(t613, t610), t613, t625, t625,
-                g1_wz_leg4 * rate_1_leg4, ::overact::math::signed(g1_wz_leg4, rate_1_leg4),
-                g1_wz_leg4, g2_wz_leg4 * t636, g1_wz_leg4 * t649 + g2_wz_leg4 * t655,
-                g1_wz_leg4 * t666 + g2_wz_leg4 * t672, g1_wz_leg4 * t683, t691 * t305,
-                ::overact::math::signed(t691, t305), t691, t699 * t696,
-                ::overact::math::signed(t699, t696), t699, rate_dot_3_leg1, t713, -t718, 0.0,
+                -(g2_wz_leg1 * minus_rate_dot_2_leg1), minus_g1_wz_leg1 * t353 + g2_wz_leg1 * t359,
+                -(minus_g1_wz_leg1 * t368 + g2_wz_leg1 * t370), -(0.0784 * t328), -(t387 * t383),
+                -::overact::math::signed(t387, t383), t387, t395 * t392,
+                ::overact::math::signed(t395, t392), t395, -t408, -t408,
+                -(g1_wz_leg2 * minus_rate_1_leg2),
+                -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2,
+                -(minus_g2_wz_leg2 * rate_dot_2_leg2), g1_wz_leg2 * t433 + minus_g2_wz_leg2 * t439,
+                g1_wz_leg2 * t448 + minus_g2_wz_leg2 * t450, -(0.0784 * t408), -(t467 * t463),
+                -::overact::math::signed(t467, t463), -t467, t475 * t472,
+                ::overact::math::signed(t475, t472), t475, t492, t492, g1_wz_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_wz_leg3, rate_1_leg3), g1_wz_leg3,
+                minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
+                -(g1_wz_leg3 * t517 + minus_g2_wz_leg3 * t523),
+                g1_wz_leg3 * t532 + minus_g2_wz_leg3 * t534, 0.0784 * t492, t551 * t547,
+                ::overact::math::signed(t551, t547), -t551, t559 * t556,
+                ::overact::math::signed(t559, t556), t559, t572, t572,
+                minus_g1_wz_leg4 * minus_rate_1_leg4,
+                ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4), -minus_g1_wz_leg4,
+                g2_wz_leg4 * rate_dot_2_leg4, -(minus_g1_wz_leg4 * t597 + g2_wz_leg4 * t603),
+                -(minus_g1_wz_leg4 * t612 + g2_wz_leg4 * t614), 0.0784 * t572, t631 * t627,
+                ::overact::math::signed(t631, t627), t631, t639 * t636,
+                ::overact::math::signed(t639, t636), t639, rate_dot_3_leg1,
+                c_phi * t309 - s_phi * t313, -(c_phi * t313 + s_phi * t309), 0.0,
             ],
         ])
     }
@@ -2418,7 +2316,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 604 operations (234 additions, 361 multiplications, 9 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 504 intermediates.
+    /// 521 operations (194 additions, 318 multiplications, 9 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 421 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2433,293 +2331,288 @@ impl DualV {
         let t4 = t3 - 0.3950502153918333;
         let t6 = 0.11 * c_phi;
         let t8 = pose[1] + t6 - 0.10970563941232059;
-        let t10 = t8 * t8;
-        let t11 = t4 * t4 + t10;
-        let t13 = 0.0784 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg1")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t16 = 0.5 * t4 + t8 * t14;
-        let t17 = t4 - t16;
-        let t18 = 0.5 * t8;
-        let t20 = t18 - t4 * t14;
-        let t21 = t8 - t20;
-        let t23 = t16 + t17 - t17;
-        let t26 = t21 - (t20 + t21);
-        let t28 = t21 * t23 + t17 * t26;
-        ::overact::guard::leg(t28, 0.078399138102973, "leg1")?;
-        let t29 = 1.0 / t28;
-        let g1_vx_leg1 = t17 * t29;
-        let t31 = t6 * acceleration[2];
-        let t33 = t2 * twist[2];
-        let t34 = twist[2] * t33;
-        let t35 = acceleration[0] - t31 + t34;
-        let t36 = t6 * twist[2];
-        let t37 = twist[0] - t36;
-        let g1_vy_leg1 = t21 * t29;
-        let t40 = twist[1] - t33;
-        let rate_1_leg1 = g1_vx_leg1 * t37 + g1_vy_leg1 * t40;
-        let t43 = rate_1_leg1 * rate_1_leg1;
-        let g2_vy_leg1 = t26 * t29;
-        let minus_g2_vx_leg1 = t23 * t29;
-        let rate_2_leg1 = g2_vy_leg1 * t40 - minus_g2_vx_leg1 * t37;
-        let t50 = rate_2_leg1 - rate_1_leg1;
-        let t51 = rate_1_leg1 + t50;
-        let t52 = t51 * t51;
-        let t55 = t35 + t16 * t43 + t17 * t52;
-        let t57 = t2 * acceleration[2];
-        let t59 = twist[2] * t36;
-        let t60 = acceleration[1] - t57 - t59;
-        let t64 = t60 + t20 * t43 + t21 * t52;
-        let rate_dot_1_leg1 = g1_vx_leg1 * t55 + g1_vy_leg1 * t64;
-        let t68 = t3 + 0.3950502153918333;
-        let t70 = t68 * t68 + t10;
-        let t72 = 0.0784 / t70 - 0.25;
-        ::overact::guard::reach(t72, "leg2")?;
-        let t73 = ::overact::math::sqrt(t72);
-        let t75 = t18 + t68 * t73;
-        let t76 = t8 - t75;
-        let t79 = 0.5 * t68 - t8 * t73;
-        let t80 = t68 - t79;
-        let t82 = t79 + t80 - t80;
-        let t85 = t76 - (t75 + t76);
-        let t87 = t76 * t82 + t80 * t85;
-        ::overact::guard::leg(t87, 0.078399138102973, "leg2")?;
-        let t88 = 1.0 / t87;
-        let g1_vy_leg2 = t76 * t88;
-        let g1_vx_leg2 = t80 * t88;
-        let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t6 * g1_vx_leg2;
-        let t95 = pose[1] - t6 + 0.10970563941232059;
-        let t96 = 0.5 * t95;
-        let t97 = pose[0] + t2;
-        let t98 = t97 + 0.3950502153918333;
-        let t100 = t95 * t95;
-        let t101 = t98 * t98 + t100;
-        let t103 = 0.0784 / t101 - 0.25;
-        ::overact::guard::reach(t103, "leg3")?;
-        let t104 = ::overact::math::sqrt(t103);
-        let t106 = t96 - t98 * t104;
-        let t107 = t95 - t106;
-        let t110 = 0.5 * t98 + t95 * t104;
-        let t111 = t98 - t110;
-        let t113 = t110 + t111 - t111;
-        let t116 = t107 - (t106 + t107);
-        let t118 = t107 * t113 + t111 * t116;
-        ::overact::guard::leg(t118, 0.078399138102973, "leg3")?;
-        let t119 = 1.0 / t118;
-        let g1_vy_leg3 = t107 * t119;
-        let g1_vx_leg3 = t111 * t119;
+        let t9 = t8 * t8;
+        let t10 = t4 * t4 + t9;
+        let t12 = 0.0784 / t10 - 0.25;
+        ::overact::guard::reach(t12, "leg1")?;
+        let t13 = ::overact::math::sqrt(t12);
+        let t14 = t10 * t13;
+        ::overact::guard::leg(t14, 0.07839913810297301, "leg1")?;
+        let t15 = 1.0 / t14;
+        let t18 = 0.5 * t4 + t8 * t13;
+        let t19 = t4 - t18;
+        let t20 = t6 * acceleration[2];
+        let t22 = t2 * twist[2];
+        let t23 = twist[2] * t22;
+        let t24 = acceleration[0] - t20 + t23;
+        let t26 = 0.5 * t8;
+        let t28 = t26 - t4 * t13;
+        let t29 = t8 - t28;
+        let t30 = t2 * acceleration[2];
+        let t32 = t6 * twist[2];
+        let t33 = twist[2] * t32;
+        let t34 = acceleration[1] - t30 - t33;
+        let minus_g2_vx_leg1 = t18 * t15;
+        let t38 = twist[0] - t32;
+        let minus_g2_vy_leg1 = t28 * t15;
+        let t41 = twist[1] - t22;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t38 + minus_g2_vy_leg1 * t41;
+        let t44 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t46 = t19 * t24 + t29 * t34 + 0.0784 * t44;
+        let g1_vx_leg1 = t19 * t15;
+        let g1_vy_leg1 = t29 * t15;
+        let rate_1_leg1 = g1_vx_leg1 * t38 + g1_vy_leg1 * t41;
+        let t52 = rate_1_leg1 * rate_1_leg1;
+        let t54 = 0.5 * (t10 - 0.1568);
+        let rate_dot_1_leg1 = t15 * (t46 + t52 * t54);
+        let t59 = t3 + 0.3950502153918333;
+        let t61 = t59 * t59 + t9;
+        let t63 = 0.0784 / t61 - 0.25;
+        ::overact::guard::reach(t63, "leg2")?;
+        let t64 = ::overact::math::sqrt(t63);
+        let t66 = t26 + t59 * t64;
+        let t67 = t8 - t66;
+        let t68 = t61 * t64;
+        ::overact::guard::leg(t68, 0.07839913810297301, "leg2")?;
+        let t69 = 1.0 / t68;
+        let minus_g1_vy_leg2 = t67 * t69;
+        let t74 = 0.5 * t59 - t8 * t64;
+        let t75 = t59 - t74;
+        let minus_g1_vx_leg2 = t75 * t69;
+        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
+        let t79 = pose[0] + t2;
+        let t80 = t79 + 0.3950502153918333;
+        let t83 = pose[1] - t6 + 0.10970563941232059;
+        let t85 = t83 * t83;
+        let t86 = t80 * t80 + t85;
+        let t88 = 0.0784 / t86 - 0.25;
+        ::overact::guard::reach(t88, "leg3")?;
+        let t89 = ::overact::math::sqrt(t88);
+        let t91 = 0.5 * t80 + t83 * t89;
+        let t92 = t80 - t91;
+        let t93 = t86 * t89;
+        ::overact::guard::leg(t93, 0.07839913810297301, "leg3")?;
+        let t94 = 1.0 / t93;
+        let g1_vx_leg3 = t92 * t94;
+        let t97 = 0.5 * t83;
+        let t99 = t97 - t80 * t89;
+        let t100 = t83 - t99;
+        let g1_vy_leg3 = t100 * t94;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let t133 = g1_vy_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vy_leg2;
-        let t137 = g1_vx_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vx_leg2;
-        let t142 = g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2;
-        let t144 = g1_vx_leg3 * t133 - g1_vy_leg3 * t137 + g1_wz_leg3 * t142;
-        ::overact::guard::platform(t144, 7.075383197258382, "kept actuators")?;
-        ::overact::guard::platform(t144, 7.075383197258382, "kept actuators")?;
-        ::overact::guard::platform(t144, 7.075383197258382, "kept actuators")?;
-        let t145 = 1.0 / t144;
-        let t146 = (minus_g1_wz_leg2 * g1_vy_leg3 + g1_vy_leg2 * g1_wz_leg3) * t145;
-        let t151 = (minus_g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * g1_wz_leg3) * t145;
-        let g2_wz_leg1 = t6 * minus_g2_vx_leg1 - t2 * g2_vy_leg1;
-        let t160 = (g1_vy_leg2 * g1_vx_leg3 - g1_vx_leg2 * g1_vy_leg3) * t145;
-        let t162 = minus_g2_vx_leg1 * t146 + g2_vy_leg1 * t151 + g2_wz_leg1 * t160;
-        let rate_dot_2_leg1 = g2_vy_leg1 * t64 - minus_g2_vx_leg1 * t55;
-        let t167 = rate_dot_1_leg1 + rate_dot_2_leg1 - rate_dot_1_leg1;
-        let t172 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t145;
-        let t177 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t145;
-        let t183 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t145;
-        let t185 = minus_g2_vx_leg1 * t172 + g2_vy_leg1 * t177 + g2_wz_leg1 * t183;
-        let t187 = t11 - 0.1568;
-        let t188 = 1.7857142857142858 * t187;
-        let t190 = t11 * t14;
-        let t191 = 3.5714285714285716 * t190;
-        let t198 = 3.5714285714285716 * (t190 * t43)
-            + 1.7857142857142858 * (t187 * rate_dot_1_leg1);
-        let t209 = 3.5714285714285716 * (t190 * rate_dot_1_leg1)
-            - 1.7857142857142858 * (t187 * t43);
-        let t216 = t162 - 1.0;
-        let t221 = twist[2] - rate_2_leg1;
-        let t222 = t160 - t162;
-        let t224 = t185 - t183;
-        let t226 = t142 * t145;
-        let rate_1_leg2 = g1_vx_leg2 * t37 + g1_vy_leg2 * t40;
-        let t234 = rate_1_leg2 * rate_1_leg2;
-        let g2_vy_leg2 = t85 * t88;
-        let minus_g2_vx_leg2 = t82 * t88;
-        let rate_2_leg2 = g2_vy_leg2 * t40 - minus_g2_vx_leg2 * t37;
-        let t241 = rate_2_leg2 - rate_1_leg2;
-        let t242 = rate_1_leg2 + t241;
-        let t243 = t242 * t242;
-        let t246 = t35 + t79 * t234 + t80 * t243;
-        let t251 = t60 + t75 * t234 + t76 * t243;
-        let rate_dot_1_leg2 = g1_vx_leg2 * t246 + g1_vy_leg2 * t251;
-        let g2_wz_leg2 = t6 * minus_g2_vx_leg2 - t2 * g2_vy_leg2;
-        let t262 = minus_g2_vx_leg2 * t146 + g2_vy_leg2 * t151 + g2_wz_leg2 * t160;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t251 - minus_g2_vx_leg2 * t246;
-        let t267 = rate_dot_1_leg2 + rate_dot_2_leg2 - rate_dot_1_leg2;
-        let t273 = minus_g2_vx_leg2 * t172 + g2_vy_leg2 * t177 + g2_wz_leg2 * t183;
-        let t275 = t70 - 0.1568;
-        let t278 = t70 * t73;
-        let t281 = 1.7857142857142858 * (t275 * rate_dot_1_leg2)
-            - 3.5714285714285716 * (t278 * t234);
-        let t283 = 3.5714285714285716 * t278;
-        let t285 = 1.7857142857142858 * t275;
-        let t294 = 1.7857142857142858 * (t275 * t234)
-            + 3.5714285714285716 * (t278 * rate_dot_1_leg2);
-        let t305 = 1.0 + t273;
-        let t309 = twist[2] - rate_2_leg2;
-        let t310 = t160 - t262;
-        let t312 = t273 - t183;
-        let t319 = acceleration[0] + t31 - t34;
-        let t320 = twist[0] + t36;
-        let t322 = twist[1] + t33;
-        let rate_1_leg3 = g1_vx_leg3 * t320 + g1_vy_leg3 * t322;
-        let t325 = rate_1_leg3 * rate_1_leg3;
-        let g2_vy_leg3 = t116 * t119;
-        let minus_g2_vx_leg3 = t113 * t119;
-        let rate_2_leg3 = g2_vy_leg3 * t322 - minus_g2_vx_leg3 * t320;
-        let t332 = rate_2_leg3 - rate_1_leg3;
-        let t333 = rate_1_leg3 + t332;
-        let t334 = t333 * t333;
-        let t337 = t319 + t110 * t325 + t111 * t334;
-        let t340 = acceleration[1] + t57 + t59;
-        let t344 = t340 + t106 * t325 + t107 * t334;
-        let rate_dot_1_leg3 = g1_vx_leg3 * t337 + g1_vy_leg3 * t344;
-        let g2_wz_leg3 = t2 * g2_vy_leg3 - t6 * minus_g2_vx_leg3;
-        let t355 = minus_g2_vx_leg3 * t146 + g2_vy_leg3 * t151 + g2_wz_leg3 * t160;
-        let rate_dot_2_leg3 = g2_vy_leg3 * t344 - minus_g2_vx_leg3 * t337;
-        let t360 = rate_dot_1_leg3 + rate_dot_2_leg3 - rate_dot_1_leg3;
-        let t366 = minus_g2_vx_leg3 * t172 + g2_vy_leg3 * t177 + g2_wz_leg3 * t183;
-        let t369 = t133 * t145;
-        let t371 = t137 * t145;
-        let t374 = g2_wz_leg3 * t226 - (minus_g2_vx_leg3 * t369 + g2_vy_leg3 * t371);
-        let t376 = t101 * t104;
-        let t379 = t101 - 0.1568;
-        let t382 = 3.5714285714285716 * (t376 * t325)
-            + 1.7857142857142858 * (t379 * rate_dot_1_leg3);
-        let t385 = 1.7857142857142858 * t379;
-        let t387 = 3.5714285714285716 * t376;
-        let t396 = 3.5714285714285716 * (t376 * rate_dot_1_leg3)
-            - 1.7857142857142858 * (t379 * t325);
-        let t409 = t374 - 1.0;
-        let t414 = twist[2] - rate_2_leg3;
-        let t415 = t160 - t355;
-        let t417 = t366 - t183;
-        let t419 = t226 - t374;
-        let t424 = t97 - 0.3950502153918333;
-        let t426 = t424 * t424 + t100;
-        let t428 = 0.0784 / t426 - 0.25;
-        ::overact::guard::reach(t428, "leg4")?;
-        let t429 = ::overact::math::sqrt(t428);
-        let t431 = t96 + t424 * t429;
-        let t432 = t95 - t431;
-        let t435 = 0.5 * t424 - t95 * t429;
-        let t436 = t424 - t435;
-        let t438 = t435 + t436 - t436;
-        let t441 = t432 - (t431 + t432);
-        let t443 = t432 * t438 + t436 * t441;
-        ::overact::guard::leg(t443, 0.078399138102973, "leg4")?;
-        let t444 = 1.0 / t443;
-        let g1_vy_leg4 = t432 * t444;
-        let g1_vx_leg4 = t436 * t444;
-        let g1_wz_leg4 = t2 * g1_vy_leg4 + t6 * g1_vx_leg4;
-        let t454 = g1_vy_leg4 * t151 - g1_vx_leg4 * t146 + g1_wz_leg4 * t160;
-        let rate_1_leg4 = g1_vx_leg4 * t320 + g1_vy_leg4 * t322;
-        let t458 = rate_1_leg4 * rate_1_leg4;
-        let g2_vy_leg4 = t441 * t444;
-        let minus_g2_vx_leg4 = t438 * t444;
-        let rate_2_leg4 = g2_vy_leg4 * t322 - minus_g2_vx_leg4 * t320;
-        let t465 = rate_2_leg4 - rate_1_leg4;
-        let t466 = rate_1_leg4 + t465;
-        let t467 = t466 * t466;
-        let t470 = t319 + t435 * t458 + t436 * t467;
-        let t475 = t340 + t431 * t458 + t432 * t467;
-        let rate_dot_1_leg4 = g1_vx_leg4 * t470 + g1_vy_leg4 * t475;
-        let t478 = t454 * rate_dot_1_leg4;
-        let t483 = g1_vx_leg4 * t172 - g1_vy_leg4 * t177 - g1_wz_leg4 * t183;
-        let t484 = t483 * rate_dot_1_leg4;
-        let t489 = g1_vx_leg4 * t369 - g1_vy_leg4 * t371 + g1_wz_leg4 * t226;
-        let t490 = t489 * rate_dot_1_leg4;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 - t6 * minus_g2_vx_leg4;
-        let t504 = minus_g2_vx_leg4 * t146 + g2_vy_leg4 * t151 + g2_wz_leg4 * t160;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t475 - minus_g2_vx_leg4 * t470;
-        let t509 = rate_dot_1_leg4 + rate_dot_2_leg4 - rate_dot_1_leg4;
-        let t515 = minus_g2_vx_leg4 * t172 + g2_vy_leg4 * t177 + g2_wz_leg4 * t183;
-        let t521 = g2_wz_leg4 * t226 - (minus_g2_vx_leg4 * t369 + g2_vy_leg4 * t371);
-        let t523 = t426 * t429;
-        let t524 = 3.5714285714285716 * t523;
-        let t526 = t426 - 0.1568;
-        let t527 = 1.7857142857142858 * t526;
-        let t529 = t467 * t524 + t509 * t527;
-        let t535 = 1.7857142857142858 * (t526 * rate_dot_1_leg4)
-            - 3.5714285714285716 * (t523 * t458);
-        let t546 = t509 * t524 - t467 * t527;
-        let t552 = 1.7857142857142858 * (t526 * t458)
-            + 3.5714285714285716 * (t523 * rate_dot_1_leg4);
-        let t563 = t552 * t524 + t535 * t527;
-        let t567 = t504 - t454;
-        let t569 = t483 + t515;
-        let t571 = t521 - t489;
-        let t576 = twist[2] - rate_2_leg4;
-        let t577 = t160 - t504;
-        let t579 = t515 - t183;
-        let t581 = t226 - t521;
-        let t590 = 9.090909090909092 * (t59 + t57);
-        let t593 = 9.090909090909092 * (t31 - t34);
-        let t598 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t616 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t112 = minus_g1_wz_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_wz_leg2;
+        let t116 = minus_g1_wz_leg1 * minus_g1_vx_leg2 - g1_vx_leg1 * g1_wz_leg2;
+        let t118 = g1_vx_leg3 * t112 - g1_vy_leg3 * t116;
+        ::overact::guard::platform(t118, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t118, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t118, 3.5376915986291904, "kept actuators")?;
+        let t119 = 0.5 / t118;
+        let t120 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t119;
+        let t125 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t119;
+        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
+        let t134 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
+            * t119;
+        let t136 = minus_g2_vy_leg1 * t120 - minus_g2_vx_leg1 * t125 + g2_wz_leg1 * t134;
+        let t141 = t18 * t24 + t28 * t34 + 0.0784 * t52;
+        let minus_rate_dot_2_leg1 = t15 * (t141 + t44 * t54);
+        let t145 = t136 * minus_rate_dot_2_leg1;
+        let t149 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t119;
+        let t154 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t119;
+        let t160 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t119;
+        let t162 = minus_g2_vy_leg1 * t149 - minus_g2_vx_leg1 * t154 - g2_wz_leg1 * t160;
+        let t163 = t162 * minus_rate_dot_2_leg1;
+        let t164 = t134 * acceleration[2];
+        let t166 = 9.090909090909092 * (t33 + t30);
+        let t169 = 9.090909090909092 * (t20 - t23);
+        let t174 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t176 = t120 * t166 - t125 * t169 - t134 * t174;
+        let t177 = 9.090909090909092 * t176;
+        let t181 = t125 * acceleration[0] - t120 * acceleration[1];
+        let t182 = 82.64462809917356 * t181;
+        let t184 = 0.04321428571428571 * (t164 + t177 + t182);
+        let t192 = t149 * t166 - t154 * t169 + t160 * t174;
+        let t193 = 9.090909090909092 * t192;
+        let t194 = t160 * acceleration[2];
+        let t198 = t154 * acceleration[0] - t149 * acceleration[1];
+        let t199 = 82.64462809917356 * t198;
+        let t201 = 0.04321428571428571 * (t193 - t194 + t199);
+        let t205 = 3.5714285714285716 * t46;
+        let t210 = rate_1_leg1 + minus_rate_2_leg1;
+        let t211 = t136 - 1.0;
+        let t216 = minus_rate_2_leg1 + twist[2];
+        let t217 = t134 - t136;
+        let t219 = t162 + t160;
+        let t224 = (g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2)
+            * t119;
+        let g2_vx_leg2 = t74 * t69;
+        let g2_vy_leg2 = t66 * t69;
+        let rate_2_leg2 = g2_vx_leg2 * t38 + g2_vy_leg2 * t41;
+        let t237 = rate_2_leg2 * rate_2_leg2;
+        let t239 = t75 * t24 + t67 * t34 + 0.0784 * t237;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t38 + minus_g1_vy_leg2 * t41;
+        let t243 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t245 = 0.5 * (t61 - 0.1568);
+        let minus_rate_dot_1_leg2 = t69 * (t239 + t243 * t245);
+        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
+        let t257 = g2_vx_leg2 * t125 - g2_vy_leg2 * t120 - minus_g2_wz_leg2 * t134;
+        let t262 = t74 * t24 + t66 * t34 + 0.0784 * t243;
+        let rate_dot_2_leg2 = t69 * (t262 + t237 * t245);
+        let t266 = t257 * rate_dot_2_leg2;
+        let t271 = g2_vx_leg2 * t154 - g2_vy_leg2 * t149 + minus_g2_wz_leg2 * t160;
+        let t272 = t271 * rate_dot_2_leg2;
+        let t278 = 3.5714285714285716 * t239;
+        let t284 = minus_rate_1_leg2 + rate_2_leg2;
+        let t286 = t271 - 1.0;
+        let t290 = twist[2] - rate_2_leg2;
+        let t291 = t134 - t257;
+        let t293 = t271 + t160;
+        let t300 = acceleration[0] + t20 - t23;
+        let t303 = acceleration[1] + t30 + t33;
+        let minus_g2_vx_leg3 = t91 * t94;
+        let t307 = twist[0] + t32;
+        let minus_g2_vy_leg3 = t99 * t94;
+        let t310 = twist[1] + t22;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t307 + minus_g2_vy_leg3 * t310;
+        let t313 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t315 = t92 * t300 + t100 * t303 + 0.0784 * t313;
+        let rate_1_leg3 = g1_vx_leg3 * t307 + g1_vy_leg3 * t310;
+        let t319 = rate_1_leg3 * rate_1_leg3;
+        let t321 = 0.5 * (t86 - 0.1568);
+        let rate_dot_1_leg3 = t94 * (t315 + t319 * t321);
+        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
+        let t333 = minus_g2_vy_leg3 * t120 - minus_g2_vx_leg3 * t125
+            - minus_g2_wz_leg3 * t134;
+        let t338 = t91 * t300 + t99 * t303 + 0.0784 * t319;
+        let minus_rate_dot_2_leg3 = t94 * (t338 + t313 * t321);
+        let t342 = t333 * minus_rate_dot_2_leg3;
+        let t347 = minus_g2_vy_leg3 * t149 - minus_g2_vx_leg3 * t154
+            + minus_g2_wz_leg3 * t160;
+        let t348 = t347 * minus_rate_dot_2_leg3;
+        let t349 = t116 * t119;
+        let t351 = t112 * t119;
+        let t353 = minus_g2_vy_leg3 * t349 - minus_g2_vx_leg3 * t351;
+        let t354 = 2.0 * t353;
+        let t355 = t354 * minus_rate_dot_2_leg3;
+        let t358 = 0.04321428571428571 * (t164 - t177 + t182);
+        let t363 = 0.04321428571428571 * (t199 - (t194 + t193));
+        let t366 = t224 * acceleration[2];
+        let t368 = t224 * t174;
+        let t369 = 0.11 * t366 + t368;
+        let t370 = 0.7857142857142857 * t369;
+        let t374 = 3.5714285714285716 * t315;
+        let t382 = rate_1_leg3 + minus_rate_2_leg3;
+        let t385 = t354 - 1.0;
+        let t390 = minus_rate_2_leg3 + twist[2];
+        let t391 = t134 - t333;
+        let t393 = t347 + t160;
+        let t395 = t224 - t354;
+        let t400 = t79 - 0.3950502153918333;
+        let t402 = t400 * t400 + t85;
+        let t404 = 0.0784 / t402 - 0.25;
+        ::overact::guard::reach(t404, "leg4")?;
+        let t405 = ::overact::math::sqrt(t404);
+        let t407 = t97 + t400 * t405;
+        let t408 = t83 - t407;
+        let t409 = t402 * t405;
+        ::overact::guard::leg(t409, 0.07839913810297301, "leg4")?;
+        let t410 = 1.0 / t409;
+        let minus_g1_vy_leg4 = t408 * t410;
+        let t415 = 0.5 * t400 - t83 * t405;
+        let t416 = t400 - t415;
+        let minus_g1_vx_leg4 = t416 * t410;
+        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
+        let t424 = minus_g1_vy_leg4 * t120 - minus_g1_vx_leg4 * t125
+            - minus_g1_wz_leg4 * t134;
+        let g2_vx_leg4 = t415 * t410;
+        let g2_vy_leg4 = t407 * t410;
+        let rate_2_leg4 = g2_vx_leg4 * t307 + g2_vy_leg4 * t310;
+        let t433 = rate_2_leg4 * rate_2_leg4;
+        let t435 = t416 * t300 + t408 * t303 + 0.0784 * t433;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t307 + minus_g1_vy_leg4 * t310;
+        let t439 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t441 = 0.5 * (t402 - 0.1568);
+        let minus_rate_dot_1_leg4 = t410 * (t435 + t439 * t441);
+        let t445 = t424 * minus_rate_dot_1_leg4;
+        let t450 = minus_g1_vy_leg4 * t149 - minus_g1_vx_leg4 * t154
+            + minus_g1_wz_leg4 * t160;
+        let t451 = t450 * minus_rate_dot_1_leg4;
+        let t454 = minus_g1_vy_leg4 * t349 - minus_g1_vx_leg4 * t351;
+        let t455 = 2.0 * t454;
+        let t456 = t455 * minus_rate_dot_1_leg4;
+        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
+        let t470 = g2_vx_leg4 * t125 - g2_vy_leg4 * t120 + g2_wz_leg4 * t134;
+        let t475 = t415 * t300 + t407 * t303 + 0.0784 * t439;
+        let rate_dot_2_leg4 = t410 * (t475 + t433 * t441);
+        let t479 = t470 * rate_dot_2_leg4;
+        let t484 = g2_vx_leg4 * t154 - g2_vy_leg4 * t149 - g2_wz_leg4 * t160;
+        let t485 = t484 * rate_dot_2_leg4;
+        let t488 = g2_vx_leg4 * t351 - g2_vy_leg4 * t349;
+        let t489 = 2.0 * t488;
+        let t490 = t489 * rate_dot_2_leg4;
+        let t500 = 3.5714285714285716 * t475;
+        let t502 = 3.5714285714285716 * t435;
+        let t515 = minus_rate_1_leg4 + rate_2_leg4;
+        let t516 = t470 - t424;
+        let t518 = t484 - t450;
+        let t521 = 2.0 * (t488 - t454);
+        let t526 = twist[2] - rate_2_leg4;
+        let t527 = t134 - t470;
+        let t529 = t484 + t160;
+        let t531 = t224 - t489;
+        let t538 = c_phi * acceleration[1] - s_phi * acceleration[0];
         Ok([
             [
                 rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
-                1.0, t162 * t167, t167 * t188 - t52 * t191 + t162 * t198,
-                -(t167 * t191 + t52 * t188 + t162 * t209), t209 * t191 + t198 * t188, t50 * t216,
-                ::overact::math::signed(t216, t50), t216, t221 * t222,
-                ::overact::math::signed(t222, t221), t222, 0.0, 0.0, 0.0, 0.0, 0.0, t262 * t267,
-                t262 * t281, t262 * t294, 0.0, t262 * t241, ::overact::math::signed(t262, t241),
-                t262, t309 * t310, ::overact::math::signed(t310, t309), t310, 0.0, 0.0, 0.0, 0.0,
-                0.0, t355 * t360, t355 * t382, -(t355 * t396), 0.0, t355 * t332,
-                ::overact::math::signed(t355, t332), t355, t414 * t415,
-                ::overact::math::signed(t415, t414), t415, t478, t478, t454 * rate_1_leg4,
-                ::overact::math::signed(t454, rate_1_leg4), t454, t504 * t509,
-                t454 * t529 + t504 * t535, t454 * t546 + t504 * t552, t454 * t563, t465 * t567,
-                ::overact::math::signed(t567, t465), t567, t576 * t577,
-                ::overact::math::signed(t577, t576), t577, t160 * acceleration[2],
-                t146 * t590 + t151 * t593 + t160 * t598, t146 * t593 - t151 * t590 - t160 * t616,
-                t151 * acceleration[1] - t146 * acceleration[0],
+                1.0, -t145, t184 - 0.28 * (rate_dot_1_leg1 - t145),
+                3.5714285714285716 * t141 - t136 * t205, 0.0784 * rate_dot_1_leg1, -(t210 * t211),
+                -::overact::math::signed(t211, t210), t211, t216 * t217,
+                ::overact::math::signed(t217, t216), t217, 0.0, 0.0, 0.0, 0.0, 0.0, t266,
+                t184 - 0.28 * t266, -(t257 * t278), 0.0, t257 * t284,
+                ::overact::math::signed(t257, t284), t257, t290 * t291,
+                ::overact::math::signed(t291, t290), t291, 0.0, 0.0, 0.0, 0.0, 0.0, -t342,
+                t358 + 0.28 * t342, -(t333 * t374), 0.0, -(t333 * t382),
+                -::overact::math::signed(t333, t382), t333, t390 * t391,
+                ::overact::math::signed(t391, t390), t391, -t445, -t445,
+                -(t424 * minus_rate_1_leg4), -::overact::math::signed(t424, minus_rate_1_leg4),
+                t424, t479, t358 - 0.28 * (t479 - t445), t424 * t500 - t470 * t502,
+                -(0.0784 * t445), t515 * t516, ::overact::math::signed(t516, t515), t516,
+                t526 * t527, ::overact::math::signed(t527, t526), t527, t164,
+                t134 * t538 - (t125 * t166 + t120 * t169), t176, t181,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -(t185 * t167), -(t185 * t198), t185 * t209, 0.0,
-                -(t185 * t50), -::overact::math::signed(t185, t50), -t185, t221 * t224,
-                ::overact::math::signed(t224, t221), t224, rate_dot_1_leg2, rate_dot_1_leg2,
-                rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0, -(t273 * t267),
-                t243 * t283 + t267 * t285 - t273 * t281, t267 * t283 - t243 * t285 - t273 * t294,
-                t294 * t283 + t281 * t285, -(t241 * t305), -::overact::math::signed(t305, t241),
-                -t305, t309 * t312, ::overact::math::signed(t312, t309), t312, 0.0, 0.0, 0.0, 0.0,
-                0.0, -(t366 * t360), -(t366 * t382), t366 * t396, 0.0, -(t366 * t332),
-                -::overact::math::signed(t366, t332), -t366, t414 * t417,
-                ::overact::math::signed(t417, t414), t417, t484, t484, t483 * rate_1_leg4,
-                ::overact::math::signed(t483, rate_1_leg4), t483, -(t515 * t509),
-                t483 * t529 - t515 * t535, t483 * t546 - t515 * t552, t483 * t563, -(t465 * t569),
-                -::overact::math::signed(t569, t465), -t569, t576 * t579,
-                ::overact::math::signed(t579, t576), t579, -(t183 * acceleration[2]),
-                -(t172 * t590 + t177 * t593 + t183 * t598), t177 * t590 - t172 * t593 + t183 * t616,
-                t172 * acceleration[0] - t177 * acceleration[1],
+                0.0, 0.0, 0.0, 0.0, 0.0, -t163, t201 + 0.28 * t163, -(t162 * t205), 0.0,
+                -(t162 * t210), -::overact::math::signed(t162, t210), t162, -(t216 * t219),
+                -::overact::math::signed(t219, t216), -t219, -minus_rate_dot_1_leg2,
+                -minus_rate_dot_1_leg2, -minus_rate_1_leg2,
+                -::overact::math::sign(minus_rate_1_leg2), 1.0, t272,
+                t201 - 0.28 * (t272 - minus_rate_dot_1_leg2),
+                3.5714285714285716 * t262 - t271 * t278, -(0.0784 * minus_rate_dot_1_leg2),
+                t284 * t286, ::overact::math::signed(t286, t284), t286, -(t290 * t293),
+                -::overact::math::signed(t293, t290), -t293, 0.0, 0.0, 0.0, 0.0, 0.0, -t348,
+                t363 + 0.28 * t348, -(t347 * t374), 0.0, -(t347 * t382),
+                -::overact::math::signed(t347, t382), t347, -(t390 * t393),
+                -::overact::math::signed(t393, t390), -t393, -t451, -t451,
+                -(t450 * minus_rate_1_leg4), -::overact::math::signed(t450, minus_rate_1_leg4),
+                t450, t485, t363 - 0.28 * (t485 - t451), t450 * t500 - t484 * t502,
+                -(0.0784 * t451), t515 * t518, ::overact::math::signed(t518, t515), t518,
+                -(t526 * t529), -::overact::math::signed(t529, t526), -t529, -t194,
+                -(t154 * t166 + t149 * t169 + t160 * t538), t192, t198,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t226 * t221,
-                ::overact::math::signed(t226, t221), t226, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, t226 * t309, ::overact::math::signed(t226, t309), t226,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t224 * t216,
+                ::overact::math::signed(t224, t216), t224, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, t224 * t290, ::overact::math::signed(t224, t290), t224,
                 rate_dot_1_leg3, rate_dot_1_leg3, rate_1_leg3, ::overact::math::sign(rate_1_leg3),
-                1.0, t374 * t360, t360 * t385 - t334 * t387 + t374 * t382,
-                -(t360 * t387 + t334 * t385 + t374 * t396), t396 * t387 + t382 * t385, t332 * t409,
-                ::overact::math::signed(t409, t332), t409, t414 * t419,
-                ::overact::math::signed(t419, t414), t419, t490, t490, t489 * rate_1_leg4,
-                ::overact::math::signed(t489, rate_1_leg4), t489, t521 * t509,
-                t489 * t529 + t521 * t535, t489 * t546 + t521 * t552, t489 * t563, t465 * t571,
-                ::overact::math::signed(t571, t465), t571, t576 * t581,
-                ::overact::math::signed(t581, t576), t581, t226 * acceleration[2],
-                t226 * t598 - (t369 * t590 + t371 * t593), t371 * t590 - t369 * t593 - t226 * t616,
-                t369 * acceleration[0] - t371 * acceleration[1],
+                1.0, -t355, t370 - 0.28 * (rate_dot_1_leg3 - t355),
+                3.5714285714285716 * t338 - 7.142857142857143 * (t353 * t315),
+                0.0784 * rate_dot_1_leg3, -(t382 * t385), -::overact::math::signed(t385, t382),
+                t385, t390 * t395, ::overact::math::signed(t395, t390), t395, -t456, -t456,
+                -(t455 * minus_rate_1_leg4), -::overact::math::signed(t455, minus_rate_1_leg4),
+                t455, t490, t370 - 0.28 * (t490 - t456),
+                7.142857142857143 * (t454 * t475 - t488 * t435), -(0.0784 * t456), t515 * t521,
+                ::overact::math::signed(t521, t515), t521, t526 * t531,
+                ::overact::math::signed(t531, t526), t531, t366,
+                t224 * t538 - (t351 * t166 + t349 * t169), -t369, 0.11 * t368,
             ],
         ])
     }
@@ -2998,11 +2891,13 @@ impl DualV {
     /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
+    /// - `actuators`: q, positions of the actuated joints (m, rad)
+    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
     ///
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 767 operations (306 additions, 449 multiplications, 12 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 667 intermediates.
+    /// 677 operations (262 additions, 403 multiplications, 12 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 577 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3019,368 +2914,356 @@ impl DualV {
         let t4 = t3 - 0.3950502153918333;
         let t6 = 0.11 * c_phi;
         let t8 = pose[1] + t6 - 0.10970563941232059;
-        let t10 = t8 * t8;
-        let t11 = t4 * t4 + t10;
-        let t13 = 0.0784 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg1")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t16 = 0.5 * t4 + t8 * t14;
-        let t17 = t4 - t16;
-        let t18 = 0.5 * t8;
-        let t20 = t18 - t4 * t14;
-        let t21 = t8 - t20;
-        let t23 = t16 + t17 - t17;
-        let t26 = t21 - (t20 + t21);
-        let t28 = t21 * t23 + t17 * t26;
-        ::overact::guard::leg(t28, 0.078399138102973, "leg1")?;
-        let t29 = 1.0 / t28;
-        let g1_vx_leg1 = t17 * t29;
-        let t32 = t3 + 0.3950502153918333;
-        let t35 = t32 * t32 + t10;
-        let t37 = 0.0784 / t35 - 0.25;
-        ::overact::guard::reach(t37, "leg2")?;
-        let t38 = ::overact::math::sqrt(t37);
-        let t40 = 0.5 * t32 - t8 * t38;
-        let t41 = t32 - t40;
-        let t43 = t18 + t32 * t38;
-        let t44 = t8 - t43;
-        let t46 = t40 + t41 - t41;
-        let t49 = t44 - (t43 + t44);
-        let t51 = t44 * t46 + t41 * t49;
-        ::overact::guard::leg(t51, 0.078399138102973, "leg2")?;
+        let t9 = t8 * t8;
+        let t10 = t4 * t4 + t9;
+        let t12 = 0.0784 / t10 - 0.25;
+        ::overact::guard::reach(t12, "leg1")?;
+        let t13 = ::overact::math::sqrt(t12);
+        let t14 = t10 * t13;
+        ::overact::guard::leg(t14, 0.07839913810297301, "leg1")?;
+        let t15 = 1.0 / t14;
+        let t18 = 0.5 * t4 + t8 * t13;
+        let t19 = t4 - t18;
+        let g1_vx_leg1 = t19 * t15;
+        let t22 = t3 + 0.3950502153918333;
+        let t25 = t22 * t22 + t9;
+        let t27 = 0.0784 / t25 - 0.25;
+        ::overact::guard::reach(t27, "leg2")?;
+        let t28 = ::overact::math::sqrt(t27);
+        let t30 = 0.5 * t22 - t8 * t28;
+        let t31 = t22 - t30;
+        let t32 = t25 * t28;
+        ::overact::guard::leg(t32, 0.07839913810297301, "leg2")?;
+        let t33 = 1.0 / t32;
+        let minus_g1_vx_leg2 = t31 * t33;
+        let t37 = pose[0] + t2;
+        let t38 = t37 + 0.3950502153918333;
+        let t41 = pose[1] - t6 + 0.10970563941232059;
+        let t43 = t41 * t41;
+        let t44 = t38 * t38 + t43;
+        let t46 = 0.0784 / t44 - 0.25;
+        ::overact::guard::reach(t46, "leg3")?;
+        let t47 = ::overact::math::sqrt(t46);
+        let t49 = 0.5 * t38 + t41 * t47;
+        let t50 = t38 - t49;
+        let t51 = t44 * t47;
+        ::overact::guard::leg(t51, 0.07839913810297301, "leg3")?;
         let t52 = 1.0 / t51;
-        let g1_vx_leg2 = t41 * t52;
-        let t56 = pose[0] + t2;
-        let t57 = t56 + 0.3950502153918333;
-        let t60 = pose[1] - t6 + 0.10970563941232059;
-        let t62 = t60 * t60;
-        let t63 = t57 * t57 + t62;
-        let t65 = 0.0784 / t63 - 0.25;
-        ::overact::guard::reach(t65, "leg3")?;
-        let t66 = ::overact::math::sqrt(t65);
-        let t68 = 0.5 * t57 + t60 * t66;
-        let t69 = t57 - t68;
-        let t70 = 0.5 * t60;
-        let t72 = t70 - t57 * t66;
-        let t73 = t60 - t72;
-        let t75 = t68 + t69 - t69;
-        let t78 = t73 - (t72 + t73);
-        let t80 = t73 * t75 + t69 * t78;
-        ::overact::guard::leg(t80, 0.078399138102973, "leg3")?;
-        let t81 = 1.0 / t80;
-        let g1_vx_leg3 = t69 * t81;
-        let t85 = t56 - 0.3950502153918333;
-        let t88 = t85 * t85 + t62;
-        let t90 = 0.0784 / t88 - 0.25;
-        ::overact::guard::reach(t90, "leg4")?;
-        let t91 = ::overact::math::sqrt(t90);
-        let t93 = 0.5 * t85 - t60 * t91;
-        let t94 = t85 - t93;
-        let t96 = t70 + t85 * t91;
-        let t97 = t60 - t96;
-        let t99 = t93 + t94 - t94;
-        let t102 = t97 - (t96 + t97);
-        let t104 = t97 * t99 + t94 * t102;
-        ::overact::guard::leg(t104, 0.078399138102973, "leg4")?;
-        let t105 = 1.0 / t104;
-        let g1_vx_leg4 = t94 * t105;
-        let t108 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t108, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(t108, 25.429161076750646, "actuators")?;
-        let t109 = 1.0 / t108;
-        let g1_vy_leg1 = t21 * t29;
+        let g1_vx_leg3 = t50 * t52;
+        let t56 = t37 - 0.3950502153918333;
+        let t59 = t56 * t56 + t43;
+        let t61 = 0.0784 / t59 - 0.25;
+        ::overact::guard::reach(t61, "leg4")?;
+        let t62 = ::overact::math::sqrt(t61);
+        let t64 = 0.5 * t56 - t41 * t62;
+        let t65 = t56 - t64;
+        let t66 = t59 * t62;
+        ::overact::guard::leg(t66, 0.07839913810297301, "leg4")?;
+        let t67 = 1.0 / t66;
+        let minus_g1_vx_leg4 = t65 * t67;
+        let t70 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t70, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(t70, 25.429161076750646, "actuators")?;
+        let t71 = 1.0 / t70;
+        let t72 = 0.5 * t8;
+        let t74 = t72 - t4 * t13;
+        let t75 = t8 - t74;
+        let g1_vy_leg1 = t75 * t15;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let g1_vy_leg2 = t44 * t52;
-        let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t6 * g1_vx_leg2;
-        let g1_vy_leg3 = t73 * t81;
+        let t82 = t72 + t22 * t28;
+        let t83 = t8 - t82;
+        let minus_g1_vy_leg2 = t83 * t33;
+        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
+        let t90 = 0.5 * t41;
+        let t92 = t90 - t38 * t47;
+        let t93 = t41 - t92;
+        let g1_vy_leg3 = t93 * t52;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let g1_vy_leg4 = t97 * t105;
-        let g1_wz_leg4 = t2 * g1_vy_leg4 + t6 * g1_vx_leg4;
-        let t139 = g1_vx_leg3 * g1_wz_leg3
-            - (g1_vx_leg1 * minus_g1_wz_leg1 + g1_vx_leg2 * minus_g1_wz_leg2)
-            + g1_vx_leg4 * g1_wz_leg4;
-        let t140 = t139 * t109;
-        let t156 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
-        let t158 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
-            + g1_vy_leg4 * g1_wz_leg4 - t156 * t140;
-        let t166 = t156 * t109;
-        let t168 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t156 * t166;
-        ::overact::guard::platform(t168, 25.59236889935335, "actuators")?;
-        ::overact::guard::platform(t168, 25.59236889935335, "actuators")?;
-        let t169 = 1.0 / t168;
-        let t170 = t158 * t169;
-        let t172 = minus_g1_wz_leg1 * minus_g1_wz_leg1
-            + minus_g1_wz_leg2 * minus_g1_wz_leg2 + g1_wz_leg3 * g1_wz_leg3
-            + g1_wz_leg4 * g1_wz_leg4 - t139 * t140 - t158 * t170;
-        ::overact::guard::platform(t172, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t172, 0.3076928490286828, "actuators")?;
-        let t173 = 1.0 / t172;
-        let t187 = g1_vx_leg1 * actuator_velocities[0]
-            + g1_vx_leg2 * actuator_velocities[1] + g1_vx_leg3 * actuator_velocities[2]
-            + g1_vx_leg4 * actuator_velocities[3];
-        let t198 = g1_vy_leg1 * actuator_velocities[0]
-            + g1_vy_leg2 * actuator_velocities[1] + g1_vy_leg3 * actuator_velocities[2]
-            + g1_vy_leg4 * actuator_velocities[3] - t187 * t166;
-        let t200 = g1_wz_leg3 * actuator_velocities[2]
-            - (minus_g1_wz_leg1 * actuator_velocities[0]
-                + minus_g1_wz_leg2 * actuator_velocities[1])
-            + g1_wz_leg4 * actuator_velocities[3] - t187 * t140 - t170 * t198;
-        let rate_3_leg1 = t173 * t200;
-        let t202 = t2 * rate_3_leg1;
-        let t203 = rate_3_leg1 * t202;
-        let t207 = t169 * t198 - t170 * rate_3_leg1;
-        let t211 = t187 * t109 - t166 * t207 - t140 * rate_3_leg1;
-        let t212 = t6 * rate_3_leg1;
-        let t213 = t211 - t212;
-        let t215 = t207 - t202;
-        let rate_1_leg1 = g1_vx_leg1 * t213 + g1_vy_leg1 * t215;
-        let t218 = rate_1_leg1 * rate_1_leg1;
-        let g2_vy_leg1 = t26 * t29;
-        let minus_g2_vx_leg1 = t23 * t29;
-        let rate_2_leg1 = g2_vy_leg1 * t215 - minus_g2_vx_leg1 * t213;
-        let t225 = rate_2_leg1 - rate_1_leg1;
-        let t226 = rate_1_leg1 + t225;
-        let t227 = t226 * t226;
-        let t229 = t16 * t218 + t17 * t227;
-        let t234 = t20 * t218 + t21 * t227;
-        let t235 = rate_3_leg1 * t212;
-        let rate_dot_1_leg1 = g1_vx_leg1 * (t203 + t229) + g1_vy_leg1 * (t234 - t235);
-        let t239 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let rate_1_leg2 = g1_vx_leg2 * t213 + g1_vy_leg2 * t215;
-        let t244 = rate_1_leg2 * rate_1_leg2;
-        let g2_vy_leg2 = t49 * t52;
-        let minus_g2_vx_leg2 = t46 * t52;
-        let rate_2_leg2 = g2_vy_leg2 * t215 - minus_g2_vx_leg2 * t213;
-        let t251 = rate_2_leg2 - rate_1_leg2;
-        let t252 = rate_1_leg2 + t251;
-        let t253 = t252 * t252;
-        let t255 = t40 * t244 + t41 * t253;
-        let t260 = t43 * t244 + t44 * t253;
-        let rate_dot_1_leg2 = g1_vx_leg2 * (t203 + t255) + g1_vy_leg2 * (t260 - t235);
-        let t264 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let t267 = t211 + t212;
-        let t269 = t207 + t202;
-        let rate_1_leg3 = g1_vx_leg3 * t267 + g1_vy_leg3 * t269;
-        let t272 = rate_1_leg3 * rate_1_leg3;
-        let g2_vy_leg3 = t78 * t81;
-        let minus_g2_vx_leg3 = t75 * t81;
-        let rate_2_leg3 = g2_vy_leg3 * t269 - minus_g2_vx_leg3 * t267;
-        let t279 = rate_2_leg3 - rate_1_leg3;
-        let t280 = rate_1_leg3 + t279;
-        let t281 = t280 * t280;
-        let t283 = t68 * t272 + t69 * t281;
-        let t288 = t72 * t272 + t73 * t281;
-        let rate_dot_1_leg3 = g1_vx_leg3 * (t283 - t203) + g1_vy_leg3 * (t235 + t288);
-        let t292 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let rate_1_leg4 = g1_vx_leg4 * t267 + g1_vy_leg4 * t269;
-        let t298 = rate_1_leg4 * rate_1_leg4;
-        let g2_vy_leg4 = t102 * t105;
-        let minus_g2_vx_leg4 = t99 * t105;
-        let rate_2_leg4 = g2_vy_leg4 * t269 - minus_g2_vx_leg4 * t267;
-        let t305 = rate_2_leg4 - rate_1_leg4;
-        let t306 = rate_1_leg4 + t305;
-        let t307 = t306 * t306;
-        let t309 = t93 * t298 + t94 * t307;
-        let t314 = t96 * t298 + t97 * t307;
-        let rate_dot_1_leg4 = g1_vx_leg4 * (t309 - t203) + g1_vy_leg4 * (t235 + t314);
-        let t318 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t320 = g1_vx_leg1 * t239 + g1_vx_leg2 * t264 + g1_vx_leg3 * t292
-            + g1_vx_leg4 * t318;
-        let t330 = g1_vy_leg1 * t239 + g1_vy_leg2 * t264 + g1_vy_leg3 * t292
-            + g1_vy_leg4 * t318 - t166 * t320;
-        let t342 = g1_wz_leg3 * t292
-            - (minus_g1_wz_leg1 * t239 + minus_g1_wz_leg2 * t264) + g1_wz_leg4 * t318
-            - t140 * t320 - t170 * t330;
-        let rate_dot_3_leg1 = t173 * t342;
-        let t345 = t169 * t330 - t170 * rate_dot_3_leg1;
-        let t349 = t109 * t320 - t166 * t345 - t140 * rate_dot_3_leg1;
-        let t350 = t6 * rate_dot_3_leg1;
-        let t352 = t349 - t350 + t203;
-        let t353 = t352 + t229;
-        let t355 = t2 * rate_dot_3_leg1;
-        let t357 = t345 - t355 - t235;
-        let t358 = t357 + t234;
-        let rate_dot_1_leg1_2 = g1_vx_leg1 * t353 + g1_vy_leg1 * t358;
-        let t367 = g1_vy_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vy_leg2;
-        let t371 = g1_vx_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vx_leg2;
-        let t376 = g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2;
-        let t378 = g1_vx_leg3 * t367 - g1_vy_leg3 * t371 + g1_wz_leg3 * t376;
-        ::overact::guard::platform(t378, 7.075383197258382, "kept actuators")?;
-        ::overact::guard::platform(t378, 7.075383197258382, "kept actuators")?;
-        ::overact::guard::platform(t378, 7.075383197258382, "kept actuators")?;
-        let t379 = 1.0 / t378;
-        let t380 = (minus_g1_wz_leg2 * g1_vy_leg3 + g1_vy_leg2 * g1_wz_leg3) * t379;
-        let t385 = (minus_g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * g1_wz_leg3) * t379;
-        let g2_wz_leg1 = t6 * minus_g2_vx_leg1 - t2 * g2_vy_leg1;
-        let t394 = (g1_vy_leg2 * g1_vx_leg3 - g1_vx_leg2 * g1_vy_leg3) * t379;
-        let t396 = minus_g2_vx_leg1 * t380 + g2_vy_leg1 * t385 + g2_wz_leg1 * t394;
-        let rate_dot_2_leg1 = g2_vy_leg1 * t358 - minus_g2_vx_leg1 * t353;
-        let t401 = rate_dot_1_leg1_2 + rate_dot_2_leg1 - rate_dot_1_leg1_2;
-        let t406 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t379;
-        let t411 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t379;
-        let t417 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t379;
-        let t419 = minus_g2_vx_leg1 * t406 + g2_vy_leg1 * t411 + g2_wz_leg1 * t417;
-        let t421 = t11 - 0.1568;
-        let t422 = 1.7857142857142858 * t421;
-        let t424 = t11 * t14;
-        let t425 = 3.5714285714285716 * t424;
-        let t432 = 3.5714285714285716 * (t424 * t218)
-            + 1.7857142857142858 * (t421 * rate_dot_1_leg1_2);
-        let t443 = 3.5714285714285716 * (t424 * rate_dot_1_leg1_2)
-            - 1.7857142857142858 * (t421 * t218);
-        let t450 = t396 - 1.0;
-        let t455 = rate_3_leg1 - rate_2_leg1;
-        let t456 = t394 - t396;
-        let t458 = t419 - t417;
-        let t460 = t376 * t379;
-        let t465 = t352 + t255;
-        let t467 = t357 + t260;
-        let rate_dot_1_leg2_2 = g1_vx_leg2 * t465 + g1_vy_leg2 * t467;
-        let g2_wz_leg2 = t6 * minus_g2_vx_leg2 - t2 * g2_vy_leg2;
-        let t478 = minus_g2_vx_leg2 * t380 + g2_vy_leg2 * t385 + g2_wz_leg2 * t394;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t467 - minus_g2_vx_leg2 * t465;
-        let t483 = rate_dot_1_leg2_2 + rate_dot_2_leg2 - rate_dot_1_leg2_2;
-        let t489 = minus_g2_vx_leg2 * t406 + g2_vy_leg2 * t411 + g2_wz_leg2 * t417;
-        let t491 = t35 - 0.1568;
-        let t494 = t35 * t38;
-        let t497 = 1.7857142857142858 * (t491 * rate_dot_1_leg2_2)
-            - 3.5714285714285716 * (t494 * t244);
-        let t499 = 3.5714285714285716 * t494;
-        let t501 = 1.7857142857142858 * t491;
-        let t510 = 1.7857142857142858 * (t491 * t244)
-            + 3.5714285714285716 * (t494 * rate_dot_1_leg2_2);
-        let t521 = 1.0 + t489;
-        let t525 = rate_3_leg1 - rate_2_leg2;
-        let t526 = t394 - t478;
-        let t528 = t489 - t417;
-        let t535 = t349 + t350 - t203;
-        let t536 = t535 + t283;
-        let t539 = t345 + t355 + t235;
-        let t540 = t539 + t288;
-        let rate_dot_1_leg3_2 = g1_vx_leg3 * t536 + g1_vy_leg3 * t540;
-        let g2_wz_leg3 = t2 * g2_vy_leg3 - t6 * minus_g2_vx_leg3;
-        let t551 = minus_g2_vx_leg3 * t380 + g2_vy_leg3 * t385 + g2_wz_leg3 * t394;
-        let rate_dot_2_leg3 = g2_vy_leg3 * t540 - minus_g2_vx_leg3 * t536;
-        let t556 = rate_dot_1_leg3_2 + rate_dot_2_leg3 - rate_dot_1_leg3_2;
-        let t562 = minus_g2_vx_leg3 * t406 + g2_vy_leg3 * t411 + g2_wz_leg3 * t417;
-        let t565 = t367 * t379;
-        let t567 = t371 * t379;
-        let t570 = g2_wz_leg3 * t460 - (minus_g2_vx_leg3 * t565 + g2_vy_leg3 * t567);
-        let t572 = t63 * t66;
-        let t575 = t63 - 0.1568;
-        let t578 = 3.5714285714285716 * (t572 * t272)
-            + 1.7857142857142858 * (t575 * rate_dot_1_leg3_2);
-        let t581 = 1.7857142857142858 * t575;
-        let t583 = 3.5714285714285716 * t572;
-        let t592 = 3.5714285714285716 * (t572 * rate_dot_1_leg3_2)
-            - 1.7857142857142858 * (t575 * t272);
-        let t605 = t570 - 1.0;
-        let t610 = rate_3_leg1 - rate_2_leg3;
-        let t611 = t394 - t551;
-        let t613 = t562 - t417;
-        let t615 = t460 - t570;
-        let t624 = g1_vy_leg4 * t385 - g1_vx_leg4 * t380 + g1_wz_leg4 * t394;
-        let t625 = t535 + t309;
-        let t627 = t539 + t314;
-        let rate_dot_1_leg4_2 = g1_vx_leg4 * t625 + g1_vy_leg4 * t627;
-        let t630 = t624 * rate_dot_1_leg4_2;
-        let t635 = g1_vx_leg4 * t406 - g1_vy_leg4 * t411 - g1_wz_leg4 * t417;
-        let t636 = t635 * rate_dot_1_leg4_2;
-        let t641 = g1_vx_leg4 * t565 - g1_vy_leg4 * t567 + g1_wz_leg4 * t460;
-        let t642 = t641 * rate_dot_1_leg4_2;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 - t6 * minus_g2_vx_leg4;
-        let t656 = minus_g2_vx_leg4 * t380 + g2_vy_leg4 * t385 + g2_wz_leg4 * t394;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t627 - minus_g2_vx_leg4 * t625;
-        let t661 = rate_dot_1_leg4_2 + rate_dot_2_leg4 - rate_dot_1_leg4_2;
-        let t667 = minus_g2_vx_leg4 * t406 + g2_vy_leg4 * t411 + g2_wz_leg4 * t417;
-        let t673 = g2_wz_leg4 * t460 - (minus_g2_vx_leg4 * t565 + g2_vy_leg4 * t567);
-        let t675 = t88 * t91;
-        let t676 = 3.5714285714285716 * t675;
-        let t678 = t88 - 0.1568;
-        let t679 = 1.7857142857142858 * t678;
-        let t681 = t307 * t676 + t679 * t661;
-        let t687 = 1.7857142857142858 * (t678 * rate_dot_1_leg4_2)
-            - 3.5714285714285716 * (t675 * t298);
-        let t698 = t676 * t661 - t307 * t679;
-        let t704 = 1.7857142857142858 * (t678 * t298)
-            + 3.5714285714285716 * (t675 * rate_dot_1_leg4_2);
-        let t715 = t676 * t704 + t679 * t687;
-        let t719 = t656 - t624;
-        let t721 = t635 + t667;
-        let t723 = t673 - t641;
-        let t728 = rate_3_leg1 - rate_2_leg4;
-        let t729 = t394 - t656;
-        let t731 = t667 - t417;
-        let t733 = t460 - t673;
-        let t741 = rate_3_leg1 * rate_3_leg1;
-        let t742 = c_phi * t741;
-        let t743 = s_phi * rate_dot_3_leg1;
-        let t744 = t742 + t743;
-        let t746 = c_phi * rate_dot_3_leg1;
-        let t747 = s_phi * t741;
-        let t748 = t746 - t747;
-        let t753 = c_phi * t345 - s_phi * t349;
-        let t766 = t747 - t746;
-        let t768 = t743 + t742;
-        let t773 = c_phi * t349 + s_phi * t345;
-        let t788 = s_phi * t773 + c_phi * t753;
-        let t792 = c_phi * t773 - s_phi * t753;
+        let t101 = t90 + t56 * t62;
+        let t102 = t41 - t101;
+        let minus_g1_vy_leg4 = t102 * t67;
+        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
+        let t115 = g1_vx_leg3 * g1_wz_leg3
+            - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+            + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+        let t116 = t115 * t71;
+        let t132 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+        let t134 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t132 * t116;
+        let t142 = t132 * t71;
+        let t144 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
+            - t132 * t142;
+        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
+        let t145 = 1.0 / t144;
+        let t146 = t134 * t145;
+        let t148 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t115 * t116
+            - t134 * t146;
+        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
+        let t149 = 1.0 / t148;
+        let t163 = g1_vx_leg1 * actuator_velocities[0]
+            - minus_g1_vx_leg2 * actuator_velocities[1]
+            + g1_vx_leg3 * actuator_velocities[2]
+            - minus_g1_vx_leg4 * actuator_velocities[3];
+        let t174 = g1_vy_leg1 * actuator_velocities[0]
+            - minus_g1_vy_leg2 * actuator_velocities[1]
+            + g1_vy_leg3 * actuator_velocities[2]
+            - minus_g1_vy_leg4 * actuator_velocities[3] - t163 * t142;
+        let t176 = g1_wz_leg2 * actuator_velocities[1]
+            - minus_g1_wz_leg1 * actuator_velocities[0]
+            + g1_wz_leg3 * actuator_velocities[2]
+            - minus_g1_wz_leg4 * actuator_velocities[3] - t163 * t116 - t146 * t174;
+        let rate_3_leg1 = t149 * t176;
+        let t178 = t6 * rate_3_leg1;
+        let t179 = rate_3_leg1 * t178;
+        let t181 = t2 * rate_3_leg1;
+        let t182 = rate_3_leg1 * t181;
+        let minus_g2_vx_leg1 = t18 * t15;
+        let t189 = t145 * t174 - t146 * rate_3_leg1;
+        let t193 = t163 * t71 - t142 * t189 - t116 * rate_3_leg1;
+        let t194 = t193 - t178;
+        let minus_g2_vy_leg1 = t74 * t15;
+        let t197 = t189 - t181;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t194 + minus_g2_vy_leg1 * t197;
+        let t200 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t201 = 0.0784 * t200;
+        let rate_1_leg1 = g1_vx_leg1 * t194 + g1_vy_leg1 * t197;
+        let t206 = rate_1_leg1 * rate_1_leg1;
+        let t208 = 0.5 * (t10 - 0.1568);
+        let t209 = t206 * t208;
+        let minus_rate_dot_1_leg1 = t15 * (t75 * t179 - t19 * t182 - t201 - t209);
+        let t212 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let g2_vx_leg2 = t30 * t33;
+        let g2_vy_leg2 = t82 * t33;
+        let rate_2_leg2 = g2_vx_leg2 * t194 + g2_vy_leg2 * t197;
+        let t222 = rate_2_leg2 * rate_2_leg2;
+        let t223 = 0.0784 * t222;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t194 + minus_g1_vy_leg2 * t197;
+        let t228 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t230 = 0.5 * (t25 - 0.1568);
+        let t231 = t228 * t230;
+        let rate_dot_1_leg2 = t33 * (t83 * t179 - t31 * t182 - t223 - t231);
+        let t234 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let minus_g2_vx_leg3 = t49 * t52;
+        let t241 = t193 + t178;
+        let minus_g2_vy_leg3 = t92 * t52;
+        let t244 = t189 + t181;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t241 + minus_g2_vy_leg3 * t244;
+        let t247 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t248 = 0.0784 * t247;
+        let rate_1_leg3 = g1_vx_leg3 * t241 + g1_vy_leg3 * t244;
+        let t253 = rate_1_leg3 * rate_1_leg3;
+        let t255 = 0.5 * (t44 - 0.1568);
+        let t256 = t253 * t255;
+        let minus_rate_dot_1_leg3 = t52 * (t50 * t182 - t93 * t179 - t248 - t256);
+        let t259 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = t64 * t67;
+        let g2_vy_leg4 = t101 * t67;
+        let rate_2_leg4 = g2_vx_leg4 * t241 + g2_vy_leg4 * t244;
+        let t270 = rate_2_leg4 * rate_2_leg4;
+        let t271 = 0.0784 * t270;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t241 + minus_g1_vy_leg4 * t244;
+        let t276 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t278 = 0.5 * (t59 - 0.1568);
+        let t279 = t276 * t278;
+        let rate_dot_1_leg4 = t67 * (t65 * t182 - t102 * t179 - t271 - t279);
+        let t282 = actuator_accelerations[3] - rate_dot_1_leg4;
+        let t284 = g1_vx_leg1 * t212 - minus_g1_vx_leg2 * t234 + g1_vx_leg3 * t259
+            - minus_g1_vx_leg4 * t282;
+        let t294 = g1_vy_leg1 * t212 - minus_g1_vy_leg2 * t234 + g1_vy_leg3 * t259
+            - minus_g1_vy_leg4 * t282 - t142 * t284;
+        let t306 = g1_wz_leg2 * t234 - minus_g1_wz_leg1 * t212 + g1_wz_leg3 * t259
+            - minus_g1_wz_leg4 * t282 - t116 * t284 - t146 * t294;
+        let rate_dot_3_leg1 = t149 * t306;
+        let t309 = t145 * t294 - t146 * rate_dot_3_leg1;
+        let t313 = t71 * t284 - t142 * t309 - t116 * rate_dot_3_leg1;
+        let t314 = t6 * rate_dot_3_leg1;
+        let t316 = t313 - t314 + t182;
+        let t318 = t2 * rate_dot_3_leg1;
+        let t320 = t309 - t318 - t179;
+        let t323 = t19 * t316 + t75 * t320 + t201;
+        let rate_dot_1_leg1 = t15 * (t323 + t209);
+        let t332 = minus_g1_wz_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_wz_leg2;
+        let t336 = minus_g1_wz_leg1 * minus_g1_vx_leg2 - g1_vx_leg1 * g1_wz_leg2;
+        let t338 = g1_vx_leg3 * t332 - g1_vy_leg3 * t336;
+        ::overact::guard::platform(t338, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t338, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t338, 3.5376915986291904, "kept actuators")?;
+        let t339 = 0.5 / t338;
+        let t340 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t339;
+        let t345 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t339;
+        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
+        let t354 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
+            * t339;
+        let t356 = minus_g2_vy_leg1 * t340 - minus_g2_vx_leg1 * t345 + g2_wz_leg1 * t354;
+        let t361 = t18 * t316 + t74 * t320 + 0.0784 * t206;
+        let minus_rate_dot_2_leg1 = t15 * (t361 + t200 * t208);
+        let t365 = t356 * minus_rate_dot_2_leg1;
+        let t369 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t339;
+        let t374 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t339;
+        let t380 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t339;
+        let t382 = minus_g2_vy_leg1 * t369 - minus_g2_vx_leg1 * t374 - g2_wz_leg1 * t380;
+        let t383 = t382 * minus_rate_dot_2_leg1;
+        let t384 = t354 * rate_dot_3_leg1;
+        let t386 = 9.090909090909092 * (t179 + t318);
+        let t389 = 9.090909090909092 * (t314 - t182);
+        let t394 = c_phi * t313 + s_phi * t309;
+        let t396 = t340 * t386 - t345 * t389 - t354 * t394;
+        let t397 = 9.090909090909092 * t396;
+        let t401 = t345 * t313 - t340 * t309;
+        let t402 = 82.64462809917356 * t401;
+        let t404 = 0.04321428571428571 * (t384 + t397 + t402);
+        let t412 = t369 * t386 - t374 * t389 + t380 * t394;
+        let t413 = 9.090909090909092 * t412;
+        let t414 = t380 * rate_dot_3_leg1;
+        let t418 = t374 * t313 - t369 * t309;
+        let t419 = 82.64462809917356 * t418;
+        let t421 = 0.04321428571428571 * (t413 - t414 + t419);
+        let t425 = 3.5714285714285716 * t323;
+        let t430 = rate_1_leg1 + minus_rate_2_leg1;
+        let t431 = t356 - 1.0;
+        let t436 = minus_rate_2_leg1 + rate_3_leg1;
+        let t437 = t354 - t356;
+        let t439 = t382 + t380;
+        let t444 = (g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2)
+            * t339;
+        let t452 = t31 * t316 + t83 * t320 + t223;
+        let minus_rate_dot_1_leg2 = t33 * (t452 + t231);
+        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
+        let t463 = g2_vx_leg2 * t345 - g2_vy_leg2 * t340 - minus_g2_wz_leg2 * t354;
+        let t468 = t30 * t316 + t82 * t320 + 0.0784 * t228;
+        let rate_dot_2_leg2 = t33 * (t468 + t222 * t230);
+        let t472 = t463 * rate_dot_2_leg2;
+        let t477 = g2_vx_leg2 * t374 - g2_vy_leg2 * t369 + minus_g2_wz_leg2 * t380;
+        let t478 = t477 * rate_dot_2_leg2;
+        let t484 = 3.5714285714285716 * t452;
+        let t490 = minus_rate_1_leg2 + rate_2_leg2;
+        let t492 = t477 - 1.0;
+        let t496 = rate_3_leg1 - rate_2_leg2;
+        let t497 = t354 - t463;
+        let t499 = t477 + t380;
+        let t506 = t313 + t314 - t182;
+        let t509 = t309 + t318 + t179;
+        let t512 = t50 * t506 + t93 * t509 + t248;
+        let rate_dot_1_leg3 = t52 * (t512 + t256);
+        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
+        let t523 = minus_g2_vy_leg3 * t340 - minus_g2_vx_leg3 * t345
+            - minus_g2_wz_leg3 * t354;
+        let t528 = t49 * t506 + t92 * t509 + 0.0784 * t253;
+        let minus_rate_dot_2_leg3 = t52 * (t528 + t247 * t255);
+        let t532 = t523 * minus_rate_dot_2_leg3;
+        let t537 = minus_g2_vy_leg3 * t369 - minus_g2_vx_leg3 * t374
+            + minus_g2_wz_leg3 * t380;
+        let t538 = t537 * minus_rate_dot_2_leg3;
+        let t539 = t336 * t339;
+        let t541 = t332 * t339;
+        let t543 = minus_g2_vy_leg3 * t539 - minus_g2_vx_leg3 * t541;
+        let t544 = 2.0 * t543;
+        let t545 = t544 * minus_rate_dot_2_leg3;
+        let t548 = 0.04321428571428571 * (t384 - t397 + t402);
+        let t553 = 0.04321428571428571 * (t419 - (t414 + t413));
+        let t556 = t444 * rate_dot_3_leg1;
+        let t558 = t444 * t394;
+        let t559 = 0.11 * t556 + t558;
+        let t560 = 0.7857142857142857 * t559;
+        let t564 = 3.5714285714285716 * t512;
+        let t572 = rate_1_leg3 + minus_rate_2_leg3;
+        let t575 = t544 - 1.0;
+        let t580 = minus_rate_2_leg3 + rate_3_leg1;
+        let t581 = t354 - t523;
+        let t583 = t537 + t380;
+        let t585 = t444 - t544;
+        let t594 = minus_g1_vy_leg4 * t340 - minus_g1_vx_leg4 * t345
+            - minus_g1_wz_leg4 * t354;
+        let t598 = t65 * t506 + t102 * t509 + t271;
+        let minus_rate_dot_1_leg4 = t67 * (t598 + t279);
+        let t601 = t594 * minus_rate_dot_1_leg4;
+        let t606 = minus_g1_vy_leg4 * t369 - minus_g1_vx_leg4 * t374
+            + minus_g1_wz_leg4 * t380;
+        let t607 = t606 * minus_rate_dot_1_leg4;
+        let t610 = minus_g1_vy_leg4 * t539 - minus_g1_vx_leg4 * t541;
+        let t611 = 2.0 * t610;
+        let t612 = t611 * minus_rate_dot_1_leg4;
+        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
+        let t626 = g2_vx_leg4 * t345 - g2_vy_leg4 * t340 + g2_wz_leg4 * t354;
+        let t631 = t64 * t506 + t101 * t509 + 0.0784 * t276;
+        let rate_dot_2_leg4 = t67 * (t631 + t270 * t278);
+        let t635 = t626 * rate_dot_2_leg4;
+        let t640 = g2_vx_leg4 * t374 - g2_vy_leg4 * t369 - g2_wz_leg4 * t380;
+        let t641 = t640 * rate_dot_2_leg4;
+        let t644 = g2_vx_leg4 * t541 - g2_vy_leg4 * t539;
+        let t645 = 2.0 * t644;
+        let t646 = t645 * rate_dot_2_leg4;
+        let t656 = 3.5714285714285716 * t631;
+        let t658 = 3.5714285714285716 * t598;
+        let t671 = minus_rate_1_leg4 + rate_2_leg4;
+        let t672 = t626 - t594;
+        let t674 = t640 - t606;
+        let t677 = 2.0 * (t644 - t610);
+        let t682 = rate_3_leg1 - rate_2_leg4;
+        let t683 = t354 - t626;
+        let t685 = t640 + t380;
+        let t687 = t444 - t645;
+        let t694 = c_phi * t309 - s_phi * t313;
         Ok([
             [
-                rate_dot_1_leg1_2, rate_dot_1_leg1_2, rate_1_leg1,
-                ::overact::math::sign(rate_1_leg1), 1.0, t396 * t401,
-                t422 * t401 - t227 * t425 + t396 * t432, -(t425 * t401 + t227 * t422 + t396 * t443),
-                t425 * t443 + t422 * t432, t225 * t450, ::overact::math::signed(t450, t225), t450,
-                t455 * t456, ::overact::math::signed(t456, t455), t456, 0.0, 0.0, 0.0, 0.0, 0.0,
-                t478 * t483, t478 * t497, t478 * t510, 0.0, t478 * t251,
-                ::overact::math::signed(t478, t251), t478, t525 * t526,
-                ::overact::math::signed(t526, t525), t526, 0.0, 0.0, 0.0, 0.0, 0.0, t551 * t556,
-                t551 * t578, -(t551 * t592), 0.0, t551 * t279, ::overact::math::signed(t551, t279),
-                t551, t610 * t611, ::overact::math::signed(t611, t610), t611, t630, t630,
-                t624 * rate_1_leg4, ::overact::math::signed(t624, rate_1_leg4), t624, t656 * t661,
-                t624 * t681 + t656 * t687, t624 * t698 + t656 * t704, t624 * t715, t305 * t719,
-                ::overact::math::signed(t719, t305), t719, t728 * t729,
-                ::overact::math::signed(t729, t728), t729, t394 * rate_dot_3_leg1,
-                t380 * t744 + t385 * t748 + t394 * t753, -(t380 * t766 + t385 * t768 + t394 * t773),
-                t385 * t788 - t380 * t792,
+                rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
+                1.0, -t365, t404 - 0.28 * (rate_dot_1_leg1 - t365),
+                3.5714285714285716 * t361 - t356 * t425, 0.0784 * rate_dot_1_leg1, -(t430 * t431),
+                -::overact::math::signed(t431, t430), t431, t436 * t437,
+                ::overact::math::signed(t437, t436), t437, 0.0, 0.0, 0.0, 0.0, 0.0, t472,
+                t404 - 0.28 * t472, -(t463 * t484), 0.0, t463 * t490,
+                ::overact::math::signed(t463, t490), t463, t496 * t497,
+                ::overact::math::signed(t497, t496), t497, 0.0, 0.0, 0.0, 0.0, 0.0, -t532,
+                t548 + 0.28 * t532, -(t523 * t564), 0.0, -(t523 * t572),
+                -::overact::math::signed(t523, t572), t523, t580 * t581,
+                ::overact::math::signed(t581, t580), t581, -t601, -t601,
+                -(t594 * minus_rate_1_leg4), -::overact::math::signed(t594, minus_rate_1_leg4),
+                t594, t635, t548 - 0.28 * (t635 - t601), t594 * t656 - t626 * t658,
+                -(0.0784 * t601), t671 * t672, ::overact::math::signed(t672, t671), t672,
+                t682 * t683, ::overact::math::signed(t683, t682), t683, t384,
+                t354 * t694 - (t345 * t386 + t340 * t389), t396, t401,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -(t419 * t401), -(t419 * t432), t419 * t443, 0.0,
-                -(t419 * t225), -::overact::math::signed(t419, t225), -t419, t455 * t458,
-                ::overact::math::signed(t458, t455), t458, rate_dot_1_leg2_2, rate_dot_1_leg2_2,
-                rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0, -(t489 * t483),
-                t253 * t499 + t501 * t483 - t489 * t497, t499 * t483 - t253 * t501 - t489 * t510,
-                t499 * t510 + t501 * t497, -(t251 * t521), -::overact::math::signed(t521, t251),
-                -t521, t525 * t528, ::overact::math::signed(t528, t525), t528, 0.0, 0.0, 0.0, 0.0,
-                0.0, -(t562 * t556), -(t562 * t578), t562 * t592, 0.0, -(t562 * t279),
-                -::overact::math::signed(t562, t279), -t562, t610 * t613,
-                ::overact::math::signed(t613, t610), t613, t636, t636, t635 * rate_1_leg4,
-                ::overact::math::signed(t635, rate_1_leg4), t635, -(t667 * t661),
-                t635 * t681 - t667 * t687, t635 * t698 - t667 * t704, t635 * t715, -(t305 * t721),
-                -::overact::math::signed(t721, t305), -t721, t728 * t731,
-                ::overact::math::signed(t731, t728), t731, -(t417 * rate_dot_3_leg1),
-                -(t406 * t744 + t411 * t748 + t417 * t753), t406 * t766 + t411 * t768 + t417 * t773,
-                t406 * t792 - t411 * t788,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t383, t421 + 0.28 * t383, -(t382 * t425), 0.0,
+                -(t382 * t430), -::overact::math::signed(t382, t430), t382, -(t436 * t439),
+                -::overact::math::signed(t439, t436), -t439, -minus_rate_dot_1_leg2,
+                -minus_rate_dot_1_leg2, -minus_rate_1_leg2,
+                -::overact::math::sign(minus_rate_1_leg2), 1.0, t478,
+                t421 - 0.28 * (t478 - minus_rate_dot_1_leg2),
+                3.5714285714285716 * t468 - t477 * t484, -(0.0784 * minus_rate_dot_1_leg2),
+                t490 * t492, ::overact::math::signed(t492, t490), t492, -(t496 * t499),
+                -::overact::math::signed(t499, t496), -t499, 0.0, 0.0, 0.0, 0.0, 0.0, -t538,
+                t553 + 0.28 * t538, -(t537 * t564), 0.0, -(t537 * t572),
+                -::overact::math::signed(t537, t572), t537, -(t580 * t583),
+                -::overact::math::signed(t583, t580), -t583, -t607, -t607,
+                -(t606 * minus_rate_1_leg4), -::overact::math::signed(t606, minus_rate_1_leg4),
+                t606, t641, t553 - 0.28 * (t641 - t607), t606 * t656 - t640 * t658,
+                -(0.0784 * t607), t671 * t674, ::overact::math::signed(t674, t671), t674,
+                -(t682 * t685), -::overact::math::signed(t685, t682), -t685, -t414,
+                -(t374 * t386 + t369 * t389 + t380 * t694), t412, t418,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t460 * t455,
-                ::overact::math::signed(t460, t455), t460, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, t460 * t525, ::overact::math::signed(t460, t525), t460,
-                rate_dot_1_leg3_2, rate_dot_1_leg3_2, rate_1_leg3,
-                ::overact::math::sign(rate_1_leg3), 1.0, t570 * t556,
-                t581 * t556 - t281 * t583 + t570 * t578, -(t583 * t556 + t281 * t581 + t570 * t592),
-                t583 * t592 + t581 * t578, t279 * t605, ::overact::math::signed(t605, t279), t605,
-                t610 * t615, ::overact::math::signed(t615, t610), t615, t642, t642,
-                t641 * rate_1_leg4, ::overact::math::signed(t641, rate_1_leg4), t641, t673 * t661,
-                t641 * t681 + t673 * t687, t641 * t698 + t673 * t704, t641 * t715, t305 * t723,
-                ::overact::math::signed(t723, t305), t723, t728 * t733,
-                ::overact::math::signed(t733, t728), t733, t460 * rate_dot_3_leg1,
-                t460 * t753 - (t565 * t744 + t567 * t748), t565 * t766 + t567 * t768 - t460 * t773,
-                t565 * t792 - t567 * t788,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t444 * t436,
+                ::overact::math::signed(t444, t436), t444, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, t444 * t496, ::overact::math::signed(t444, t496), t444,
+                rate_dot_1_leg3, rate_dot_1_leg3, rate_1_leg3, ::overact::math::sign(rate_1_leg3),
+                1.0, -t545, t560 - 0.28 * (rate_dot_1_leg3 - t545),
+                3.5714285714285716 * t528 - 7.142857142857143 * (t543 * t512),
+                0.0784 * rate_dot_1_leg3, -(t572 * t575), -::overact::math::signed(t575, t572),
+                t575, t580 * t585, ::overact::math::signed(t585, t580), t585, -t612, -t612,
+                -(t611 * minus_rate_1_leg4), -::overact::math::signed(t611, minus_rate_1_leg4),
+                t611, t646, t560 - 0.28 * (t646 - t612),
+                7.142857142857143 * (t610 * t631 - t644 * t598), -(0.0784 * t612), t671 * t677,
+                ::overact::math::signed(t677, t671), t677, t682 * t687,
+                ::overact::math::signed(t687, t682), t687, t556,
+                t444 * t694 - (t541 * t386 + t539 * t389), -t559, 0.11 * t558,
             ],
         ])
     }
@@ -3394,7 +3277,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 428 operations (170 additions, 250 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 331 intermediates.
+    /// 368 operations (130 additions, 230 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 271 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3424,248 +3307,228 @@ impl DualV {
         let t30 = ::overact::math::sqrt(t29);
         let t32 = 0.5 * t21 + t24 * t30;
         let t33 = t21 - t32;
-        let t34 = 0.5 * t24;
-        let t36 = t34 - t21 * t30;
-        let t37 = t24 - t36;
-        let t39 = t32 + t33 - t33;
-        let t42 = t37 - (t36 + t37);
-        let t44 = t37 * t39 + t33 * t42;
-        ::overact::guard::leg(t44, 0.078399138102973, "leg1")?;
-        let t45 = 1.0 / t44;
-        let g1_vx_leg1 = t33 * t45;
-        let t48 = acceleration[0] - t9 + t11;
+        let t34 = t27 * t30;
+        ::overact::guard::leg(t34, 0.07839913810297301, "leg1")?;
+        let t35 = 1.0 / t34;
+        let g1_vx_leg1 = t33 * t35;
+        let t38 = acceleration[0] - t9 + t11;
+        let t40 = 0.5 * t24;
+        let t42 = t40 - t21 * t30;
+        let t43 = t24 - t42;
+        let t45 = acceleration[1] - t6 - t4;
+        let minus_g2_vx_leg1 = t32 * t35;
         let t49 = twist[0] - t3;
-        let g1_vy_leg1 = t37 * t45;
+        let minus_g2_vy_leg1 = t42 * t35;
         let t52 = twist[1] - t10;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t49 + minus_g2_vy_leg1 * t52;
+        let t55 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t57 = t33 * t38 + t43 * t45 + 0.0784 * t55;
+        let g1_vy_leg1 = t43 * t35;
         let rate_1_leg1 = g1_vx_leg1 * t49 + g1_vy_leg1 * t52;
-        let t55 = rate_1_leg1 * rate_1_leg1;
-        let g2_vy_leg1 = t42 * t45;
-        let minus_g2_vx_leg1 = t39 * t45;
-        let rate_2_leg1 = g2_vy_leg1 * t52 - minus_g2_vx_leg1 * t49;
-        let t62 = rate_2_leg1 - rate_1_leg1;
-        let t63 = rate_1_leg1 + t62;
-        let t64 = t63 * t63;
-        let t67 = t48 + t32 * t55 + t33 * t64;
-        let t70 = acceleration[1] - t6 - t4;
-        let t74 = t70 + t36 * t55 + t37 * t64;
-        let rate_dot_1_leg1 = g1_vx_leg1 * t67 + g1_vy_leg1 * t74;
+        let t62 = rate_1_leg1 * rate_1_leg1;
+        let t64 = 0.5 * (t27 - 0.1568);
+        let rate_dot_1_leg1 = t35 * (t57 + t62 * t64);
         let minus_g1_wz_leg1 = t5 * g1_vy_leg1 + t2 * g1_vx_leg1;
-        let t83 = t20 + 0.3950502153918333;
-        let t86 = t83 * t83 + t26;
-        let t88 = 0.0784 / t86 - 0.25;
-        ::overact::guard::reach(t88, "leg2")?;
-        let t89 = ::overact::math::sqrt(t88);
-        let t91 = 0.5 * t83 - t24 * t89;
-        let t92 = t83 - t91;
-        let t94 = t34 + t83 * t89;
-        let t95 = t24 - t94;
-        let t97 = t91 + t92 - t92;
-        let t100 = t95 - (t94 + t95);
-        let t102 = t95 * t97 + t92 * t100;
-        ::overact::guard::leg(t102, 0.078399138102973, "leg2")?;
-        let t103 = 1.0 / t102;
-        let g1_vx_leg2 = t92 * t103;
-        let g1_vy_leg2 = t95 * t103;
-        let rate_1_leg2 = g1_vx_leg2 * t49 + g1_vy_leg2 * t52;
-        let t109 = rate_1_leg2 * rate_1_leg2;
-        let g2_vy_leg2 = t100 * t103;
-        let minus_g2_vx_leg2 = t97 * t103;
-        let rate_2_leg2 = g2_vy_leg2 * t52 - minus_g2_vx_leg2 * t49;
-        let t116 = rate_2_leg2 - rate_1_leg2;
-        let t117 = rate_1_leg2 + t116;
-        let t118 = t117 * t117;
-        let t121 = t48 + t91 * t109 + t92 * t118;
-        let t126 = t70 + t94 * t109 + t95 * t118;
-        let rate_dot_1_leg2 = g1_vx_leg2 * t121 + g1_vy_leg2 * t126;
-        let minus_g1_wz_leg2 = t5 * g1_vy_leg2 + t2 * g1_vx_leg2;
-        let t135 = pose[0] + t5;
-        let t136 = t135 + 0.3950502153918333;
-        let t139 = pose[1] - t2 + 0.10970563941232059;
-        let t141 = t139 * t139;
-        let t142 = t136 * t136 + t141;
-        let t144 = 0.0784 / t142 - 0.25;
-        ::overact::guard::reach(t144, "leg3")?;
-        let t145 = ::overact::math::sqrt(t144);
-        let t147 = 0.5 * t136 + t139 * t145;
-        let t148 = t136 - t147;
-        let t149 = 0.5 * t139;
-        let t151 = t149 - t136 * t145;
-        let t152 = t139 - t151;
-        let t154 = t147 + t148 - t148;
-        let t157 = t152 - (t151 + t152);
-        let t159 = t152 * t154 + t148 * t157;
-        ::overact::guard::leg(t159, 0.078399138102973, "leg3")?;
-        let t160 = 1.0 / t159;
-        let g1_vx_leg3 = t148 * t160;
-        let t163 = acceleration[0] + t9 - t11;
-        let t164 = twist[0] + t3;
-        let g1_vy_leg3 = t152 * t160;
-        let t167 = twist[1] + t10;
-        let rate_1_leg3 = g1_vx_leg3 * t164 + g1_vy_leg3 * t167;
-        let t170 = rate_1_leg3 * rate_1_leg3;
-        let g2_vy_leg3 = t157 * t160;
-        let minus_g2_vx_leg3 = t154 * t160;
-        let rate_2_leg3 = g2_vy_leg3 * t167 - minus_g2_vx_leg3 * t164;
-        let t177 = rate_2_leg3 - rate_1_leg3;
-        let t178 = rate_1_leg3 + t177;
-        let t179 = t178 * t178;
-        let t182 = t163 + t147 * t170 + t148 * t179;
-        let t185 = acceleration[1] + t6 + t4;
-        let t189 = t185 + t151 * t170 + t152 * t179;
-        let rate_dot_1_leg3 = g1_vx_leg3 * t182 + g1_vy_leg3 * t189;
+        let t74 = t20 + 0.3950502153918333;
+        let t77 = t74 * t74 + t26;
+        let t79 = 0.0784 / t77 - 0.25;
+        ::overact::guard::reach(t79, "leg2")?;
+        let t80 = ::overact::math::sqrt(t79);
+        let t82 = 0.5 * t74 - t24 * t80;
+        let t83 = t74 - t82;
+        let t84 = t77 * t80;
+        ::overact::guard::leg(t84, 0.07839913810297301, "leg2")?;
+        let t85 = 1.0 / t84;
+        let minus_g1_vx_leg2 = t83 * t85;
+        let t89 = t40 + t74 * t80;
+        let t90 = t24 - t89;
+        let g2_vx_leg2 = t82 * t85;
+        let g2_vy_leg2 = t89 * t85;
+        let rate_2_leg2 = g2_vx_leg2 * t49 + g2_vy_leg2 * t52;
+        let t98 = rate_2_leg2 * rate_2_leg2;
+        let t100 = t83 * t38 + t90 * t45 + 0.0784 * t98;
+        let minus_g1_vy_leg2 = t90 * t85;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t49 + minus_g1_vy_leg2 * t52;
+        let t105 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t107 = 0.5 * (t77 - 0.1568);
+        let minus_rate_dot_1_leg2 = t85 * (t100 + t105 * t107);
+        let g1_wz_leg2 = t5 * minus_g1_vy_leg2 + t2 * minus_g1_vx_leg2;
+        let t117 = pose[0] + t5;
+        let t118 = t117 + 0.3950502153918333;
+        let t121 = pose[1] - t2 + 0.10970563941232059;
+        let t123 = t121 * t121;
+        let t124 = t118 * t118 + t123;
+        let t126 = 0.0784 / t124 - 0.25;
+        ::overact::guard::reach(t126, "leg3")?;
+        let t127 = ::overact::math::sqrt(t126);
+        let t129 = 0.5 * t118 + t121 * t127;
+        let t130 = t118 - t129;
+        let t131 = t124 * t127;
+        ::overact::guard::leg(t131, 0.07839913810297301, "leg3")?;
+        let t132 = 1.0 / t131;
+        let g1_vx_leg3 = t130 * t132;
+        let t135 = acceleration[0] + t9 - t11;
+        let t137 = 0.5 * t121;
+        let t139 = t137 - t118 * t127;
+        let t140 = t121 - t139;
+        let t142 = acceleration[1] + t6 + t4;
+        let minus_g2_vx_leg3 = t129 * t132;
+        let t146 = twist[0] + t3;
+        let minus_g2_vy_leg3 = t139 * t132;
+        let t149 = twist[1] + t10;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t146 + minus_g2_vy_leg3 * t149;
+        let t152 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t154 = t130 * t135 + t140 * t142 + 0.0784 * t152;
+        let g1_vy_leg3 = t140 * t132;
+        let rate_1_leg3 = g1_vx_leg3 * t146 + g1_vy_leg3 * t149;
+        let t159 = rate_1_leg3 * rate_1_leg3;
+        let t161 = 0.5 * (t124 - 0.1568);
+        let rate_dot_1_leg3 = t132 * (t154 + t159 * t161);
         let g1_wz_leg3 = t5 * g1_vy_leg3 + t2 * g1_vx_leg3;
-        let t198 = t135 - 0.3950502153918333;
-        let t201 = t198 * t198 + t141;
-        let t203 = 0.0784 / t201 - 0.25;
-        ::overact::guard::reach(t203, "leg4")?;
-        let t204 = ::overact::math::sqrt(t203);
-        let t206 = 0.5 * t198 - t139 * t204;
-        let t207 = t198 - t206;
-        let t209 = t149 + t198 * t204;
-        let t210 = t139 - t209;
-        let t212 = t206 + t207 - t207;
-        let t215 = t210 - (t209 + t210);
-        let t217 = t210 * t212 + t207 * t215;
-        ::overact::guard::leg(t217, 0.078399138102973, "leg4")?;
-        let t218 = 1.0 / t217;
-        let g1_vx_leg4 = t207 * t218;
-        let g1_vy_leg4 = t210 * t218;
-        let rate_1_leg4 = g1_vx_leg4 * t164 + g1_vy_leg4 * t167;
-        let t224 = rate_1_leg4 * rate_1_leg4;
-        let g2_vy_leg4 = t215 * t218;
-        let minus_g2_vx_leg4 = t212 * t218;
-        let rate_2_leg4 = g2_vy_leg4 * t167 - minus_g2_vx_leg4 * t164;
-        let t231 = rate_2_leg4 - rate_1_leg4;
-        let t232 = rate_1_leg4 + t231;
-        let t233 = t232 * t232;
-        let t236 = t163 + t206 * t224 + t207 * t233;
-        let t241 = t185 + t209 * t224 + t210 * t233;
-        let rate_dot_1_leg4 = g1_vx_leg4 * t236 + g1_vy_leg4 * t241;
-        let g1_wz_leg4 = t5 * g1_vy_leg4 + t2 * g1_vx_leg4;
-        let rate_dot_2_leg1 = g2_vy_leg1 * t74 - minus_g2_vx_leg1 * t67;
-        let t278 = rate_dot_1_leg1 + rate_dot_2_leg1 - rate_dot_1_leg1;
-        let g2_wz_leg1 = t2 * minus_g2_vx_leg1 - t5 * g2_vy_leg1;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t126 - minus_g2_vx_leg2 * t121;
-        let t289 = rate_dot_1_leg2 + rate_dot_2_leg2 - rate_dot_1_leg2;
-        let g2_wz_leg2 = t2 * minus_g2_vx_leg2 - t5 * g2_vy_leg2;
-        let rate_dot_2_leg3 = g2_vy_leg3 * t189 - minus_g2_vx_leg3 * t182;
-        let t300 = rate_dot_1_leg3 + rate_dot_2_leg3 - rate_dot_1_leg3;
-        let g2_wz_leg3 = t5 * g2_vy_leg3 - t2 * minus_g2_vx_leg3;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t241 - minus_g2_vx_leg4 * t236;
-        let t311 = rate_dot_1_leg4 + rate_dot_2_leg4 - rate_dot_1_leg4;
-        let g2_wz_leg4 = t5 * g2_vy_leg4 - t2 * minus_g2_vx_leg4;
-        let t318 = t27 * t30;
-        let t321 = t27 - 0.1568;
-        let t324 = 3.5714285714285716 * (t318 * rate_dot_1_leg1)
-            - 1.7857142857142858 * (t321 * t55);
-        let t330 = t278 * (3.5714285714285716 * t318)
-            + t64 * (1.7857142857142858 * t321);
-        let t339 = t86 * t89;
-        let t342 = t86 - 0.1568;
-        let t345 = t289 * (3.5714285714285716 * t339)
-            - t118 * (1.7857142857142858 * t342);
-        let t351 = 1.7857142857142858 * (t342 * t109)
-            + 3.5714285714285716 * (t339 * rate_dot_1_leg2);
-        let t360 = t142 * t145;
-        let t363 = t142 - 0.1568;
-        let t366 = 3.5714285714285716 * (t360 * rate_dot_1_leg3)
-            - 1.7857142857142858 * (t363 * t170);
-        let t372 = t300 * (3.5714285714285716 * t360)
-            + t179 * (1.7857142857142858 * t363);
-        let t381 = t201 * t204;
-        let t384 = t201 - 0.1568;
-        let t387 = t311 * (3.5714285714285716 * t381)
-            - t233 * (1.7857142857142858 * t384);
-        let t393 = 1.7857142857142858 * (t384 * t224)
-            + 3.5714285714285716 * (t381 * rate_dot_1_leg4);
-        let t402 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t404 = g2_vy_leg1 - g1_vy_leg1;
-        let t406 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t408 = g1_vx_leg2 + minus_g2_vx_leg2;
-        let t410 = g2_vy_leg2 - g1_vy_leg2;
-        let t412 = minus_g1_wz_leg2 + g2_wz_leg2;
-        let t414 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t416 = g2_vy_leg3 - g1_vy_leg3;
-        let t418 = g2_wz_leg3 - g1_wz_leg3;
-        let t420 = g1_vx_leg4 + minus_g2_vx_leg4;
-        let t422 = g2_vy_leg4 - g1_vy_leg4;
-        let t424 = g2_wz_leg4 - g1_wz_leg4;
-        let t438 = twist[2] - rate_2_leg1;
-        let t441 = 1.0 - g2_wz_leg1;
-        let t443 = twist[2] - rate_2_leg2;
-        let t446 = 1.0 - g2_wz_leg2;
-        let t448 = twist[2] - rate_2_leg3;
-        let t451 = 1.0 - g2_wz_leg3;
-        let t453 = twist[2] - rate_2_leg4;
-        let t456 = 1.0 - g2_wz_leg4;
+        let t171 = t117 - 0.3950502153918333;
+        let t174 = t171 * t171 + t123;
+        let t176 = 0.0784 / t174 - 0.25;
+        ::overact::guard::reach(t176, "leg4")?;
+        let t177 = ::overact::math::sqrt(t176);
+        let t179 = 0.5 * t171 - t121 * t177;
+        let t180 = t171 - t179;
+        let t181 = t174 * t177;
+        ::overact::guard::leg(t181, 0.07839913810297301, "leg4")?;
+        let t182 = 1.0 / t181;
+        let minus_g1_vx_leg4 = t180 * t182;
+        let t186 = t137 + t171 * t177;
+        let t187 = t121 - t186;
+        let g2_vx_leg4 = t179 * t182;
+        let g2_vy_leg4 = t186 * t182;
+        let rate_2_leg4 = g2_vx_leg4 * t146 + g2_vy_leg4 * t149;
+        let t195 = rate_2_leg4 * rate_2_leg4;
+        let t197 = t180 * t135 + t187 * t142 + 0.0784 * t195;
+        let minus_g1_vy_leg4 = t187 * t182;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t146 + minus_g1_vy_leg4 * t149;
+        let t202 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t204 = 0.5 * (t174 - 0.1568);
+        let minus_rate_dot_1_leg4 = t182 * (t197 + t202 * t204);
+        let minus_g1_wz_leg4 = t5 * minus_g1_vy_leg4 + t2 * minus_g1_vx_leg4;
+        let t242 = t32 * t38 + t42 * t45 + 0.0784 * t62;
+        let minus_rate_dot_2_leg1 = t35 * (t242 + t55 * t64);
+        let g2_wz_leg1 = t5 * minus_g2_vy_leg1 + t2 * minus_g2_vx_leg1;
+        let t256 = t82 * t38 + t89 * t45 + 0.0784 * t105;
+        let rate_dot_2_leg2 = t85 * (t256 + t98 * t107);
+        let minus_g2_wz_leg2 = t5 * g2_vy_leg2 + t2 * g2_vx_leg2;
+        let t270 = t129 * t135 + t139 * t142 + 0.0784 * t159;
+        let minus_rate_dot_2_leg3 = t132 * (t270 + t152 * t161);
+        let minus_g2_wz_leg3 = t5 * minus_g2_vy_leg3 + t2 * minus_g2_vx_leg3;
+        let t284 = t179 * t135 + t186 * t142 + 0.0784 * t202;
+        let rate_dot_2_leg4 = t182 * (t284 + t195 * t204);
+        let g2_wz_leg4 = t5 * g2_vy_leg4 + t2 * g2_vx_leg4;
+        let t294 = 3.5714285714285716 * t242;
+        let t296 = 3.5714285714285716 * t57;
+        let t305 = 3.5714285714285716 * t256;
+        let t307 = 3.5714285714285716 * t100;
+        let t316 = 3.5714285714285716 * t270;
+        let t318 = 3.5714285714285716 * t154;
+        let t327 = 3.5714285714285716 * t284;
+        let t329 = 3.5714285714285716 * t197;
+        let t338 = rate_1_leg1 + minus_rate_2_leg1;
+        let t339 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let t341 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let t343 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t345 = minus_rate_1_leg2 + rate_2_leg2;
+        let t346 = minus_g1_vx_leg2 + g2_vx_leg2;
+        let t348 = minus_g1_vy_leg2 + g2_vy_leg2;
+        let t350 = g1_wz_leg2 + minus_g2_wz_leg2;
+        let t352 = rate_1_leg3 + minus_rate_2_leg3;
+        let t353 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t355 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let t357 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let t359 = minus_rate_1_leg4 + rate_2_leg4;
+        let t360 = minus_g1_vx_leg4 + g2_vx_leg4;
+        let t362 = minus_g1_vy_leg4 + g2_vy_leg4;
+        let t364 = minus_g1_wz_leg4 + g2_wz_leg4;
+        let t378 = minus_rate_2_leg1 + twist[2];
+        let t381 = 1.0 - g2_wz_leg1;
+        let t383 = twist[2] - rate_2_leg2;
+        let t386 = minus_g2_wz_leg2 + 1.0;
+        let t388 = minus_rate_2_leg3 + twist[2];
+        let t391 = minus_g2_wz_leg3 + 1.0;
+        let t393 = twist[2] - rate_2_leg4;
+        let t396 = 1.0 - g2_wz_leg4;
         Ok([
             [
                 0.0, -t8, -t13, acceleration[0], g1_vx_leg1 * rate_dot_1_leg1,
-                g1_vx_leg2 * rate_dot_1_leg2, g1_vx_leg3 * rate_dot_1_leg3,
-                g1_vx_leg4 * rate_dot_1_leg4, g1_vx_leg1 * rate_1_leg1, g1_vx_leg2 * rate_1_leg2,
-                g1_vx_leg3 * rate_1_leg3, g1_vx_leg4 * rate_1_leg4,
+                minus_g1_vx_leg2 * minus_rate_dot_1_leg2, g1_vx_leg3 * rate_dot_1_leg3,
+                minus_g1_vx_leg4 * minus_rate_dot_1_leg4, g1_vx_leg1 * rate_1_leg1,
+                minus_g1_vx_leg2 * minus_rate_1_leg2, g1_vx_leg3 * rate_1_leg3,
+                minus_g1_vx_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(g1_vx_leg1, rate_1_leg1),
-                ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
+                ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                ::overact::math::signed(g1_vx_leg4, rate_1_leg4), g1_vx_leg1, g1_vx_leg2,
-                g1_vx_leg3, g1_vx_leg4, -(minus_g2_vx_leg1 * t278), -(minus_g2_vx_leg2 * t289),
-                -(minus_g2_vx_leg3 * t300), -(minus_g2_vx_leg4 * t311),
-                minus_g2_vx_leg1 * t324 - g1_vx_leg1 * t330,
-                g1_vx_leg2 * t345 - minus_g2_vx_leg2 * t351,
-                minus_g2_vx_leg3 * t366 - g1_vx_leg3 * t372,
-                g1_vx_leg4 * t387 - minus_g2_vx_leg4 * t393, -(t62 * t402), -(t116 * t408),
-                -(t177 * t414), -(t231 * t420), -::overact::math::signed(t402, t62),
-                -::overact::math::signed(t408, t116), -::overact::math::signed(t414, t177),
-                -::overact::math::signed(t420, t231), -t402, -t408, -t414, -t420,
-                minus_g2_vx_leg1 * t438, minus_g2_vx_leg2 * t443, minus_g2_vx_leg3 * t448,
-                minus_g2_vx_leg4 * t453, ::overact::math::signed(minus_g2_vx_leg1, t438),
-                ::overact::math::signed(minus_g2_vx_leg2, t443),
-                ::overact::math::signed(minus_g2_vx_leg3, t448),
-                ::overact::math::signed(minus_g2_vx_leg4, t453), minus_g2_vx_leg1,
+                ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4), g1_vx_leg1,
+                -minus_g1_vx_leg2, g1_vx_leg3, -minus_g1_vx_leg4,
+                minus_g2_vx_leg1 * minus_rate_dot_2_leg1, g2_vx_leg2 * rate_dot_2_leg2,
+                minus_g2_vx_leg3 * minus_rate_dot_2_leg3, g2_vx_leg4 * rate_dot_2_leg4,
+                g1_vx_leg1 * t294 + minus_g2_vx_leg1 * t296,
+                -(minus_g1_vx_leg2 * t305 + g2_vx_leg2 * t307),
+                g1_vx_leg3 * t316 + minus_g2_vx_leg3 * t318,
+                -(minus_g1_vx_leg4 * t327 + g2_vx_leg4 * t329), t338 * t339, t345 * t346,
+                t352 * t353, t359 * t360, ::overact::math::signed(t339, t338),
+                ::overact::math::signed(t346, t345), ::overact::math::signed(t353, t352),
+                ::overact::math::signed(t360, t359), -t339, t346, -t353, t360,
+                minus_g2_vx_leg1 * t378, -(g2_vx_leg2 * t383), minus_g2_vx_leg3 * t388,
+                -(g2_vx_leg4 * t393), ::overact::math::signed(minus_g2_vx_leg1, t378),
+                -::overact::math::signed(g2_vx_leg2, t383),
+                ::overact::math::signed(minus_g2_vx_leg3, t388),
+                -::overact::math::signed(g2_vx_leg4, t393), minus_g2_vx_leg1,
             ],
             [
                 0.0, t13, -t8, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
-                g1_vy_leg2 * rate_dot_1_leg2, g1_vy_leg3 * rate_dot_1_leg3,
-                g1_vy_leg4 * rate_dot_1_leg4, g1_vy_leg1 * rate_1_leg1, g1_vy_leg2 * rate_1_leg2,
-                g1_vy_leg3 * rate_1_leg3, g1_vy_leg4 * rate_1_leg4,
+                minus_g1_vy_leg2 * minus_rate_dot_1_leg2, g1_vy_leg3 * rate_dot_1_leg3,
+                minus_g1_vy_leg4 * minus_rate_dot_1_leg4, g1_vy_leg1 * rate_1_leg1,
+                minus_g1_vy_leg2 * minus_rate_1_leg2, g1_vy_leg3 * rate_1_leg3,
+                minus_g1_vy_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(g1_vy_leg1, rate_1_leg1),
-                ::overact::math::signed(g1_vy_leg2, rate_1_leg2),
+                ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
-                ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg1, g1_vy_leg2,
-                g1_vy_leg3, g1_vy_leg4, g2_vy_leg1 * t278, g2_vy_leg2 * t289, g2_vy_leg3 * t300,
-                g2_vy_leg4 * t311, -(g1_vy_leg1 * t330 + g2_vy_leg1 * t324),
-                g1_vy_leg2 * t345 + g2_vy_leg2 * t351, -(g1_vy_leg3 * t372 + g2_vy_leg3 * t366),
-                g1_vy_leg4 * t387 + g2_vy_leg4 * t393, t62 * t404, t116 * t410, t177 * t416,
-                t231 * t422, ::overact::math::signed(t404, t62),
-                ::overact::math::signed(t410, t116), ::overact::math::signed(t416, t177),
-                ::overact::math::signed(t422, t231), t404, t410, t416, t422, -(g2_vy_leg1 * t438),
-                -(g2_vy_leg2 * t443), -(g2_vy_leg3 * t448), -(g2_vy_leg4 * t453),
-                -::overact::math::signed(g2_vy_leg1, t438),
-                -::overact::math::signed(g2_vy_leg2, t443),
-                -::overact::math::signed(g2_vy_leg3, t448),
-                -::overact::math::signed(g2_vy_leg4, t453), -g2_vy_leg1,
+                ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4), g1_vy_leg1,
+                -minus_g1_vy_leg2, g1_vy_leg3, -minus_g1_vy_leg4,
+                minus_g2_vy_leg1 * minus_rate_dot_2_leg1, g2_vy_leg2 * rate_dot_2_leg2,
+                minus_g2_vy_leg3 * minus_rate_dot_2_leg3, g2_vy_leg4 * rate_dot_2_leg4,
+                g1_vy_leg1 * t294 + minus_g2_vy_leg1 * t296,
+                -(minus_g1_vy_leg2 * t305 + g2_vy_leg2 * t307),
+                g1_vy_leg3 * t316 + minus_g2_vy_leg3 * t318,
+                -(minus_g1_vy_leg4 * t327 + g2_vy_leg4 * t329), t338 * t341, t345 * t348,
+                t352 * t355, t359 * t362, ::overact::math::signed(t341, t338),
+                ::overact::math::signed(t348, t345), ::overact::math::signed(t355, t352),
+                ::overact::math::signed(t362, t359), -t341, t348, -t355, t362,
+                minus_g2_vy_leg1 * t378, -(g2_vy_leg2 * t383), minus_g2_vy_leg3 * t388,
+                -(g2_vy_leg4 * t393), ::overact::math::signed(minus_g2_vy_leg1, t378),
+                -::overact::math::signed(g2_vy_leg2, t383),
+                ::overact::math::signed(minus_g2_vy_leg3, t388),
+                -::overact::math::signed(g2_vy_leg4, t393), minus_g2_vy_leg1,
             ],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
                 -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
-                -(minus_g1_wz_leg1 * rate_dot_1_leg1), -(minus_g1_wz_leg2 * rate_dot_1_leg2),
-                g1_wz_leg3 * rate_dot_1_leg3, g1_wz_leg4 * rate_dot_1_leg4,
-                -(minus_g1_wz_leg1 * rate_1_leg1), -(minus_g1_wz_leg2 * rate_1_leg2),
-                g1_wz_leg3 * rate_1_leg3, g1_wz_leg4 * rate_1_leg4,
+                -(minus_g1_wz_leg1 * rate_dot_1_leg1), -(g1_wz_leg2 * minus_rate_dot_1_leg2),
+                g1_wz_leg3 * rate_dot_1_leg3, minus_g1_wz_leg4 * minus_rate_dot_1_leg4,
+                -(minus_g1_wz_leg1 * rate_1_leg1), -(g1_wz_leg2 * minus_rate_1_leg2),
+                g1_wz_leg3 * rate_1_leg3, minus_g1_wz_leg4 * minus_rate_1_leg4,
                 -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1),
-                -::overact::math::signed(minus_g1_wz_leg2, rate_1_leg2),
+                -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
-                ::overact::math::signed(g1_wz_leg4, rate_1_leg4), -minus_g1_wz_leg1,
-                -minus_g1_wz_leg2, g1_wz_leg3, g1_wz_leg4, g2_wz_leg1 * t278, g2_wz_leg2 * t289,
-                g2_wz_leg3 * t300, g2_wz_leg4 * t311, minus_g1_wz_leg1 * t330 - g2_wz_leg1 * t324,
-                g2_wz_leg2 * t351 - minus_g1_wz_leg2 * t345,
-                -(g1_wz_leg3 * t372 + g2_wz_leg3 * t366), g1_wz_leg4 * t387 + g2_wz_leg4 * t393,
-                t62 * t406, t116 * t412, t177 * t418, t231 * t424,
-                ::overact::math::signed(t406, t62), ::overact::math::signed(t412, t116),
-                ::overact::math::signed(t418, t177), ::overact::math::signed(t424, t231), t406,
-                t412, t418, t424, t438 * t441, t443 * t446, t448 * t451, t453 * t456,
-                ::overact::math::signed(t441, t438), ::overact::math::signed(t446, t443),
-                ::overact::math::signed(t451, t448), ::overact::math::signed(t456, t453), t441,
+                ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4), -minus_g1_wz_leg1,
+                g1_wz_leg2, g1_wz_leg3, -minus_g1_wz_leg4, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
+                -(minus_g2_wz_leg2 * rate_dot_2_leg2), minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
+                g2_wz_leg4 * rate_dot_2_leg4, -(minus_g1_wz_leg1 * t294 + g2_wz_leg1 * t296),
+                g1_wz_leg2 * t305 + minus_g2_wz_leg2 * t307,
+                g1_wz_leg3 * t316 + minus_g2_wz_leg3 * t318,
+                -(minus_g1_wz_leg4 * t327 + g2_wz_leg4 * t329), -(t338 * t343), -(t345 * t350),
+                t352 * t357, t359 * t364, -::overact::math::signed(t343, t338),
+                -::overact::math::signed(t350, t345), ::overact::math::signed(t357, t352),
+                ::overact::math::signed(t364, t359), t343, -t350, -t357, t364, t378 * t381,
+                t383 * t386, t388 * t391, t393 * t396, ::overact::math::signed(t381, t378),
+                ::overact::math::signed(t386, t383), ::overact::math::signed(t391, t388),
+                ::overact::math::signed(t396, t393), t381,
             ],
         ])
     }
@@ -3900,11 +3763,13 @@ impl DualV {
     /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
+    /// - `actuators`: q, positions of the actuated joints (m, rad)
+    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
     ///
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 591 operations (242 additions, 338 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 489 intermediates.
+    /// 524 operations (198 additions, 315 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 424 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3929,320 +3794,302 @@ impl DualV {
         let t14 = ::overact::math::sqrt(t13);
         let t16 = t6 - t8 * t14;
         let t17 = t5 - t16;
-        let t20 = 0.5 * t8 + t5 * t14;
-        let t21 = t8 - t20;
-        let t23 = t20 + t21 - t21;
-        let t26 = t17 - (t16 + t17);
-        let t28 = t17 * t23 + t21 * t26;
-        ::overact::guard::leg(t28, 0.078399138102973, "leg1")?;
-        let t29 = 1.0 / t28;
-        let g1_vy_leg1 = t17 * t29;
-        let g1_vx_leg1 = t21 * t29;
+        let t18 = t11 * t14;
+        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
+        let t19 = 1.0 / t18;
+        let g1_vy_leg1 = t17 * t19;
+        let t24 = 0.5 * t8 + t5 * t14;
+        let t25 = t8 - t24;
+        let g1_vx_leg1 = t25 * t19;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t3 * g1_vx_leg1;
-        let t36 = t7 + 0.3950502153918333;
-        let t38 = t36 * t36 + t10;
-        let t40 = 0.0784 / t38 - 0.25;
-        ::overact::guard::reach(t40, "leg2")?;
-        let t41 = ::overact::math::sqrt(t40);
-        let t43 = t6 + t36 * t41;
-        let t44 = t5 - t43;
-        let t47 = 0.5 * t36 - t5 * t41;
-        let t48 = t36 - t47;
-        let t50 = t47 + t48 - t48;
-        let t53 = t44 - (t43 + t44);
-        let t55 = t44 * t50 + t48 * t53;
-        ::overact::guard::leg(t55, 0.078399138102973, "leg2")?;
-        let t56 = 1.0 / t55;
-        let g1_vy_leg2 = t44 * t56;
-        let g1_vx_leg2 = t48 * t56;
-        let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t3 * g1_vx_leg2;
-        let t65 = pose[1] - t3 + 0.10970563941232059;
-        let t66 = 0.5 * t65;
-        let t67 = pose[0] + t2;
-        let t68 = t67 + 0.3950502153918333;
-        let t70 = t65 * t65;
-        let t71 = t68 * t68 + t70;
-        let t73 = 0.0784 / t71 - 0.25;
-        ::overact::guard::reach(t73, "leg3")?;
-        let t74 = ::overact::math::sqrt(t73);
-        let t76 = t66 - t68 * t74;
-        let t77 = t65 - t76;
-        let t80 = 0.5 * t68 + t65 * t74;
-        let t81 = t68 - t80;
-        let t83 = t80 + t81 - t81;
-        let t86 = t77 - (t76 + t77);
-        let t88 = t77 * t83 + t81 * t86;
-        ::overact::guard::leg(t88, 0.078399138102973, "leg3")?;
-        let t89 = 1.0 / t88;
-        let g1_vy_leg3 = t77 * t89;
-        let g1_vx_leg3 = t81 * t89;
+        let t30 = t7 + 0.3950502153918333;
+        let t32 = t30 * t30 + t10;
+        let t34 = 0.0784 / t32 - 0.25;
+        ::overact::guard::reach(t34, "leg2")?;
+        let t35 = ::overact::math::sqrt(t34);
+        let t37 = t6 + t30 * t35;
+        let t38 = t5 - t37;
+        let t39 = t32 * t35;
+        ::overact::guard::leg(t39, 0.07839913810297301, "leg2")?;
+        let t40 = 1.0 / t39;
+        let minus_g1_vy_leg2 = t38 * t40;
+        let t45 = 0.5 * t30 - t5 * t35;
+        let t46 = t30 - t45;
+        let minus_g1_vx_leg2 = t46 * t40;
+        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
+        let t53 = pose[1] - t3 + 0.10970563941232059;
+        let t54 = 0.5 * t53;
+        let t55 = pose[0] + t2;
+        let t56 = t55 + 0.3950502153918333;
+        let t58 = t53 * t53;
+        let t59 = t56 * t56 + t58;
+        let t61 = 0.0784 / t59 - 0.25;
+        ::overact::guard::reach(t61, "leg3")?;
+        let t62 = ::overact::math::sqrt(t61);
+        let t64 = t54 - t56 * t62;
+        let t65 = t53 - t64;
+        let t66 = t59 * t62;
+        ::overact::guard::leg(t66, 0.07839913810297301, "leg3")?;
+        let t67 = 1.0 / t66;
+        let g1_vy_leg3 = t65 * t67;
+        let t72 = 0.5 * t56 + t53 * t62;
+        let t73 = t56 - t72;
+        let g1_vx_leg3 = t73 * t67;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t3 * g1_vx_leg3;
-        let t97 = t67 - 0.3950502153918333;
-        let t99 = t97 * t97 + t70;
-        let t101 = 0.0784 / t99 - 0.25;
-        ::overact::guard::reach(t101, "leg4")?;
-        let t102 = ::overact::math::sqrt(t101);
-        let t104 = t66 + t97 * t102;
-        let t105 = t65 - t104;
-        let t108 = 0.5 * t97 - t65 * t102;
-        let t109 = t97 - t108;
-        let t111 = t108 + t109 - t109;
-        let t114 = t105 - (t104 + t105);
-        let t116 = t105 * t111 + t109 * t114;
-        ::overact::guard::leg(t116, 0.078399138102973, "leg4")?;
-        let t117 = 1.0 / t116;
-        let g1_vy_leg4 = t105 * t117;
-        let g1_vx_leg4 = t109 * t117;
-        let g1_wz_leg4 = t2 * g1_vy_leg4 + t3 * g1_vx_leg4;
-        let t131 = g1_vx_leg3 * g1_wz_leg3
-            - (g1_vx_leg1 * minus_g1_wz_leg1 + g1_vx_leg2 * minus_g1_wz_leg2)
-            + g1_vx_leg4 * g1_wz_leg4;
-        let t138 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t138, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(t138, 25.429161076750646, "actuators")?;
-        let t139 = 1.0 / t138;
-        let t140 = t131 * t139;
-        let t156 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
-        let t158 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
-            + g1_vy_leg4 * g1_wz_leg4 - t156 * t140;
-        let t166 = t156 * t139;
-        let t168 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t156 * t166;
-        ::overact::guard::platform(t168, 25.59236889935335, "actuators")?;
-        ::overact::guard::platform(t168, 25.59236889935335, "actuators")?;
-        let t169 = 1.0 / t168;
-        let t170 = t158 * t169;
-        let t172 = minus_g1_wz_leg1 * minus_g1_wz_leg1
-            + minus_g1_wz_leg2 * minus_g1_wz_leg2 + g1_wz_leg3 * g1_wz_leg3
-            + g1_wz_leg4 * g1_wz_leg4 - t131 * t140 - t158 * t170;
-        ::overact::guard::platform(t172, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t172, 0.3076928490286828, "actuators")?;
-        let t173 = 1.0 / t172;
-        let t180 = g1_vx_leg1 * actuator_velocities[0]
-            + g1_vx_leg2 * actuator_velocities[1] + g1_vx_leg3 * actuator_velocities[2]
-            + g1_vx_leg4 * actuator_velocities[3];
-        let t190 = g1_vy_leg1 * actuator_velocities[0]
-            + g1_vy_leg2 * actuator_velocities[1] + g1_vy_leg3 * actuator_velocities[2]
-            + g1_vy_leg4 * actuator_velocities[3] - t180 * t166;
-        let t202 = g1_wz_leg3 * actuator_velocities[2]
-            - (minus_g1_wz_leg1 * actuator_velocities[0]
-                + minus_g1_wz_leg2 * actuator_velocities[1])
-            + g1_wz_leg4 * actuator_velocities[3] - t180 * t140 - t170 * t190;
-        let rate_3_leg1 = t173 * t202;
-        let t205 = t169 * t190 - t170 * rate_3_leg1;
-        let t209 = t180 * t139 - t166 * t205 - t140 * rate_3_leg1;
-        let t210 = t3 * rate_3_leg1;
-        let t211 = t209 + t210;
-        let t213 = t2 * rate_3_leg1;
-        let t214 = t205 + t213;
-        let rate_1_leg3 = g1_vx_leg3 * t211 + g1_vy_leg3 * t214;
-        let t217 = rate_1_leg3 * rate_1_leg3;
-        let g2_vy_leg3 = t86 * t89;
-        let minus_g2_vx_leg3 = t83 * t89;
-        let rate_2_leg3 = g2_vy_leg3 * t214 - minus_g2_vx_leg3 * t211;
-        let t224 = rate_2_leg3 - rate_1_leg3;
-        let t225 = rate_1_leg3 + t224;
-        let t226 = t225 * t225;
-        let t228 = t80 * t217 + t81 * t226;
-        let t229 = rate_3_leg1 * t213;
-        let t232 = rate_3_leg1 * t210;
-        let t235 = t76 * t217 + t77 * t226;
-        let rate_dot_1_leg3 = g1_vx_leg3 * (t228 - t229) + g1_vy_leg3 * (t232 + t235);
-        let t239 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t241 = t209 - t210;
-        let t243 = t205 - t213;
-        let rate_1_leg1 = g1_vx_leg1 * t241 + g1_vy_leg1 * t243;
-        let t246 = rate_1_leg1 * rate_1_leg1;
-        let g2_vy_leg1 = t26 * t29;
-        let minus_g2_vx_leg1 = t23 * t29;
-        let rate_2_leg1 = g2_vy_leg1 * t243 - minus_g2_vx_leg1 * t241;
-        let t253 = rate_2_leg1 - rate_1_leg1;
-        let t254 = rate_1_leg1 + t253;
-        let t255 = t254 * t254;
-        let t257 = t20 * t246 + t21 * t255;
-        let t262 = t16 * t246 + t17 * t255;
-        let rate_dot_1_leg1 = g1_vx_leg1 * (t229 + t257) + g1_vy_leg1 * (t262 - t232);
-        let t266 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let rate_1_leg2 = g1_vx_leg2 * t241 + g1_vy_leg2 * t243;
-        let t271 = rate_1_leg2 * rate_1_leg2;
-        let g2_vy_leg2 = t53 * t56;
-        let minus_g2_vx_leg2 = t50 * t56;
-        let rate_2_leg2 = g2_vy_leg2 * t243 - minus_g2_vx_leg2 * t241;
-        let t278 = rate_2_leg2 - rate_1_leg2;
-        let t279 = rate_1_leg2 + t278;
-        let t280 = t279 * t279;
-        let t282 = t47 * t271 + t48 * t280;
-        let t287 = t43 * t271 + t44 * t280;
-        let rate_dot_1_leg2 = g1_vx_leg2 * (t229 + t282) + g1_vy_leg2 * (t287 - t232);
-        let t291 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let rate_1_leg4 = g1_vx_leg4 * t211 + g1_vy_leg4 * t214;
-        let t298 = rate_1_leg4 * rate_1_leg4;
-        let g2_vy_leg4 = t114 * t117;
-        let minus_g2_vx_leg4 = t111 * t117;
-        let rate_2_leg4 = g2_vy_leg4 * t214 - minus_g2_vx_leg4 * t211;
-        let t305 = rate_2_leg4 - rate_1_leg4;
-        let t306 = rate_1_leg4 + t305;
-        let t307 = t306 * t306;
-        let t309 = t108 * t298 + t109 * t307;
-        let t314 = t104 * t298 + t105 * t307;
-        let rate_dot_1_leg4 = g1_vx_leg4 * (t309 - t229) + g1_vy_leg4 * (t232 + t314);
-        let t318 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t327 = g1_vx_leg1 * t266 + g1_vx_leg2 * t291 + g1_vx_leg3 * t239
-            + g1_vx_leg4 * t318;
-        let t338 = g1_vy_leg1 * t266 + g1_vy_leg2 * t291 + g1_vy_leg3 * t239
-            + g1_vy_leg4 * t318 - t166 * t327;
-        let t340 = g1_wz_leg3 * t239
-            - (minus_g1_wz_leg1 * t266 + minus_g1_wz_leg2 * t291) + g1_wz_leg4 * t318
-            - t140 * t327 - t170 * t338;
-        let rate_dot_3_leg1 = t173 * t340;
-        let t342 = rate_3_leg1 * rate_3_leg1;
-        let t343 = c_phi * t342;
-        let t344 = s_phi * rate_dot_3_leg1;
-        let t346 = c_phi * rate_dot_3_leg1;
-        let t347 = s_phi * t342;
-        let t351 = t169 * t338 - t170 * rate_dot_3_leg1;
-        let t357 = t139 * t327 - t166 * t351 - t140 * rate_dot_3_leg1;
-        let t359 = c_phi * t351 - s_phi * t357;
-        let t364 = c_phi * t357 + s_phi * t351;
-        let t371 = t3 * rate_dot_3_leg1;
-        let t373 = t357 - t371 + t229;
-        let t374 = t373 + t257;
-        let t376 = t2 * rate_dot_3_leg1;
-        let t378 = t351 - t376 - t232;
-        let t379 = t378 + t262;
-        let rate_dot_1_leg1_2 = g1_vx_leg1 * t374 + g1_vy_leg1 * t379;
-        let t385 = t373 + t282;
-        let t387 = t378 + t287;
-        let rate_dot_1_leg2_2 = g1_vx_leg2 * t385 + g1_vy_leg2 * t387;
-        let t394 = t357 + t371 - t229;
-        let t395 = t394 + t228;
-        let t398 = t351 + t376 + t232;
-        let t399 = t398 + t235;
-        let rate_dot_1_leg3_2 = g1_vx_leg3 * t395 + g1_vy_leg3 * t399;
-        let t405 = t394 + t309;
-        let t407 = t398 + t314;
-        let rate_dot_1_leg4_2 = g1_vx_leg4 * t405 + g1_vy_leg4 * t407;
-        let rate_dot_2_leg1 = g2_vy_leg1 * t379 - minus_g2_vx_leg1 * t374;
-        let t441 = rate_dot_1_leg1_2 + rate_dot_2_leg1 - rate_dot_1_leg1_2;
-        let g2_wz_leg1 = t3 * minus_g2_vx_leg1 - t2 * g2_vy_leg1;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t387 - minus_g2_vx_leg2 * t385;
-        let t452 = rate_dot_1_leg2_2 + rate_dot_2_leg2 - rate_dot_1_leg2_2;
-        let g2_wz_leg2 = t3 * minus_g2_vx_leg2 - t2 * g2_vy_leg2;
-        let rate_dot_2_leg3 = g2_vy_leg3 * t399 - minus_g2_vx_leg3 * t395;
-        let t463 = rate_dot_1_leg3_2 + rate_dot_2_leg3 - rate_dot_1_leg3_2;
-        let g2_wz_leg3 = t2 * g2_vy_leg3 - t3 * minus_g2_vx_leg3;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t407 - minus_g2_vx_leg4 * t405;
-        let t474 = rate_dot_1_leg4_2 + rate_dot_2_leg4 - rate_dot_1_leg4_2;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 - t3 * minus_g2_vx_leg4;
-        let t481 = t11 * t14;
-        let t484 = t11 - 0.1568;
-        let t487 = 3.5714285714285716 * (t481 * rate_dot_1_leg1_2)
-            - 1.7857142857142858 * (t484 * t246);
-        let t493 = 3.5714285714285716 * t481 * t441 + t255 * (1.7857142857142858 * t484);
-        let t502 = t38 * t41;
-        let t505 = t38 - 0.1568;
-        let t508 = 3.5714285714285716 * t502 * t452 - t280 * (1.7857142857142858 * t505);
-        let t514 = 1.7857142857142858 * (t505 * t271)
-            + 3.5714285714285716 * (t502 * rate_dot_1_leg2_2);
-        let t523 = t71 * t74;
-        let t526 = t71 - 0.1568;
-        let t529 = 3.5714285714285716 * (t523 * rate_dot_1_leg3_2)
-            - 1.7857142857142858 * (t526 * t217);
-        let t535 = 3.5714285714285716 * t523 * t463 + t226 * (1.7857142857142858 * t526);
-        let t544 = t99 * t102;
-        let t547 = t99 - 0.1568;
-        let t550 = 3.5714285714285716 * t544 * t474 - t307 * (1.7857142857142858 * t547);
-        let t556 = 1.7857142857142858 * (t547 * t298)
-            + 3.5714285714285716 * (t544 * rate_dot_1_leg4_2);
-        let t565 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t567 = g2_vy_leg1 - g1_vy_leg1;
-        let t569 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t571 = g1_vx_leg2 + minus_g2_vx_leg2;
-        let t573 = g2_vy_leg2 - g1_vy_leg2;
-        let t575 = minus_g1_wz_leg2 + g2_wz_leg2;
-        let t577 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t579 = g2_vy_leg3 - g1_vy_leg3;
-        let t581 = g2_wz_leg3 - g1_wz_leg3;
-        let t583 = g1_vx_leg4 + minus_g2_vx_leg4;
-        let t585 = g2_vy_leg4 - g1_vy_leg4;
-        let t587 = g2_wz_leg4 - g1_wz_leg4;
-        let t601 = rate_3_leg1 - rate_2_leg1;
-        let t604 = 1.0 - g2_wz_leg1;
-        let t606 = rate_3_leg1 - rate_2_leg2;
-        let t609 = 1.0 - g2_wz_leg2;
-        let t611 = rate_3_leg1 - rate_2_leg3;
-        let t614 = 1.0 - g2_wz_leg3;
-        let t616 = rate_3_leg1 - rate_2_leg4;
-        let t619 = 1.0 - g2_wz_leg4;
+        let t79 = t55 - 0.3950502153918333;
+        let t81 = t79 * t79 + t58;
+        let t83 = 0.0784 / t81 - 0.25;
+        ::overact::guard::reach(t83, "leg4")?;
+        let t84 = ::overact::math::sqrt(t83);
+        let t86 = t54 + t79 * t84;
+        let t87 = t53 - t86;
+        let t88 = t81 * t84;
+        ::overact::guard::leg(t88, 0.07839913810297301, "leg4")?;
+        let t89 = 1.0 / t88;
+        let minus_g1_vy_leg4 = t87 * t89;
+        let t94 = 0.5 * t79 - t53 * t84;
+        let t95 = t79 - t94;
+        let minus_g1_vx_leg4 = t95 * t89;
+        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t3 * minus_g1_vx_leg4;
+        let t107 = g1_vx_leg3 * g1_wz_leg3
+            - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+            + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+        let t114 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t114, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(t114, 25.429161076750646, "actuators")?;
+        let t115 = 1.0 / t114;
+        let t116 = t107 * t115;
+        let t132 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+        let t134 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t132 * t116;
+        let t142 = t132 * t115;
+        let t144 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
+            - t132 * t142;
+        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
+        let t145 = 1.0 / t144;
+        let t146 = t134 * t145;
+        let t148 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t107 * t116
+            - t134 * t146;
+        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
+        let t149 = 1.0 / t148;
+        let t163 = g1_vx_leg1 * actuator_velocities[0]
+            - minus_g1_vx_leg2 * actuator_velocities[1]
+            + g1_vx_leg3 * actuator_velocities[2]
+            - minus_g1_vx_leg4 * actuator_velocities[3];
+        let t174 = g1_vy_leg1 * actuator_velocities[0]
+            - minus_g1_vy_leg2 * actuator_velocities[1]
+            + g1_vy_leg3 * actuator_velocities[2]
+            - minus_g1_vy_leg4 * actuator_velocities[3] - t163 * t142;
+        let t176 = g1_wz_leg2 * actuator_velocities[1]
+            - minus_g1_wz_leg1 * actuator_velocities[0]
+            + g1_wz_leg3 * actuator_velocities[2]
+            - minus_g1_wz_leg4 * actuator_velocities[3] - t163 * t116 - t146 * t174;
+        let rate_3_leg1 = t149 * t176;
+        let t178 = t3 * rate_3_leg1;
+        let t179 = rate_3_leg1 * t178;
+        let t181 = t2 * rate_3_leg1;
+        let t182 = rate_3_leg1 * t181;
+        let g2_vx_leg2 = t45 * t40;
+        let t189 = t145 * t174 - t146 * rate_3_leg1;
+        let t193 = t163 * t115 - t142 * t189 - t116 * rate_3_leg1;
+        let t194 = t193 - t178;
+        let g2_vy_leg2 = t37 * t40;
+        let t197 = t189 - t181;
+        let rate_2_leg2 = g2_vx_leg2 * t194 + g2_vy_leg2 * t197;
+        let t200 = rate_2_leg2 * rate_2_leg2;
+        let t201 = 0.0784 * t200;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t194 + minus_g1_vy_leg2 * t197;
+        let t206 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t208 = 0.5 * (t32 - 0.1568);
+        let t209 = t206 * t208;
+        let rate_dot_1_leg2 = t40 * (t38 * t179 - t46 * t182 - t201 - t209);
+        let t212 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let minus_g2_vx_leg1 = t24 * t19;
+        let minus_g2_vy_leg1 = t16 * t19;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t194 + minus_g2_vy_leg1 * t197;
+        let t222 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t223 = 0.0784 * t222;
+        let rate_1_leg1 = g1_vx_leg1 * t194 + g1_vy_leg1 * t197;
+        let t228 = rate_1_leg1 * rate_1_leg1;
+        let t230 = 0.5 * (t11 - 0.1568);
+        let t231 = t228 * t230;
+        let minus_rate_dot_1_leg1 = t19 * (t17 * t179 - t25 * t182 - t223 - t231);
+        let t234 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let minus_g2_vx_leg3 = t72 * t67;
+        let t241 = t193 + t178;
+        let minus_g2_vy_leg3 = t64 * t67;
+        let t244 = t189 + t181;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t241 + minus_g2_vy_leg3 * t244;
+        let t247 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t248 = 0.0784 * t247;
+        let rate_1_leg3 = g1_vx_leg3 * t241 + g1_vy_leg3 * t244;
+        let t253 = rate_1_leg3 * rate_1_leg3;
+        let t255 = 0.5 * (t59 - 0.1568);
+        let t256 = t253 * t255;
+        let minus_rate_dot_1_leg3 = t67 * (t73 * t182 - t65 * t179 - t248 - t256);
+        let t259 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = t94 * t89;
+        let g2_vy_leg4 = t86 * t89;
+        let rate_2_leg4 = g2_vx_leg4 * t241 + g2_vy_leg4 * t244;
+        let t270 = rate_2_leg4 * rate_2_leg4;
+        let t271 = 0.0784 * t270;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t241 + minus_g1_vy_leg4 * t244;
+        let t276 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t278 = 0.5 * (t81 - 0.1568);
+        let t279 = t276 * t278;
+        let rate_dot_1_leg4 = t89 * (t95 * t182 - t87 * t179 - t271 - t279);
+        let t282 = actuator_accelerations[3] - rate_dot_1_leg4;
+        let t291 = g1_vx_leg1 * t234 - minus_g1_vx_leg2 * t212 + g1_vx_leg3 * t259
+            - minus_g1_vx_leg4 * t282;
+        let t302 = g1_vy_leg1 * t234 - minus_g1_vy_leg2 * t212 + g1_vy_leg3 * t259
+            - minus_g1_vy_leg4 * t282 - t142 * t291;
+        let t304 = g1_wz_leg2 * t212 - minus_g1_wz_leg1 * t234 + g1_wz_leg3 * t259
+            - minus_g1_wz_leg4 * t282 - t116 * t291 - t146 * t302;
+        let rate_dot_3_leg1 = t149 * t304;
+        let t306 = t2 * rate_dot_3_leg1;
+        let t308 = 9.090909090909092 * (t179 + t306);
+        let t309 = t3 * rate_dot_3_leg1;
+        let t311 = 9.090909090909092 * (t309 - t182);
+        let t314 = t145 * t302 - t146 * rate_dot_3_leg1;
+        let t320 = t115 * t291 - t142 * t314 - t116 * rate_dot_3_leg1;
+        let t327 = t320 - t309 + t182;
+        let t330 = t314 - t306 - t179;
+        let t333 = t25 * t327 + t17 * t330 + t223;
+        let rate_dot_1_leg1 = t19 * (t333 + t231);
+        let t342 = t46 * t327 + t38 * t330 + t201;
+        let minus_rate_dot_1_leg2 = t40 * (t342 + t209);
+        let t349 = t320 + t309 - t182;
+        let t352 = t314 + t306 + t179;
+        let t355 = t73 * t349 + t65 * t352 + t248;
+        let rate_dot_1_leg3 = t67 * (t355 + t256);
+        let t364 = t95 * t349 + t87 * t352 + t271;
+        let minus_rate_dot_1_leg4 = t89 * (t364 + t279);
+        let t398 = t24 * t327 + t16 * t330 + 0.0784 * t228;
+        let minus_rate_dot_2_leg1 = t19 * (t398 + t222 * t230);
+        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t3 * minus_g2_vx_leg1;
+        let t412 = t45 * t327 + t37 * t330 + 0.0784 * t206;
+        let rate_dot_2_leg2 = t40 * (t412 + t200 * t208);
+        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t3 * g2_vx_leg2;
+        let t426 = t72 * t349 + t64 * t352 + 0.0784 * t253;
+        let minus_rate_dot_2_leg3 = t67 * (t426 + t247 * t255);
+        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t3 * minus_g2_vx_leg3;
+        let t440 = t94 * t349 + t86 * t352 + 0.0784 * t276;
+        let rate_dot_2_leg4 = t89 * (t440 + t270 * t278);
+        let g2_wz_leg4 = t2 * g2_vy_leg4 + t3 * g2_vx_leg4;
+        let t450 = 3.5714285714285716 * t398;
+        let t452 = 3.5714285714285716 * t333;
+        let t461 = 3.5714285714285716 * t412;
+        let t463 = 3.5714285714285716 * t342;
+        let t472 = 3.5714285714285716 * t426;
+        let t474 = 3.5714285714285716 * t355;
+        let t483 = 3.5714285714285716 * t440;
+        let t485 = 3.5714285714285716 * t364;
+        let t494 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let t495 = rate_1_leg1 + minus_rate_2_leg1;
+        let t497 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let t499 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t501 = minus_g1_vx_leg2 + g2_vx_leg2;
+        let t502 = minus_rate_1_leg2 + rate_2_leg2;
+        let t504 = minus_g1_vy_leg2 + g2_vy_leg2;
+        let t506 = g1_wz_leg2 + minus_g2_wz_leg2;
+        let t508 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t509 = rate_1_leg3 + minus_rate_2_leg3;
+        let t511 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let t513 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let t515 = minus_g1_vx_leg4 + g2_vx_leg4;
+        let t516 = minus_rate_1_leg4 + rate_2_leg4;
+        let t518 = minus_g1_vy_leg4 + g2_vy_leg4;
+        let t520 = minus_g1_wz_leg4 + g2_wz_leg4;
+        let t534 = minus_rate_2_leg1 + rate_3_leg1;
+        let t537 = 1.0 - g2_wz_leg1;
+        let t539 = rate_3_leg1 - rate_2_leg2;
+        let t542 = minus_g2_wz_leg2 + 1.0;
+        let t544 = minus_rate_2_leg3 + rate_3_leg1;
+        let t547 = minus_g2_wz_leg3 + 1.0;
+        let t549 = rate_3_leg1 - rate_2_leg4;
+        let t552 = 1.0 - g2_wz_leg4;
         Ok([
             [
-                0.0, -(t343 + t344), t347 - t346, c_phi * t364 - s_phi * t359,
-                g1_vx_leg1 * rate_dot_1_leg1_2, g1_vx_leg2 * rate_dot_1_leg2_2,
-                g1_vx_leg3 * rate_dot_1_leg3_2, g1_vx_leg4 * rate_dot_1_leg4_2,
-                g1_vx_leg1 * rate_1_leg1, g1_vx_leg2 * rate_1_leg2, g1_vx_leg3 * rate_1_leg3,
-                g1_vx_leg4 * rate_1_leg4, ::overact::math::signed(g1_vx_leg1, rate_1_leg1),
-                ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
+                0.0, -t308, -t311, t320, g1_vx_leg1 * rate_dot_1_leg1,
+                minus_g1_vx_leg2 * minus_rate_dot_1_leg2, g1_vx_leg3 * rate_dot_1_leg3,
+                minus_g1_vx_leg4 * minus_rate_dot_1_leg4, g1_vx_leg1 * rate_1_leg1,
+                minus_g1_vx_leg2 * minus_rate_1_leg2, g1_vx_leg3 * rate_1_leg3,
+                minus_g1_vx_leg4 * minus_rate_1_leg4,
+                ::overact::math::signed(g1_vx_leg1, rate_1_leg1),
+                ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                ::overact::math::signed(g1_vx_leg4, rate_1_leg4), g1_vx_leg1, g1_vx_leg2,
-                g1_vx_leg3, g1_vx_leg4, -(minus_g2_vx_leg1 * t441), -(minus_g2_vx_leg2 * t452),
-                -(minus_g2_vx_leg3 * t463), -(minus_g2_vx_leg4 * t474),
-                minus_g2_vx_leg1 * t487 - g1_vx_leg1 * t493,
-                g1_vx_leg2 * t508 - minus_g2_vx_leg2 * t514,
-                minus_g2_vx_leg3 * t529 - g1_vx_leg3 * t535,
-                g1_vx_leg4 * t550 - minus_g2_vx_leg4 * t556, -(t565 * t253), -(t571 * t278),
-                -(t577 * t224), -(t583 * t305), -::overact::math::signed(t565, t253),
-                -::overact::math::signed(t571, t278), -::overact::math::signed(t577, t224),
-                -::overact::math::signed(t583, t305), -t565, -t571, -t577, -t583,
-                minus_g2_vx_leg1 * t601, minus_g2_vx_leg2 * t606, minus_g2_vx_leg3 * t611,
-                minus_g2_vx_leg4 * t616, ::overact::math::signed(minus_g2_vx_leg1, t601),
-                ::overact::math::signed(minus_g2_vx_leg2, t606),
-                ::overact::math::signed(minus_g2_vx_leg3, t611),
-                ::overact::math::signed(minus_g2_vx_leg4, t616), minus_g2_vx_leg1,
+                ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4), g1_vx_leg1,
+                -minus_g1_vx_leg2, g1_vx_leg3, -minus_g1_vx_leg4,
+                minus_g2_vx_leg1 * minus_rate_dot_2_leg1, g2_vx_leg2 * rate_dot_2_leg2,
+                minus_g2_vx_leg3 * minus_rate_dot_2_leg3, g2_vx_leg4 * rate_dot_2_leg4,
+                g1_vx_leg1 * t450 + minus_g2_vx_leg1 * t452,
+                -(minus_g1_vx_leg2 * t461 + g2_vx_leg2 * t463),
+                g1_vx_leg3 * t472 + minus_g2_vx_leg3 * t474,
+                -(minus_g1_vx_leg4 * t483 + g2_vx_leg4 * t485), t494 * t495, t501 * t502,
+                t508 * t509, t515 * t516, ::overact::math::signed(t494, t495),
+                ::overact::math::signed(t501, t502), ::overact::math::signed(t508, t509),
+                ::overact::math::signed(t515, t516), -t494, t501, -t508, t515,
+                minus_g2_vx_leg1 * t534, -(g2_vx_leg2 * t539), minus_g2_vx_leg3 * t544,
+                -(g2_vx_leg4 * t549), ::overact::math::signed(minus_g2_vx_leg1, t534),
+                -::overact::math::signed(g2_vx_leg2, t539),
+                ::overact::math::signed(minus_g2_vx_leg3, t544),
+                -::overact::math::signed(g2_vx_leg4, t549), minus_g2_vx_leg1,
             ],
             [
-                0.0, t346 - t347, -(t344 + t343), s_phi * t364 + c_phi * t359,
-                g1_vy_leg1 * rate_dot_1_leg1_2, g1_vy_leg2 * rate_dot_1_leg2_2,
-                g1_vy_leg3 * rate_dot_1_leg3_2, g1_vy_leg4 * rate_dot_1_leg4_2,
-                g1_vy_leg1 * rate_1_leg1, g1_vy_leg2 * rate_1_leg2, g1_vy_leg3 * rate_1_leg3,
-                g1_vy_leg4 * rate_1_leg4, ::overact::math::signed(g1_vy_leg1, rate_1_leg1),
-                ::overact::math::signed(g1_vy_leg2, rate_1_leg2),
+                0.0, t311, -t308, t314, g1_vy_leg1 * rate_dot_1_leg1,
+                minus_g1_vy_leg2 * minus_rate_dot_1_leg2, g1_vy_leg3 * rate_dot_1_leg3,
+                minus_g1_vy_leg4 * minus_rate_dot_1_leg4, g1_vy_leg1 * rate_1_leg1,
+                minus_g1_vy_leg2 * minus_rate_1_leg2, g1_vy_leg3 * rate_1_leg3,
+                minus_g1_vy_leg4 * minus_rate_1_leg4,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1),
+                ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
-                ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg1, g1_vy_leg2,
-                g1_vy_leg3, g1_vy_leg4, g2_vy_leg1 * t441, g2_vy_leg2 * t452, g2_vy_leg3 * t463,
-                g2_vy_leg4 * t474, -(g1_vy_leg1 * t493 + g2_vy_leg1 * t487),
-                g1_vy_leg2 * t508 + g2_vy_leg2 * t514, -(g1_vy_leg3 * t535 + g2_vy_leg3 * t529),
-                g1_vy_leg4 * t550 + g2_vy_leg4 * t556, t567 * t253, t573 * t278, t579 * t224,
-                t585 * t305, ::overact::math::signed(t567, t253),
-                ::overact::math::signed(t573, t278), ::overact::math::signed(t579, t224),
-                ::overact::math::signed(t585, t305), t567, t573, t579, t585, -(g2_vy_leg1 * t601),
-                -(g2_vy_leg2 * t606), -(g2_vy_leg3 * t611), -(g2_vy_leg4 * t616),
-                -::overact::math::signed(g2_vy_leg1, t601),
-                -::overact::math::signed(g2_vy_leg2, t606),
-                -::overact::math::signed(g2_vy_leg3, t611),
-                -::overact::math::signed(g2_vy_leg4, t616), -g2_vy_leg1,
+                ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4), g1_vy_leg1,
+                -minus_g1_vy_leg2, g1_vy_leg3, -minus_g1_vy_leg4,
+                minus_g2_vy_leg1 * minus_rate_dot_2_leg1, g2_vy_leg2 * rate_dot_2_leg2,
+                minus_g2_vy_leg3 * minus_rate_dot_2_leg3, g2_vy_leg4 * rate_dot_2_leg4,
+                g1_vy_leg1 * t450 + minus_g2_vy_leg1 * t452,
+                -(minus_g1_vy_leg2 * t461 + g2_vy_leg2 * t463),
+                g1_vy_leg3 * t472 + minus_g2_vy_leg3 * t474,
+                -(minus_g1_vy_leg4 * t483 + g2_vy_leg4 * t485), t497 * t495, t504 * t502,
+                t511 * t509, t518 * t516, ::overact::math::signed(t497, t495),
+                ::overact::math::signed(t504, t502), ::overact::math::signed(t511, t509),
+                ::overact::math::signed(t518, t516), -t497, t504, -t511, t518,
+                minus_g2_vy_leg1 * t534, -(g2_vy_leg2 * t539), minus_g2_vy_leg3 * t544,
+                -(g2_vy_leg4 * t549), ::overact::math::signed(minus_g2_vy_leg1, t534),
+                -::overact::math::signed(g2_vy_leg2, t539),
+                ::overact::math::signed(minus_g2_vy_leg3, t544),
+                -::overact::math::signed(g2_vy_leg4, t549), minus_g2_vy_leg1,
             ],
             [
-                rate_dot_3_leg1, t359, -t364, 0.0, -(minus_g1_wz_leg1 * rate_dot_1_leg1_2),
-                -(minus_g1_wz_leg2 * rate_dot_1_leg2_2), g1_wz_leg3 * rate_dot_1_leg3_2,
-                g1_wz_leg4 * rate_dot_1_leg4_2, -(minus_g1_wz_leg1 * rate_1_leg1),
-                -(minus_g1_wz_leg2 * rate_1_leg2), g1_wz_leg3 * rate_1_leg3,
-                g1_wz_leg4 * rate_1_leg4, -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1),
-                -::overact::math::signed(minus_g1_wz_leg2, rate_1_leg2),
+                rate_dot_3_leg1, c_phi * t314 - s_phi * t320, -(c_phi * t320 + s_phi * t314), 0.0,
+                -(minus_g1_wz_leg1 * rate_dot_1_leg1), -(g1_wz_leg2 * minus_rate_dot_1_leg2),
+                g1_wz_leg3 * rate_dot_1_leg3, minus_g1_wz_leg4 * minus_rate_dot_1_leg4,
+                -(minus_g1_wz_leg1 * rate_1_leg1), -(g1_wz_leg2 * minus_rate_1_leg2),
+                g1_wz_leg3 * rate_1_leg3, minus_g1_wz_leg4 * minus_rate_1_leg4,
+                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1),
+                -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
-                ::overact::math::signed(g1_wz_leg4, rate_1_leg4), -minus_g1_wz_leg1,
-                -minus_g1_wz_leg2, g1_wz_leg3, g1_wz_leg4, g2_wz_leg1 * t441, g2_wz_leg2 * t452,
-                g2_wz_leg3 * t463, g2_wz_leg4 * t474, minus_g1_wz_leg1 * t493 - g2_wz_leg1 * t487,
-                g2_wz_leg2 * t514 - minus_g1_wz_leg2 * t508,
-                -(g1_wz_leg3 * t535 + g2_wz_leg3 * t529), g1_wz_leg4 * t550 + g2_wz_leg4 * t556,
-                t569 * t253, t575 * t278, t581 * t224, t587 * t305,
-                ::overact::math::signed(t569, t253), ::overact::math::signed(t575, t278),
-                ::overact::math::signed(t581, t224), ::overact::math::signed(t587, t305), t569,
-                t575, t581, t587, t604 * t601, t609 * t606, t614 * t611, t619 * t616,
-                ::overact::math::signed(t604, t601), ::overact::math::signed(t609, t606),
-                ::overact::math::signed(t614, t611), ::overact::math::signed(t619, t616), t604,
+                ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4), -minus_g1_wz_leg1,
+                g1_wz_leg2, g1_wz_leg3, -minus_g1_wz_leg4, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
+                -(minus_g2_wz_leg2 * rate_dot_2_leg2), minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
+                g2_wz_leg4 * rate_dot_2_leg4, -(minus_g1_wz_leg1 * t450 + g2_wz_leg1 * t452),
+                g1_wz_leg2 * t461 + minus_g2_wz_leg2 * t463,
+                g1_wz_leg3 * t472 + minus_g2_wz_leg3 * t474,
+                -(minus_g1_wz_leg4 * t483 + g2_wz_leg4 * t485), -(t499 * t495), -(t506 * t502),
+                t513 * t509, t520 * t516, -::overact::math::signed(t499, t495),
+                -::overact::math::signed(t506, t502), ::overact::math::signed(t513, t509),
+                ::overact::math::signed(t520, t516), t499, -t506, -t513, t520, t537 * t534,
+                t542 * t539, t547 * t544, t552 * t549, ::overact::math::signed(t537, t534),
+                ::overact::math::signed(t542, t539), ::overact::math::signed(t547, t544),
+                ::overact::math::signed(t552, t549), t537,
             ],
         ])
     }
@@ -4256,7 +4103,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 538 operations (216 additions, 313 multiplications, 9 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 462 intermediates.
+    /// 472 operations (170 additions, 293 multiplications, 9 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 396 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4266,327 +4113,257 @@ impl DualV {
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 49]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * c_phi;
-        let t4 = pose[1] + t2 - 0.10970563941232059;
-        let t5 = 0.5 * t4;
-        let t6 = 0.11 * s_phi;
-        let t7 = pose[0] - t6;
-        let t8 = t7 + 0.3950502153918333;
-        let t10 = t4 * t4;
-        let t11 = t8 * t8 + t10;
+        let t2 = 0.11 * s_phi;
+        let t3 = pose[0] - t2;
+        let t4 = t3 + 0.3950502153918333;
+        let t6 = 0.11 * c_phi;
+        let t8 = pose[1] + t6 - 0.10970563941232059;
+        let t10 = t8 * t8;
+        let t11 = t4 * t4 + t10;
         let t13 = 0.0784 / t11 - 0.25;
         ::overact::guard::reach(t13, "leg2")?;
         let t14 = ::overact::math::sqrt(t13);
-        let t16 = t5 + t8 * t14;
+        let t16 = 0.5 * t4 - t8 * t14;
         let t17 = t4 - t16;
-        let t20 = 0.5 * t8 - t4 * t14;
-        let t21 = t8 - t20;
-        let t23 = t20 + t21 - t21;
-        let t26 = t17 - (t16 + t17);
-        let t28 = t17 * t23 + t21 * t26;
-        ::overact::guard::leg(t28, 0.078399138102973, "leg2")?;
-        let t29 = 1.0 / t28;
-        let g1_vy_leg2 = t17 * t29;
-        let t31 = pose[0] + t6;
-        let t32 = t31 + 0.3950502153918333;
-        let t35 = pose[1] - t2 + 0.10970563941232059;
-        let t37 = t35 * t35;
-        let t38 = t32 * t32 + t37;
-        let t40 = 0.0784 / t38 - 0.25;
-        ::overact::guard::reach(t40, "leg3")?;
-        let t41 = ::overact::math::sqrt(t40);
-        let t43 = 0.5 * t32 + t35 * t41;
-        let t44 = t32 - t43;
-        let t45 = 0.5 * t35;
-        let t47 = t45 - t32 * t41;
-        let t48 = t35 - t47;
-        let t50 = t43 + t44 - t44;
-        let t53 = t48 - (t47 + t48);
-        let t55 = t48 * t50 + t44 * t53;
-        ::overact::guard::leg(t55, 0.078399138102973, "leg3")?;
-        let t56 = 1.0 / t55;
-        let g1_vx_leg3 = t44 * t56;
-        let g1_vx_leg2 = t21 * t29;
-        let g1_vy_leg3 = t48 * t56;
-        let t63 = t7 - 0.3950502153918333;
-        let t65 = t63 * t63 + t10;
-        let t67 = 0.0784 / t65 - 0.25;
-        ::overact::guard::reach(t67, "leg1")?;
-        let t68 = ::overact::math::sqrt(t67);
-        let t70 = t5 - t63 * t68;
-        let t71 = t4 - t70;
-        let t74 = 0.5 * t63 + t4 * t68;
-        let t75 = t63 - t74;
-        let t77 = t74 + t75 - t75;
-        let t80 = t71 - (t70 + t71);
-        let t82 = t71 * t77 + t75 * t80;
-        ::overact::guard::leg(t82, 0.078399138102973, "leg1")?;
-        let t83 = 1.0 / t82;
-        let g1_vy_leg1 = t71 * t83;
-        let minus_g1_wz_leg2 = t6 * g1_vy_leg2 + t2 * g1_vx_leg2;
-        let g1_vx_leg1 = t75 * t83;
-        let minus_g1_wz_leg1 = t6 * g1_vy_leg1 + t2 * g1_vx_leg1;
-        let t94 = g1_vy_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vy_leg2;
-        let t98 = g1_vx_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vx_leg2;
-        let g1_wz_leg3 = t6 * g1_vy_leg3 + t2 * g1_vx_leg3;
-        let t106 = g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2;
-        let t108 = g1_vx_leg3 * t94 - g1_vy_leg3 * t98 + g1_wz_leg3 * t106;
-        ::overact::guard::platform(t108, 7.075383197258382, "kept actuators")?;
-        ::overact::guard::platform(t108, 7.075383197258382, "kept actuators")?;
-        ::overact::guard::platform(t108, 7.075383197258382, "kept actuators")?;
-        let t109 = 1.0 / t108;
-        let t110 = (g1_vy_leg2 * g1_vx_leg3 - g1_vx_leg2 * g1_vy_leg3) * t109;
-        let t115 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t109;
-        let t117 = t106 * t109;
-        let t122 = (minus_g1_wz_leg2 * g1_vy_leg3 + g1_vy_leg2 * g1_wz_leg3) * t109;
-        let t123 = t2 * twist[2];
-        let t124 = twist[2] * t123;
-        let t125 = t6 * acceleration[2];
-        let t127 = 9.090909090909092 * (t124 + t125);
-        let t132 = (minus_g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * g1_wz_leg3) * t109;
-        let t133 = t2 * acceleration[2];
-        let t134 = t6 * twist[2];
-        let t135 = twist[2] * t134;
-        let t137 = 9.090909090909092 * (t133 - t135);
-        let t142 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t148 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t109;
-        let t153 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t109;
-        let t159 = t94 * t109;
-        let t161 = t98 * t109;
-        let t170 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t193 = acceleration[0] - t133 + t135;
-        let t194 = twist[0] - t123;
-        let t196 = twist[1] - t134;
-        let rate_1_leg1 = g1_vx_leg1 * t194 + g1_vy_leg1 * t196;
-        let t199 = rate_1_leg1 * rate_1_leg1;
-        let g2_vy_leg1 = t80 * t83;
-        let minus_g2_vx_leg1 = t77 * t83;
-        let rate_2_leg1 = g2_vy_leg1 * t196 - minus_g2_vx_leg1 * t194;
-        let t206 = rate_2_leg1 - rate_1_leg1;
-        let t207 = rate_1_leg1 + t206;
-        let t208 = t207 * t207;
-        let t211 = t193 + t74 * t199 + t75 * t208;
-        let t214 = acceleration[1] - t125 - t124;
-        let t218 = t214 + t70 * t199 + t71 * t208;
-        let rate_dot_1_leg1 = g1_vx_leg1 * t211 + g1_vy_leg1 * t218;
-        let rate_1_leg2 = g1_vx_leg2 * t194 + g1_vy_leg2 * t196;
-        let t224 = rate_1_leg2 * rate_1_leg2;
-        let g2_vy_leg2 = t26 * t29;
-        let minus_g2_vx_leg2 = t23 * t29;
-        let rate_2_leg2 = g2_vy_leg2 * t196 - minus_g2_vx_leg2 * t194;
-        let t231 = rate_2_leg2 - rate_1_leg2;
-        let t232 = rate_1_leg2 + t231;
-        let t233 = t232 * t232;
-        let t236 = t193 + t20 * t224 + t21 * t233;
-        let t241 = t214 + t16 * t224 + t17 * t233;
-        let rate_dot_1_leg2 = g1_vx_leg2 * t236 + g1_vy_leg2 * t241;
-        let t245 = acceleration[0] + t133 - t135;
-        let t246 = twist[0] + t123;
-        let t248 = twist[1] + t134;
-        let rate_1_leg3 = g1_vx_leg3 * t246 + g1_vy_leg3 * t248;
-        let t251 = rate_1_leg3 * rate_1_leg3;
-        let g2_vy_leg3 = t53 * t56;
-        let minus_g2_vx_leg3 = t50 * t56;
-        let rate_2_leg3 = g2_vy_leg3 * t248 - minus_g2_vx_leg3 * t246;
-        let t258 = rate_2_leg3 - rate_1_leg3;
-        let t259 = rate_1_leg3 + t258;
-        let t260 = t259 * t259;
-        let t263 = t245 + t43 * t251 + t44 * t260;
-        let t266 = acceleration[1] + t125 + t124;
-        let t270 = t266 + t47 * t251 + t48 * t260;
-        let rate_dot_1_leg3 = g1_vx_leg3 * t263 + g1_vy_leg3 * t270;
-        let t273 = t31 - 0.3950502153918333;
-        let t275 = t273 * t273 + t37;
-        let t277 = 0.0784 / t275 - 0.25;
-        ::overact::guard::reach(t277, "leg4")?;
-        let t278 = ::overact::math::sqrt(t277);
-        let t280 = t45 + t273 * t278;
-        let t281 = t35 - t280;
-        let t284 = 0.5 * t273 - t35 * t278;
-        let t285 = t273 - t284;
-        let t287 = t284 + t285 - t285;
-        let t290 = t281 - (t280 + t281);
-        let t292 = t281 * t287 + t285 * t290;
-        ::overact::guard::leg(t292, 0.078399138102973, "leg4")?;
-        let t293 = 1.0 / t292;
-        let g1_vy_leg4 = t281 * t293;
-        let g1_vx_leg4 = t285 * t293;
-        let g1_wz_leg4 = t6 * g1_vy_leg4 + t2 * g1_vx_leg4;
-        let t303 = g1_vy_leg4 * t132 - g1_vx_leg4 * t122 + g1_wz_leg4 * t110;
-        let rate_1_leg4 = g1_vx_leg4 * t246 + g1_vy_leg4 * t248;
-        let t307 = rate_1_leg4 * rate_1_leg4;
-        let g2_vy_leg4 = t290 * t293;
-        let minus_g2_vx_leg4 = t287 * t293;
-        let rate_2_leg4 = g2_vy_leg4 * t248 - minus_g2_vx_leg4 * t246;
-        let t314 = rate_2_leg4 - rate_1_leg4;
-        let t315 = rate_1_leg4 + t314;
-        let t316 = t315 * t315;
-        let t319 = t245 + t284 * t307 + t285 * t316;
-        let t324 = t266 + t280 * t307 + t281 * t316;
-        let rate_dot_1_leg4 = g1_vx_leg4 * t319 + g1_vy_leg4 * t324;
-        let t332 = g1_vx_leg4 * t148 - g1_vy_leg4 * t153 - g1_wz_leg4 * t115;
-        let t338 = g1_vx_leg4 * t159 - g1_vy_leg4 * t161 + g1_wz_leg4 * t117;
-        let g2_wz_leg1 = t2 * minus_g2_vx_leg1 - t6 * g2_vy_leg1;
-        let t356 = minus_g2_vx_leg1 * t122 + g2_vy_leg1 * t132 + g2_wz_leg1 * t110;
-        let rate_dot_2_leg1 = g2_vy_leg1 * t218 - minus_g2_vx_leg1 * t211;
-        let t361 = rate_dot_1_leg1 + rate_dot_2_leg1 - rate_dot_1_leg1;
-        let t367 = minus_g2_vx_leg1 * t148 + g2_vy_leg1 * t153 + g2_wz_leg1 * t115;
-        let g2_wz_leg2 = t2 * minus_g2_vx_leg2 - t6 * g2_vy_leg2;
-        let t376 = minus_g2_vx_leg2 * t122 + g2_vy_leg2 * t132 + g2_wz_leg2 * t110;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t241 - minus_g2_vx_leg2 * t236;
-        let t381 = rate_dot_1_leg2 + rate_dot_2_leg2 - rate_dot_1_leg2;
-        let t387 = minus_g2_vx_leg2 * t148 + g2_vy_leg2 * t153 + g2_wz_leg2 * t115;
-        let g2_wz_leg3 = t6 * g2_vy_leg3 - t2 * minus_g2_vx_leg3;
-        let t396 = minus_g2_vx_leg3 * t122 + g2_vy_leg3 * t132 + g2_wz_leg3 * t110;
-        let rate_dot_2_leg3 = g2_vy_leg3 * t270 - minus_g2_vx_leg3 * t263;
-        let t401 = rate_dot_1_leg3 + rate_dot_2_leg3 - rate_dot_1_leg3;
-        let t407 = minus_g2_vx_leg3 * t148 + g2_vy_leg3 * t153 + g2_wz_leg3 * t115;
-        let t413 = g2_wz_leg3 * t117 - (minus_g2_vx_leg3 * t159 + g2_vy_leg3 * t161);
-        let g2_wz_leg4 = t6 * g2_vy_leg4 - t2 * minus_g2_vx_leg4;
-        let t422 = minus_g2_vx_leg4 * t122 + g2_vy_leg4 * t132 + g2_wz_leg4 * t110;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t324 - minus_g2_vx_leg4 * t319;
-        let t427 = rate_dot_1_leg4 + rate_dot_2_leg4 - rate_dot_1_leg4;
-        let t433 = minus_g2_vx_leg4 * t148 + g2_vy_leg4 * t153 + g2_wz_leg4 * t115;
-        let t439 = g2_wz_leg4 * t117 - (minus_g2_vx_leg4 * t159 + g2_vy_leg4 * t161);
-        let t441 = t65 * t68;
-        let t444 = t65 - 0.1568;
-        let t452 = 3.5714285714285716 * (t441 * rate_dot_1_leg1)
-            - 1.7857142857142858 * (t444 * t199);
-        let t456 = t11 - 0.1568;
-        let t459 = t11 * t14;
-        let t462 = 1.7857142857142858 * (t456 * t224)
-            + 3.5714285714285716 * (t459 * rate_dot_1_leg2);
-        let t471 = t38 * t41;
-        let t474 = t38 - 0.1568;
-        let t477 = 3.5714285714285716 * (t471 * rate_dot_1_leg3)
-            - 1.7857142857142858 * (t474 * t251);
-        let t487 = t275 * t278;
-        let t490 = t275 - 0.1568;
-        let t493 = t427 * (3.5714285714285716 * t487)
-            - t316 * (1.7857142857142858 * t490);
-        let t499 = 1.7857142857142858 * (t490 * t307)
-            + 3.5714285714285716 * (t487 * rate_dot_1_leg4);
-        let t508 = t356 - 1.0;
-        let t512 = 1.0 + t387;
-        let t516 = t413 - 1.0;
-        let t518 = t422 - t303;
-        let t520 = t332 + t433;
-        let t522 = t439 - t338;
-        let t534 = twist[2] - rate_2_leg1;
-        let t535 = t110 - t356;
-        let t537 = t367 - t115;
-        let t540 = twist[2] - rate_2_leg2;
-        let t541 = t110 - t376;
-        let t543 = t387 - t115;
-        let t546 = twist[2] - rate_2_leg3;
-        let t547 = t110 - t396;
-        let t549 = t407 - t115;
-        let t551 = t117 - t413;
-        let t553 = twist[2] - rate_2_leg4;
-        let t554 = t110 - t422;
-        let t556 = t433 - t115;
-        let t558 = t117 - t439;
+        let t18 = t11 * t14;
+        ::overact::guard::leg(t18, 0.07839913810297301, "leg2")?;
+        let t19 = 1.0 / t18;
+        let minus_g1_vx_leg2 = t17 * t19;
+        let t22 = pose[1] - t6 + 0.10970563941232059;
+        let t23 = 0.5 * t22;
+        let t24 = pose[0] + t2;
+        let t25 = t24 + 0.3950502153918333;
+        let t27 = t22 * t22;
+        let t28 = t25 * t25 + t27;
+        let t30 = 0.0784 / t28 - 0.25;
+        ::overact::guard::reach(t30, "leg3")?;
+        let t31 = ::overact::math::sqrt(t30);
+        let t33 = t23 - t25 * t31;
+        let t34 = t22 - t33;
+        let t35 = t28 * t31;
+        ::overact::guard::leg(t35, 0.07839913810297301, "leg3")?;
+        let t36 = 1.0 / t35;
+        let g1_vy_leg3 = t34 * t36;
+        let t39 = 0.5 * t8;
+        let t41 = t39 + t4 * t14;
+        let t42 = t8 - t41;
+        let minus_g1_vy_leg2 = t42 * t19;
+        let t46 = 0.5 * t25 + t22 * t31;
+        let t47 = t25 - t46;
+        let g1_vx_leg3 = t47 * t36;
+        let t51 = t3 - 0.3950502153918333;
+        let t53 = t51 * t51 + t10;
+        let t55 = 0.0784 / t53 - 0.25;
+        ::overact::guard::reach(t55, "leg1")?;
+        let t56 = ::overact::math::sqrt(t55);
+        let t58 = t39 - t51 * t56;
+        let t59 = t8 - t58;
+        let t60 = t53 * t56;
+        ::overact::guard::leg(t60, 0.07839913810297301, "leg1")?;
+        let t61 = 1.0 / t60;
+        let g1_vy_leg1 = t59 * t61;
+        let t66 = 0.5 * t51 + t8 * t56;
+        let t67 = t51 - t66;
+        let g1_vx_leg1 = t67 * t61;
+        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
+        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
+        let t76 = minus_g1_wz_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_wz_leg2;
+        let t80 = minus_g1_wz_leg1 * minus_g1_vx_leg2 - g1_vx_leg1 * g1_wz_leg2;
+        let t82 = g1_vx_leg3 * t76 - g1_vy_leg3 * t80;
+        ::overact::guard::platform(t82, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t82, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t82, 3.5376915986291904, "kept actuators")?;
+        let t83 = 0.5 / t82;
+        let t84 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3) * t83;
+        let t89 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t83;
+        let t94 = (g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2) * t83;
+        let t95 = t94 * acceleration[2];
+        let t98 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
+        let t106 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t83;
+        let t107 = t6 * twist[2];
+        let t108 = twist[2] * t107;
+        let t109 = t2 * acceleration[2];
+        let t111 = 9.090909090909092 * (t108 + t109);
+        let t116 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t83;
+        let t117 = t6 * acceleration[2];
+        let t118 = t2 * twist[2];
+        let t119 = twist[2] * t118;
+        let t121 = 9.090909090909092 * (t117 - t119);
+        let t128 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t83;
+        let t133 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t83;
+        let t139 = t76 * t83;
+        let t141 = t80 * t83;
+        let t150 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t159 = t94 * t150;
+        let t169 = acceleration[0] - t117 + t119;
+        let t172 = acceleration[1] - t109 - t108;
+        let minus_g2_vx_leg1 = t66 * t61;
+        let t176 = twist[0] - t107;
+        let minus_g2_vy_leg1 = t58 * t61;
+        let t179 = twist[1] - t118;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t176 + minus_g2_vy_leg1 * t179;
+        let t182 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t184 = t67 * t169 + t59 * t172 + 0.0784 * t182;
+        let rate_1_leg1 = g1_vx_leg1 * t176 + g1_vy_leg1 * t179;
+        let t188 = rate_1_leg1 * rate_1_leg1;
+        let t190 = 0.5 * (t53 - 0.1568);
+        let rate_dot_1_leg1 = t61 * (t184 + t188 * t190);
+        let g2_vx_leg2 = t16 * t19;
+        let g2_vy_leg2 = t41 * t19;
+        let rate_2_leg2 = g2_vx_leg2 * t176 + g2_vy_leg2 * t179;
+        let t202 = rate_2_leg2 * rate_2_leg2;
+        let t204 = t17 * t169 + t42 * t172 + 0.0784 * t202;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t176 + minus_g1_vy_leg2 * t179;
+        let t208 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t210 = 0.5 * (t11 - 0.1568);
+        let minus_rate_dot_1_leg2 = t19 * (t204 + t208 * t210);
+        let t215 = acceleration[0] + t117 - t119;
+        let t218 = acceleration[1] + t109 + t108;
+        let minus_g2_vx_leg3 = t46 * t36;
+        let t222 = twist[0] + t107;
+        let minus_g2_vy_leg3 = t33 * t36;
+        let t225 = twist[1] + t118;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t222 + minus_g2_vy_leg3 * t225;
+        let t228 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t230 = t47 * t215 + t34 * t218 + 0.0784 * t228;
+        let rate_1_leg3 = g1_vx_leg3 * t222 + g1_vy_leg3 * t225;
+        let t234 = rate_1_leg3 * rate_1_leg3;
+        let t236 = 0.5 * (t28 - 0.1568);
+        let rate_dot_1_leg3 = t36 * (t230 + t234 * t236);
+        let t240 = t24 - 0.3950502153918333;
+        let t242 = t240 * t240 + t27;
+        let t244 = 0.0784 / t242 - 0.25;
+        ::overact::guard::reach(t244, "leg4")?;
+        let t245 = ::overact::math::sqrt(t244);
+        let t247 = t23 + t240 * t245;
+        let t248 = t22 - t247;
+        let t249 = t242 * t245;
+        ::overact::guard::leg(t249, 0.07839913810297301, "leg4")?;
+        let t250 = 1.0 / t249;
+        let minus_g1_vy_leg4 = t248 * t250;
+        let t255 = 0.5 * t240 - t22 * t245;
+        let t256 = t240 - t255;
+        let minus_g1_vx_leg4 = t256 * t250;
+        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
+        let t264 = minus_g1_vy_leg4 * t116 - minus_g1_vx_leg4 * t106
+            - minus_g1_wz_leg4 * t84;
+        let g2_vx_leg4 = t255 * t250;
+        let g2_vy_leg4 = t247 * t250;
+        let rate_2_leg4 = g2_vx_leg4 * t222 + g2_vy_leg4 * t225;
+        let t273 = rate_2_leg4 * rate_2_leg4;
+        let t275 = t256 * t215 + t248 * t218 + 0.0784 * t273;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t222 + minus_g1_vy_leg4 * t225;
+        let t279 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t281 = 0.5 * (t242 - 0.1568);
+        let minus_rate_dot_1_leg4 = t250 * (t275 + t279 * t281);
+        let t290 = minus_g1_vy_leg4 * t133 - minus_g1_vx_leg4 * t128
+            + minus_g1_wz_leg4 * t89;
+        let t294 = minus_g1_vy_leg4 * t141 - minus_g1_vx_leg4 * t139;
+        let t295 = 2.0 * t294;
+        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
+        let t313 = minus_g2_vy_leg1 * t116 - minus_g2_vx_leg1 * t106 + g2_wz_leg1 * t84;
+        let t318 = t66 * t169 + t58 * t172 + 0.0784 * t188;
+        let minus_rate_dot_2_leg1 = t61 * (t318 + t182 * t190);
+        let t327 = minus_g2_vy_leg1 * t133 - minus_g2_vx_leg1 * t128 - g2_wz_leg1 * t89;
+        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
+        let t336 = g2_vx_leg2 * t106 - g2_vy_leg2 * t116 - minus_g2_wz_leg2 * t84;
+        let t341 = t16 * t169 + t41 * t172 + 0.0784 * t208;
+        let rate_dot_2_leg2 = t19 * (t341 + t202 * t210);
+        let t350 = g2_vx_leg2 * t128 - g2_vy_leg2 * t133 + minus_g2_wz_leg2 * t89;
+        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
+        let t359 = minus_g2_vy_leg3 * t116 - minus_g2_vx_leg3 * t106
+            - minus_g2_wz_leg3 * t84;
+        let t364 = t46 * t215 + t33 * t218 + 0.0784 * t234;
+        let minus_rate_dot_2_leg3 = t36 * (t364 + t228 * t236);
+        let t373 = minus_g2_vy_leg3 * t133 - minus_g2_vx_leg3 * t128
+            + minus_g2_wz_leg3 * t89;
+        let t377 = minus_g2_vy_leg3 * t141 - minus_g2_vx_leg3 * t139;
+        let t378 = 2.0 * t377;
+        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
+        let t387 = g2_vx_leg4 * t106 - g2_vy_leg4 * t116 + g2_wz_leg4 * t84;
+        let t392 = t255 * t215 + t247 * t218 + 0.0784 * t279;
+        let rate_dot_2_leg4 = t250 * (t392 + t273 * t281);
+        let t401 = g2_vx_leg4 * t128 - g2_vy_leg4 * t133 - g2_wz_leg4 * t89;
+        let t405 = g2_vx_leg4 * t139 - g2_vy_leg4 * t141;
+        let t406 = 2.0 * t405;
+        let t409 = 3.5714285714285716 * t184;
+        let t413 = 3.5714285714285716 * t204;
+        let t418 = 3.5714285714285716 * t230;
+        let t425 = 3.5714285714285716 * t392;
+        let t427 = 3.5714285714285716 * t275;
+        let t437 = rate_1_leg1 + minus_rate_2_leg1;
+        let t438 = t313 - 1.0;
+        let t441 = minus_rate_1_leg2 + rate_2_leg2;
+        let t443 = t350 - 1.0;
+        let t445 = rate_1_leg3 + minus_rate_2_leg3;
+        let t448 = t378 - 1.0;
+        let t450 = minus_rate_1_leg4 + rate_2_leg4;
+        let t451 = t387 - t264;
+        let t453 = t401 - t290;
+        let t456 = 2.0 * (t405 - t294);
+        let t468 = minus_rate_2_leg1 + twist[2];
+        let t469 = t84 - t313;
+        let t471 = t327 + t89;
+        let t474 = twist[2] - rate_2_leg2;
+        let t475 = t84 - t336;
+        let t477 = t350 + t89;
+        let t480 = minus_rate_2_leg3 + twist[2];
+        let t481 = t84 - t359;
+        let t483 = t373 + t89;
+        let t485 = t94 - t378;
+        let t487 = twist[2] - rate_2_leg4;
+        let t488 = t84 - t387;
+        let t490 = t401 + t89;
+        let t492 = t94 - t406;
         Ok([
             [
-                t110 * acceleration[2], t122 * t127 + t132 * t137 + t110 * t142,
-                t122 * t137 - t132 * t127 - t110 * t170,
-                t132 * acceleration[1] - t122 * acceleration[0], rate_dot_1_leg1, 0.0, 0.0,
-                t303 * rate_dot_1_leg4, rate_1_leg1, 0.0, 0.0, t303 * rate_1_leg4,
+                t84 * acceleration[2], t84 * t98 - (t106 * t111 + t116 * t121),
+                t116 * t111 - t106 * t121 - t84 * t150,
+                t106 * acceleration[0] - t116 * acceleration[1], rate_dot_1_leg1, 0.0, 0.0,
+                -(t264 * minus_rate_dot_1_leg4), rate_1_leg1, 0.0, 0.0, -(t264 * minus_rate_1_leg4),
                 ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
-                ::overact::math::signed(t303, rate_1_leg4), 1.0, 0.0, 0.0, t303, t356 * t361,
-                t376 * t381, t396 * t401, t422 * t427,
-                -(t361 * (3.5714285714285716 * t441) + t208 * (1.7857142857142858 * t444)
-                    + t356 * t452),
-                t376 * t462,
-                -(t396 * t477),
-                t303 * t493 + t422 * t499,
-                t206 * t508,
-                t376 * t231,
-                t396 * t258,
-                t314 * t518,
-                ::overact::math::signed(t508, t206),
-                ::overact::math::signed(t376, t231),
-                ::overact::math::signed(t396, t258),
-                ::overact::math::signed(t518, t314),
-                t508,
-                t376,
-                t396,
-                t518,
-                t534 * t535,
-                t540 * t541,
-                t546 * t547,
-                t553 * t554,
-                ::overact::math::signed(t535, t534),
-                ::overact::math::signed(t541, t540),
-                ::overact::math::signed(t547, t546),
-                ::overact::math::signed(t554, t553),
-                t535,
+                -::overact::math::signed(t264, minus_rate_1_leg4), 1.0, 0.0, 0.0, t264,
+                -(t313 * minus_rate_dot_2_leg1), t336 * rate_dot_2_leg2,
+                -(t359 * minus_rate_dot_2_leg3), t387 * rate_dot_2_leg4,
+                3.5714285714285716 * t318 - t313 * t409, -(t336 * t413), -(t359 * t418),
+                t264 * t425 - t387 * t427, -(t437 * t438), t336 * t441, -(t359 * t445), t450 * t451,
+                -::overact::math::signed(t438, t437), ::overact::math::signed(t336, t441),
+                -::overact::math::signed(t359, t445), ::overact::math::signed(t451, t450), t438,
+                t336, t359, t451, t468 * t469, t474 * t475, t480 * t481, t487 * t488,
+                ::overact::math::signed(t469, t468), ::overact::math::signed(t475, t474),
+                ::overact::math::signed(t481, t480), ::overact::math::signed(t488, t487), t469,
             ],
             [
-                -(t115 * acceleration[2]), -(t148 * t127 + t153 * t137 + t115 * t142),
-                t153 * t127 - t148 * t137 + t115 * t170,
-                t148 * acceleration[0] - t153 * acceleration[1], 0.0, rate_dot_1_leg2, 0.0,
-                t332 * rate_dot_1_leg4, 0.0, rate_1_leg2, 0.0, t332 * rate_1_leg4, 0.0,
-                ::overact::math::sign(rate_1_leg2), 0.0, ::overact::math::signed(t332, rate_1_leg4),
-                0.0, 1.0, 0.0, t332, -(t367 * t361), -(t387 * t381), -(t407 * t401), -(t433 * t427),
-                t367 * t452,
-                t381 * (3.5714285714285716 * t459) - t233 * (1.7857142857142858 * t456)
-                    - t387 * t462,
-                t407 * t477,
-                t332 * t493 - t433 * t499,
-                -(t367 * t206),
-                -(t231 * t512),
-                -(t407 * t258),
-                -(t314 * t520),
-                -::overact::math::signed(t367, t206),
-                -::overact::math::signed(t512, t231),
-                -::overact::math::signed(t407, t258),
-                -::overact::math::signed(t520, t314),
-                -t367,
-                -t512,
-                -t407,
-                -t520,
-                t534 * t537,
-                t540 * t543,
-                t546 * t549,
-                t553 * t556,
-                ::overact::math::signed(t537, t534),
-                ::overact::math::signed(t543, t540),
-                ::overact::math::signed(t549, t546),
-                ::overact::math::signed(t556, t553),
-                t537,
+                -(t89 * acceleration[2]), -(t128 * t111 + t133 * t121 + t89 * t98),
+                t133 * t111 - t128 * t121 + t89 * t150,
+                t128 * acceleration[0] - t133 * acceleration[1], 0.0, -minus_rate_dot_1_leg2, 0.0,
+                -(t290 * minus_rate_dot_1_leg4), 0.0, -minus_rate_1_leg2, 0.0,
+                -(t290 * minus_rate_1_leg4), 0.0, -::overact::math::sign(minus_rate_1_leg2), 0.0,
+                -::overact::math::signed(t290, minus_rate_1_leg4), 0.0, 1.0, 0.0, t290,
+                -(t327 * minus_rate_dot_2_leg1), t350 * rate_dot_2_leg2,
+                -(t373 * minus_rate_dot_2_leg3), t401 * rate_dot_2_leg4, -(t327 * t409),
+                3.5714285714285716 * t341 - t350 * t413, -(t373 * t418), t290 * t425 - t401 * t427,
+                -(t327 * t437), t441 * t443, -(t373 * t445), t450 * t453,
+                -::overact::math::signed(t327, t437), ::overact::math::signed(t443, t441),
+                -::overact::math::signed(t373, t445), ::overact::math::signed(t453, t450), t327,
+                t443, t373, t453, -(t468 * t471), -(t474 * t477), -(t480 * t483), -(t487 * t490),
+                -::overact::math::signed(t471, t468), -::overact::math::signed(t477, t474),
+                -::overact::math::signed(t483, t480), -::overact::math::signed(t490, t487), -t471,
             ],
             [
-                t117 * acceleration[2], t117 * t142 - (t159 * t127 + t161 * t137),
-                t161 * t127 - t159 * t137 - t117 * t170,
-                t159 * acceleration[0] - t161 * acceleration[1], 0.0, 0.0, rate_dot_1_leg3,
-                t338 * rate_dot_1_leg4, 0.0, 0.0, rate_1_leg3, t338 * rate_1_leg4, 0.0, 0.0,
-                ::overact::math::sign(rate_1_leg3), ::overact::math::signed(t338, rate_1_leg4), 0.0,
-                0.0, 1.0, t338, 0.0, 0.0, t413 * t401, t439 * t427, 0.0, 0.0,
-                -(t401 * (3.5714285714285716 * t471) + t260 * (1.7857142857142858 * t474)
-                    + t413 * t477),
-                t338 * t493 + t439 * t499,
-                0.0,
-                0.0,
-                t258 * t516,
-                t314 * t522,
-                0.0,
-                0.0,
-                ::overact::math::signed(t516, t258),
-                ::overact::math::signed(t522, t314),
-                0.0,
-                0.0,
-                t516,
-                t522,
-                t117 * t534,
-                t117 * t540,
-                t546 * t551,
-                t553 * t558,
-                ::overact::math::signed(t117, t534),
-                ::overact::math::signed(t117, t540),
-                ::overact::math::signed(t551, t546),
-                ::overact::math::signed(t558, t553),
-                t117,
+                t95, t94 * t98 - (t139 * t111 + t141 * t121), -(0.11 * t95 + t159), 0.11 * t159,
+                0.0, 0.0, rate_dot_1_leg3, -(t295 * minus_rate_dot_1_leg4), 0.0, 0.0, rate_1_leg3,
+                -(t295 * minus_rate_1_leg4), 0.0, 0.0, ::overact::math::sign(rate_1_leg3),
+                -::overact::math::signed(t295, minus_rate_1_leg4), 0.0, 0.0, 1.0, t295, 0.0, 0.0,
+                -(t378 * minus_rate_dot_2_leg3), t406 * rate_dot_2_leg4, 0.0, 0.0,
+                3.5714285714285716 * t364 - 7.142857142857143 * (t377 * t230),
+                7.142857142857143 * (t294 * t392 - t405 * t275), 0.0, 0.0, -(t445 * t448),
+                t450 * t456, 0.0, 0.0, -::overact::math::signed(t448, t445),
+                ::overact::math::signed(t456, t450), 0.0, 0.0, t448, t456, t94 * t468, t94 * t474,
+                t480 * t485, t487 * t492, ::overact::math::signed(t94, t468),
+                ::overact::math::signed(t94, t474), ::overact::math::signed(t485, t480),
+                ::overact::math::signed(t492, t487), t94,
             ],
         ])
     }
@@ -4832,11 +4609,13 @@ impl DualV {
     /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
+    /// - `actuators`: q, positions of the actuated joints (m, rad)
+    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
     ///
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 701 operations (288 additions, 401 multiplications, 12 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 625 intermediates.
+    /// 628 operations (238 additions, 378 multiplications, 12 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 552 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4848,399 +4627,324 @@ impl DualV {
     ) -> Result<[[f64; 49]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * c_phi;
-        let t4 = pose[1] + t2 - 0.10970563941232059;
-        let t5 = 0.5 * t4;
-        let t6 = 0.11 * s_phi;
-        let t7 = pose[0] - t6;
-        let t8 = t7 + 0.3950502153918333;
-        let t10 = t4 * t4;
-        let t11 = t8 * t8 + t10;
+        let t2 = 0.11 * s_phi;
+        let t3 = pose[0] - t2;
+        let t4 = t3 + 0.3950502153918333;
+        let t6 = 0.11 * c_phi;
+        let t8 = pose[1] + t6 - 0.10970563941232059;
+        let t10 = t8 * t8;
+        let t11 = t4 * t4 + t10;
         let t13 = 0.0784 / t11 - 0.25;
         ::overact::guard::reach(t13, "leg2")?;
         let t14 = ::overact::math::sqrt(t13);
-        let t16 = t5 + t8 * t14;
+        let t16 = 0.5 * t4 - t8 * t14;
         let t17 = t4 - t16;
-        let t20 = 0.5 * t8 - t4 * t14;
-        let t21 = t8 - t20;
-        let t23 = t20 + t21 - t21;
-        let t26 = t17 - (t16 + t17);
-        let t28 = t17 * t23 + t21 * t26;
-        ::overact::guard::leg(t28, 0.078399138102973, "leg2")?;
-        let t29 = 1.0 / t28;
-        let g1_vy_leg2 = t17 * t29;
-        let t31 = pose[0] + t6;
-        let t32 = t31 + 0.3950502153918333;
-        let t35 = pose[1] - t2 + 0.10970563941232059;
-        let t37 = t35 * t35;
-        let t38 = t32 * t32 + t37;
-        let t40 = 0.0784 / t38 - 0.25;
-        ::overact::guard::reach(t40, "leg3")?;
-        let t41 = ::overact::math::sqrt(t40);
-        let t43 = 0.5 * t32 + t35 * t41;
-        let t44 = t32 - t43;
-        let t45 = 0.5 * t35;
-        let t47 = t45 - t32 * t41;
-        let t48 = t35 - t47;
-        let t50 = t43 + t44 - t44;
-        let t53 = t48 - (t47 + t48);
-        let t55 = t48 * t50 + t44 * t53;
-        ::overact::guard::leg(t55, 0.078399138102973, "leg3")?;
-        let t56 = 1.0 / t55;
-        let g1_vx_leg3 = t44 * t56;
-        let g1_vx_leg2 = t21 * t29;
-        let g1_vy_leg3 = t48 * t56;
-        let t63 = t7 - 0.3950502153918333;
-        let t65 = t63 * t63 + t10;
-        let t67 = 0.0784 / t65 - 0.25;
-        ::overact::guard::reach(t67, "leg1")?;
-        let t68 = ::overact::math::sqrt(t67);
-        let t70 = t5 - t63 * t68;
-        let t71 = t4 - t70;
-        let t74 = 0.5 * t63 + t4 * t68;
-        let t75 = t63 - t74;
-        let t77 = t74 + t75 - t75;
-        let t80 = t71 - (t70 + t71);
-        let t82 = t71 * t77 + t75 * t80;
-        ::overact::guard::leg(t82, 0.078399138102973, "leg1")?;
-        let t83 = 1.0 / t82;
-        let g1_vy_leg1 = t71 * t83;
-        let minus_g1_wz_leg2 = t6 * g1_vy_leg2 + t2 * g1_vx_leg2;
-        let g1_vx_leg1 = t75 * t83;
-        let minus_g1_wz_leg1 = t6 * g1_vy_leg1 + t2 * g1_vx_leg1;
-        let t94 = g1_vy_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vy_leg2;
-        let t98 = g1_vx_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vx_leg2;
-        let g1_wz_leg3 = t6 * g1_vy_leg3 + t2 * g1_vx_leg3;
-        let t106 = g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2;
-        let t108 = g1_vx_leg3 * t94 - g1_vy_leg3 * t98 + g1_wz_leg3 * t106;
-        ::overact::guard::platform(t108, 7.075383197258382, "kept actuators")?;
-        ::overact::guard::platform(t108, 7.075383197258382, "kept actuators")?;
-        ::overact::guard::platform(t108, 7.075383197258382, "kept actuators")?;
-        let t109 = 1.0 / t108;
-        let t110 = (g1_vy_leg2 * g1_vx_leg3 - g1_vx_leg2 * g1_vy_leg3) * t109;
-        let t116 = t31 - 0.3950502153918333;
-        let t118 = t116 * t116 + t37;
-        let t120 = 0.0784 / t118 - 0.25;
-        ::overact::guard::reach(t120, "leg4")?;
-        let t121 = ::overact::math::sqrt(t120);
-        let t123 = t45 + t116 * t121;
-        let t124 = t35 - t123;
-        let t127 = 0.5 * t116 - t35 * t121;
-        let t128 = t116 - t127;
-        let t130 = t127 + t128 - t128;
-        let t133 = t124 - (t123 + t124);
-        let t135 = t124 * t130 + t128 * t133;
-        ::overact::guard::leg(t135, 0.078399138102973, "leg4")?;
-        let t136 = 1.0 / t135;
-        let g1_vy_leg4 = t124 * t136;
-        let g1_vx_leg4 = t128 * t136;
-        let g1_wz_leg4 = t6 * g1_vy_leg4 + t2 * g1_vx_leg4;
-        let t150 = g1_vx_leg3 * g1_wz_leg3
-            - (g1_vx_leg1 * minus_g1_wz_leg1 + g1_vx_leg2 * minus_g1_wz_leg2)
-            + g1_vx_leg4 * g1_wz_leg4;
-        let t157 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t157, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(t157, 25.429161076750646, "actuators")?;
-        let t158 = 1.0 / t157;
-        let t159 = t150 * t158;
-        let t175 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
-        let t177 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
-            + g1_vy_leg4 * g1_wz_leg4 - t175 * t159;
-        let t185 = t175 * t158;
-        let t187 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t175 * t185;
-        ::overact::guard::platform(t187, 25.59236889935335, "actuators")?;
-        ::overact::guard::platform(t187, 25.59236889935335, "actuators")?;
-        let t188 = 1.0 / t187;
-        let t189 = t177 * t188;
-        let t191 = minus_g1_wz_leg1 * minus_g1_wz_leg1
-            + minus_g1_wz_leg2 * minus_g1_wz_leg2 + g1_wz_leg3 * g1_wz_leg3
-            + g1_wz_leg4 * g1_wz_leg4 - t150 * t159 - t177 * t189;
-        ::overact::guard::platform(t191, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t191, 0.3076928490286828, "actuators")?;
-        let t192 = 1.0 / t191;
-        let t199 = g1_vx_leg1 * actuator_velocities[0]
-            + g1_vx_leg2 * actuator_velocities[1] + g1_vx_leg3 * actuator_velocities[2]
-            + g1_vx_leg4 * actuator_velocities[3];
-        let t209 = g1_vy_leg1 * actuator_velocities[0]
-            + g1_vy_leg2 * actuator_velocities[1] + g1_vy_leg3 * actuator_velocities[2]
-            + g1_vy_leg4 * actuator_velocities[3] - t199 * t185;
-        let t221 = g1_wz_leg3 * actuator_velocities[2]
-            - (minus_g1_wz_leg1 * actuator_velocities[0]
-                + minus_g1_wz_leg2 * actuator_velocities[1])
-            + g1_wz_leg4 * actuator_velocities[3] - t199 * t159 - t189 * t209;
-        let rate_3_leg1 = t192 * t221;
-        let t224 = t188 * t209 - t189 * rate_3_leg1;
-        let t228 = t199 * t158 - t185 * t224 - t159 * rate_3_leg1;
-        let t229 = t2 * rate_3_leg1;
-        let t230 = t228 + t229;
-        let t232 = t6 * rate_3_leg1;
-        let t233 = t224 + t232;
-        let rate_1_leg3 = g1_vx_leg3 * t230 + g1_vy_leg3 * t233;
-        let t236 = rate_1_leg3 * rate_1_leg3;
-        let g2_vy_leg3 = t53 * t56;
-        let minus_g2_vx_leg3 = t50 * t56;
-        let rate_2_leg3 = g2_vy_leg3 * t233 - minus_g2_vx_leg3 * t230;
-        let t243 = rate_2_leg3 - rate_1_leg3;
-        let t244 = rate_1_leg3 + t243;
-        let t245 = t244 * t244;
-        let t247 = t43 * t236 + t44 * t245;
-        let t248 = rate_3_leg1 * t232;
-        let t251 = rate_3_leg1 * t229;
-        let t254 = t47 * t236 + t48 * t245;
-        let rate_dot_1_leg3 = g1_vx_leg3 * (t247 - t248) + g1_vy_leg3 * (t251 + t254);
-        let t258 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t260 = t228 - t229;
-        let t262 = t224 - t232;
-        let rate_1_leg1 = g1_vx_leg1 * t260 + g1_vy_leg1 * t262;
-        let t265 = rate_1_leg1 * rate_1_leg1;
-        let g2_vy_leg1 = t80 * t83;
-        let minus_g2_vx_leg1 = t77 * t83;
-        let rate_2_leg1 = g2_vy_leg1 * t262 - minus_g2_vx_leg1 * t260;
-        let t272 = rate_2_leg1 - rate_1_leg1;
-        let t273 = rate_1_leg1 + t272;
-        let t274 = t273 * t273;
-        let t276 = t74 * t265 + t75 * t274;
-        let t281 = t70 * t265 + t71 * t274;
-        let rate_dot_1_leg1 = g1_vx_leg1 * (t248 + t276) + g1_vy_leg1 * (t281 - t251);
-        let t285 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let rate_1_leg2 = g1_vx_leg2 * t260 + g1_vy_leg2 * t262;
-        let t290 = rate_1_leg2 * rate_1_leg2;
-        let g2_vy_leg2 = t26 * t29;
-        let minus_g2_vx_leg2 = t23 * t29;
-        let rate_2_leg2 = g2_vy_leg2 * t262 - minus_g2_vx_leg2 * t260;
-        let t297 = rate_2_leg2 - rate_1_leg2;
-        let t298 = rate_1_leg2 + t297;
-        let t299 = t298 * t298;
-        let t301 = t20 * t290 + t21 * t299;
-        let t306 = t16 * t290 + t17 * t299;
-        let rate_dot_1_leg2 = g1_vx_leg2 * (t248 + t301) + g1_vy_leg2 * (t306 - t251);
-        let t310 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let rate_1_leg4 = g1_vx_leg4 * t230 + g1_vy_leg4 * t233;
-        let t317 = rate_1_leg4 * rate_1_leg4;
-        let g2_vy_leg4 = t133 * t136;
-        let minus_g2_vx_leg4 = t130 * t136;
-        let rate_2_leg4 = g2_vy_leg4 * t233 - minus_g2_vx_leg4 * t230;
-        let t324 = rate_2_leg4 - rate_1_leg4;
-        let t325 = rate_1_leg4 + t324;
-        let t326 = t325 * t325;
-        let t328 = t127 * t317 + t128 * t326;
-        let t333 = t123 * t317 + t124 * t326;
-        let rate_dot_1_leg4 = g1_vx_leg4 * (t328 - t248) + g1_vy_leg4 * (t251 + t333);
-        let t337 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t346 = g1_vx_leg1 * t285 + g1_vx_leg2 * t310 + g1_vx_leg3 * t258
-            + g1_vx_leg4 * t337;
-        let t357 = g1_vy_leg1 * t285 + g1_vy_leg2 * t310 + g1_vy_leg3 * t258
-            + g1_vy_leg4 * t337 - t185 * t346;
-        let t359 = g1_wz_leg3 * t258
-            - (minus_g1_wz_leg1 * t285 + minus_g1_wz_leg2 * t310) + g1_wz_leg4 * t337
-            - t159 * t346 - t189 * t357;
-        let rate_dot_3_leg1 = t192 * t359;
-        let t365 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t109;
-        let t367 = t106 * t109;
-        let t372 = (minus_g1_wz_leg2 * g1_vy_leg3 + g1_vy_leg2 * g1_wz_leg3) * t109;
-        let t373 = rate_3_leg1 * rate_3_leg1;
-        let t374 = c_phi * t373;
-        let t375 = s_phi * rate_dot_3_leg1;
-        let t376 = t374 + t375;
-        let t381 = (minus_g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * g1_wz_leg3) * t109;
-        let t382 = c_phi * rate_dot_3_leg1;
-        let t383 = s_phi * t373;
-        let t384 = t382 - t383;
-        let t389 = t188 * t357 - t189 * rate_dot_3_leg1;
-        let t395 = t158 * t346 - t185 * t389 - t159 * rate_dot_3_leg1;
-        let t397 = c_phi * t389 - s_phi * t395;
-        let t403 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t109;
-        let t408 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t109;
-        let t414 = t94 * t109;
-        let t416 = t98 * t109;
-        let t420 = t383 - t382;
-        let t422 = t375 + t374;
-        let t427 = c_phi * t395 + s_phi * t389;
-        let t442 = s_phi * t427 + c_phi * t397;
-        let t446 = c_phi * t427 - s_phi * t397;
-        let t455 = t2 * rate_dot_3_leg1;
-        let t457 = t395 - t455 + t248;
-        let t458 = t457 + t276;
-        let t460 = t6 * rate_dot_3_leg1;
-        let t462 = t389 - t460 - t251;
-        let t463 = t462 + t281;
-        let rate_dot_1_leg1_2 = g1_vx_leg1 * t458 + g1_vy_leg1 * t463;
-        let t466 = t457 + t301;
-        let t468 = t462 + t306;
-        let rate_dot_1_leg2_2 = g1_vx_leg2 * t466 + g1_vy_leg2 * t468;
-        let t472 = t395 + t455 - t248;
-        let t473 = t472 + t247;
-        let t476 = t389 + t460 + t251;
-        let t477 = t476 + t254;
-        let rate_dot_1_leg3_2 = g1_vx_leg3 * t473 + g1_vy_leg3 * t477;
-        let t484 = g1_vy_leg4 * t381 - g1_vx_leg4 * t372 + g1_wz_leg4 * t110;
-        let t485 = t472 + t328;
-        let t487 = t476 + t333;
-        let rate_dot_1_leg4_2 = g1_vx_leg4 * t485 + g1_vy_leg4 * t487;
-        let t495 = g1_vx_leg4 * t403 - g1_vy_leg4 * t408 - g1_wz_leg4 * t365;
-        let t501 = g1_vx_leg4 * t414 - g1_vy_leg4 * t416 + g1_wz_leg4 * t367;
-        let g2_wz_leg1 = t2 * minus_g2_vx_leg1 - t6 * g2_vy_leg1;
-        let t519 = minus_g2_vx_leg1 * t372 + g2_vy_leg1 * t381 + g2_wz_leg1 * t110;
-        let rate_dot_2_leg1 = g2_vy_leg1 * t463 - minus_g2_vx_leg1 * t458;
-        let t524 = rate_dot_1_leg1_2 + rate_dot_2_leg1 - rate_dot_1_leg1_2;
-        let t530 = minus_g2_vx_leg1 * t403 + g2_vy_leg1 * t408 + g2_wz_leg1 * t365;
-        let g2_wz_leg2 = t2 * minus_g2_vx_leg2 - t6 * g2_vy_leg2;
-        let t539 = minus_g2_vx_leg2 * t372 + g2_vy_leg2 * t381 + g2_wz_leg2 * t110;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t468 - minus_g2_vx_leg2 * t466;
-        let t544 = rate_dot_1_leg2_2 + rate_dot_2_leg2 - rate_dot_1_leg2_2;
-        let t550 = minus_g2_vx_leg2 * t403 + g2_vy_leg2 * t408 + g2_wz_leg2 * t365;
-        let g2_wz_leg3 = t6 * g2_vy_leg3 - t2 * minus_g2_vx_leg3;
-        let t559 = minus_g2_vx_leg3 * t372 + g2_vy_leg3 * t381 + g2_wz_leg3 * t110;
-        let rate_dot_2_leg3 = g2_vy_leg3 * t477 - minus_g2_vx_leg3 * t473;
-        let t564 = rate_dot_1_leg3_2 + rate_dot_2_leg3 - rate_dot_1_leg3_2;
-        let t570 = minus_g2_vx_leg3 * t403 + g2_vy_leg3 * t408 + g2_wz_leg3 * t365;
-        let t576 = g2_wz_leg3 * t367 - (minus_g2_vx_leg3 * t414 + g2_vy_leg3 * t416);
-        let g2_wz_leg4 = t6 * g2_vy_leg4 - t2 * minus_g2_vx_leg4;
-        let t585 = minus_g2_vx_leg4 * t372 + g2_vy_leg4 * t381 + g2_wz_leg4 * t110;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t487 - minus_g2_vx_leg4 * t485;
-        let t590 = rate_dot_1_leg4_2 + rate_dot_2_leg4 - rate_dot_1_leg4_2;
-        let t596 = minus_g2_vx_leg4 * t403 + g2_vy_leg4 * t408 + g2_wz_leg4 * t365;
-        let t602 = g2_wz_leg4 * t367 - (minus_g2_vx_leg4 * t414 + g2_vy_leg4 * t416);
-        let t604 = t65 * t68;
-        let t607 = t65 - 0.1568;
-        let t615 = 3.5714285714285716 * (t604 * rate_dot_1_leg1_2)
-            - 1.7857142857142858 * (t607 * t265);
-        let t619 = t11 - 0.1568;
-        let t622 = t11 * t14;
-        let t625 = 1.7857142857142858 * (t619 * t290)
-            + 3.5714285714285716 * (t622 * rate_dot_1_leg2_2);
-        let t634 = t38 * t41;
-        let t637 = t38 - 0.1568;
-        let t640 = 3.5714285714285716 * (t634 * rate_dot_1_leg3_2)
-            - 1.7857142857142858 * (t637 * t236);
-        let t650 = t118 * t121;
-        let t653 = t118 - 0.1568;
-        let t656 = 3.5714285714285716 * t650 * t590 - t326 * (1.7857142857142858 * t653);
-        let t662 = 1.7857142857142858 * (t653 * t317)
-            + 3.5714285714285716 * (t650 * rate_dot_1_leg4_2);
-        let t671 = t519 - 1.0;
-        let t675 = 1.0 + t550;
-        let t679 = t576 - 1.0;
-        let t681 = t585 - t484;
-        let t683 = t495 + t596;
-        let t685 = t602 - t501;
-        let t697 = rate_3_leg1 - rate_2_leg1;
-        let t698 = t110 - t519;
-        let t700 = t530 - t365;
-        let t703 = rate_3_leg1 - rate_2_leg2;
-        let t704 = t110 - t539;
-        let t706 = t550 - t365;
-        let t709 = rate_3_leg1 - rate_2_leg3;
-        let t710 = t110 - t559;
-        let t712 = t570 - t365;
-        let t714 = t367 - t576;
-        let t716 = rate_3_leg1 - rate_2_leg4;
-        let t717 = t110 - t585;
-        let t719 = t596 - t365;
-        let t721 = t367 - t602;
+        let t18 = t11 * t14;
+        ::overact::guard::leg(t18, 0.07839913810297301, "leg2")?;
+        let t19 = 1.0 / t18;
+        let minus_g1_vx_leg2 = t17 * t19;
+        let t22 = pose[1] - t6 + 0.10970563941232059;
+        let t23 = 0.5 * t22;
+        let t24 = pose[0] + t2;
+        let t25 = t24 + 0.3950502153918333;
+        let t27 = t22 * t22;
+        let t28 = t25 * t25 + t27;
+        let t30 = 0.0784 / t28 - 0.25;
+        ::overact::guard::reach(t30, "leg3")?;
+        let t31 = ::overact::math::sqrt(t30);
+        let t33 = t23 - t25 * t31;
+        let t34 = t22 - t33;
+        let t35 = t28 * t31;
+        ::overact::guard::leg(t35, 0.07839913810297301, "leg3")?;
+        let t36 = 1.0 / t35;
+        let g1_vy_leg3 = t34 * t36;
+        let t39 = 0.5 * t8;
+        let t41 = t39 + t4 * t14;
+        let t42 = t8 - t41;
+        let minus_g1_vy_leg2 = t42 * t19;
+        let t46 = 0.5 * t25 + t22 * t31;
+        let t47 = t25 - t46;
+        let g1_vx_leg3 = t47 * t36;
+        let t51 = t3 - 0.3950502153918333;
+        let t53 = t51 * t51 + t10;
+        let t55 = 0.0784 / t53 - 0.25;
+        ::overact::guard::reach(t55, "leg1")?;
+        let t56 = ::overact::math::sqrt(t55);
+        let t58 = t39 - t51 * t56;
+        let t59 = t8 - t58;
+        let t60 = t53 * t56;
+        ::overact::guard::leg(t60, 0.07839913810297301, "leg1")?;
+        let t61 = 1.0 / t60;
+        let g1_vy_leg1 = t59 * t61;
+        let t66 = 0.5 * t51 + t8 * t56;
+        let t67 = t51 - t66;
+        let g1_vx_leg1 = t67 * t61;
+        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
+        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
+        let t76 = minus_g1_wz_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_wz_leg2;
+        let t80 = minus_g1_wz_leg1 * minus_g1_vx_leg2 - g1_vx_leg1 * g1_wz_leg2;
+        let t82 = g1_vx_leg3 * t76 - g1_vy_leg3 * t80;
+        ::overact::guard::platform(t82, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t82, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t82, 3.5376915986291904, "kept actuators")?;
+        let t83 = 0.5 / t82;
+        let t84 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3) * t83;
+        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
+        let t93 = t24 - 0.3950502153918333;
+        let t95 = t93 * t93 + t27;
+        let t97 = 0.0784 / t95 - 0.25;
+        ::overact::guard::reach(t97, "leg4")?;
+        let t98 = ::overact::math::sqrt(t97);
+        let t100 = t23 + t93 * t98;
+        let t101 = t22 - t100;
+        let t102 = t95 * t98;
+        ::overact::guard::leg(t102, 0.07839913810297301, "leg4")?;
+        let t103 = 1.0 / t102;
+        let minus_g1_vy_leg4 = t101 * t103;
+        let t108 = 0.5 * t93 - t22 * t98;
+        let t109 = t93 - t108;
+        let minus_g1_vx_leg4 = t109 * t103;
+        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
+        let t121 = g1_vx_leg3 * g1_wz_leg3
+            - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+            + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+        let t128 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t128, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(t128, 25.429161076750646, "actuators")?;
+        let t129 = 1.0 / t128;
+        let t130 = t121 * t129;
+        let t146 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+        let t148 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t146 * t130;
+        let t156 = t146 * t129;
+        let t158 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
+            - t146 * t156;
+        ::overact::guard::platform(t158, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(t158, 25.592368899353342, "actuators")?;
+        let t159 = 1.0 / t158;
+        let t160 = t148 * t159;
+        let t162 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t121 * t130
+            - t148 * t160;
+        ::overact::guard::platform(t162, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(t162, 0.3076928490286828, "actuators")?;
+        let t163 = 1.0 / t162;
+        let t177 = g1_vx_leg1 * actuator_velocities[0]
+            - minus_g1_vx_leg2 * actuator_velocities[1]
+            + g1_vx_leg3 * actuator_velocities[2]
+            - minus_g1_vx_leg4 * actuator_velocities[3];
+        let t188 = g1_vy_leg1 * actuator_velocities[0]
+            - minus_g1_vy_leg2 * actuator_velocities[1]
+            + g1_vy_leg3 * actuator_velocities[2]
+            - minus_g1_vy_leg4 * actuator_velocities[3] - t177 * t156;
+        let t190 = g1_wz_leg2 * actuator_velocities[1]
+            - minus_g1_wz_leg1 * actuator_velocities[0]
+            + g1_wz_leg3 * actuator_velocities[2]
+            - minus_g1_wz_leg4 * actuator_velocities[3] - t177 * t130 - t160 * t188;
+        let rate_3_leg1 = t163 * t190;
+        let t192 = t6 * rate_3_leg1;
+        let t193 = rate_3_leg1 * t192;
+        let t195 = t2 * rate_3_leg1;
+        let t196 = rate_3_leg1 * t195;
+        let g2_vx_leg2 = t16 * t19;
+        let t203 = t159 * t188 - t160 * rate_3_leg1;
+        let t207 = t177 * t129 - t156 * t203 - t130 * rate_3_leg1;
+        let t208 = t207 - t192;
+        let g2_vy_leg2 = t41 * t19;
+        let t211 = t203 - t195;
+        let rate_2_leg2 = g2_vx_leg2 * t208 + g2_vy_leg2 * t211;
+        let t214 = rate_2_leg2 * rate_2_leg2;
+        let t215 = 0.0784 * t214;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t208 + minus_g1_vy_leg2 * t211;
+        let t220 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t222 = 0.5 * (t11 - 0.1568);
+        let t223 = t220 * t222;
+        let rate_dot_1_leg2 = t19 * (t42 * t193 - t17 * t196 - t215 - t223);
+        let t226 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let minus_g2_vx_leg1 = t66 * t61;
+        let minus_g2_vy_leg1 = t58 * t61;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t208 + minus_g2_vy_leg1 * t211;
+        let t236 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t237 = 0.0784 * t236;
+        let rate_1_leg1 = g1_vx_leg1 * t208 + g1_vy_leg1 * t211;
+        let t242 = rate_1_leg1 * rate_1_leg1;
+        let t244 = 0.5 * (t53 - 0.1568);
+        let t245 = t242 * t244;
+        let minus_rate_dot_1_leg1 = t61 * (t59 * t193 - t67 * t196 - t237 - t245);
+        let t248 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let minus_g2_vx_leg3 = t46 * t36;
+        let t255 = t207 + t192;
+        let minus_g2_vy_leg3 = t33 * t36;
+        let t258 = t203 + t195;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t255 + minus_g2_vy_leg3 * t258;
+        let t261 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t262 = 0.0784 * t261;
+        let rate_1_leg3 = g1_vx_leg3 * t255 + g1_vy_leg3 * t258;
+        let t267 = rate_1_leg3 * rate_1_leg3;
+        let t269 = 0.5 * (t28 - 0.1568);
+        let t270 = t267 * t269;
+        let minus_rate_dot_1_leg3 = t36 * (t47 * t196 - t34 * t193 - t262 - t270);
+        let t273 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = t108 * t103;
+        let g2_vy_leg4 = t100 * t103;
+        let rate_2_leg4 = g2_vx_leg4 * t255 + g2_vy_leg4 * t258;
+        let t284 = rate_2_leg4 * rate_2_leg4;
+        let t285 = 0.0784 * t284;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t255 + minus_g1_vy_leg4 * t258;
+        let t290 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t292 = 0.5 * (t95 - 0.1568);
+        let t293 = t290 * t292;
+        let rate_dot_1_leg4 = t103 * (t109 * t196 - t101 * t193 - t285 - t293);
+        let t296 = actuator_accelerations[3] - rate_dot_1_leg4;
+        let t305 = g1_vx_leg1 * t248 - minus_g1_vx_leg2 * t226 + g1_vx_leg3 * t273
+            - minus_g1_vx_leg4 * t296;
+        let t316 = g1_vy_leg1 * t248 - minus_g1_vy_leg2 * t226 + g1_vy_leg3 * t273
+            - minus_g1_vy_leg4 * t296 - t156 * t305;
+        let t318 = g1_wz_leg2 * t226 - minus_g1_wz_leg1 * t248 + g1_wz_leg3 * t273
+            - minus_g1_wz_leg4 * t296 - t130 * t305 - t160 * t316;
+        let rate_dot_3_leg1 = t163 * t318;
+        let t324 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t83;
+        let t329 = (g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2) * t83;
+        let t330 = t329 * rate_dot_3_leg1;
+        let t333 = t159 * t316 - t160 * rate_dot_3_leg1;
+        let t339 = t129 * t305 - t156 * t333 - t130 * rate_dot_3_leg1;
+        let t341 = c_phi * t333 - s_phi * t339;
+        let t346 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t83;
+        let t347 = t2 * rate_dot_3_leg1;
+        let t349 = 9.090909090909092 * (t193 + t347);
+        let t354 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t83;
+        let t355 = t6 * rate_dot_3_leg1;
+        let t357 = 9.090909090909092 * (t355 - t196);
+        let t364 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t83;
+        let t369 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t83;
+        let t375 = t76 * t83;
+        let t377 = t80 * t83;
+        let t386 = c_phi * t339 + s_phi * t333;
+        let t395 = t329 * t386;
+        let t405 = t339 - t355 + t196;
+        let t408 = t333 - t347 - t193;
+        let t411 = t67 * t405 + t59 * t408 + t237;
+        let rate_dot_1_leg1 = t61 * (t411 + t245);
+        let t417 = t17 * t405 + t42 * t408 + t215;
+        let minus_rate_dot_1_leg2 = t19 * (t417 + t223);
+        let t421 = t339 + t355 - t196;
+        let t424 = t333 + t347 + t193;
+        let t427 = t47 * t421 + t34 * t424 + t262;
+        let rate_dot_1_leg3 = t36 * (t427 + t270);
+        let t434 = minus_g1_vy_leg4 * t354 - minus_g1_vx_leg4 * t346
+            - minus_g1_wz_leg4 * t84;
+        let t438 = t109 * t421 + t101 * t424 + t285;
+        let minus_rate_dot_1_leg4 = t103 * (t438 + t293);
+        let t446 = minus_g1_vy_leg4 * t369 - minus_g1_vx_leg4 * t364
+            + minus_g1_wz_leg4 * t324;
+        let t450 = minus_g1_vy_leg4 * t377 - minus_g1_vx_leg4 * t375;
+        let t451 = 2.0 * t450;
+        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
+        let t469 = minus_g2_vy_leg1 * t354 - minus_g2_vx_leg1 * t346 + g2_wz_leg1 * t84;
+        let t474 = t66 * t405 + t58 * t408 + 0.0784 * t242;
+        let minus_rate_dot_2_leg1 = t61 * (t474 + t236 * t244);
+        let t483 = minus_g2_vy_leg1 * t369 - minus_g2_vx_leg1 * t364 - g2_wz_leg1 * t324;
+        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
+        let t492 = g2_vx_leg2 * t346 - g2_vy_leg2 * t354 - minus_g2_wz_leg2 * t84;
+        let t497 = t16 * t405 + t41 * t408 + 0.0784 * t220;
+        let rate_dot_2_leg2 = t19 * (t497 + t214 * t222);
+        let t506 = g2_vx_leg2 * t364 - g2_vy_leg2 * t369 + minus_g2_wz_leg2 * t324;
+        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
+        let t515 = minus_g2_vy_leg3 * t354 - minus_g2_vx_leg3 * t346
+            - minus_g2_wz_leg3 * t84;
+        let t520 = t46 * t421 + t33 * t424 + 0.0784 * t267;
+        let minus_rate_dot_2_leg3 = t36 * (t520 + t261 * t269);
+        let t529 = minus_g2_vy_leg3 * t369 - minus_g2_vx_leg3 * t364
+            + minus_g2_wz_leg3 * t324;
+        let t533 = minus_g2_vy_leg3 * t377 - minus_g2_vx_leg3 * t375;
+        let t534 = 2.0 * t533;
+        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
+        let t543 = g2_vx_leg4 * t346 - g2_vy_leg4 * t354 + g2_wz_leg4 * t84;
+        let t548 = t108 * t421 + t100 * t424 + 0.0784 * t290;
+        let rate_dot_2_leg4 = t103 * (t548 + t284 * t292);
+        let t557 = g2_vx_leg4 * t364 - g2_vy_leg4 * t369 - g2_wz_leg4 * t324;
+        let t561 = g2_vx_leg4 * t375 - g2_vy_leg4 * t377;
+        let t562 = 2.0 * t561;
+        let t565 = 3.5714285714285716 * t411;
+        let t569 = 3.5714285714285716 * t417;
+        let t574 = 3.5714285714285716 * t427;
+        let t581 = 3.5714285714285716 * t548;
+        let t583 = 3.5714285714285716 * t438;
+        let t593 = rate_1_leg1 + minus_rate_2_leg1;
+        let t594 = t469 - 1.0;
+        let t597 = minus_rate_1_leg2 + rate_2_leg2;
+        let t599 = t506 - 1.0;
+        let t601 = rate_1_leg3 + minus_rate_2_leg3;
+        let t604 = t534 - 1.0;
+        let t606 = minus_rate_1_leg4 + rate_2_leg4;
+        let t607 = t543 - t434;
+        let t609 = t557 - t446;
+        let t612 = 2.0 * (t561 - t450);
+        let t624 = minus_rate_2_leg1 + rate_3_leg1;
+        let t625 = t84 - t469;
+        let t627 = t483 + t324;
+        let t630 = rate_3_leg1 - rate_2_leg2;
+        let t631 = t84 - t492;
+        let t633 = t506 + t324;
+        let t636 = minus_rate_2_leg3 + rate_3_leg1;
+        let t637 = t84 - t515;
+        let t639 = t529 + t324;
+        let t641 = t329 - t534;
+        let t643 = rate_3_leg1 - rate_2_leg4;
+        let t644 = t84 - t543;
+        let t646 = t557 + t324;
+        let t648 = t329 - t562;
         Ok([
             [
-                t110 * rate_dot_3_leg1, t372 * t376 + t381 * t384 + t110 * t397,
-                -(t372 * t420 + t381 * t422 + t110 * t427), t381 * t442 - t372 * t446,
-                rate_dot_1_leg1_2, 0.0, 0.0, t484 * rate_dot_1_leg4_2, rate_1_leg1, 0.0, 0.0,
-                t484 * rate_1_leg4, ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
-                ::overact::math::signed(t484, rate_1_leg4), 1.0, 0.0, 0.0, t484, t519 * t524,
-                t539 * t544, t559 * t564, t585 * t590,
-                -(3.5714285714285716 * t604 * t524 + t274 * (1.7857142857142858 * t607)
-                    + t519 * t615),
-                t539 * t625,
-                -(t559 * t640),
-                t484 * t656 + t585 * t662,
-                t272 * t671,
-                t539 * t297,
-                t559 * t243,
-                t324 * t681,
-                ::overact::math::signed(t671, t272),
-                ::overact::math::signed(t539, t297),
-                ::overact::math::signed(t559, t243),
-                ::overact::math::signed(t681, t324),
-                t671,
-                t539,
-                t559,
-                t681,
-                t697 * t698,
-                t703 * t704,
-                t709 * t710,
-                t716 * t717,
-                ::overact::math::signed(t698, t697),
-                ::overact::math::signed(t704, t703),
-                ::overact::math::signed(t710, t709),
-                ::overact::math::signed(t717, t716),
-                t698,
+                t84 * rate_dot_3_leg1, t84 * t341 - (t346 * t349 + t354 * t357),
+                t354 * t349 - t346 * t357 - t84 * t386, t346 * t339 - t354 * t333, rate_dot_1_leg1,
+                0.0, 0.0, -(t434 * minus_rate_dot_1_leg4), rate_1_leg1, 0.0, 0.0,
+                -(t434 * minus_rate_1_leg4), ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
+                -::overact::math::signed(t434, minus_rate_1_leg4), 1.0, 0.0, 0.0, t434,
+                -(t469 * minus_rate_dot_2_leg1), t492 * rate_dot_2_leg2,
+                -(t515 * minus_rate_dot_2_leg3), t543 * rate_dot_2_leg4,
+                3.5714285714285716 * t474 - t469 * t565, -(t492 * t569), -(t515 * t574),
+                t434 * t581 - t543 * t583, -(t593 * t594), t492 * t597, -(t515 * t601), t606 * t607,
+                -::overact::math::signed(t594, t593), ::overact::math::signed(t492, t597),
+                -::overact::math::signed(t515, t601), ::overact::math::signed(t607, t606), t594,
+                t492, t515, t607, t624 * t625, t630 * t631, t636 * t637, t643 * t644,
+                ::overact::math::signed(t625, t624), ::overact::math::signed(t631, t630),
+                ::overact::math::signed(t637, t636), ::overact::math::signed(t644, t643), t625,
             ],
             [
-                -(t365 * rate_dot_3_leg1), -(t403 * t376 + t408 * t384 + t365 * t397),
-                t403 * t420 + t408 * t422 + t365 * t427, t403 * t446 - t408 * t442, 0.0,
-                rate_dot_1_leg2_2, 0.0, t495 * rate_dot_1_leg4_2, 0.0, rate_1_leg2, 0.0,
-                t495 * rate_1_leg4, 0.0, ::overact::math::sign(rate_1_leg2), 0.0,
-                ::overact::math::signed(t495, rate_1_leg4), 0.0, 1.0, 0.0, t495, -(t530 * t524),
-                -(t550 * t544), -(t570 * t564), -(t596 * t590), t530 * t615,
-                3.5714285714285716 * t622 * t544 - t299 * (1.7857142857142858 * t619)
-                    - t550 * t625,
-                t570 * t640,
-                t495 * t656 - t596 * t662,
-                -(t530 * t272),
-                -(t297 * t675),
-                -(t570 * t243),
-                -(t324 * t683),
-                -::overact::math::signed(t530, t272),
-                -::overact::math::signed(t675, t297),
-                -::overact::math::signed(t570, t243),
-                -::overact::math::signed(t683, t324),
-                -t530,
-                -t675,
-                -t570,
-                -t683,
-                t697 * t700,
-                t703 * t706,
-                t709 * t712,
-                t716 * t719,
-                ::overact::math::signed(t700, t697),
-                ::overact::math::signed(t706, t703),
-                ::overact::math::signed(t712, t709),
-                ::overact::math::signed(t719, t716),
-                t700,
+                -(t324 * rate_dot_3_leg1), -(t364 * t349 + t369 * t357 + t324 * t341),
+                t369 * t349 - t364 * t357 + t324 * t386, t364 * t339 - t369 * t333, 0.0,
+                -minus_rate_dot_1_leg2, 0.0, -(t446 * minus_rate_dot_1_leg4), 0.0,
+                -minus_rate_1_leg2, 0.0, -(t446 * minus_rate_1_leg4), 0.0,
+                -::overact::math::sign(minus_rate_1_leg2), 0.0,
+                -::overact::math::signed(t446, minus_rate_1_leg4), 0.0, 1.0, 0.0, t446,
+                -(t483 * minus_rate_dot_2_leg1), t506 * rate_dot_2_leg2,
+                -(t529 * minus_rate_dot_2_leg3), t557 * rate_dot_2_leg4, -(t483 * t565),
+                3.5714285714285716 * t497 - t506 * t569, -(t529 * t574), t446 * t581 - t557 * t583,
+                -(t483 * t593), t597 * t599, -(t529 * t601), t606 * t609,
+                -::overact::math::signed(t483, t593), ::overact::math::signed(t599, t597),
+                -::overact::math::signed(t529, t601), ::overact::math::signed(t609, t606), t483,
+                t599, t529, t609, -(t624 * t627), -(t630 * t633), -(t636 * t639), -(t643 * t646),
+                -::overact::math::signed(t627, t624), -::overact::math::signed(t633, t630),
+                -::overact::math::signed(t639, t636), -::overact::math::signed(t646, t643), -t627,
             ],
             [
-                t367 * rate_dot_3_leg1, t367 * t397 - (t414 * t376 + t416 * t384),
-                t414 * t420 + t416 * t422 - t367 * t427, t414 * t446 - t416 * t442, 0.0, 0.0,
-                rate_dot_1_leg3_2, t501 * rate_dot_1_leg4_2, 0.0, 0.0, rate_1_leg3,
-                t501 * rate_1_leg4, 0.0, 0.0, ::overact::math::sign(rate_1_leg3),
-                ::overact::math::signed(t501, rate_1_leg4), 0.0, 0.0, 1.0, t501, 0.0, 0.0,
-                t576 * t564, t602 * t590, 0.0, 0.0,
-                -(3.5714285714285716 * t634 * t564 + t245 * (1.7857142857142858 * t637)
-                    + t576 * t640),
-                t501 * t656 + t602 * t662,
-                0.0,
-                0.0,
-                t243 * t679,
-                t324 * t685,
-                0.0,
-                0.0,
-                ::overact::math::signed(t679, t243),
-                ::overact::math::signed(t685, t324),
-                0.0,
-                0.0,
-                t679,
-                t685,
-                t367 * t697,
-                t367 * t703,
-                t709 * t714,
-                t716 * t721,
-                ::overact::math::signed(t367, t697),
-                ::overact::math::signed(t367, t703),
-                ::overact::math::signed(t714, t709),
-                ::overact::math::signed(t721, t716),
-                t367,
+                t330, t329 * t341 - (t375 * t349 + t377 * t357), -(0.11 * t330 + t395), 0.11 * t395,
+                0.0, 0.0, rate_dot_1_leg3, -(t451 * minus_rate_dot_1_leg4), 0.0, 0.0, rate_1_leg3,
+                -(t451 * minus_rate_1_leg4), 0.0, 0.0, ::overact::math::sign(rate_1_leg3),
+                -::overact::math::signed(t451, minus_rate_1_leg4), 0.0, 0.0, 1.0, t451, 0.0, 0.0,
+                -(t534 * minus_rate_dot_2_leg3), t562 * rate_dot_2_leg4, 0.0, 0.0,
+                3.5714285714285716 * t520 - 7.142857142857143 * (t533 * t427),
+                7.142857142857143 * (t450 * t548 - t561 * t438), 0.0, 0.0, -(t601 * t604),
+                t606 * t612, 0.0, 0.0, -::overact::math::signed(t604, t601),
+                ::overact::math::signed(t612, t606), 0.0, 0.0, t604, t612, t329 * t624, t329 * t630,
+                t636 * t641, t643 * t648, ::overact::math::signed(t329, t624),
+                ::overact::math::signed(t329, t630), ::overact::math::signed(t641, t636),
+                ::overact::math::signed(t648, t643), t329,
             ],
         ])
     }
@@ -5313,11 +5017,13 @@ impl DualV {
     /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
+    /// - `actuators`: q, positions of the actuated joints (m, rad)
+    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
     ///
     /// Output: 3 x 4.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 365 operations (162 additions, 192 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 362 intermediates.
+    /// 320 operations (126 additions, 183 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 319 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5336,182 +5042,170 @@ impl DualV {
         let t7 = pose[0] - t2;
         let t8 = t7 - 0.3950502153918333;
         let t10 = t5 * t5;
-        let t13 = 0.0784 / (t8 * t8 + t10) - 0.25;
+        let t11 = t8 * t8 + t10;
+        let t13 = 0.0784 / t11 - 0.25;
         ::overact::guard::reach(t13, "leg1")?;
         let t14 = ::overact::math::sqrt(t13);
         let t16 = t6 - t8 * t14;
         let t17 = t5 - t16;
-        let t20 = 0.5 * t8 + t5 * t14;
-        let t21 = t8 - t20;
-        let t23 = t20 + t21 - t21;
-        let t26 = t17 - (t16 + t17);
-        let t28 = t17 * t23 + t21 * t26;
-        ::overact::guard::leg(t28, 0.078399138102973, "leg1")?;
-        let t29 = 1.0 / t28;
-        let g1_vy_leg1 = t17 * t29;
-        let g1_vx_leg1 = t21 * t29;
+        let t18 = t11 * t14;
+        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
+        let t19 = 1.0 / t18;
+        let g1_vy_leg1 = t17 * t19;
+        let t24 = 0.5 * t8 + t5 * t14;
+        let t25 = t8 - t24;
+        let g1_vx_leg1 = t25 * t19;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t3 * g1_vx_leg1;
-        let t36 = t7 + 0.3950502153918333;
-        let t40 = 0.0784 / (t36 * t36 + t10) - 0.25;
-        ::overact::guard::reach(t40, "leg2")?;
-        let t41 = ::overact::math::sqrt(t40);
-        let t43 = t6 + t36 * t41;
-        let t44 = t5 - t43;
-        let t47 = 0.5 * t36 - t5 * t41;
-        let t48 = t36 - t47;
-        let t50 = t47 + t48 - t48;
-        let t53 = t44 - (t43 + t44);
-        let t55 = t44 * t50 + t48 * t53;
-        ::overact::guard::leg(t55, 0.078399138102973, "leg2")?;
-        let t56 = 1.0 / t55;
-        let g1_vy_leg2 = t44 * t56;
-        let g1_vx_leg2 = t48 * t56;
-        let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t3 * g1_vx_leg2;
-        let t65 = pose[1] - t3 + 0.10970563941232059;
-        let t66 = 0.5 * t65;
-        let t67 = pose[0] + t2;
-        let t68 = t67 + 0.3950502153918333;
-        let t70 = t65 * t65;
-        let t73 = 0.0784 / (t68 * t68 + t70) - 0.25;
-        ::overact::guard::reach(t73, "leg3")?;
-        let t74 = ::overact::math::sqrt(t73);
-        let t76 = t66 - t68 * t74;
-        let t77 = t65 - t76;
-        let t80 = 0.5 * t68 + t65 * t74;
-        let t81 = t68 - t80;
-        let t83 = t80 + t81 - t81;
-        let t86 = t77 - (t76 + t77);
-        let t88 = t77 * t83 + t81 * t86;
-        ::overact::guard::leg(t88, 0.078399138102973, "leg3")?;
-        let t89 = 1.0 / t88;
-        let g1_vy_leg3 = t77 * t89;
-        let g1_vx_leg3 = t81 * t89;
+        let t30 = t7 + 0.3950502153918333;
+        let t32 = t30 * t30 + t10;
+        let t34 = 0.0784 / t32 - 0.25;
+        ::overact::guard::reach(t34, "leg2")?;
+        let t35 = ::overact::math::sqrt(t34);
+        let t37 = t6 + t30 * t35;
+        let t38 = t5 - t37;
+        let t39 = t32 * t35;
+        ::overact::guard::leg(t39, 0.07839913810297301, "leg2")?;
+        let t40 = 1.0 / t39;
+        let minus_g1_vy_leg2 = t38 * t40;
+        let t45 = 0.5 * t30 - t5 * t35;
+        let t46 = t30 - t45;
+        let minus_g1_vx_leg2 = t46 * t40;
+        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
+        let t53 = pose[1] - t3 + 0.10970563941232059;
+        let t54 = 0.5 * t53;
+        let t55 = pose[0] + t2;
+        let t56 = t55 + 0.3950502153918333;
+        let t58 = t53 * t53;
+        let t59 = t56 * t56 + t58;
+        let t61 = 0.0784 / t59 - 0.25;
+        ::overact::guard::reach(t61, "leg3")?;
+        let t62 = ::overact::math::sqrt(t61);
+        let t64 = t54 - t56 * t62;
+        let t65 = t53 - t64;
+        let t66 = t59 * t62;
+        ::overact::guard::leg(t66, 0.07839913810297301, "leg3")?;
+        let t67 = 1.0 / t66;
+        let g1_vy_leg3 = t65 * t67;
+        let t72 = 0.5 * t56 + t53 * t62;
+        let t73 = t56 - t72;
+        let g1_vx_leg3 = t73 * t67;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t3 * g1_vx_leg3;
-        let t97 = t67 - 0.3950502153918333;
-        let t101 = 0.0784 / (t97 * t97 + t70) - 0.25;
-        ::overact::guard::reach(t101, "leg4")?;
-        let t102 = ::overact::math::sqrt(t101);
-        let t104 = t66 + t97 * t102;
-        let t105 = t65 - t104;
-        let t108 = 0.5 * t97 - t65 * t102;
-        let t109 = t97 - t108;
-        let t111 = t108 + t109 - t109;
-        let t114 = t105 - (t104 + t105);
-        let t116 = t105 * t111 + t109 * t114;
-        ::overact::guard::leg(t116, 0.078399138102973, "leg4")?;
-        let t117 = 1.0 / t116;
-        let g1_vy_leg4 = t105 * t117;
-        let g1_vx_leg4 = t109 * t117;
-        let g1_wz_leg4 = t2 * g1_vy_leg4 + t3 * g1_vx_leg4;
-        let t131 = g1_vx_leg3 * g1_wz_leg3
-            - (g1_vx_leg1 * minus_g1_wz_leg1 + g1_vx_leg2 * minus_g1_wz_leg2)
-            + g1_vx_leg4 * g1_wz_leg4;
-        let t138 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t138, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(t138, 25.429161076750646, "actuators")?;
-        let t139 = 1.0 / t138;
-        let t140 = t131 * t139;
-        let t156 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
-        let t158 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
-            + g1_vy_leg4 * g1_wz_leg4 - t156 * t140;
-        let t166 = t156 * t139;
-        let t168 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t156 * t166;
-        ::overact::guard::platform(t168, 25.59236889935335, "actuators")?;
-        ::overact::guard::platform(t168, 25.59236889935335, "actuators")?;
-        let t169 = 1.0 / t168;
-        let t170 = t158 * t169;
-        let t172 = minus_g1_wz_leg1 * minus_g1_wz_leg1
-            + minus_g1_wz_leg2 * minus_g1_wz_leg2 + g1_wz_leg3 * g1_wz_leg3
-            + g1_wz_leg4 * g1_wz_leg4 - t131 * t140 - t158 * t170;
-        ::overact::guard::platform(t172, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t172, 0.3076928490286828, "actuators")?;
-        let t173 = 1.0 / t172;
-        let t180 = g1_vx_leg1 * actuator_velocities[0]
-            + g1_vx_leg2 * actuator_velocities[1] + g1_vx_leg3 * actuator_velocities[2]
-            + g1_vx_leg4 * actuator_velocities[3];
-        let t190 = g1_vy_leg1 * actuator_velocities[0]
-            + g1_vy_leg2 * actuator_velocities[1] + g1_vy_leg3 * actuator_velocities[2]
-            + g1_vy_leg4 * actuator_velocities[3] - t180 * t166;
-        let t202 = g1_wz_leg3 * actuator_velocities[2]
-            - (minus_g1_wz_leg1 * actuator_velocities[0]
-                + minus_g1_wz_leg2 * actuator_velocities[1])
-            + g1_wz_leg4 * actuator_velocities[3] - t180 * t140 - t170 * t190;
-        let rate_3_leg1 = t173 * t202;
-        let t205 = t169 * t190 - t170 * rate_3_leg1;
-        let t209 = t180 * t139 - t166 * t205 - t140 * rate_3_leg1;
-        let t210 = t3 * rate_3_leg1;
-        let t211 = t209 + t210;
-        let t213 = t2 * rate_3_leg1;
-        let t214 = t205 + t213;
-        let rate_1_leg3 = g1_vx_leg3 * t211 + g1_vy_leg3 * t214;
-        let t217 = rate_1_leg3 * rate_1_leg3;
-        let g2_vy_leg3 = t86 * t89;
-        let minus_g2_vx_leg3 = t83 * t89;
-        let rate_2_leg3 = g2_vy_leg3 * t214 - minus_g2_vx_leg3 * t211;
-        let t225 = rate_1_leg3 + rate_2_leg3 - rate_1_leg3;
-        let t226 = t225 * t225;
-        let t229 = rate_3_leg1 * t213;
-        let t232 = rate_3_leg1 * t210;
-        let rate_dot_1_leg3 = g1_vx_leg3 * (t80 * t217 + t81 * t226 - t229)
-            + g1_vy_leg3 * (t232 + t76 * t217 + t77 * t226);
-        let t239 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t241 = t209 - t210;
-        let t243 = t205 - t213;
-        let rate_1_leg1 = g1_vx_leg1 * t241 + g1_vy_leg1 * t243;
-        let t246 = rate_1_leg1 * rate_1_leg1;
-        let g2_vy_leg1 = t26 * t29;
-        let minus_g2_vx_leg1 = t23 * t29;
-        let rate_2_leg1 = g2_vy_leg1 * t243 - minus_g2_vx_leg1 * t241;
-        let t254 = rate_1_leg1 + rate_2_leg1 - rate_1_leg1;
-        let t255 = t254 * t254;
-        let rate_dot_1_leg1 = g1_vx_leg1 * (t229 + t20 * t246 + t21 * t255)
-            + g1_vy_leg1 * (t16 * t246 + t17 * t255 - t232);
-        let t266 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let rate_1_leg2 = g1_vx_leg2 * t241 + g1_vy_leg2 * t243;
-        let t271 = rate_1_leg2 * rate_1_leg2;
-        let g2_vy_leg2 = t53 * t56;
-        let minus_g2_vx_leg2 = t50 * t56;
-        let rate_2_leg2 = g2_vy_leg2 * t243 - minus_g2_vx_leg2 * t241;
-        let t279 = rate_1_leg2 + rate_2_leg2 - rate_1_leg2;
-        let t280 = t279 * t279;
-        let rate_dot_1_leg2 = g1_vx_leg2 * (t229 + t47 * t271 + t48 * t280)
-            + g1_vy_leg2 * (t43 * t271 + t44 * t280 - t232);
-        let t291 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let rate_1_leg4 = g1_vx_leg4 * t211 + g1_vy_leg4 * t214;
-        let t298 = rate_1_leg4 * rate_1_leg4;
-        let g2_vy_leg4 = t114 * t117;
-        let minus_g2_vx_leg4 = t111 * t117;
-        let rate_2_leg4 = g2_vy_leg4 * t214 - minus_g2_vx_leg4 * t211;
-        let t306 = rate_1_leg4 + rate_2_leg4 - rate_1_leg4;
-        let t307 = t306 * t306;
-        let rate_dot_1_leg4 = g1_vx_leg4 * (t108 * t298 + t109 * t307 - t229)
-            + g1_vy_leg4 * (t232 + t104 * t298 + t105 * t307);
-        let t318 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t327 = g1_vx_leg1 * t266 + g1_vx_leg2 * t291 + g1_vx_leg3 * t239
-            + g1_vx_leg4 * t318;
-        let t338 = g1_vy_leg1 * t266 + g1_vy_leg2 * t291 + g1_vy_leg3 * t239
-            + g1_vy_leg4 * t318 - t166 * t327;
-        let t340 = g1_wz_leg3 * t239
-            - (minus_g1_wz_leg1 * t266 + minus_g1_wz_leg2 * t291) + g1_wz_leg4 * t318
-            - t140 * t327 - t170 * t338;
-        let rate_dot_3_leg1 = t173 * t340;
-        let t342 = rate_3_leg1 * rate_3_leg1;
-        let t343 = c_phi * t342;
-        let t344 = s_phi * rate_dot_3_leg1;
-        let t346 = c_phi * rate_dot_3_leg1;
-        let t347 = s_phi * t342;
-        let t351 = t169 * t338 - t170 * rate_dot_3_leg1;
-        let t357 = t139 * t327 - t166 * t351 - t140 * rate_dot_3_leg1;
-        let t359 = c_phi * t351 - s_phi * t357;
-        let t364 = c_phi * t357 + s_phi * t351;
+        let t79 = t55 - 0.3950502153918333;
+        let t81 = t79 * t79 + t58;
+        let t83 = 0.0784 / t81 - 0.25;
+        ::overact::guard::reach(t83, "leg4")?;
+        let t84 = ::overact::math::sqrt(t83);
+        let t86 = t54 + t79 * t84;
+        let t87 = t53 - t86;
+        let t88 = t81 * t84;
+        ::overact::guard::leg(t88, 0.07839913810297301, "leg4")?;
+        let t89 = 1.0 / t88;
+        let minus_g1_vy_leg4 = t87 * t89;
+        let t94 = 0.5 * t79 - t53 * t84;
+        let t95 = t79 - t94;
+        let minus_g1_vx_leg4 = t95 * t89;
+        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t3 * minus_g1_vx_leg4;
+        let t107 = g1_vx_leg3 * g1_wz_leg3
+            - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+            + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+        let t114 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t114, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(t114, 25.429161076750646, "actuators")?;
+        let t115 = 1.0 / t114;
+        let t116 = t107 * t115;
+        let t132 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+        let t134 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t132 * t116;
+        let t142 = t132 * t115;
+        let t144 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
+            - t132 * t142;
+        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
+        let t145 = 1.0 / t144;
+        let t146 = t134 * t145;
+        let t148 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t107 * t116
+            - t134 * t146;
+        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
+        let t149 = 1.0 / t148;
+        let t163 = g1_vx_leg1 * actuator_velocities[0]
+            - minus_g1_vx_leg2 * actuator_velocities[1]
+            + g1_vx_leg3 * actuator_velocities[2]
+            - minus_g1_vx_leg4 * actuator_velocities[3];
+        let t174 = g1_vy_leg1 * actuator_velocities[0]
+            - minus_g1_vy_leg2 * actuator_velocities[1]
+            + g1_vy_leg3 * actuator_velocities[2]
+            - minus_g1_vy_leg4 * actuator_velocities[3] - t163 * t142;
+        let t176 = g1_wz_leg2 * actuator_velocities[1]
+            - minus_g1_wz_leg1 * actuator_velocities[0]
+            + g1_wz_leg3 * actuator_velocities[2]
+            - minus_g1_wz_leg4 * actuator_velocities[3] - t163 * t116 - t146 * t174;
+        let rate_3_leg1 = t149 * t176;
+        let t178 = t3 * rate_3_leg1;
+        let t179 = rate_3_leg1 * t178;
+        let t181 = t2 * rate_3_leg1;
+        let t182 = rate_3_leg1 * t181;
+        let g2_vx_leg2 = t45 * t40;
+        let t189 = t145 * t174 - t146 * rate_3_leg1;
+        let t193 = t163 * t115 - t142 * t189 - t116 * rate_3_leg1;
+        let t194 = t193 - t178;
+        let g2_vy_leg2 = t37 * t40;
+        let t197 = t189 - t181;
+        let rate_2_leg2 = g2_vx_leg2 * t194 + g2_vy_leg2 * t197;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t194 + minus_g1_vy_leg2 * t197;
+        let t210 = t38 * t179 - t46 * t182 - 0.0784 * (rate_2_leg2 * rate_2_leg2)
+            - minus_rate_1_leg2 * minus_rate_1_leg2 * (0.5 * (t32 - 0.1568));
+        let rate_dot_1_leg2 = t40 * t210;
+        let t212 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let minus_g2_vx_leg1 = t24 * t19;
+        let minus_g2_vy_leg1 = t16 * t19;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t194 + minus_g2_vy_leg1 * t197;
+        let rate_1_leg1 = g1_vx_leg1 * t194 + g1_vy_leg1 * t197;
+        let t232 = t17 * t179 - t25 * t182
+            - 0.0784 * (minus_rate_2_leg1 * minus_rate_2_leg1)
+            - rate_1_leg1 * rate_1_leg1 * (0.5 * (t11 - 0.1568));
+        let minus_rate_dot_1_leg1 = t19 * t232;
+        let t234 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let minus_g2_vx_leg3 = t72 * t67;
+        let t241 = t193 + t178;
+        let minus_g2_vy_leg3 = t64 * t67;
+        let t244 = t189 + t181;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t241 + minus_g2_vy_leg3 * t244;
+        let rate_1_leg3 = g1_vx_leg3 * t241 + g1_vy_leg3 * t244;
+        let t257 = t73 * t182 - t65 * t179
+            - 0.0784 * (minus_rate_2_leg3 * minus_rate_2_leg3)
+            - rate_1_leg3 * rate_1_leg3 * (0.5 * (t59 - 0.1568));
+        let minus_rate_dot_1_leg3 = t67 * t257;
+        let t259 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = t94 * t89;
+        let g2_vy_leg4 = t86 * t89;
+        let rate_2_leg4 = g2_vx_leg4 * t241 + g2_vy_leg4 * t244;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t241 + minus_g1_vy_leg4 * t244;
+        let t280 = t95 * t182 - t87 * t179 - 0.0784 * (rate_2_leg4 * rate_2_leg4)
+            - minus_rate_1_leg4 * minus_rate_1_leg4 * (0.5 * (t81 - 0.1568));
+        let rate_dot_1_leg4 = t89 * t280;
+        let t282 = actuator_accelerations[3] - rate_dot_1_leg4;
+        let t291 = g1_vx_leg1 * t234 - minus_g1_vx_leg2 * t212 + g1_vx_leg3 * t259
+            - minus_g1_vx_leg4 * t282;
+        let t302 = g1_vy_leg1 * t234 - minus_g1_vy_leg2 * t212 + g1_vy_leg3 * t259
+            - minus_g1_vy_leg4 * t282 - t142 * t291;
+        let t304 = g1_wz_leg2 * t212 - minus_g1_wz_leg1 * t234 + g1_wz_leg3 * t259
+            - minus_g1_wz_leg4 * t282 - t116 * t291 - t146 * t302;
+        let rate_dot_3_leg1 = t149 * t304;
+        let t308 = 9.090909090909092 * (t179 + t2 * rate_dot_3_leg1);
+        let t311 = 9.090909090909092 * (t3 * rate_dot_3_leg1 - t182);
+        let t314 = t145 * t302 - t146 * rate_dot_3_leg1;
+        let t320 = t115 * t291 - t142 * t314 - t116 * rate_dot_3_leg1;
         Ok([
-            [0.0, -(t343 + t344), t347 - t346, c_phi * t364 - s_phi * t359],
-            [0.0, t346 - t347, -(t344 + t343), s_phi * t364 + c_phi * t359],
-            [rate_dot_3_leg1, t359, -t364, 0.0],
+            [0.0, -t308, -t311, t320], [0.0, t311, -t308, t314],
+            [
+                rate_dot_3_leg1, c_phi * t314 - s_phi * t320, -(c_phi * t320 + s_phi * t314), 0.0,
+            ],
         ])
     }
     /// The payload's columns of case 2, eq. (38).
@@ -5524,7 +5218,7 @@ impl DualV {
     /// Output: 3 x 4.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 187 operations (75 additions, 105 multiplications, 7 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 180 intermediates.
+    /// 163 operations (57 additions, 99 multiplications, 7 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 156 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5534,93 +5228,82 @@ impl DualV {
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 4]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * c_phi;
-        let t4 = pose[1] + t2 - 0.10970563941232059;
-        let t5 = 0.5 * t4;
-        let t6 = 0.11 * s_phi;
-        let t7 = pose[0] - t6;
-        let t8 = t7 + 0.3950502153918333;
-        let t10 = t4 * t4;
-        let t13 = 0.0784 / (t8 * t8 + t10) - 0.25;
+        let t2 = 0.11 * s_phi;
+        let t3 = pose[0] - t2;
+        let t4 = t3 + 0.3950502153918333;
+        let t6 = 0.11 * c_phi;
+        let t8 = pose[1] + t6 - 0.10970563941232059;
+        let t10 = t8 * t8;
+        let t11 = t4 * t4 + t10;
+        let t13 = 0.0784 / t11 - 0.25;
         ::overact::guard::reach(t13, "leg2")?;
         let t14 = ::overact::math::sqrt(t13);
-        let t16 = t5 + t8 * t14;
-        let t17 = t4 - t16;
-        let t20 = 0.5 * t8 - t4 * t14;
-        let t21 = t8 - t20;
-        let t28 = t17 * (t20 + t21 - t21) + t21 * (t17 - (t16 + t17));
-        ::overact::guard::leg(t28, 0.078399138102973, "leg2")?;
-        let t29 = 1.0 / t28;
-        let g1_vy_leg2 = t17 * t29;
-        let t32 = pose[0] + t6 + 0.3950502153918333;
-        let t35 = pose[1] - t2 + 0.10970563941232059;
-        let t40 = 0.0784 / (t32 * t32 + t35 * t35) - 0.25;
-        ::overact::guard::reach(t40, "leg3")?;
-        let t41 = ::overact::math::sqrt(t40);
-        let t43 = 0.5 * t32 + t35 * t41;
-        let t44 = t32 - t43;
-        let t47 = 0.5 * t35 - t32 * t41;
-        let t48 = t35 - t47;
-        let t55 = t48 * (t43 + t44 - t44) + t44 * (t48 - (t47 + t48));
-        ::overact::guard::leg(t55, 0.078399138102973, "leg3")?;
-        let t56 = 1.0 / t55;
-        let g1_vx_leg3 = t44 * t56;
-        let g1_vx_leg2 = t21 * t29;
-        let g1_vy_leg3 = t48 * t56;
-        let t63 = t7 - 0.3950502153918333;
-        let t67 = 0.0784 / (t63 * t63 + t10) - 0.25;
-        ::overact::guard::reach(t67, "leg1")?;
-        let t68 = ::overact::math::sqrt(t67);
-        let t70 = t5 - t63 * t68;
-        let t71 = t4 - t70;
-        let t74 = 0.5 * t63 + t4 * t68;
-        let t75 = t63 - t74;
-        let t82 = t71 * (t74 + t75 - t75) + t75 * (t71 - (t70 + t71));
-        ::overact::guard::leg(t82, 0.078399138102973, "leg1")?;
-        let t83 = 1.0 / t82;
-        let g1_vy_leg1 = t71 * t83;
-        let minus_g1_wz_leg2 = t6 * g1_vy_leg2 + t2 * g1_vx_leg2;
-        let g1_vx_leg1 = t75 * t83;
-        let minus_g1_wz_leg1 = t6 * g1_vy_leg1 + t2 * g1_vx_leg1;
-        let t94 = g1_vy_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vy_leg2;
-        let t98 = g1_vx_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vx_leg2;
-        let g1_wz_leg3 = t6 * g1_vy_leg3 + t2 * g1_vx_leg3;
-        let t106 = g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2;
-        let t108 = g1_vx_leg3 * t94 - g1_vy_leg3 * t98 + g1_wz_leg3 * t106;
-        ::overact::guard::platform(t108, 7.075383197258382, "kept actuators")?;
-        ::overact::guard::platform(t108, 7.075383197258382, "kept actuators")?;
-        ::overact::guard::platform(t108, 7.075383197258382, "kept actuators")?;
-        let t109 = 1.0 / t108;
-        let t110 = (g1_vy_leg2 * g1_vx_leg3 - g1_vx_leg2 * g1_vy_leg3) * t109;
-        let t115 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t109;
-        let t117 = t106 * t109;
-        let t122 = (minus_g1_wz_leg2 * g1_vy_leg3 + g1_vy_leg2 * g1_wz_leg3) * t109;
-        let t127 = 9.090909090909092
-            * (twist[2] * (t2 * twist[2]) + t6 * acceleration[2]);
-        let t132 = (minus_g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * g1_wz_leg3) * t109;
-        let t137 = 9.090909090909092
-            * (t2 * acceleration[2] - twist[2] * (t6 * twist[2]));
-        let t142 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t148 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t109;
-        let t153 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t109;
-        let t159 = t94 * t109;
-        let t161 = t98 * t109;
-        let t170 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t18 = t11 * t14;
+        ::overact::guard::leg(t18, 0.07839913810297301, "leg2")?;
+        let t19 = 1.0 / t18;
+        let minus_g1_vx_leg2 = (t4 - (0.5 * t4 - t8 * t14)) * t19;
+        let t22 = pose[1] - t6 + 0.10970563941232059;
+        let t25 = pose[0] + t2 + 0.3950502153918333;
+        let t28 = t25 * t25 + t22 * t22;
+        let t30 = 0.0784 / t28 - 0.25;
+        ::overact::guard::reach(t30, "leg3")?;
+        let t31 = ::overact::math::sqrt(t30);
+        let t35 = t28 * t31;
+        ::overact::guard::leg(t35, 0.07839913810297301, "leg3")?;
+        let t36 = 1.0 / t35;
+        let g1_vy_leg3 = (t22 - (0.5 * t22 - t25 * t31)) * t36;
+        let t39 = 0.5 * t8;
+        let minus_g1_vy_leg2 = (t8 - (t39 + t4 * t14)) * t19;
+        let g1_vx_leg3 = (t25 - (0.5 * t25 + t22 * t31)) * t36;
+        let t51 = t3 - 0.3950502153918333;
+        let t53 = t51 * t51 + t10;
+        let t55 = 0.0784 / t53 - 0.25;
+        ::overact::guard::reach(t55, "leg1")?;
+        let t56 = ::overact::math::sqrt(t55);
+        let t60 = t53 * t56;
+        ::overact::guard::leg(t60, 0.07839913810297301, "leg1")?;
+        let t61 = 1.0 / t60;
+        let g1_vy_leg1 = (t8 - (t39 - t51 * t56)) * t61;
+        let g1_vx_leg1 = (t51 - (0.5 * t51 + t8 * t56)) * t61;
+        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
+        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
+        let t76 = minus_g1_wz_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_wz_leg2;
+        let t80 = minus_g1_wz_leg1 * minus_g1_vx_leg2 - g1_vx_leg1 * g1_wz_leg2;
+        let t82 = g1_vx_leg3 * t76 - g1_vy_leg3 * t80;
+        ::overact::guard::platform(t82, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t82, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t82, 3.5376915986291904, "kept actuators")?;
+        let t83 = 0.5 / t82;
+        let t84 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3) * t83;
+        let t89 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t83;
+        let t94 = (g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2) * t83;
+        let t95 = t94 * acceleration[2];
+        let t98 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
+        let t106 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t83;
+        let t111 = 9.090909090909092
+            * (twist[2] * (t6 * twist[2]) + t2 * acceleration[2]);
+        let t116 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t83;
+        let t121 = 9.090909090909092
+            * (t6 * acceleration[2] - twist[2] * (t2 * twist[2]));
+        let t128 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t83;
+        let t133 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t83;
+        let t150 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t159 = t94 * t150;
         Ok([
             [
-                t110 * acceleration[2], t122 * t127 + t132 * t137 + t110 * t142,
-                t122 * t137 - t132 * t127 - t110 * t170,
-                t132 * acceleration[1] - t122 * acceleration[0],
+                t84 * acceleration[2], t84 * t98 - (t106 * t111 + t116 * t121),
+                t116 * t111 - t106 * t121 - t84 * t150,
+                t106 * acceleration[0] - t116 * acceleration[1],
             ],
             [
-                -(t115 * acceleration[2]), -(t148 * t127 + t153 * t137 + t115 * t142),
-                t153 * t127 - t148 * t137 + t115 * t170,
-                t148 * acceleration[0] - t153 * acceleration[1],
+                -(t89 * acceleration[2]), -(t128 * t111 + t133 * t121 + t89 * t98),
+                t133 * t111 - t128 * t121 + t89 * t150,
+                t128 * acceleration[0] - t133 * acceleration[1],
             ],
             [
-                t117 * acceleration[2], t117 * t142 - (t159 * t127 + t161 * t137),
-                t161 * t127 - t159 * t137 - t117 * t170,
-                t159 * acceleration[0] - t161 * acceleration[1],
+                t95, t94 * t98 - (t76 * t83 * t111 + t80 * t83 * t121), -(0.11 * t95 + t159),
+                0.11 * t159,
             ],
         ])
     }
@@ -5632,7 +5315,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 133 operations (67 additions, 58 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 136 intermediates.
+    /// 109 operations (47 additions, 54 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 112 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5647,74 +5330,61 @@ impl DualV {
         let t6 = 0.11 * c_phi;
         let t8 = pose[1] + t6 - 0.10970563941232059;
         let t10 = t8 * t8;
-        let t13 = 0.0784 / (t4 * t4 + t10) - 0.25;
+        let t11 = t4 * t4 + t10;
+        let t13 = 0.0784 / t11 - 0.25;
         ::overact::guard::reach(t13, "leg1")?;
         let t14 = ::overact::math::sqrt(t13);
-        let t16 = 0.5 * t4 + t8 * t14;
-        let t17 = t4 - t16;
-        let t18 = 0.5 * t8;
-        let t20 = t18 - t4 * t14;
-        let t21 = t8 - t20;
-        let t28 = t21 * (t16 + t17 - t17) + t17 * (t21 - (t20 + t21));
-        ::overact::guard::leg(t28, 0.078399138102973, "leg1")?;
-        let t29 = 1.0 / t28;
-        let g1_vx_leg1 = t17 * t29;
-        let t32 = t3 + 0.3950502153918333;
-        let t37 = 0.0784 / (t32 * t32 + t10) - 0.25;
-        ::overact::guard::reach(t37, "leg2")?;
-        let t38 = ::overact::math::sqrt(t37);
-        let t40 = 0.5 * t32 - t8 * t38;
-        let t41 = t32 - t40;
-        let t43 = t18 + t32 * t38;
-        let t44 = t8 - t43;
-        let t51 = t44 * (t40 + t41 - t41) + t41 * (t44 - (t43 + t44));
-        ::overact::guard::leg(t51, 0.078399138102973, "leg2")?;
+        let t18 = t11 * t14;
+        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
+        let t19 = 1.0 / t18;
+        let g1_vx_leg1 = (t4 - (0.5 * t4 + t8 * t14)) * t19;
+        let t22 = t3 + 0.3950502153918333;
+        let t25 = t22 * t22 + t10;
+        let t27 = 0.0784 / t25 - 0.25;
+        ::overact::guard::reach(t27, "leg2")?;
+        let t28 = ::overact::math::sqrt(t27);
+        let t32 = t25 * t28;
+        ::overact::guard::leg(t32, 0.07839913810297301, "leg2")?;
+        let t33 = 1.0 / t32;
+        let minus_g1_vx_leg2 = (t22 - (0.5 * t22 - t8 * t28)) * t33;
+        let t37 = pose[0] + t2;
+        let t38 = t37 + 0.3950502153918333;
+        let t41 = pose[1] - t6 + 0.10970563941232059;
+        let t43 = t41 * t41;
+        let t44 = t38 * t38 + t43;
+        let t46 = 0.0784 / t44 - 0.25;
+        ::overact::guard::reach(t46, "leg3")?;
+        let t47 = ::overact::math::sqrt(t46);
+        let t51 = t44 * t47;
+        ::overact::guard::leg(t51, 0.07839913810297301, "leg3")?;
         let t52 = 1.0 / t51;
-        let g1_vx_leg2 = t41 * t52;
-        let t56 = pose[0] + t2;
-        let t57 = t56 + 0.3950502153918333;
-        let t60 = pose[1] - t6 + 0.10970563941232059;
-        let t62 = t60 * t60;
-        let t65 = 0.0784 / (t57 * t57 + t62) - 0.25;
-        ::overact::guard::reach(t65, "leg3")?;
-        let t66 = ::overact::math::sqrt(t65);
-        let t68 = 0.5 * t57 + t60 * t66;
-        let t69 = t57 - t68;
-        let t70 = 0.5 * t60;
-        let t72 = t70 - t57 * t66;
-        let t73 = t60 - t72;
-        let t80 = t73 * (t68 + t69 - t69) + t69 * (t73 - (t72 + t73));
-        ::overact::guard::leg(t80, 0.078399138102973, "leg3")?;
-        let t81 = 1.0 / t80;
-        let g1_vx_leg3 = t69 * t81;
-        let t85 = t56 - 0.3950502153918333;
-        let t90 = 0.0784 / (t85 * t85 + t62) - 0.25;
-        ::overact::guard::reach(t90, "leg4")?;
-        let t91 = ::overact::math::sqrt(t90);
-        let t93 = 0.5 * t85 - t60 * t91;
-        let t94 = t85 - t93;
-        let t96 = t70 + t85 * t91;
-        let t97 = t60 - t96;
-        let t104 = t97 * (t93 + t94 - t94) + t94 * (t97 - (t96 + t97));
-        ::overact::guard::leg(t104, 0.078399138102973, "leg4")?;
-        let t105 = 1.0 / t104;
-        let g1_vx_leg4 = t94 * t105;
-        let g1_vy_leg1 = t21 * t29;
-        let g1_vy_leg2 = t44 * t52;
-        let g1_vy_leg3 = t73 * t81;
-        let g1_vy_leg4 = t97 * t105;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
+        let g1_vx_leg3 = (t38 - (0.5 * t38 + t41 * t47)) * t52;
+        let t56 = t37 - 0.3950502153918333;
+        let t59 = t56 * t56 + t43;
+        let t61 = 0.0784 / t59 - 0.25;
+        ::overact::guard::reach(t61, "leg4")?;
+        let t62 = ::overact::math::sqrt(t61);
+        let t66 = t59 * t62;
+        ::overact::guard::leg(t66, 0.07839913810297301, "leg4")?;
+        let t67 = 1.0 / t66;
+        let minus_g1_vx_leg4 = (t56 - (0.5 * t56 - t41 * t62)) * t67;
+        let t71 = 0.5 * t8;
+        let g1_vy_leg1 = (t8 - (t71 - t4 * t14)) * t19;
+        let minus_g1_vy_leg2 = (t8 - (t71 + t22 * t28)) * t33;
+        let t83 = 0.5 * t41;
+        let g1_vy_leg3 = (t41 - (t83 - t38 * t47)) * t52;
+        let minus_g1_vy_leg4 = (t41 - (t83 + t56 * t62)) * t67;
+        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t6 * g1_vx_leg2;
-        let g1_wz_leg4 = t2 * g1_vy_leg4 + t6 * g1_vx_leg4;
+        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
+        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
         Ok([
-            g1_vx_leg1 * torques[0] + g1_vx_leg2 * torques[1] + g1_vx_leg3 * torques[2]
-                + g1_vx_leg4 * torques[3],
-            g1_vy_leg1 * torques[0] + g1_vy_leg2 * torques[1] + g1_vy_leg3 * torques[2]
-                + g1_vy_leg4 * torques[3],
-            g1_wz_leg3 * torques[2]
-                - (minus_g1_wz_leg1 * torques[0] + minus_g1_wz_leg2 * torques[1])
-                + g1_wz_leg4 * torques[3],
+            g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
+                + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3],
+            g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
+                + g1_vy_leg3 * torques[2] - minus_g1_vy_leg4 * torques[3],
+            g1_wz_leg2 * torques[1] - minus_g1_wz_leg1 * torques[0]
+                + g1_wz_leg3 * torques[2] - minus_g1_wz_leg4 * torques[3],
         ])
     }
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
@@ -5725,7 +5395,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 175 operations (78 additions, 88 multiplications, 9 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 178 intermediates.
+    /// 144 operations (55 additions, 80 multiplications, 9 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 147 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5741,99 +5411,86 @@ impl DualV {
         let t7 = pose[0] + t6;
         let t8 = t7 - 0.3950502153918333;
         let t10 = t4 * t4;
-        let t13 = 0.0784 / (t8 * t8 + t10) - 0.25;
+        let t11 = t8 * t8 + t10;
+        let t13 = 0.0784 / t11 - 0.25;
         ::overact::guard::reach(t13, "leg4")?;
         let t14 = ::overact::math::sqrt(t13);
-        let t16 = t5 + t8 * t14;
-        let t17 = t4 - t16;
-        let t20 = 0.5 * t8 - t4 * t14;
-        let t21 = t8 - t20;
-        let t28 = t17 * (t20 + t21 - t21) + t21 * (t17 - (t16 + t17));
-        ::overact::guard::leg(t28, 0.078399138102973, "leg4")?;
-        let t29 = 1.0 / t28;
-        let g1_vy_leg4 = t17 * t29;
-        let t32 = pose[1] + t2 - 0.10970563941232059;
-        let t33 = 0.5 * t32;
-        let t34 = pose[0] - t6;
-        let t35 = t34 + 0.3950502153918333;
-        let t37 = t32 * t32;
-        let t40 = 0.0784 / (t35 * t35 + t37) - 0.25;
-        ::overact::guard::reach(t40, "leg2")?;
-        let t41 = ::overact::math::sqrt(t40);
-        let t43 = t33 + t35 * t41;
-        let t44 = t32 - t43;
-        let t47 = 0.5 * t35 - t32 * t41;
-        let t48 = t35 - t47;
-        let t55 = t44 * (t47 + t48 - t48) + t48 * (t44 - (t43 + t44));
-        ::overact::guard::leg(t55, 0.078399138102973, "leg2")?;
-        let t56 = 1.0 / t55;
-        let g1_vy_leg2 = t44 * t56;
-        let g1_vx_leg2 = t48 * t56;
-        let minus_g1_wz_leg2 = t6 * g1_vy_leg2 + t2 * g1_vx_leg2;
-        let t62 = t7 + 0.3950502153918333;
-        let t67 = 0.0784 / (t62 * t62 + t10) - 0.25;
-        ::overact::guard::reach(t67, "leg3")?;
-        let t68 = ::overact::math::sqrt(t67);
-        let t70 = 0.5 * t62 + t4 * t68;
-        let t71 = t62 - t70;
-        let t73 = t5 - t62 * t68;
-        let t74 = t4 - t73;
-        let t81 = t74 * (t70 + t71 - t71) + t71 * (t74 - (t73 + t74));
-        ::overact::guard::leg(t81, 0.078399138102973, "leg3")?;
-        let t82 = 1.0 / t81;
-        let g1_vx_leg3 = t71 * t82;
-        let g1_vy_leg3 = t74 * t82;
+        let t18 = t11 * t14;
+        ::overact::guard::leg(t18, 0.07839913810297301, "leg4")?;
+        let t19 = 1.0 / t18;
+        let minus_g1_vy_leg4 = (t4 - (t5 + t8 * t14)) * t19;
+        let t22 = pose[1] + t2 - 0.10970563941232059;
+        let t23 = 0.5 * t22;
+        let t24 = pose[0] - t6;
+        let t25 = t24 + 0.3950502153918333;
+        let t27 = t22 * t22;
+        let t28 = t25 * t25 + t27;
+        let t30 = 0.0784 / t28 - 0.25;
+        ::overact::guard::reach(t30, "leg2")?;
+        let t31 = ::overact::math::sqrt(t30);
+        let t35 = t28 * t31;
+        ::overact::guard::leg(t35, 0.07839913810297301, "leg2")?;
+        let t36 = 1.0 / t35;
+        let minus_g1_vy_leg2 = (t22 - (t23 + t25 * t31)) * t36;
+        let minus_g1_vx_leg2 = (t25 - (0.5 * t25 - t22 * t31)) * t36;
+        let g1_wz_leg2 = t6 * minus_g1_vy_leg2 + t2 * minus_g1_vx_leg2;
+        let t46 = t7 + 0.3950502153918333;
+        let t49 = t46 * t46 + t10;
+        let t51 = 0.0784 / t49 - 0.25;
+        ::overact::guard::reach(t51, "leg3")?;
+        let t52 = ::overact::math::sqrt(t51);
+        let t56 = t49 * t52;
+        ::overact::guard::leg(t56, 0.07839913810297301, "leg3")?;
+        let t57 = 1.0 / t56;
+        let g1_vx_leg3 = (t46 - (0.5 * t46 + t4 * t52)) * t57;
+        let g1_vy_leg3 = (t4 - (t5 - t46 * t52)) * t57;
         let g1_wz_leg3 = t6 * g1_vy_leg3 + t2 * g1_vx_leg3;
-        let t91 = t34 - 0.3950502153918333;
-        let t95 = 0.0784 / (t91 * t91 + t37) - 0.25;
-        ::overact::guard::reach(t95, "leg1")?;
-        let t96 = ::overact::math::sqrt(t95);
-        let t98 = t33 - t91 * t96;
-        let t99 = t32 - t98;
-        let t102 = 0.5 * t91 + t32 * t96;
-        let t103 = t91 - t102;
-        let t110 = t99 * (t102 + t103 - t103) + t103 * (t99 - (t98 + t99));
-        ::overact::guard::leg(t110, 0.078399138102973, "leg1")?;
-        let t111 = 1.0 / t110;
-        let g1_vy_leg1 = t99 * t111;
-        let g1_vx_leg1 = t103 * t111;
+        let t69 = t24 - 0.3950502153918333;
+        let t71 = t69 * t69 + t27;
+        let t73 = 0.0784 / t71 - 0.25;
+        ::overact::guard::reach(t73, "leg1")?;
+        let t74 = ::overact::math::sqrt(t73);
+        let t78 = t71 * t74;
+        ::overact::guard::leg(t78, 0.07839913810297301, "leg1")?;
+        let t79 = 1.0 / t78;
+        let g1_vy_leg1 = (t22 - (t23 - t69 * t74)) * t79;
+        let g1_vx_leg1 = (t69 - (0.5 * t69 + t22 * t74)) * t79;
         let minus_g1_wz_leg1 = t6 * g1_vy_leg1 + t2 * g1_vx_leg1;
-        let t119 = g1_vy_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vy_leg2;
-        let t123 = g1_vx_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vx_leg2;
-        let t128 = g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2;
-        let t130 = g1_vx_leg3 * t119 - g1_vy_leg3 * t123 + g1_wz_leg3 * t128;
-        ::overact::guard::platform(t130, 7.075383197258382, "kept actuators")?;
-        ::overact::guard::platform(t130, 7.075383197258382, "kept actuators")?;
-        ::overact::guard::platform(t130, 7.075383197258382, "kept actuators")?;
-        let t131 = 1.0 / t130;
-        let g1_vx_leg4 = t21 * t29;
-        let t140 = g1_vy_leg4
-            * ((minus_g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * g1_wz_leg3) * t131)
-            - g1_vx_leg4
-                * ((minus_g1_wz_leg2 * g1_vy_leg3 + g1_vy_leg2 * g1_wz_leg3) * t131);
-        let g1_wz_leg4 = t6 * g1_vy_leg4 + t2 * g1_vx_leg4;
-        let t162 = g1_vx_leg4
-            * ((minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t131)
-            - g1_vy_leg4
-                * ((minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t131);
-        let t180 = torques[2]
-            + torques[3]
-                * (g1_vx_leg4 * (t119 * t131) - g1_vy_leg4 * (t123 * t131)
-                    + g1_wz_leg4 * (t128 * t131));
+        let t91 = minus_g1_wz_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_wz_leg2;
+        let t95 = minus_g1_wz_leg1 * minus_g1_vx_leg2 - g1_vx_leg1 * g1_wz_leg2;
+        let t97 = g1_vx_leg3 * t91 - g1_vy_leg3 * t95;
+        ::overact::guard::platform(t97, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t97, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t97, 3.5376915986291904, "kept actuators")?;
+        let t98 = 0.5 / t97;
+        let minus_g1_vx_leg4 = (t8 - (0.5 * t8 - t4 * t14)) * t19;
+        let t111 = minus_g1_vy_leg4
+            * ((g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t98)
+            - minus_g1_vx_leg4
+                * ((g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t98);
+        let minus_g1_wz_leg4 = t6 * minus_g1_vy_leg4 + t2 * minus_g1_vx_leg4;
+        let t133 = minus_g1_vy_leg4
+            * ((minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t98)
+            - minus_g1_vx_leg4
+                * ((minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t98);
         Ok([
             torques[0]
                 + torques[3]
-                    * (t140
-                        + g1_wz_leg4
-                            * ((g1_vy_leg2 * g1_vx_leg3 - g1_vx_leg2 * g1_vy_leg3)
-                                * t131)),
+                    * (t111
+                        - minus_g1_wz_leg4
+                            * ((minus_g1_vx_leg2 * g1_vy_leg3
+                                - minus_g1_vy_leg2 * g1_vx_leg3) * t98)),
             torques[1]
                 + torques[3]
-                    * (t162
-                        - g1_wz_leg4
+                    * (t133
+                        + minus_g1_wz_leg4
                             * ((g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
-                                * t131)),
-            t180,
+                                * t98)),
+            torques[2]
+                + torques[3]
+                    * (2.0
+                        * (minus_g1_vy_leg4 * (t95 * t98)
+                            - minus_g1_vx_leg4 * (t91 * t98))),
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -5846,7 +5503,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 642 operations (297 additions, 334 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 656 intermediates.
+    /// 598 operations (261 additions, 326 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 612 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5869,286 +5526,275 @@ impl DualV {
         let t14 = ::overact::math::sqrt(t13);
         let t16 = 0.5 * t4 + t8 * t14;
         let t17 = t4 - t16;
-        let t18 = 0.5 * t8;
-        let t20 = t18 - t4 * t14;
-        let t21 = t8 - t20;
-        let t23 = t16 + t17 - t17;
-        let t26 = t21 - (t20 + t21);
-        let t28 = t21 * t23 + t17 * t26;
-        ::overact::guard::leg(t28, 0.078399138102973, "leg1")?;
-        let t29 = 1.0 / t28;
-        let g1_vx_leg1 = t17 * t29;
-        let t31 = t6 * acceleration[2];
-        let t33 = t2 * twist[2];
+        let t18 = t11 * t14;
+        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
+        let t19 = 1.0 / t18;
+        let g1_vx_leg1 = t17 * t19;
+        let t21 = t6 * acceleration[2];
+        let t23 = t2 * twist[2];
+        let t24 = twist[2] * t23;
+        let t25 = acceleration[0] - t21 + t24;
+        let t27 = 0.5 * t8;
+        let t29 = t27 - t4 * t14;
+        let t30 = t8 - t29;
+        let t31 = t2 * acceleration[2];
+        let t33 = t6 * twist[2];
         let t34 = twist[2] * t33;
-        let t35 = acceleration[0] - t31 + t34;
-        let t36 = t6 * twist[2];
-        let t37 = twist[0] - t36;
-        let g1_vy_leg1 = t21 * t29;
-        let t40 = twist[1] - t33;
-        let rate_1_leg1 = g1_vx_leg1 * t37 + g1_vy_leg1 * t40;
-        let t43 = rate_1_leg1 * rate_1_leg1;
-        let g2_vy_leg1 = t26 * t29;
-        let minus_g2_vx_leg1 = t23 * t29;
-        let rate_2_leg1 = g2_vy_leg1 * t40 - minus_g2_vx_leg1 * t37;
-        let t50 = rate_2_leg1 - rate_1_leg1;
-        let t51 = rate_1_leg1 + t50;
-        let t52 = t51 * t51;
-        let t55 = t35 + t16 * t43 + t17 * t52;
-        let t57 = t2 * acceleration[2];
-        let t59 = twist[2] * t36;
-        let t60 = acceleration[1] - t57 - t59;
-        let t64 = t60 + t20 * t43 + t21 * t52;
-        let rate_dot_1_leg1 = g1_vx_leg1 * t55 + g1_vy_leg1 * t64;
-        let t75 = t11 * t14;
-        let t79 = t11 - 0.1568;
-        let t82 = 3.5714285714285716 * (t75 * rate_dot_1_leg1)
-            - 1.7857142857142858 * (t79 * t43);
-        let rate_dot_2_leg1 = g2_vy_leg1 * t64 - minus_g2_vx_leg1 * t55;
-        let t89 = rate_dot_1_leg1 + rate_dot_2_leg1 - rate_dot_1_leg1;
-        let t102 = 3.5714285714285716 * (t75 * t43)
-            + 1.7857142857142858 * (t79 * rate_dot_1_leg1);
-        let t106 = 3.5714285714285716 * t75
-            * (parameters[8] * t82 - (parameters[6] * t52 + parameters[7] * t89))
-            + 1.7857142857142858 * t79
-                * (parameters[6] * t89 - parameters[7] * t52 + parameters[8] * t102);
-        let t111 = parameters[9] * t50 + ::overact::math::signed(parameters[10], t50)
-            + parameters[11];
-        let t112 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
+        let t35 = acceleration[1] - t31 - t34;
+        let minus_g2_vx_leg1 = t16 * t19;
+        let t39 = twist[0] - t33;
+        let minus_g2_vy_leg1 = t29 * t19;
+        let t42 = twist[1] - t23;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t39 + minus_g2_vy_leg1 * t42;
+        let t45 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t47 = t17 * t25 + t30 * t35 + 0.0784 * t45;
+        let g1_vy_leg1 = t30 * t19;
+        let rate_1_leg1 = g1_vx_leg1 * t39 + g1_vy_leg1 * t42;
+        let t52 = rate_1_leg1 * rate_1_leg1;
+        let t53 = t11 - 0.1568;
+        let t54 = 0.5 * t53;
+        let rate_dot_1_leg1 = t19 * (t47 + t52 * t54);
+        let minus_rate_dot_2_leg1 = t19
+            * (t16 * t25 + t29 * t35 + 0.0784 * t52 + t45 * t54);
+        let t78 = 3.5714285714285716 * t47;
+        let t87 = 3.5714285714285716 * (t18 * t52)
+            + 1.7857142857142858 * (t53 * rate_dot_1_leg1);
+        let t94 = 3.5714285714285716 * t18
+            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t45
+                + parameters[8] * t78)
+            + 1.7857142857142858 * t53
+                * (parameters[8] * t87
+                    - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t45));
+        let t96 = rate_1_leg1 + minus_rate_2_leg1;
+        let t100 = parameters[11]
+            - (parameters[9] * t96 + ::overact::math::signed(parameters[10], t96));
+        let t101 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
             + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t106
-            - t111;
-        let t120 = twist[2] - rate_2_leg1;
-        let t124 = parameters[12] * t120 + ::overact::math::signed(parameters[13], t120)
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t94
+            - t100;
+        let t109 = minus_rate_2_leg1 + twist[2];
+        let t113 = parameters[12] * t109 + ::overact::math::signed(parameters[13], t109)
             + parameters[14];
-        let t125 = parameters[5] * t89 + parameters[6] * t102 - parameters[7] * t82
-            + t111 - t124;
-        let t128 = t3 + 0.3950502153918333;
-        let t131 = t128 * t128 + t10;
-        let t133 = 0.0784 / t131 - 0.25;
-        ::overact::guard::reach(t133, "leg2")?;
-        let t134 = ::overact::math::sqrt(t133);
-        let t136 = 0.5 * t128 - t8 * t134;
-        let t137 = t128 - t136;
-        let t139 = t18 + t128 * t134;
-        let t140 = t8 - t139;
-        let t142 = t136 + t137 - t137;
-        let t145 = t140 - (t139 + t140);
-        let t147 = t140 * t142 + t137 * t145;
-        ::overact::guard::leg(t147, 0.078399138102973, "leg2")?;
-        let t148 = 1.0 / t147;
-        let g1_vx_leg2 = t137 * t148;
-        let g1_vy_leg2 = t140 * t148;
-        let rate_1_leg2 = g1_vx_leg2 * t37 + g1_vy_leg2 * t40;
-        let t154 = rate_1_leg2 * rate_1_leg2;
-        let g2_vy_leg2 = t145 * t148;
-        let minus_g2_vx_leg2 = t142 * t148;
-        let rate_2_leg2 = g2_vy_leg2 * t40 - minus_g2_vx_leg2 * t37;
-        let t161 = rate_2_leg2 - rate_1_leg2;
-        let t162 = rate_1_leg2 + t161;
-        let t163 = t162 * t162;
-        let t166 = t35 + t136 * t154 + t137 * t163;
-        let t171 = t60 + t139 * t154 + t140 * t163;
-        let rate_dot_1_leg2 = g1_vx_leg2 * t166 + g1_vy_leg2 * t171;
-        let t182 = t131 * t134;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t171 - minus_g2_vx_leg2 * t166;
-        let t189 = rate_dot_1_leg2 + rate_dot_2_leg2 - rate_dot_1_leg2;
-        let t192 = t131 - 0.1568;
-        let t197 = 1.7857142857142858 * (t192 * t154)
-            + 3.5714285714285716 * (t182 * rate_dot_1_leg2);
-        let t209 = 1.7857142857142858 * (t192 * rate_dot_1_leg2)
-            - 3.5714285714285716 * (t182 * t154);
-        let t213 = 3.5714285714285716 * t182
-            * (parameters[21] * t163 + parameters[22] * t189 + parameters[23] * t197)
-            + 1.7857142857142858 * t192
-                * (parameters[21] * t189 - parameters[22] * t163
-                    + parameters[23] * t209);
-        let t218 = parameters[24] * t161 + ::overact::math::signed(parameters[25], t161)
+        let t114 = parameters[6] * t87 - parameters[5] * minus_rate_dot_2_leg1
+            - parameters[7] * t78 + t100 - t113;
+        let t117 = t3 + 0.3950502153918333;
+        let t120 = t117 * t117 + t10;
+        let t122 = 0.0784 / t120 - 0.25;
+        ::overact::guard::reach(t122, "leg2")?;
+        let t123 = ::overact::math::sqrt(t122);
+        let t125 = 0.5 * t117 - t8 * t123;
+        let t126 = t120 * t123;
+        ::overact::guard::leg(t126, 0.07839913810297301, "leg2")?;
+        let t127 = 1.0 / t126;
+        let g2_vx_leg2 = t125 * t127;
+        let t131 = t27 + t117 * t123;
+        let t134 = t117 - t125;
+        let minus_g1_vx_leg2 = t134 * t127;
+        let t137 = t8 - t131;
+        let minus_g1_vy_leg2 = t137 * t127;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t39 + minus_g1_vy_leg2 * t42;
+        let t141 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let g2_vy_leg2 = t131 * t127;
+        let rate_2_leg2 = g2_vx_leg2 * t39 + g2_vy_leg2 * t42;
+        let t148 = rate_2_leg2 * rate_2_leg2;
+        let t149 = t120 - 0.1568;
+        let t150 = 0.5 * t149;
+        let rate_dot_2_leg2 = t127
+            * (t125 * t25 + t131 * t35 + 0.0784 * t141 + t148 * t150);
+        let t161 = t134 * t25 + t137 * t35 + 0.0784 * t148;
+        let minus_rate_dot_1_leg2 = t127 * (t161 + t141 * t150);
+        let t167 = 3.5714285714285716 * (t126 * t141)
+            + 1.7857142857142858 * (t149 * minus_rate_dot_1_leg2);
+        let t170 = 3.5714285714285716 * t161;
+        let t173 = minus_rate_1_leg2 + rate_2_leg2;
+        let t177 = parameters[24] * t173 + ::overact::math::signed(parameters[25], t173)
             + parameters[26];
-        let t219 = parameters[15] * rate_dot_1_leg2 + parameters[16] * rate_dot_1_leg2
-            + parameters[17] * rate_1_leg2
-            + ::overact::math::signed(parameters[18], rate_1_leg2) + parameters[19]
-            + t213 - t218;
-        let t227 = twist[2] - rate_2_leg2;
-        let t231 = parameters[27] * t227 + ::overact::math::signed(parameters[28], t227)
+        let t179 = twist[2] - rate_2_leg2;
+        let t183 = parameters[27] * t179 + ::overact::math::signed(parameters[28], t179)
             + parameters[29];
-        let t232 = parameters[20] * t189 + parameters[21] * t209 + parameters[22] * t197
-            + t218 - t231;
-        let t236 = pose[0] + t2;
-        let t237 = t236 + 0.3950502153918333;
-        let t240 = pose[1] - t6 + 0.10970563941232059;
-        let t242 = t240 * t240;
-        let t243 = t237 * t237 + t242;
-        let t245 = 0.0784 / t243 - 0.25;
-        ::overact::guard::reach(t245, "leg3")?;
-        let t246 = ::overact::math::sqrt(t245);
-        let t248 = 0.5 * t237 + t240 * t246;
-        let t249 = t237 - t248;
-        let t250 = 0.5 * t240;
-        let t252 = t250 - t237 * t246;
-        let t253 = t240 - t252;
-        let t255 = t248 + t249 - t249;
-        let t258 = t253 - (t252 + t253);
-        let t260 = t253 * t255 + t249 * t258;
-        ::overact::guard::leg(t260, 0.078399138102973, "leg3")?;
-        let t261 = 1.0 / t260;
-        let g1_vx_leg3 = t249 * t261;
-        let t264 = acceleration[0] + t31 - t34;
-        let t265 = twist[0] + t36;
-        let g1_vy_leg3 = t253 * t261;
-        let t268 = twist[1] + t33;
-        let rate_1_leg3 = g1_vx_leg3 * t265 + g1_vy_leg3 * t268;
-        let t271 = rate_1_leg3 * rate_1_leg3;
-        let g2_vy_leg3 = t258 * t261;
-        let minus_g2_vx_leg3 = t255 * t261;
-        let rate_2_leg3 = g2_vy_leg3 * t268 - minus_g2_vx_leg3 * t265;
-        let t278 = rate_2_leg3 - rate_1_leg3;
-        let t279 = rate_1_leg3 + t278;
-        let t280 = t279 * t279;
-        let t283 = t264 + t248 * t271 + t249 * t280;
-        let t286 = acceleration[1] + t57 + t59;
-        let t290 = t286 + t252 * t271 + t253 * t280;
-        let rate_dot_1_leg3 = g1_vx_leg3 * t283 + g1_vy_leg3 * t290;
-        let t301 = t243 * t246;
-        let t305 = t243 - 0.1568;
-        let t308 = 3.5714285714285716 * (t301 * rate_dot_1_leg3)
-            - 1.7857142857142858 * (t305 * t271);
-        let rate_dot_2_leg3 = g2_vy_leg3 * t290 - minus_g2_vx_leg3 * t283;
-        let t315 = rate_dot_1_leg3 + rate_dot_2_leg3 - rate_dot_1_leg3;
-        let t328 = 3.5714285714285716 * (t301 * t271)
-            + 1.7857142857142858 * (t305 * rate_dot_1_leg3);
-        let t332 = 3.5714285714285716 * t301
-            * (parameters[38] * t308 - (parameters[36] * t280 + parameters[37] * t315))
-            + 1.7857142857142858 * t305
-                * (parameters[36] * t315 - parameters[37] * t280
-                    + parameters[38] * t328);
-        let t337 = parameters[39] * t278 + ::overact::math::signed(parameters[40], t278)
-            + parameters[41];
-        let t338 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
+        let t184 = parameters[20] * rate_dot_2_leg2 - parameters[21] * t167
+            - parameters[22] * t170 + t177 - t183;
+        let t208 = 1.7857142857142858 * t149
+            * (parameters[21] * rate_dot_2_leg2 - parameters[22] * t148
+                - parameters[23] * t167)
+            - 3.5714285714285716 * t126
+                * (parameters[23] * t170
+                    - (parameters[21] * t148 + parameters[22] * rate_dot_2_leg2));
+        let t210 = parameters[19]
+            - (parameters[16] * minus_rate_dot_1_leg2
+                + parameters[17] * minus_rate_1_leg2
+                + ::overact::math::signed(parameters[18], minus_rate_1_leg2))
+            - parameters[15] * minus_rate_dot_1_leg2 + t208 - t177;
+        let t214 = pose[0] + t2;
+        let t215 = t214 + 0.3950502153918333;
+        let t218 = pose[1] - t6 + 0.10970563941232059;
+        let t220 = t218 * t218;
+        let t221 = t215 * t215 + t220;
+        let t223 = 0.0784 / t221 - 0.25;
+        ::overact::guard::reach(t223, "leg3")?;
+        let t224 = ::overact::math::sqrt(t223);
+        let t226 = 0.5 * t215 + t218 * t224;
+        let t227 = t215 - t226;
+        let t228 = t221 * t224;
+        ::overact::guard::leg(t228, 0.07839913810297301, "leg3")?;
+        let t229 = 1.0 / t228;
+        let g1_vx_leg3 = t227 * t229;
+        let t232 = acceleration[0] + t21 - t24;
+        let t234 = 0.5 * t218;
+        let t236 = t234 - t215 * t224;
+        let t237 = t218 - t236;
+        let t239 = acceleration[1] + t31 + t34;
+        let minus_g2_vx_leg3 = t226 * t229;
+        let t243 = twist[0] + t33;
+        let minus_g2_vy_leg3 = t236 * t229;
+        let t246 = twist[1] + t23;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t243 + minus_g2_vy_leg3 * t246;
+        let t249 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t251 = t227 * t232 + t237 * t239 + 0.0784 * t249;
+        let g1_vy_leg3 = t237 * t229;
+        let rate_1_leg3 = g1_vx_leg3 * t243 + g1_vy_leg3 * t246;
+        let t256 = rate_1_leg3 * rate_1_leg3;
+        let t257 = t221 - 0.1568;
+        let t258 = 0.5 * t257;
+        let rate_dot_1_leg3 = t229 * (t251 + t256 * t258);
+        let minus_rate_dot_2_leg3 = t229
+            * (t226 * t232 + t236 * t239 + 0.0784 * t256 + t249 * t258);
+        let t282 = 3.5714285714285716 * t251;
+        let t291 = 3.5714285714285716 * (t228 * t256)
+            + 1.7857142857142858 * (t257 * rate_dot_1_leg3);
+        let t298 = 3.5714285714285716 * t228
+            * (parameters[37] * minus_rate_dot_2_leg3 - parameters[36] * t249
+                + parameters[38] * t282)
+            + 1.7857142857142858 * t257
+                * (parameters[38] * t291
+                    - (parameters[36] * minus_rate_dot_2_leg3 + parameters[37] * t249));
+        let t300 = rate_1_leg3 + minus_rate_2_leg3;
+        let t304 = parameters[41]
+            - (parameters[39] * t300 + ::overact::math::signed(parameters[40], t300));
+        let t305 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
             + parameters[32] * rate_1_leg3
             + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34]
-            + t332 - t337;
-        let t346 = twist[2] - rate_2_leg3;
-        let t350 = parameters[42] * t346 + ::overact::math::signed(parameters[43], t346)
+            + t298 - t304;
+        let t313 = minus_rate_2_leg3 + twist[2];
+        let t317 = parameters[42] * t313 + ::overact::math::signed(parameters[43], t313)
             + parameters[44];
-        let t351 = parameters[35] * t315 + parameters[36] * t328 - parameters[37] * t308
-            + t337 - t350;
-        let t354 = g1_vx_leg1 * t112 - minus_g2_vx_leg1 * t125 + g1_vx_leg2 * t219
-            - minus_g2_vx_leg2 * t232 + g1_vx_leg3 * t338 - minus_g2_vx_leg3 * t351;
-        let t355 = t236 - 0.3950502153918333;
-        let t358 = t355 * t355 + t242;
-        let t360 = 0.0784 / t358 - 0.25;
-        ::overact::guard::reach(t360, "leg4")?;
-        let t361 = ::overact::math::sqrt(t360);
-        let t363 = 0.5 * t355 - t240 * t361;
-        let t364 = t355 - t363;
-        let t366 = t250 + t355 * t361;
-        let t367 = t240 - t366;
-        let t369 = t363 + t364 - t364;
-        let t372 = t367 - (t366 + t367);
-        let t374 = t367 * t369 + t364 * t372;
-        ::overact::guard::leg(t374, 0.078399138102973, "leg4")?;
-        let t375 = 1.0 / t374;
-        let g1_vx_leg4 = t364 * t375;
-        let g1_vy_leg4 = t367 * t375;
-        let rate_1_leg4 = g1_vx_leg4 * t265 + g1_vy_leg4 * t268;
-        let t381 = rate_1_leg4 * rate_1_leg4;
-        let g2_vy_leg4 = t372 * t375;
-        let minus_g2_vx_leg4 = t369 * t375;
-        let rate_2_leg4 = g2_vy_leg4 * t268 - minus_g2_vx_leg4 * t265;
-        let t388 = rate_2_leg4 - rate_1_leg4;
-        let t389 = rate_1_leg4 + t388;
-        let t390 = t389 * t389;
-        let t393 = t264 + t363 * t381 + t364 * t390;
-        let t398 = t286 + t366 * t381 + t367 * t390;
-        let rate_dot_1_leg4 = g1_vx_leg4 * t393 + g1_vy_leg4 * t398;
-        let t409 = t358 * t361;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t398 - minus_g2_vx_leg4 * t393;
-        let t416 = rate_dot_1_leg4 + rate_dot_2_leg4 - rate_dot_1_leg4;
-        let t419 = t358 - 0.1568;
-        let t424 = 1.7857142857142858 * (t419 * t381)
-            + 3.5714285714285716 * (t409 * rate_dot_1_leg4);
-        let t436 = 1.7857142857142858 * (t419 * rate_dot_1_leg4)
-            - 3.5714285714285716 * (t409 * t381);
-        let t440 = 3.5714285714285716 * t409
-            * (parameters[51] * t390 + parameters[52] * t416 + parameters[53] * t424)
-            + 1.7857142857142858 * t419
-                * (parameters[51] * t416 - parameters[52] * t390
-                    + parameters[53] * t436);
-        let t445 = parameters[54] * t388 + ::overact::math::signed(parameters[55], t388)
+        let t318 = parameters[36] * t291 - parameters[35] * minus_rate_dot_2_leg3
+            - parameters[37] * t282 + t304 - t317;
+        let t321 = g1_vx_leg1 * t101 - minus_g2_vx_leg1 * t114 + g2_vx_leg2 * t184
+            - minus_g1_vx_leg2 * t210 + g1_vx_leg3 * t305 - minus_g2_vx_leg3 * t318;
+        let t322 = t214 - 0.3950502153918333;
+        let t325 = t322 * t322 + t220;
+        let t327 = 0.0784 / t325 - 0.25;
+        ::overact::guard::reach(t327, "leg4")?;
+        let t328 = ::overact::math::sqrt(t327);
+        let t330 = 0.5 * t322 - t218 * t328;
+        let t331 = t325 * t328;
+        ::overact::guard::leg(t331, 0.07839913810297301, "leg4")?;
+        let t332 = 1.0 / t331;
+        let g2_vx_leg4 = t330 * t332;
+        let t336 = t234 + t322 * t328;
+        let t339 = t322 - t330;
+        let minus_g1_vx_leg4 = t339 * t332;
+        let t342 = t218 - t336;
+        let minus_g1_vy_leg4 = t342 * t332;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t243 + minus_g1_vy_leg4 * t246;
+        let t346 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let g2_vy_leg4 = t336 * t332;
+        let rate_2_leg4 = g2_vx_leg4 * t243 + g2_vy_leg4 * t246;
+        let t353 = rate_2_leg4 * rate_2_leg4;
+        let t354 = t325 - 0.1568;
+        let t355 = 0.5 * t354;
+        let rate_dot_2_leg4 = t332
+            * (t330 * t232 + t336 * t239 + 0.0784 * t346 + t353 * t355);
+        let t366 = t339 * t232 + t342 * t239 + 0.0784 * t353;
+        let minus_rate_dot_1_leg4 = t332 * (t366 + t346 * t355);
+        let t372 = 3.5714285714285716 * (t331 * t346)
+            + 1.7857142857142858 * (t354 * minus_rate_dot_1_leg4);
+        let t375 = 3.5714285714285716 * t366;
+        let t378 = minus_rate_1_leg4 + rate_2_leg4;
+        let t382 = parameters[54] * t378 + ::overact::math::signed(parameters[55], t378)
             + parameters[56];
-        let t446 = parameters[45] * rate_dot_1_leg4 + parameters[46] * rate_dot_1_leg4
-            + parameters[47] * rate_1_leg4
-            + ::overact::math::signed(parameters[48], rate_1_leg4) + parameters[49]
-            + t440 - t445;
-        let t454 = twist[2] - rate_2_leg4;
-        let t458 = parameters[57] * t454 + ::overact::math::signed(parameters[58], t454)
+        let t384 = twist[2] - rate_2_leg4;
+        let t388 = parameters[57] * t384 + ::overact::math::signed(parameters[58], t384)
             + parameters[59];
-        let t459 = parameters[50] * t416 + parameters[51] * t436 + parameters[52] * t424
-            + t445 - t458;
-        let t465 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t467 = twist[2] * twist[2];
-        let t477 = parameters[63] * t465
-            - (parameters[61] * t467 + acceleration[2] * parameters[62])
-            - parameters[65] * t467 - acceleration[2] * parameters[66]
-            + parameters[67] * t465;
-        let t484 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t492 = acceleration[2] * parameters[61] - parameters[62] * t467
-            + parameters[63] * t484 + acceleration[2] * parameters[65]
-            - parameters[66] * t467 + parameters[67] * t484;
-        let t495 = t354 + g1_vx_leg4 * t446 - minus_g2_vx_leg4 * t459 + c_phi * t477
-            - s_phi * t492;
-        let t502 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t502, 25.429161076750646, "actuators")?;
-        let t503 = 1.0 / t502;
-        let t511 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
-        let t512 = t511 * t503;
-        let t521 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t511 * t512;
-        ::overact::guard::platform(t521, 25.59236889935335, "actuators")?;
-        let t522 = 1.0 / t521;
-        let t533 = g1_vy_leg1 * t112 + g2_vy_leg1 * t125 + g1_vy_leg2 * t219
-            + g2_vy_leg2 * t232 + g1_vy_leg3 * t338 + g2_vy_leg3 * t351;
-        let t543 = t533 + g1_vy_leg4 * t446 + g2_vy_leg4 * t459 + s_phi * t477
-            + c_phi * t492 - t495 * t512;
+        let t389 = parameters[50] * rate_dot_2_leg4 - parameters[51] * t372
+            - parameters[52] * t375 + t382 - t388;
+        let t413 = 1.7857142857142858 * t354
+            * (parameters[51] * rate_dot_2_leg4 - parameters[52] * t353
+                - parameters[53] * t372)
+            - 3.5714285714285716 * t331
+                * (parameters[53] * t375
+                    - (parameters[51] * t353 + parameters[52] * rate_dot_2_leg4));
+        let t415 = parameters[49]
+            - (parameters[46] * minus_rate_dot_1_leg4
+                + parameters[47] * minus_rate_1_leg4
+                + ::overact::math::signed(parameters[48], minus_rate_1_leg4))
+            - parameters[45] * minus_rate_dot_1_leg4 + t413 - t382;
+        let t421 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t423 = twist[2] * twist[2];
+        let t433 = parameters[63] * t421
+            - (parameters[61] * t423 + acceleration[2] * parameters[62])
+            - parameters[65] * t423 - acceleration[2] * parameters[66]
+            + parameters[67] * t421;
+        let t440 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t448 = acceleration[2] * parameters[61] - parameters[62] * t423
+            + parameters[63] * t440 + acceleration[2] * parameters[65]
+            - parameters[66] * t423 + parameters[67] * t440;
+        let t451 = t321 + g2_vx_leg4 * t389 - minus_g1_vx_leg4 * t415 + c_phi * t433
+            - s_phi * t448;
+        let t458 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t458, 25.429161076750646, "actuators")?;
+        let t459 = 1.0 / t458;
+        let t467 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+        let t468 = t467 * t459;
+        let t477 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
+            - t467 * t468;
+        ::overact::guard::platform(t477, 25.592368899353342, "actuators")?;
+        let t478 = 1.0 / t477;
+        let t489 = g1_vy_leg1 * t101 - minus_g2_vy_leg1 * t114 + g2_vy_leg2 * t184
+            - minus_g1_vy_leg2 * t210 + g1_vy_leg3 * t305 - minus_g2_vy_leg3 * t318;
+        let t499 = t489 + g2_vy_leg4 * t389 - minus_g1_vy_leg4 * t415 + s_phi * t433
+            + c_phi * t448 - t451 * t468;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t6 * g1_vx_leg2;
-        let g1_wz_leg4 = t2 * g1_vy_leg4 + t6 * g1_vx_leg4;
-        let t570 = g1_vx_leg3 * g1_wz_leg3
-            - (g1_vx_leg1 * minus_g1_wz_leg1 + g1_vx_leg2 * minus_g1_wz_leg2)
-            + g1_vx_leg4 * g1_wz_leg4;
-        let t571 = t570 * t503;
-        let t573 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
-            + g1_vy_leg4 * g1_wz_leg4 - t511 * t571;
-        let t574 = t573 * t522;
-        let t585 = minus_g1_wz_leg1 * minus_g1_wz_leg1
-            + minus_g1_wz_leg2 * minus_g1_wz_leg2 + g1_wz_leg3 * g1_wz_leg3
-            + g1_wz_leg4 * g1_wz_leg4 - t570 * t571 - t573 * t574;
-        ::overact::guard::platform(t585, 0.3076928490286828, "actuators")?;
-        let g2_wz_leg1 = t6 * minus_g2_vx_leg1 - t2 * g2_vy_leg1;
-        let g2_wz_leg2 = t6 * minus_g2_vx_leg2 - t2 * g2_vy_leg2;
-        let g2_wz_leg3 = t2 * g2_vy_leg3 - t6 * minus_g2_vx_leg3;
-        let t608 = g2_wz_leg1 * t125 - minus_g1_wz_leg1 * t112 + t124 + g2_wz_leg2 * t232
-            - minus_g1_wz_leg2 * t219 + t231 + g1_wz_leg3 * t338 + g2_wz_leg3 * t351
-            + t350;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 - t6 * minus_g2_vx_leg4;
-        let t627 = acceleration[2] * parameters[60] + parameters[61] * t484
-            - parameters[62] * t465 + acceleration[2] * parameters[64]
-            + parameters[65] * t484 - parameters[66] * t465;
-        let t632 = t608 + g1_wz_leg4 * t446 + g2_wz_leg4 * t459 + t458 + t627
-            - t495 * t571 - t574 * t543;
-        let t633 = t632 / t585;
-        let t635 = t522 * t543 - t574 * t633;
-        let t639 = t495 * t503 - t512 * t635 - t571 * t633;
+        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
+        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
+        let t526 = g1_vx_leg3 * g1_wz_leg3
+            - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+            + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+        let t527 = t526 * t459;
+        let t529 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t467 * t527;
+        let t530 = t529 * t478;
+        let t541 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t526 * t527
+            - t529 * t530;
+        ::overact::guard::platform(t541, 0.3076928490286828, "actuators")?;
+        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
+        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
+        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
+        let t564 = g2_wz_leg1 * t114 - minus_g1_wz_leg1 * t101 + t113 + g1_wz_leg2 * t210
+            - minus_g2_wz_leg2 * t184 + t183 + g1_wz_leg3 * t305
+            - minus_g2_wz_leg3 * t318 + t317;
+        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
+        let t583 = acceleration[2] * parameters[60] + parameters[61] * t440
+            - parameters[62] * t421 + acceleration[2] * parameters[64]
+            + parameters[65] * t440 - parameters[66] * t421;
+        let t588 = t564 + g2_wz_leg4 * t389 - minus_g1_wz_leg4 * t415 + t388 + t583
+            - t451 * t527 - t530 * t499;
+        let t589 = t588 / t541;
+        let t591 = t478 * t499 - t530 * t589;
+        let t595 = t451 * t459 - t468 * t591 - t527 * t589;
         Ok([
-            g1_vx_leg1 * t639 + g1_vy_leg1 * t635 - minus_g1_wz_leg1 * t633,
-            g1_vx_leg2 * t639 + g1_vy_leg2 * t635 - minus_g1_wz_leg2 * t633,
-            g1_vx_leg3 * t639 + g1_vy_leg3 * t635 + g1_wz_leg3 * t633,
-            g1_vx_leg4 * t639 + g1_vy_leg4 * t635 + g1_wz_leg4 * t633,
+            g1_vx_leg1 * t595 + g1_vy_leg1 * t591 - minus_g1_wz_leg1 * t589,
+            g1_wz_leg2 * t589 - (minus_g1_vx_leg2 * t595 + minus_g1_vy_leg2 * t591),
+            g1_vx_leg3 * t595 + g1_vy_leg3 * t591 + g1_wz_leg3 * t589,
+            -(minus_g1_vx_leg4 * t595 + minus_g1_vy_leg4 * t591
+                + minus_g1_wz_leg4 * t589),
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -6419,10 +6065,12 @@ impl DualV {
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
+    /// - `actuators`: q, positions of the actuated joints (m, rad)
+    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
     ///
     /// Output: 4.
     ///
-    /// 739 operations (343 additions, 385 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 753 intermediates.
+    /// 722 operations (315 additions, 396 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 736 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6447,332 +6095,333 @@ impl DualV {
         let t14 = ::overact::math::sqrt(t13);
         let t16 = 0.5 * t4 + t8 * t14;
         let t17 = t4 - t16;
-        let t18 = 0.5 * t8;
-        let t20 = t18 - t4 * t14;
-        let t21 = t8 - t20;
-        let t23 = t16 + t17 - t17;
-        let t26 = t21 - (t20 + t21);
-        let t28 = t21 * t23 + t17 * t26;
-        ::overact::guard::leg(t28, 0.078399138102973, "leg1")?;
-        let t29 = 1.0 / t28;
-        let g1_vx_leg1 = t17 * t29;
-        let t32 = t3 + 0.3950502153918333;
-        let t35 = t32 * t32 + t10;
-        let t37 = 0.0784 / t35 - 0.25;
-        ::overact::guard::reach(t37, "leg2")?;
-        let t38 = ::overact::math::sqrt(t37);
-        let t40 = 0.5 * t32 - t8 * t38;
-        let t41 = t32 - t40;
-        let t43 = t18 + t32 * t38;
-        let t44 = t8 - t43;
-        let t46 = t40 + t41 - t41;
-        let t49 = t44 - (t43 + t44);
-        let t51 = t44 * t46 + t41 * t49;
-        ::overact::guard::leg(t51, 0.078399138102973, "leg2")?;
+        let t18 = t11 * t14;
+        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
+        let t19 = 1.0 / t18;
+        let g1_vx_leg1 = t17 * t19;
+        let t22 = t3 + 0.3950502153918333;
+        let t25 = t22 * t22 + t10;
+        let t27 = 0.0784 / t25 - 0.25;
+        ::overact::guard::reach(t27, "leg2")?;
+        let t28 = ::overact::math::sqrt(t27);
+        let t30 = 0.5 * t22 - t8 * t28;
+        let t31 = t22 - t30;
+        let t32 = t25 * t28;
+        ::overact::guard::leg(t32, 0.07839913810297301, "leg2")?;
+        let t33 = 1.0 / t32;
+        let minus_g1_vx_leg2 = t31 * t33;
+        let t37 = pose[0] + t2;
+        let t38 = t37 + 0.3950502153918333;
+        let t41 = pose[1] - t6 + 0.10970563941232059;
+        let t43 = t41 * t41;
+        let t44 = t38 * t38 + t43;
+        let t46 = 0.0784 / t44 - 0.25;
+        ::overact::guard::reach(t46, "leg3")?;
+        let t47 = ::overact::math::sqrt(t46);
+        let t49 = 0.5 * t38 + t41 * t47;
+        let t50 = t38 - t49;
+        let t51 = t44 * t47;
+        ::overact::guard::leg(t51, 0.07839913810297301, "leg3")?;
         let t52 = 1.0 / t51;
-        let g1_vx_leg2 = t41 * t52;
-        let t56 = pose[0] + t2;
-        let t57 = t56 + 0.3950502153918333;
-        let t60 = pose[1] - t6 + 0.10970563941232059;
-        let t62 = t60 * t60;
-        let t63 = t57 * t57 + t62;
-        let t65 = 0.0784 / t63 - 0.25;
-        ::overact::guard::reach(t65, "leg3")?;
-        let t66 = ::overact::math::sqrt(t65);
-        let t68 = 0.5 * t57 + t60 * t66;
-        let t69 = t57 - t68;
-        let t70 = 0.5 * t60;
-        let t72 = t70 - t57 * t66;
-        let t73 = t60 - t72;
-        let t75 = t68 + t69 - t69;
-        let t78 = t73 - (t72 + t73);
-        let t80 = t73 * t75 + t69 * t78;
-        ::overact::guard::leg(t80, 0.078399138102973, "leg3")?;
-        let t81 = 1.0 / t80;
-        let g1_vx_leg3 = t69 * t81;
-        let t85 = t56 - 0.3950502153918333;
-        let t88 = t85 * t85 + t62;
-        let t90 = 0.0784 / t88 - 0.25;
-        ::overact::guard::reach(t90, "leg4")?;
-        let t91 = ::overact::math::sqrt(t90);
-        let t93 = 0.5 * t85 - t60 * t91;
-        let t94 = t85 - t93;
-        let t96 = t70 + t85 * t91;
-        let t97 = t60 - t96;
-        let t99 = t93 + t94 - t94;
-        let t102 = t97 - (t96 + t97);
-        let t104 = t97 * t99 + t94 * t102;
-        ::overact::guard::leg(t104, 0.078399138102973, "leg4")?;
-        let t105 = 1.0 / t104;
-        let g1_vx_leg4 = t94 * t105;
-        let t108 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t108, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(t108, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(t108, 25.429161076750646, "actuators")?;
-        let t109 = 1.0 / t108;
-        let g1_vy_leg1 = t21 * t29;
+        let g1_vx_leg3 = t50 * t52;
+        let t56 = t37 - 0.3950502153918333;
+        let t59 = t56 * t56 + t43;
+        let t61 = 0.0784 / t59 - 0.25;
+        ::overact::guard::reach(t61, "leg4")?;
+        let t62 = ::overact::math::sqrt(t61);
+        let t64 = 0.5 * t56 - t41 * t62;
+        let t65 = t56 - t64;
+        let t66 = t59 * t62;
+        ::overact::guard::leg(t66, 0.07839913810297301, "leg4")?;
+        let t67 = 1.0 / t66;
+        let minus_g1_vx_leg4 = t65 * t67;
+        let t70 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t70, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(t70, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(t70, 25.429161076750646, "actuators")?;
+        let t71 = 1.0 / t70;
+        let t72 = 0.5 * t8;
+        let t74 = t72 - t4 * t14;
+        let t75 = t8 - t74;
+        let g1_vy_leg1 = t75 * t19;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let g1_vy_leg2 = t44 * t52;
-        let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t6 * g1_vx_leg2;
-        let g1_vy_leg3 = t73 * t81;
+        let t82 = t72 + t22 * t28;
+        let t83 = t8 - t82;
+        let minus_g1_vy_leg2 = t83 * t33;
+        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
+        let t90 = 0.5 * t41;
+        let t92 = t90 - t38 * t47;
+        let t93 = t41 - t92;
+        let g1_vy_leg3 = t93 * t52;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let g1_vy_leg4 = t97 * t105;
-        let g1_wz_leg4 = t2 * g1_vy_leg4 + t6 * g1_vx_leg4;
-        let t139 = g1_vx_leg3 * g1_wz_leg3
-            - (g1_vx_leg1 * minus_g1_wz_leg1 + g1_vx_leg2 * minus_g1_wz_leg2)
-            + g1_vx_leg4 * g1_wz_leg4;
-        let t140 = t139 * t109;
-        let t156 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
-        let t158 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
-            + g1_vy_leg4 * g1_wz_leg4 - t156 * t140;
-        let t166 = t156 * t109;
-        let t168 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t156 * t166;
-        ::overact::guard::platform(t168, 25.59236889935335, "actuators")?;
-        ::overact::guard::platform(t168, 25.59236889935335, "actuators")?;
-        ::overact::guard::platform(t168, 25.59236889935335, "actuators")?;
-        let t169 = 1.0 / t168;
-        let t170 = t158 * t169;
-        let t172 = minus_g1_wz_leg1 * minus_g1_wz_leg1
-            + minus_g1_wz_leg2 * minus_g1_wz_leg2 + g1_wz_leg3 * g1_wz_leg3
-            + g1_wz_leg4 * g1_wz_leg4 - t139 * t140 - t158 * t170;
-        ::overact::guard::platform(t172, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t172, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t172, 0.3076928490286828, "actuators")?;
-        let t173 = 1.0 / t172;
-        let t187 = g1_vx_leg1 * actuator_velocities[0]
-            + g1_vx_leg2 * actuator_velocities[1] + g1_vx_leg3 * actuator_velocities[2]
-            + g1_vx_leg4 * actuator_velocities[3];
-        let t198 = g1_vy_leg1 * actuator_velocities[0]
-            + g1_vy_leg2 * actuator_velocities[1] + g1_vy_leg3 * actuator_velocities[2]
-            + g1_vy_leg4 * actuator_velocities[3] - t187 * t166;
-        let t200 = g1_wz_leg3 * actuator_velocities[2]
-            - (minus_g1_wz_leg1 * actuator_velocities[0]
-                + minus_g1_wz_leg2 * actuator_velocities[1])
-            + g1_wz_leg4 * actuator_velocities[3] - t187 * t140 - t170 * t198;
-        let rate_3_leg1 = t173 * t200;
-        let t202 = t2 * rate_3_leg1;
-        let t203 = rate_3_leg1 * t202;
-        let t207 = t169 * t198 - t170 * rate_3_leg1;
-        let t211 = t187 * t109 - t166 * t207 - t140 * rate_3_leg1;
-        let t212 = t6 * rate_3_leg1;
-        let t213 = t211 - t212;
-        let t215 = t207 - t202;
-        let rate_1_leg1 = g1_vx_leg1 * t213 + g1_vy_leg1 * t215;
-        let t218 = rate_1_leg1 * rate_1_leg1;
-        let g2_vy_leg1 = t26 * t29;
-        let minus_g2_vx_leg1 = t23 * t29;
-        let rate_2_leg1 = g2_vy_leg1 * t215 - minus_g2_vx_leg1 * t213;
-        let t225 = rate_2_leg1 - rate_1_leg1;
-        let t226 = rate_1_leg1 + t225;
-        let t227 = t226 * t226;
-        let t229 = t16 * t218 + t17 * t227;
-        let t234 = t20 * t218 + t21 * t227;
-        let t235 = rate_3_leg1 * t212;
-        let rate_dot_1_leg1 = g1_vx_leg1 * (t203 + t229) + g1_vy_leg1 * (t234 - t235);
-        let t239 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let rate_1_leg2 = g1_vx_leg2 * t213 + g1_vy_leg2 * t215;
-        let t244 = rate_1_leg2 * rate_1_leg2;
-        let g2_vy_leg2 = t49 * t52;
-        let minus_g2_vx_leg2 = t46 * t52;
-        let rate_2_leg2 = g2_vy_leg2 * t215 - minus_g2_vx_leg2 * t213;
-        let t251 = rate_2_leg2 - rate_1_leg2;
-        let t252 = rate_1_leg2 + t251;
-        let t253 = t252 * t252;
-        let t255 = t40 * t244 + t41 * t253;
-        let t260 = t43 * t244 + t44 * t253;
-        let rate_dot_1_leg2 = g1_vx_leg2 * (t203 + t255) + g1_vy_leg2 * (t260 - t235);
-        let t264 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let t267 = t211 + t212;
-        let t269 = t207 + t202;
-        let rate_1_leg3 = g1_vx_leg3 * t267 + g1_vy_leg3 * t269;
-        let t272 = rate_1_leg3 * rate_1_leg3;
-        let g2_vy_leg3 = t78 * t81;
-        let minus_g2_vx_leg3 = t75 * t81;
-        let rate_2_leg3 = g2_vy_leg3 * t269 - minus_g2_vx_leg3 * t267;
-        let t279 = rate_2_leg3 - rate_1_leg3;
-        let t280 = rate_1_leg3 + t279;
-        let t281 = t280 * t280;
-        let t283 = t68 * t272 + t69 * t281;
-        let t288 = t72 * t272 + t73 * t281;
-        let rate_dot_1_leg3 = g1_vx_leg3 * (t283 - t203) + g1_vy_leg3 * (t235 + t288);
-        let t292 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let rate_1_leg4 = g1_vx_leg4 * t267 + g1_vy_leg4 * t269;
-        let t298 = rate_1_leg4 * rate_1_leg4;
-        let g2_vy_leg4 = t102 * t105;
-        let minus_g2_vx_leg4 = t99 * t105;
-        let rate_2_leg4 = g2_vy_leg4 * t269 - minus_g2_vx_leg4 * t267;
-        let t305 = rate_2_leg4 - rate_1_leg4;
-        let t306 = rate_1_leg4 + t305;
-        let t307 = t306 * t306;
-        let t309 = t93 * t298 + t94 * t307;
-        let t314 = t96 * t298 + t97 * t307;
-        let rate_dot_1_leg4 = g1_vx_leg4 * (t309 - t203) + g1_vy_leg4 * (t235 + t314);
-        let t318 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t320 = g1_vx_leg1 * t239 + g1_vx_leg2 * t264 + g1_vx_leg3 * t292
-            + g1_vx_leg4 * t318;
-        let t330 = g1_vy_leg1 * t239 + g1_vy_leg2 * t264 + g1_vy_leg3 * t292
-            + g1_vy_leg4 * t318 - t166 * t320;
-        let t342 = g1_wz_leg3 * t292
-            - (minus_g1_wz_leg1 * t239 + minus_g1_wz_leg2 * t264) + g1_wz_leg4 * t318
-            - t140 * t320 - t170 * t330;
-        let rate_dot_3_leg1 = t173 * t342;
-        let t345 = t169 * t330 - t170 * rate_dot_3_leg1;
-        let t349 = t109 * t320 - t166 * t345 - t140 * rate_dot_3_leg1;
-        let t350 = t6 * rate_dot_3_leg1;
-        let t352 = t349 - t350 + t203;
-        let t353 = t352 + t229;
-        let t355 = t2 * rate_dot_3_leg1;
-        let t357 = t345 - t355 - t235;
-        let t358 = t357 + t234;
-        let rate_dot_1_leg1_2 = g1_vx_leg1 * t353 + g1_vy_leg1 * t358;
-        let t369 = t11 * t14;
-        let t373 = t11 - 0.1568;
-        let t376 = 3.5714285714285716 * (t369 * rate_dot_1_leg1_2)
-            - 1.7857142857142858 * (t373 * t218);
-        let rate_dot_2_leg1 = g2_vy_leg1 * t358 - minus_g2_vx_leg1 * t353;
-        let t383 = rate_dot_1_leg1_2 + rate_dot_2_leg1 - rate_dot_1_leg1_2;
-        let t396 = 3.5714285714285716 * (t369 * t218)
-            + 1.7857142857142858 * (t373 * rate_dot_1_leg1_2);
-        let t400 = 3.5714285714285716 * t369
-            * (parameters[8] * t376 - (t227 * parameters[6] + parameters[7] * t383))
-            + 1.7857142857142858 * t373
-                * (parameters[6] * t383 - t227 * parameters[7] + parameters[8] * t396);
-        let t405 = t225 * parameters[9] + ::overact::math::signed(parameters[10], t225)
-            + parameters[11];
-        let t406 = parameters[0] * rate_dot_1_leg1_2 + parameters[1] * rate_dot_1_leg1_2
+        let t101 = t90 + t56 * t62;
+        let t102 = t41 - t101;
+        let minus_g1_vy_leg4 = t102 * t67;
+        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
+        let t115 = g1_vx_leg3 * g1_wz_leg3
+            - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+            + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+        let t116 = t115 * t71;
+        let t132 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+        let t134 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t132 * t116;
+        let t142 = t132 * t71;
+        let t144 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
+            - t132 * t142;
+        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
+        let t145 = 1.0 / t144;
+        let t146 = t134 * t145;
+        let t148 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t115 * t116
+            - t134 * t146;
+        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
+        let t149 = 1.0 / t148;
+        let t163 = g1_vx_leg1 * actuator_velocities[0]
+            - minus_g1_vx_leg2 * actuator_velocities[1]
+            + g1_vx_leg3 * actuator_velocities[2]
+            - minus_g1_vx_leg4 * actuator_velocities[3];
+        let t174 = g1_vy_leg1 * actuator_velocities[0]
+            - minus_g1_vy_leg2 * actuator_velocities[1]
+            + g1_vy_leg3 * actuator_velocities[2]
+            - minus_g1_vy_leg4 * actuator_velocities[3] - t163 * t142;
+        let t176 = g1_wz_leg2 * actuator_velocities[1]
+            - minus_g1_wz_leg1 * actuator_velocities[0]
+            + g1_wz_leg3 * actuator_velocities[2]
+            - minus_g1_wz_leg4 * actuator_velocities[3] - t163 * t116 - t146 * t174;
+        let rate_3_leg1 = t149 * t176;
+        let t178 = t6 * rate_3_leg1;
+        let t179 = rate_3_leg1 * t178;
+        let t181 = t2 * rate_3_leg1;
+        let t182 = rate_3_leg1 * t181;
+        let t184 = t75 * t179 - t17 * t182;
+        let minus_g2_vx_leg1 = t16 * t19;
+        let t189 = t145 * t174 - t146 * rate_3_leg1;
+        let t193 = t163 * t71 - t142 * t189 - t116 * rate_3_leg1;
+        let t194 = t193 - t178;
+        let minus_g2_vy_leg1 = t74 * t19;
+        let t197 = t189 - t181;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t194 + minus_g2_vy_leg1 * t197;
+        let t200 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t201 = 0.0784 * t200;
+        let rate_1_leg1 = g1_vx_leg1 * t194 + g1_vy_leg1 * t197;
+        let t206 = rate_1_leg1 * rate_1_leg1;
+        let t207 = t11 - 0.1568;
+        let t208 = 0.5 * t207;
+        let t209 = t206 * t208;
+        let minus_rate_dot_1_leg1 = t19 * (t184 - t201 - t209);
+        let t212 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let g2_vx_leg2 = t30 * t33;
+        let g2_vy_leg2 = t82 * t33;
+        let rate_2_leg2 = g2_vx_leg2 * t194 + g2_vy_leg2 * t197;
+        let t222 = rate_2_leg2 * rate_2_leg2;
+        let t223 = 0.0784 * t222;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t194 + minus_g1_vy_leg2 * t197;
+        let t228 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t229 = t25 - 0.1568;
+        let t230 = 0.5 * t229;
+        let t231 = t228 * t230;
+        let rate_dot_1_leg2 = t33 * (t83 * t179 - t31 * t182 - t223 - t231);
+        let t234 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let minus_g2_vx_leg3 = t49 * t52;
+        let t241 = t193 + t178;
+        let minus_g2_vy_leg3 = t92 * t52;
+        let t244 = t189 + t181;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t241 + minus_g2_vy_leg3 * t244;
+        let t247 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t248 = 0.0784 * t247;
+        let rate_1_leg3 = g1_vx_leg3 * t241 + g1_vy_leg3 * t244;
+        let t253 = rate_1_leg3 * rate_1_leg3;
+        let t254 = t44 - 0.1568;
+        let t255 = 0.5 * t254;
+        let t256 = t253 * t255;
+        let minus_rate_dot_1_leg3 = t52 * (t50 * t182 - t93 * t179 - t248 - t256);
+        let t259 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = t64 * t67;
+        let g2_vy_leg4 = t101 * t67;
+        let rate_2_leg4 = g2_vx_leg4 * t241 + g2_vy_leg4 * t244;
+        let t270 = rate_2_leg4 * rate_2_leg4;
+        let t271 = 0.0784 * t270;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t241 + minus_g1_vy_leg4 * t244;
+        let t276 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t277 = t59 - 0.1568;
+        let t278 = 0.5 * t277;
+        let t279 = t276 * t278;
+        let rate_dot_1_leg4 = t67 * (t65 * t182 - t102 * t179 - t271 - t279);
+        let t282 = actuator_accelerations[3] - rate_dot_1_leg4;
+        let t284 = g1_vx_leg1 * t212 - minus_g1_vx_leg2 * t234 + g1_vx_leg3 * t259
+            - minus_g1_vx_leg4 * t282;
+        let t294 = g1_vy_leg1 * t212 - minus_g1_vy_leg2 * t234 + g1_vy_leg3 * t259
+            - minus_g1_vy_leg4 * t282 - t142 * t284;
+        let t306 = g1_wz_leg2 * t234 - minus_g1_wz_leg1 * t212 + g1_wz_leg3 * t259
+            - minus_g1_wz_leg4 * t282 - t116 * t284 - t146 * t294;
+        let rate_dot_3_leg1 = t149 * t306;
+        let t309 = t145 * t294 - t146 * rate_dot_3_leg1;
+        let t313 = t71 * t284 - t142 * t309 - t116 * rate_dot_3_leg1;
+        let t314 = t6 * rate_dot_3_leg1;
+        let t316 = t313 - t314 + t182;
+        let t318 = t2 * rate_dot_3_leg1;
+        let t320 = t309 - t318 - t179;
+        let t323 = t17 * t316 + t75 * t320 + t201;
+        let rate_dot_1_leg1 = t19 * (t323 + t209);
+        let t338 = 0.0784 * t206;
+        let t340 = t200 * t208;
+        let minus_rate_dot_2_leg1 = t19 * (t16 * t316 + t74 * t320 + t338 + t340);
+        let t346 = 3.5714285714285716 * t323;
+        let t352 = 3.5714285714285716 * (t18 * t206);
+        let t355 = t352 + 1.7857142857142858 * (t207 * rate_dot_1_leg1);
+        let t362 = 3.5714285714285716 * t18
+            * (parameters[7] * minus_rate_dot_2_leg1 - t200 * parameters[6]
+                + parameters[8] * t346)
+            + 1.7857142857142858 * t207
+                * (parameters[8] * t355
+                    - (parameters[6] * minus_rate_dot_2_leg1 + t200 * parameters[7]));
+        let t364 = rate_1_leg1 + minus_rate_2_leg1;
+        let t368 = parameters[11]
+            - (t364 * parameters[9] + ::overact::math::signed(parameters[10], t364));
+        let t369 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
             + rate_1_leg1 * parameters[2]
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t400
-            - t405;
-        let t414 = rate_3_leg1 - rate_2_leg1;
-        let t418 = t414 * parameters[12] + ::overact::math::signed(parameters[13], t414)
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t362
+            - t368;
+        let t377 = minus_rate_2_leg1 + rate_3_leg1;
+        let t381 = t377 * parameters[12] + ::overact::math::signed(parameters[13], t377)
             + parameters[14];
-        let t419 = parameters[5] * t383 + parameters[6] * t396 - parameters[7] * t376
-            + t405 - t418;
-        let t422 = t352 + t255;
-        let t424 = t357 + t260;
-        let rate_dot_1_leg2_2 = g1_vx_leg2 * t422 + g1_vy_leg2 * t424;
-        let t435 = t35 * t38;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t424 - minus_g2_vx_leg2 * t422;
-        let t442 = rate_dot_1_leg2_2 + rate_dot_2_leg2 - rate_dot_1_leg2_2;
-        let t445 = t35 - 0.1568;
-        let t450 = 1.7857142857142858 * (t445 * t244)
-            + 3.5714285714285716 * (t435 * rate_dot_1_leg2_2);
-        let t462 = 1.7857142857142858 * (t445 * rate_dot_1_leg2_2)
-            - 3.5714285714285716 * (t435 * t244);
-        let t466 = 3.5714285714285716 * t435
-            * (t253 * parameters[21] + parameters[22] * t442 + parameters[23] * t450)
-            + 1.7857142857142858 * t445
-                * (parameters[21] * t442 - t253 * parameters[22]
-                    + parameters[23] * t462);
-        let t471 = t251 * parameters[24] + ::overact::math::signed(parameters[25], t251)
+        let t382 = parameters[6] * t355 - parameters[5] * minus_rate_dot_2_leg1
+            - parameters[7] * t346 + t368 - t381;
+        let rate_dot_2_leg2 = t33
+            * (t30 * t316 + t82 * t320 + 0.0784 * t228 + t222 * t230);
+        let t399 = t31 * t316 + t83 * t320 + t223;
+        let minus_rate_dot_1_leg2 = t33 * (t399 + t231);
+        let t404 = 3.5714285714285716 * (t32 * t228)
+            + 1.7857142857142858 * (t229 * minus_rate_dot_1_leg2);
+        let t407 = 3.5714285714285716 * t399;
+        let t410 = minus_rate_1_leg2 + rate_2_leg2;
+        let t414 = t410 * parameters[24] + ::overact::math::signed(parameters[25], t410)
             + parameters[26];
-        let t472 = parameters[15] * rate_dot_1_leg2_2
-            + parameters[16] * rate_dot_1_leg2_2 + rate_1_leg2 * parameters[17]
-            + ::overact::math::signed(parameters[18], rate_1_leg2) + parameters[19]
-            + t466 - t471;
-        let t480 = rate_3_leg1 - rate_2_leg2;
-        let t484 = t480 * parameters[27] + ::overact::math::signed(parameters[28], t480)
+        let t416 = rate_3_leg1 - rate_2_leg2;
+        let t420 = t416 * parameters[27] + ::overact::math::signed(parameters[28], t416)
             + parameters[29];
-        let t485 = parameters[20] * t442 + parameters[21] * t462 + parameters[22] * t450
-            + t471 - t484;
-        let t490 = t349 + t350 - t203;
-        let t491 = t490 + t283;
-        let t494 = t345 + t355 + t235;
-        let t495 = t494 + t288;
-        let rate_dot_1_leg3_2 = g1_vx_leg3 * t491 + g1_vy_leg3 * t495;
-        let t506 = t63 * t66;
-        let t510 = t63 - 0.1568;
-        let t513 = 3.5714285714285716 * (t506 * rate_dot_1_leg3_2)
-            - 1.7857142857142858 * (t510 * t272);
-        let rate_dot_2_leg3 = g2_vy_leg3 * t495 - minus_g2_vx_leg3 * t491;
-        let t520 = rate_dot_1_leg3_2 + rate_dot_2_leg3 - rate_dot_1_leg3_2;
-        let t533 = 3.5714285714285716 * (t506 * t272)
-            + 1.7857142857142858 * (t510 * rate_dot_1_leg3_2);
-        let t537 = 3.5714285714285716 * t506
-            * (parameters[38] * t513 - (t281 * parameters[36] + parameters[37] * t520))
-            + 1.7857142857142858 * t510
-                * (parameters[36] * t520 - t281 * parameters[37]
-                    + parameters[38] * t533);
-        let t542 = t279 * parameters[39] + ::overact::math::signed(parameters[40], t279)
-            + parameters[41];
-        let t543 = parameters[30] * rate_dot_1_leg3_2
-            + parameters[31] * rate_dot_1_leg3_2 + rate_1_leg3 * parameters[32]
+        let t421 = parameters[20] * rate_dot_2_leg2 - parameters[21] * t404
+            - parameters[22] * t407 + t414 - t420;
+        let t445 = 1.7857142857142858 * t229
+            * (parameters[21] * rate_dot_2_leg2 - t222 * parameters[22]
+                - parameters[23] * t404)
+            - 3.5714285714285716 * t32
+                * (parameters[23] * t407
+                    - (t222 * parameters[21] + parameters[22] * rate_dot_2_leg2));
+        let t447 = parameters[19]
+            - (parameters[16] * minus_rate_dot_1_leg2
+                + minus_rate_1_leg2 * parameters[17]
+                + ::overact::math::signed(parameters[18], minus_rate_1_leg2))
+            - parameters[15] * minus_rate_dot_1_leg2 + t445 - t414;
+        let t452 = t313 + t314 - t182;
+        let t455 = t309 + t318 + t179;
+        let t458 = t50 * t452 + t93 * t455 + t248;
+        let rate_dot_1_leg3 = t52 * (t458 + t256);
+        let minus_rate_dot_2_leg3 = t52
+            * (t49 * t452 + t92 * t455 + 0.0784 * t253 + t247 * t255);
+        let t481 = 3.5714285714285716 * t458;
+        let t490 = 3.5714285714285716 * (t51 * t253)
+            + 1.7857142857142858 * (t254 * rate_dot_1_leg3);
+        let t497 = 3.5714285714285716 * t51
+            * (parameters[37] * minus_rate_dot_2_leg3 - t247 * parameters[36]
+                + parameters[38] * t481)
+            + 1.7857142857142858 * t254
+                * (parameters[38] * t490
+                    - (parameters[36] * minus_rate_dot_2_leg3 + t247 * parameters[37]));
+        let t499 = rate_1_leg3 + minus_rate_2_leg3;
+        let t503 = parameters[41]
+            - (t499 * parameters[39] + ::overact::math::signed(parameters[40], t499));
+        let t504 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
+            + rate_1_leg3 * parameters[32]
             + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34]
-            + t537 - t542;
-        let t551 = rate_3_leg1 - rate_2_leg3;
-        let t555 = t551 * parameters[42] + ::overact::math::signed(parameters[43], t551)
+            + t497 - t503;
+        let t512 = minus_rate_2_leg3 + rate_3_leg1;
+        let t516 = t512 * parameters[42] + ::overact::math::signed(parameters[43], t512)
             + parameters[44];
-        let t556 = parameters[35] * t520 + parameters[36] * t533 - parameters[37] * t513
-            + t542 - t555;
-        let t559 = g1_vx_leg1 * t406 - minus_g2_vx_leg1 * t419 + g1_vx_leg2 * t472
-            - minus_g2_vx_leg2 * t485 + g1_vx_leg3 * t543 - minus_g2_vx_leg3 * t556;
-        let t560 = t490 + t309;
-        let t562 = t494 + t314;
-        let rate_dot_1_leg4_2 = g1_vx_leg4 * t560 + g1_vy_leg4 * t562;
-        let t573 = t88 * t91;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t562 - minus_g2_vx_leg4 * t560;
-        let t580 = rate_dot_1_leg4_2 + rate_dot_2_leg4 - rate_dot_1_leg4_2;
-        let t583 = t88 - 0.1568;
-        let t588 = 1.7857142857142858 * (t583 * t298)
-            + 3.5714285714285716 * (t573 * rate_dot_1_leg4_2);
-        let t600 = 1.7857142857142858 * (t583 * rate_dot_1_leg4_2)
-            - 3.5714285714285716 * (t573 * t298);
-        let t604 = 3.5714285714285716 * t573
-            * (t307 * parameters[51] + parameters[52] * t580 + parameters[53] * t588)
-            + 1.7857142857142858 * t583
-                * (parameters[51] * t580 - t307 * parameters[52]
-                    + parameters[53] * t600);
-        let t609 = t305 * parameters[54] + ::overact::math::signed(parameters[55], t305)
+        let t517 = parameters[36] * t490 - parameters[35] * minus_rate_dot_2_leg3
+            - parameters[37] * t481 + t503 - t516;
+        let t520 = g1_vx_leg1 * t369 - minus_g2_vx_leg1 * t382 + g2_vx_leg2 * t421
+            - minus_g1_vx_leg2 * t447 + g1_vx_leg3 * t504 - minus_g2_vx_leg3 * t517;
+        let rate_dot_2_leg4 = t67
+            * (t64 * t452 + t101 * t455 + 0.0784 * t276 + t270 * t278);
+        let t535 = t65 * t452 + t102 * t455 + t271;
+        let minus_rate_dot_1_leg4 = t67 * (t535 + t279);
+        let t540 = 3.5714285714285716 * (t66 * t276)
+            + 1.7857142857142858 * (t277 * minus_rate_dot_1_leg4);
+        let t543 = 3.5714285714285716 * t535;
+        let t546 = minus_rate_1_leg4 + rate_2_leg4;
+        let t550 = t546 * parameters[54] + ::overact::math::signed(parameters[55], t546)
             + parameters[56];
-        let t610 = parameters[45] * rate_dot_1_leg4_2
-            + parameters[46] * rate_dot_1_leg4_2 + rate_1_leg4 * parameters[47]
-            + ::overact::math::signed(parameters[48], rate_1_leg4) + parameters[49]
-            + t604 - t609;
-        let t618 = rate_3_leg1 - rate_2_leg4;
-        let t622 = t618 * parameters[57] + ::overact::math::signed(parameters[58], t618)
+        let t552 = rate_3_leg1 - rate_2_leg4;
+        let t556 = t552 * parameters[57] + ::overact::math::signed(parameters[58], t552)
             + parameters[59];
-        let t623 = parameters[50] * t580 + parameters[51] * t600 + parameters[52] * t588
-            + t609 - t622;
-        let t629 = c_phi * t349 + s_phi * t345;
-        let t631 = rate_3_leg1 * rate_3_leg1;
-        let t641 = parameters[63] * t629
-            - (t631 * parameters[61] + rate_dot_3_leg1 * parameters[62])
-            - t631 * parameters[65] - rate_dot_3_leg1 * parameters[66]
-            + parameters[67] * t629;
-        let t648 = c_phi * t345 - s_phi * t349;
-        let t656 = rate_dot_3_leg1 * parameters[61] - t631 * parameters[62]
-            + parameters[63] * t648 + rate_dot_3_leg1 * parameters[65]
-            - t631 * parameters[66] + parameters[67] * t648;
-        let t659 = t559 + g1_vx_leg4 * t610 - minus_g2_vx_leg4 * t623 + c_phi * t641
-            - s_phi * t656;
-        let t671 = g1_vy_leg1 * t406 + g2_vy_leg1 * t419 + g1_vy_leg2 * t472
-            + g2_vy_leg2 * t485 + g1_vy_leg3 * t543 + g2_vy_leg3 * t556;
-        let t681 = t671 + g1_vy_leg4 * t610 + g2_vy_leg4 * t623 + s_phi * t641
-            + c_phi * t656 - t166 * t659;
-        let g2_wz_leg1 = t6 * minus_g2_vx_leg1 - t2 * g2_vy_leg1;
-        let g2_wz_leg2 = t6 * minus_g2_vx_leg2 - t2 * g2_vy_leg2;
-        let g2_wz_leg3 = t2 * g2_vy_leg3 - t6 * minus_g2_vx_leg3;
-        let t705 = g2_wz_leg1 * t419 - minus_g1_wz_leg1 * t406 + t418 + g2_wz_leg2 * t485
-            - minus_g1_wz_leg2 * t472 + t484 + g1_wz_leg3 * t543 + g2_wz_leg3 * t556
-            + t555;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 - t6 * minus_g2_vx_leg4;
-        let t724 = rate_dot_3_leg1 * parameters[60] + parameters[61] * t648
-            - parameters[62] * t629 + rate_dot_3_leg1 * parameters[64]
-            + parameters[65] * t648 - parameters[66] * t629;
-        let t729 = t705 + g1_wz_leg4 * t610 + g2_wz_leg4 * t623 + t622 + t724
-            - t140 * t659 - t170 * t681;
-        let t730 = t173 * t729;
-        let t732 = t169 * t681 - t170 * t730;
-        let t736 = t109 * t659 - t166 * t732 - t140 * t730;
+        let t557 = parameters[50] * rate_dot_2_leg4 - parameters[51] * t540
+            - parameters[52] * t543 + t550 - t556;
+        let t581 = 1.7857142857142858 * t277
+            * (parameters[51] * rate_dot_2_leg4 - t270 * parameters[52]
+                - parameters[53] * t540)
+            - 3.5714285714285716 * t66
+                * (parameters[53] * t543
+                    - (t270 * parameters[51] + parameters[52] * rate_dot_2_leg4));
+        let t583 = parameters[49]
+            - (parameters[46] * minus_rate_dot_1_leg4
+                + minus_rate_1_leg4 * parameters[47]
+                + ::overact::math::signed(parameters[48], minus_rate_1_leg4))
+            - parameters[45] * minus_rate_dot_1_leg4 + t581 - t550;
+        let t589 = c_phi * t313 + s_phi * t309;
+        let s12_leg1 = 3.5714285714285716 * t75;
+        let c12_leg1 = 3.5714285714285716 * t17;
+        let s3_leg1 = c_phi * s12_leg1 - s_phi * c12_leg1;
+        let minus_c3_leg1 = c_phi * c12_leg1 + s_phi * s12_leg1;
+        let minus_rate_dot_2_leg1_2 = t19 * (t16 * t182 - t74 * t179 + t338 + t340);
+        let t614 = 9.090909090909092
+            * (s3_leg1 * (3.5714285714285716 * t184)
+                - minus_c3_leg1
+                    * (t352 - 1.7857142857142858 * (t207 * minus_rate_dot_1_leg1)
+                        - 0.28 * minus_rate_dot_2_leg1_2));
+        let t624 = parameters[63] * t589
+            - (t614 * parameters[61] + rate_dot_3_leg1 * parameters[62])
+            - t614 * parameters[65] - rate_dot_3_leg1 * parameters[66]
+            + parameters[67] * t589;
+        let t631 = c_phi * t309 - s_phi * t313;
+        let t639 = rate_dot_3_leg1 * parameters[61] - t614 * parameters[62]
+            + parameters[63] * t631 + rate_dot_3_leg1 * parameters[65]
+            - t614 * parameters[66] + parameters[67] * t631;
+        let t642 = t520 + g2_vx_leg4 * t557 - minus_g1_vx_leg4 * t583 + c_phi * t624
+            - s_phi * t639;
+        let t654 = g1_vy_leg1 * t369 - minus_g2_vy_leg1 * t382 + g2_vy_leg2 * t421
+            - minus_g1_vy_leg2 * t447 + g1_vy_leg3 * t504 - minus_g2_vy_leg3 * t517;
+        let t664 = t654 + g2_vy_leg4 * t557 - minus_g1_vy_leg4 * t583 + s_phi * t624
+            + c_phi * t639 - t142 * t642;
+        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
+        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
+        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
+        let t688 = g2_wz_leg1 * t382 - minus_g1_wz_leg1 * t369 + t381 + g1_wz_leg2 * t447
+            - minus_g2_wz_leg2 * t421 + t420 + g1_wz_leg3 * t504
+            - minus_g2_wz_leg3 * t517 + t516;
+        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
+        let t707 = rate_dot_3_leg1 * parameters[60] + parameters[61] * t631
+            - parameters[62] * t589 + rate_dot_3_leg1 * parameters[64]
+            + parameters[65] * t631 - parameters[66] * t589;
+        let t712 = t688 + g2_wz_leg4 * t557 - minus_g1_wz_leg4 * t583 + t556 + t707
+            - t116 * t642 - t146 * t664;
+        let t713 = t149 * t712;
+        let t715 = t145 * t664 - t146 * t713;
+        let t719 = t71 * t642 - t142 * t715 - t116 * t713;
         Ok([
-            g1_vx_leg1 * t736 + g1_vy_leg1 * t732 - minus_g1_wz_leg1 * t730,
-            g1_vx_leg2 * t736 + g1_vy_leg2 * t732 - minus_g1_wz_leg2 * t730,
-            g1_vx_leg3 * t736 + g1_vy_leg3 * t732 + g1_wz_leg3 * t730,
-            g1_vx_leg4 * t736 + g1_vy_leg4 * t732 + g1_wz_leg4 * t730,
+            g1_vx_leg1 * t719 + g1_vy_leg1 * t715 - minus_g1_wz_leg1 * t713,
+            g1_wz_leg2 * t713 - (minus_g1_vx_leg2 * t719 + minus_g1_vy_leg2 * t715),
+            g1_vx_leg3 * t719 + g1_vy_leg3 * t715 + g1_wz_leg3 * t713,
+            -(minus_g1_vx_leg4 * t719 + minus_g1_vy_leg4 * t715
+                + minus_g1_wz_leg4 * t713),
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -6783,7 +6432,7 @@ impl DualV {
     ///
     /// Output: 3 x 3.
     ///
-    /// 620 operations (258 additions, 354 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 617 intermediates.
+    /// 489 operations (187 additions, 294 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 489 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6804,227 +6453,206 @@ impl DualV {
         let t14 = ::overact::math::sqrt(t13);
         let t16 = 0.5 * t4 + t8 * t14;
         let t17 = t4 - t16;
-        let t18 = 0.5 * t8;
-        let t20 = t18 - t4 * t14;
-        let t21 = t8 - t20;
-        let t23 = t16 + t17 - t17;
-        let t26 = t21 - (t20 + t21);
-        let t28 = t21 * t23 + t17 * t26;
-        ::overact::guard::leg(t28, 0.078399138102973, "leg1")?;
-        let t29 = 1.0 / t28;
-        let g1_vx_leg1 = t17 * t29;
-        let t34 = t11 * t14;
-        let t35 = 3.5714285714285716 * t34;
-        let t37 = 3.5714285714285716 * (t34 * g1_vx_leg1);
-        let minus_g2_vx_leg1 = t23 * t29;
-        let t41 = g1_vx_leg1 - (g1_vx_leg1 + minus_g2_vx_leg1);
-        let t45 = t11 - 0.1568;
-        let t46 = 1.7857142857142858 * t45;
-        let t49 = 1.7857142857142858 * (t45 * g1_vx_leg1);
-        let t54 = g1_vx_leg1 * parameters[0] + g1_vx_leg1 * parameters[1]
-            + t35 * (parameters[8] * t37 - parameters[7] * t41)
-            + t46 * (parameters[6] * t41 + parameters[8] * t49);
-        let t60 = parameters[5] * t41 + parameters[6] * t49 - parameters[7] * t37;
-        let t63 = t3 + 0.3950502153918333;
-        let t66 = t63 * t63 + t10;
-        let t68 = 0.0784 / t66 - 0.25;
-        ::overact::guard::reach(t68, "leg2")?;
-        let t69 = ::overact::math::sqrt(t68);
-        let t71 = 0.5 * t63 - t8 * t69;
-        let t72 = t63 - t71;
-        let t74 = t18 + t63 * t69;
-        let t75 = t8 - t74;
-        let t77 = t71 + t72 - t72;
-        let t80 = t75 - (t74 + t75);
-        let t82 = t75 * t77 + t72 * t80;
-        ::overact::guard::leg(t82, 0.078399138102973, "leg2")?;
-        let t83 = 1.0 / t82;
-        let g1_vx_leg2 = t72 * t83;
-        let t88 = t66 * t69;
-        let t89 = 3.5714285714285716 * t88;
-        let minus_g2_vx_leg2 = t77 * t83;
-        let t92 = g1_vx_leg2 - (g1_vx_leg2 + minus_g2_vx_leg2);
-        let t95 = 3.5714285714285716 * (t88 * g1_vx_leg2);
-        let t99 = t66 - 0.1568;
-        let t100 = 1.7857142857142858 * t99;
-        let t103 = 1.7857142857142858 * (t99 * g1_vx_leg2);
-        let t108 = g1_vx_leg2 * parameters[15] + g1_vx_leg2 * parameters[16]
-            + t89 * (parameters[22] * t92 + parameters[23] * t95)
-            + t100 * (parameters[21] * t92 + parameters[23] * t103);
-        let t114 = parameters[20] * t92 + parameters[21] * t103 + parameters[22] * t95;
-        let t118 = pose[0] + t2;
-        let t119 = t118 + 0.3950502153918333;
-        let t122 = pose[1] - t6 + 0.10970563941232059;
-        let t124 = t122 * t122;
-        let t125 = t119 * t119 + t124;
-        let t127 = 0.0784 / t125 - 0.25;
-        ::overact::guard::reach(t127, "leg3")?;
-        let t128 = ::overact::math::sqrt(t127);
-        let t130 = 0.5 * t119 + t122 * t128;
-        let t131 = t119 - t130;
-        let t132 = 0.5 * t122;
-        let t134 = t132 - t119 * t128;
-        let t135 = t122 - t134;
-        let t137 = t130 + t131 - t131;
-        let t140 = t135 - (t134 + t135);
-        let t142 = t135 * t137 + t131 * t140;
-        ::overact::guard::leg(t142, 0.078399138102973, "leg3")?;
-        let t143 = 1.0 / t142;
-        let g1_vx_leg3 = t131 * t143;
-        let t148 = t125 * t128;
-        let t149 = 3.5714285714285716 * t148;
-        let t151 = 3.5714285714285716 * (t148 * g1_vx_leg3);
-        let minus_g2_vx_leg3 = t137 * t143;
-        let t155 = g1_vx_leg3 - (g1_vx_leg3 + minus_g2_vx_leg3);
-        let t159 = t125 - 0.1568;
-        let t160 = 1.7857142857142858 * t159;
-        let t163 = 1.7857142857142858 * (t159 * g1_vx_leg3);
-        let t168 = g1_vx_leg3 * parameters[30] + g1_vx_leg3 * parameters[31]
-            + t149 * (parameters[38] * t151 - parameters[37] * t155)
-            + t160 * (parameters[36] * t155 + parameters[38] * t163);
-        let t174 = parameters[35] * t155 + parameters[36] * t163 - parameters[37] * t151;
-        let t177 = g1_vx_leg1 * t54 - minus_g2_vx_leg1 * t60 + g1_vx_leg2 * t108
-            - minus_g2_vx_leg2 * t114 + g1_vx_leg3 * t168 - minus_g2_vx_leg3 * t174;
-        let t178 = t118 - 0.3950502153918333;
-        let t181 = t178 * t178 + t124;
-        let t183 = 0.0784 / t181 - 0.25;
-        ::overact::guard::reach(t183, "leg4")?;
-        let t184 = ::overact::math::sqrt(t183);
-        let t186 = 0.5 * t178 - t122 * t184;
-        let t187 = t178 - t186;
-        let t189 = t132 + t178 * t184;
-        let t190 = t122 - t189;
-        let t192 = t186 + t187 - t187;
-        let t195 = t190 - (t189 + t190);
-        let t197 = t190 * t192 + t187 * t195;
-        ::overact::guard::leg(t197, 0.078399138102973, "leg4")?;
-        let t198 = 1.0 / t197;
-        let g1_vx_leg4 = t187 * t198;
-        let t203 = t181 * t184;
-        let t204 = 3.5714285714285716 * t203;
-        let minus_g2_vx_leg4 = t192 * t198;
-        let t207 = g1_vx_leg4 - (g1_vx_leg4 + minus_g2_vx_leg4);
-        let t210 = 3.5714285714285716 * (t203 * g1_vx_leg4);
-        let t214 = t181 - 0.1568;
-        let t215 = 1.7857142857142858 * t214;
-        let t218 = 1.7857142857142858 * (t214 * g1_vx_leg4);
-        let t223 = g1_vx_leg4 * parameters[45] + g1_vx_leg4 * parameters[46]
-            + t204 * (parameters[52] * t207 + parameters[53] * t210)
-            + t215 * (parameters[51] * t207 + parameters[53] * t218);
-        let t229 = parameters[50] * t207 + parameters[51] * t218 + parameters[52] * t210;
-        let t233 = parameters[63] + parameters[67];
-        let g1_vy_leg1 = t21 * t29;
-        let g2_vy_leg1 = t26 * t29;
-        let g1_vy_leg2 = t75 * t83;
-        let g2_vy_leg2 = t80 * t83;
-        let g1_vy_leg3 = t135 * t143;
-        let g2_vy_leg3 = t140 * t143;
-        let t251 = g1_vy_leg1 * t54 + g2_vy_leg1 * t60 + g1_vy_leg2 * t108
-            + g2_vy_leg2 * t114 + g1_vy_leg3 * t168 + g2_vy_leg3 * t174;
-        let g1_vy_leg4 = t190 * t198;
-        let g2_vy_leg4 = t195 * t198;
-        let g2_wz_leg1 = t6 * minus_g2_vx_leg1 - t2 * g2_vy_leg1;
+        let t18 = t11 * t14;
+        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
+        let t19 = 1.0 / t18;
+        let g1_vx_leg1 = t17 * t19;
+        let t24 = 3.5714285714285716 * t18;
+        let minus_g2_vx_leg1 = t16 * t19;
+        let c12_leg1 = 3.5714285714285716 * t17;
+        let t31 = t11 - 0.1568;
+        let t32 = 1.7857142857142858 * t31;
+        let t34 = 1.7857142857142858 * (t31 * g1_vx_leg1);
+        let t40 = g1_vx_leg1 * parameters[0] + g1_vx_leg1 * parameters[1]
+            + t24 * (minus_g2_vx_leg1 * parameters[7] + c12_leg1 * parameters[8])
+            + t32 * (parameters[8] * t34 - minus_g2_vx_leg1 * parameters[6]);
+        let t49 = t3 + 0.3950502153918333;
+        let t52 = t49 * t49 + t10;
+        let t54 = 0.0784 / t52 - 0.25;
+        ::overact::guard::reach(t54, "leg2")?;
+        let t55 = ::overact::math::sqrt(t54);
+        let t57 = 0.5 * t49 - t8 * t55;
+        let t58 = t52 * t55;
+        ::overact::guard::leg(t58, 0.07839913810297301, "leg2")?;
+        let t59 = 1.0 / t58;
+        let g2_vx_leg2 = t57 * t59;
+        let t62 = t52 - 0.1568;
+        let t63 = t49 - t57;
+        let minus_g1_vx_leg2 = t63 * t59;
+        let t66 = 1.7857142857142858 * (t62 * minus_g1_vx_leg2);
+        let c12_leg2 = 3.5714285714285716 * t63;
+        let t73 = 1.7857142857142858 * t62;
+        let t78 = 3.5714285714285716 * t58;
+        let t87 = t73 * (g2_vx_leg2 * parameters[21] - parameters[23] * t66)
+            - t78 * (c12_leg2 * parameters[23] - g2_vx_leg2 * parameters[22])
+            - (minus_g1_vx_leg2 * parameters[16] + minus_g1_vx_leg2 * parameters[15]);
+        let t90 = g1_vx_leg1 * t40
+            - minus_g2_vx_leg1
+                * (parameters[6] * t34 - minus_g2_vx_leg1 * parameters[5]
+                    - c12_leg1 * parameters[7])
+            + g2_vx_leg2
+                * (g2_vx_leg2 * parameters[20] - parameters[21] * t66
+                    - c12_leg2 * parameters[22]) - minus_g1_vx_leg2 * t87;
+        let t91 = pose[0] + t2;
+        let t92 = t91 + 0.3950502153918333;
+        let t95 = pose[1] - t6 + 0.10970563941232059;
+        let t97 = t95 * t95;
+        let t98 = t92 * t92 + t97;
+        let t100 = 0.0784 / t98 - 0.25;
+        ::overact::guard::reach(t100, "leg3")?;
+        let t101 = ::overact::math::sqrt(t100);
+        let t103 = 0.5 * t92 + t95 * t101;
+        let t104 = t92 - t103;
+        let t105 = t98 * t101;
+        ::overact::guard::leg(t105, 0.07839913810297301, "leg3")?;
+        let t106 = 1.0 / t105;
+        let g1_vx_leg3 = t104 * t106;
+        let t111 = 3.5714285714285716 * t105;
+        let minus_g2_vx_leg3 = t103 * t106;
+        let c12_leg3 = 3.5714285714285716 * t104;
+        let t118 = t98 - 0.1568;
+        let t119 = 1.7857142857142858 * t118;
+        let t121 = 1.7857142857142858 * (t118 * g1_vx_leg3);
+        let t127 = g1_vx_leg3 * parameters[30] + g1_vx_leg3 * parameters[31]
+            + t111 * (minus_g2_vx_leg3 * parameters[37] + c12_leg3 * parameters[38])
+            + t119 * (parameters[38] * t121 - minus_g2_vx_leg3 * parameters[36]);
+        let t137 = t91 - 0.3950502153918333;
+        let t140 = t137 * t137 + t97;
+        let t142 = 0.0784 / t140 - 0.25;
+        ::overact::guard::reach(t142, "leg4")?;
+        let t143 = ::overact::math::sqrt(t142);
+        let t145 = 0.5 * t137 - t95 * t143;
+        let t146 = t140 * t143;
+        ::overact::guard::leg(t146, 0.07839913810297301, "leg4")?;
+        let t147 = 1.0 / t146;
+        let g2_vx_leg4 = t145 * t147;
+        let t150 = t140 - 0.1568;
+        let t151 = t137 - t145;
+        let minus_g1_vx_leg4 = t151 * t147;
+        let t154 = 1.7857142857142858 * (t150 * minus_g1_vx_leg4);
+        let c12_leg4 = 3.5714285714285716 * t151;
+        let t161 = 1.7857142857142858 * t150;
+        let t166 = 3.5714285714285716 * t146;
+        let t175 = t161 * (g2_vx_leg4 * parameters[51] - parameters[53] * t154)
+            - t166 * (c12_leg4 * parameters[53] - g2_vx_leg4 * parameters[52])
+            - (minus_g1_vx_leg4 * parameters[46] + minus_g1_vx_leg4 * parameters[45]);
+        let t178 = t90 + g1_vx_leg3 * t127
+            - minus_g2_vx_leg3
+                * (parameters[36] * t121 - minus_g2_vx_leg3 * parameters[35]
+                    - c12_leg3 * parameters[37])
+            + g2_vx_leg4
+                * (g2_vx_leg4 * parameters[50] - parameters[51] * t154
+                    - c12_leg4 * parameters[52]) - minus_g1_vx_leg4 * t175;
+        let t179 = parameters[63] + parameters[67];
+        let t181 = 0.5 * t8;
+        let t183 = t181 - t4 * t14;
+        let t184 = t8 - t183;
+        let g1_vy_leg1 = t184 * t19;
+        let minus_g2_vy_leg1 = t183 * t19;
+        let s12_leg1 = 3.5714285714285716 * t184;
+        let t196 = 1.7857142857142858 * (t31 * g1_vy_leg1);
+        let t202 = g1_vy_leg1 * parameters[0] + g1_vy_leg1 * parameters[1]
+            + t24 * (minus_g2_vy_leg1 * parameters[7] + s12_leg1 * parameters[8])
+            + t32 * (parameters[8] * t196 - minus_g2_vy_leg1 * parameters[6]);
+        let t208 = parameters[6] * t196 - minus_g2_vy_leg1 * parameters[5]
+            - s12_leg1 * parameters[7];
+        let t212 = t181 + t49 * t55;
+        let g2_vy_leg2 = t212 * t59;
+        let t215 = t8 - t212;
+        let minus_g1_vy_leg2 = t215 * t59;
+        let t218 = 1.7857142857142858 * (t62 * minus_g1_vy_leg2);
+        let s12_leg2 = 3.5714285714285716 * t215;
+        let t223 = g2_vy_leg2 * parameters[20] - parameters[21] * t218
+            - s12_leg2 * parameters[22];
+        let t237 = t73 * (g2_vy_leg2 * parameters[21] - parameters[23] * t218)
+            - t78 * (s12_leg2 * parameters[23] - g2_vy_leg2 * parameters[22])
+            - (minus_g1_vy_leg2 * parameters[16] + minus_g1_vy_leg2 * parameters[15]);
+        let t241 = 0.5 * t95;
+        let t243 = t241 - t92 * t101;
+        let t244 = t95 - t243;
+        let g1_vy_leg3 = t244 * t106;
+        let minus_g2_vy_leg3 = t243 * t106;
+        let s12_leg3 = 3.5714285714285716 * t244;
+        let t256 = 1.7857142857142858 * (t118 * g1_vy_leg3);
+        let t262 = g1_vy_leg3 * parameters[30] + g1_vy_leg3 * parameters[31]
+            + t111 * (minus_g2_vy_leg3 * parameters[37] + s12_leg3 * parameters[38])
+            + t119 * (parameters[38] * t256 - minus_g2_vy_leg3 * parameters[36]);
+        let t268 = parameters[36] * t256 - minus_g2_vy_leg3 * parameters[35]
+            - s12_leg3 * parameters[37];
+        let t271 = g1_vx_leg1 * t202 - minus_g2_vx_leg1 * t208 + g2_vx_leg2 * t223
+            - minus_g1_vx_leg2 * t237 + g1_vx_leg3 * t262 - minus_g2_vx_leg3 * t268;
+        let t273 = t241 + t137 * t143;
+        let g2_vy_leg4 = t273 * t147;
+        let t276 = t95 - t273;
+        let minus_g1_vy_leg4 = t276 * t147;
+        let t279 = 1.7857142857142858 * (t150 * minus_g1_vy_leg4);
+        let s12_leg4 = 3.5714285714285716 * t276;
+        let t284 = g2_vy_leg4 * parameters[50] - parameters[51] * t279
+            - s12_leg4 * parameters[52];
+        let t298 = t161 * (g2_vy_leg4 * parameters[51] - parameters[53] * t279)
+            - t166 * (s12_leg4 * parameters[53] - g2_vy_leg4 * parameters[52])
+            - (minus_g1_vy_leg4 * parameters[46] + minus_g1_vy_leg4 * parameters[45]);
+        let t301 = t271 + g2_vx_leg4 * t284 - minus_g1_vx_leg4 * t298;
+        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let g2_wz_leg2 = t6 * minus_g2_vx_leg2 - t2 * g2_vy_leg2;
-        let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t6 * g1_vx_leg2;
+        let t310 = 1.7857142857142858 * (t31 * minus_g1_wz_leg1);
+        let minus_c3_leg1 = c_phi * c12_leg1 + s_phi * s12_leg1;
+        let t318 = 0.11 * minus_c3_leg1;
+        let t326 = t32 * (g2_wz_leg1 * parameters[6] - parameters[8] * t310)
+            - t24 * (g2_wz_leg1 * parameters[7] + parameters[8] * t318)
+            - (minus_g1_wz_leg1 * parameters[0] + minus_g1_wz_leg1 * parameters[1]);
+        let t332 = g2_wz_leg1 * parameters[5] - parameters[6] * t310
+            + parameters[7] * t318;
+        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
+        let t339 = 1.7857142857142858 * (t62 * g1_wz_leg2);
+        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
+        let minus_c3_leg2 = c_phi * c12_leg2 + s_phi * s12_leg2;
+        let t349 = 0.11 * minus_c3_leg2;
+        let t351 = parameters[21] * t339 - minus_g2_wz_leg2 * parameters[20]
+            + parameters[22] * t349;
+        let t365 = g1_wz_leg2 * parameters[16] + g1_wz_leg2 * parameters[15]
+            + t73 * (parameters[23] * t339 - minus_g2_wz_leg2 * parameters[21])
+            - t78 * (minus_g2_wz_leg2 * parameters[22] - parameters[23] * t349);
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let g2_wz_leg3 = t2 * g2_vy_leg3 - t6 * minus_g2_vx_leg3;
-        let t286 = g2_wz_leg1 * t60 - minus_g1_wz_leg1 * t54 + g2_wz_leg2 * t114
-            - minus_g1_wz_leg2 * t108 + g1_wz_leg3 * t168 + g2_wz_leg3 * t174;
-        let g1_wz_leg4 = t2 * g1_vy_leg4 + t6 * g1_vx_leg4;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 - t6 * minus_g2_vx_leg4;
-        let t297 = parameters[62] + parameters[66];
-        let t299 = parameters[61] + parameters[65];
-        let t301 = c_phi * t297 + s_phi * t299;
-        let t307 = 3.5714285714285716 * (t34 * g1_vy_leg1);
-        let t310 = g1_vy_leg1 - (g1_vy_leg1 - g2_vy_leg1);
-        let t316 = 1.7857142857142858 * (t45 * g1_vy_leg1);
-        let t321 = g1_vy_leg1 * parameters[0] + g1_vy_leg1 * parameters[1]
-            + t35 * (parameters[8] * t307 - parameters[7] * t310)
-            + t46 * (parameters[6] * t310 + parameters[8] * t316);
-        let t327 = parameters[5] * t310 + parameters[6] * t316 - parameters[7] * t307;
-        let t334 = g1_vy_leg2 - (g1_vy_leg2 - g2_vy_leg2);
-        let t337 = 3.5714285714285716 * (t88 * g1_vy_leg2);
-        let t343 = 1.7857142857142858 * (t99 * g1_vy_leg2);
-        let t348 = g1_vy_leg2 * parameters[15] + g1_vy_leg2 * parameters[16]
-            + t89 * (parameters[22] * t334 + parameters[23] * t337)
-            + t100 * (parameters[21] * t334 + parameters[23] * t343);
-        let t354 = parameters[20] * t334 + parameters[21] * t343 + parameters[22] * t337;
-        let t362 = 3.5714285714285716 * (t148 * g1_vy_leg3);
-        let t365 = g1_vy_leg3 - (g1_vy_leg3 - g2_vy_leg3);
-        let t371 = 1.7857142857142858 * (t159 * g1_vy_leg3);
-        let t376 = g1_vy_leg3 * parameters[30] + g1_vy_leg3 * parameters[31]
-            + t149 * (parameters[38] * t362 - parameters[37] * t365)
-            + t160 * (parameters[36] * t365 + parameters[38] * t371);
-        let t382 = parameters[35] * t365 + parameters[36] * t371 - parameters[37] * t362;
-        let t385 = g1_vx_leg1 * t321 - minus_g2_vx_leg1 * t327 + g1_vx_leg2 * t348
-            - minus_g2_vx_leg2 * t354 + g1_vx_leg3 * t376 - minus_g2_vx_leg3 * t382;
-        let t390 = g1_vy_leg4 - (g1_vy_leg4 - g2_vy_leg4);
-        let t393 = 3.5714285714285716 * (t203 * g1_vy_leg4);
-        let t399 = 1.7857142857142858 * (t214 * g1_vy_leg4);
-        let t404 = g1_vy_leg4 * parameters[45] + g1_vy_leg4 * parameters[46]
-            + t204 * (parameters[52] * t390 + parameters[53] * t393)
-            + t215 * (parameters[51] * t390 + parameters[53] * t399);
-        let t410 = parameters[50] * t390 + parameters[51] * t399 + parameters[52] * t393;
-        let t424 = g1_vy_leg1 * t321 + g2_vy_leg1 * t327 + g1_vy_leg2 * t348
-            + g2_vy_leg2 * t354 + g1_vy_leg3 * t376 + g2_vy_leg3 * t382;
-        let t440 = g2_wz_leg1 * t327 - minus_g1_wz_leg1 * t321 + g2_wz_leg2 * t354
-            - minus_g1_wz_leg2 * t348 + g1_wz_leg3 * t376 + g2_wz_leg3 * t382;
-        let t447 = c_phi * t299 - s_phi * t297;
-        let t452 = t29 * (t6 * t17 + t2 * t21);
-        let t458 = t452 + t29 * (t2 * t26 - t6 * t23) - t452;
-        let t461 = 3.5714285714285716 * (t34 * t452);
-        let t467 = 1.7857142857142858 * (t45 * t452);
-        let t475 = t35 * (parameters[7] * t458 - parameters[8] * t461)
-            - t46 * (parameters[6] * t458 + parameters[8] * t467)
-            - (parameters[0] * t452 + parameters[1] * t452);
-        let t481 = parameters[7] * t461 - (parameters[5] * t458 + parameters[6] * t467);
-        let t487 = t83 * (t6 * t72 + t2 * t75);
-        let t493 = t487 + t83 * (t2 * t80 - t6 * t77) - t487;
-        let t496 = 1.7857142857142858 * (t99 * t487);
-        let t500 = 3.5714285714285716 * (t88 * t487);
-        let t502 = parameters[20] * t493 + parameters[21] * t496 + parameters[22] * t500;
-        let t516 = parameters[15] * t487 + parameters[16] * t487
-            + t89 * (parameters[22] * t493 + parameters[23] * t500)
-            + t100 * (parameters[21] * t493 + parameters[23] * t496);
-        let t523 = t143 * (t6 * t131 + t2 * t135);
-        let t528 = 3.5714285714285716 * (t148 * t523);
-        let t535 = t523 - (t523 + t143 * (t6 * t137 - t2 * t140));
-        let t541 = 1.7857142857142858 * (t159 * t523);
-        let t546 = parameters[30] * t523 + parameters[31] * t523
-            + t149 * (parameters[38] * t528 - parameters[37] * t535)
-            + t160 * (parameters[36] * t535 + parameters[38] * t541);
-        let t552 = parameters[35] * t535 + parameters[36] * t541 - parameters[37] * t528;
-        let t555 = g1_vx_leg1 * t475 - minus_g2_vx_leg1 * t481 + minus_g2_vx_leg2 * t502
-            - g1_vx_leg2 * t516 + g1_vx_leg3 * t546 - minus_g2_vx_leg3 * t552;
-        let t559 = t198 * (t6 * t187 + t2 * t190);
-        let t568 = t559 - (t559 + t198 * (t6 * t192 - t2 * t195));
-        let t571 = 3.5714285714285716 * (t203 * t559);
-        let t577 = 1.7857142857142858 * (t214 * t559);
-        let t582 = parameters[45] * t559 + parameters[46] * t559
-            + t204 * (parameters[52] * t568 + parameters[53] * t571)
-            + t215 * (parameters[51] * t568 + parameters[53] * t577);
-        let t588 = parameters[50] * t568 + parameters[51] * t577 + parameters[52] * t571;
-        let t603 = g1_vy_leg1 * t475 + g2_vy_leg1 * t481
-            - (g1_vy_leg2 * t516 + g2_vy_leg2 * t502) + g1_vy_leg3 * t546
-            + g2_vy_leg3 * t552;
-        let t619 = g2_wz_leg1 * t481 - minus_g1_wz_leg1 * t475 + minus_g1_wz_leg2 * t516
-            - g2_wz_leg2 * t502 + g1_wz_leg3 * t546 + g2_wz_leg3 * t552;
+        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
+        let c3_leg3 = c_phi * c12_leg3 + s_phi * s12_leg3;
+        let t382 = 0.11 * c3_leg3;
+        let t387 = 1.7857142857142858 * (t118 * g1_wz_leg3);
+        let t393 = g1_wz_leg3 * parameters[30] + g1_wz_leg3 * parameters[31]
+            + t111 * (minus_g2_wz_leg3 * parameters[37] + parameters[38] * t382)
+            + t119 * (parameters[38] * t387 - minus_g2_wz_leg3 * parameters[36]);
+        let t399 = parameters[36] * t387 - minus_g2_wz_leg3 * parameters[35]
+            - parameters[37] * t382;
+        let t402 = g1_vx_leg1 * t326 - minus_g2_vx_leg1 * t332 + g2_vx_leg2 * t351
+            - minus_g1_vx_leg2 * t365 + g1_vx_leg3 * t393 - minus_g2_vx_leg3 * t399;
+        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
+        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
+        let t411 = 1.7857142857142858 * (t150 * minus_g1_wz_leg4);
+        let c3_leg4 = c_phi * c12_leg4 + s_phi * s12_leg4;
+        let t417 = 0.11 * c3_leg4;
+        let t419 = g2_wz_leg4 * parameters[50] - parameters[51] * t411
+            - parameters[52] * t417;
+        let t433 = t161 * (g2_wz_leg4 * parameters[51] - parameters[53] * t411)
+            - t166 * (parameters[53] * t417 - g2_wz_leg4 * parameters[52])
+            - (minus_g1_wz_leg4 * parameters[46] + minus_g1_wz_leg4 * parameters[45]);
+        let t437 = parameters[62] + parameters[66];
+        let t439 = parameters[61] + parameters[65];
+        let t442 = t402 + g2_vx_leg4 * t419 - minus_g1_vx_leg4 * t433
+            - (c_phi * t437 + s_phi * t439);
+        let t453 = g1_vy_leg1 * t202 - minus_g2_vy_leg1 * t208 + g2_vy_leg2 * t223
+            - minus_g1_vy_leg2 * t237 + g1_vy_leg3 * t262 - minus_g2_vy_leg3 * t268;
+        let t469 = g1_vy_leg1 * t326 - minus_g2_vy_leg1 * t332 + g2_vy_leg2 * t351
+            - minus_g1_vy_leg2 * t365 + g1_vy_leg3 * t393 - minus_g2_vy_leg3 * t399;
+        let t477 = t469 + g2_vy_leg4 * t419 - minus_g1_vy_leg4 * t433 + c_phi * t439
+            - s_phi * t437;
+        let t488 = g2_wz_leg1 * t332 - minus_g1_wz_leg1 * t326 + g1_wz_leg2 * t365
+            - minus_g2_wz_leg2 * t351 + g1_wz_leg3 * t393 - minus_g2_wz_leg3 * t399;
         Ok([
+            [t178 + t179, t301, t442],
+            [t301, t453 + g2_vy_leg4 * t284 - minus_g1_vy_leg4 * t298 + t179, t477],
             [
-                t177 + g1_vx_leg4 * t223 - minus_g2_vx_leg4 * t229 + t233,
-                t385 + g1_vx_leg4 * t404 - minus_g2_vx_leg4 * t410,
-                t555 + g1_vx_leg4 * t582 - minus_g2_vx_leg4 * t588 - t301,
-            ],
-            [
-                t251 + g1_vy_leg4 * t223 + g2_vy_leg4 * t229,
-                t424 + g1_vy_leg4 * t404 + g2_vy_leg4 * t410 + t233,
-                t603 + g1_vy_leg4 * t582 + g2_vy_leg4 * t588 + t447,
-            ],
-            [
-                t286 + g1_wz_leg4 * t223 + g2_wz_leg4 * t229 - t301,
-                t440 + g1_wz_leg4 * t404 + g2_wz_leg4 * t410 + t447,
-                t619 + g1_wz_leg4 * t582 + g2_wz_leg4 * t588 + parameters[60]
+                t442, t477,
+                t488 + g2_wz_leg4 * t419 - minus_g1_wz_leg4 * t433 + parameters[60]
                     + parameters[64],
             ],
         ])
@@ -7038,7 +6666,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 508 operations (237 additions, 263 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 523 intermediates.
+    /// 478 operations (205 additions, 265 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 493 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7060,238 +6688,229 @@ impl DualV {
         let t14 = ::overact::math::sqrt(t13);
         let t16 = 0.5 * t4 + t8 * t14;
         let t17 = t4 - t16;
-        let t18 = 0.5 * t8;
-        let t20 = t18 - t4 * t14;
-        let t21 = t8 - t20;
-        let t23 = t16 + t17 - t17;
-        let t26 = t21 - (t20 + t21);
-        let t28 = t21 * t23 + t17 * t26;
-        ::overact::guard::leg(t28, 0.078399138102973, "leg1")?;
-        let t29 = 1.0 / t28;
-        let g1_vx_leg1 = t17 * t29;
-        let t31 = t2 * twist[2];
-        let t32 = twist[2] * t31;
-        let t33 = t6 * twist[2];
-        let t34 = twist[0] - t33;
-        let g1_vy_leg1 = t21 * t29;
-        let t37 = twist[1] - t31;
-        let rate_1_leg1 = g1_vx_leg1 * t34 + g1_vy_leg1 * t37;
-        let t40 = rate_1_leg1 * rate_1_leg1;
-        let g2_vy_leg1 = t26 * t29;
-        let minus_g2_vx_leg1 = t23 * t29;
-        let rate_2_leg1 = g2_vy_leg1 * t37 - minus_g2_vx_leg1 * t34;
-        let t47 = rate_2_leg1 - rate_1_leg1;
-        let t48 = rate_1_leg1 + t47;
-        let t49 = t48 * t48;
-        let t52 = t32 + t16 * t40 + t17 * t49;
-        let t57 = twist[2] * t33;
-        let t58 = t20 * t40 + t21 * t49 - t57;
-        let rate_dot_1_leg1 = g1_vx_leg1 * t52 + g1_vy_leg1 * t58;
-        let t69 = t11 * t14;
-        let t73 = t11 - 0.1568;
-        let t76 = 3.5714285714285716 * (t69 * rate_dot_1_leg1)
-            - 1.7857142857142858 * (t73 * t40);
-        let rate_dot_2_leg1 = g2_vy_leg1 * t58 - minus_g2_vx_leg1 * t52;
-        let t83 = rate_dot_1_leg1 + rate_dot_2_leg1 - rate_dot_1_leg1;
-        let t96 = 3.5714285714285716 * (t69 * t40)
-            + 1.7857142857142858 * (t73 * rate_dot_1_leg1);
-        let t100 = 3.5714285714285716 * t69
-            * (parameters[8] * t76 - (parameters[6] * t49 + parameters[7] * t83))
-            + 1.7857142857142858 * t73
-                * (parameters[6] * t83 - parameters[7] * t49 + parameters[8] * t96);
-        let t105 = parameters[9] * t47 + ::overact::math::signed(parameters[10], t47)
-            + parameters[11];
-        let t106 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
-            + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t100
-            - t105;
-        let t114 = twist[2] - rate_2_leg1;
-        let t118 = parameters[12] * t114 + ::overact::math::signed(parameters[13], t114)
+        let t18 = t11 * t14;
+        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
+        let t19 = 1.0 / t18;
+        let g1_vx_leg1 = t17 * t19;
+        let t21 = t6 * twist[2];
+        let t22 = twist[0] - t21;
+        let t24 = 0.5 * t8;
+        let t26 = t24 - t4 * t14;
+        let t27 = t8 - t26;
+        let g1_vy_leg1 = t27 * t19;
+        let t29 = t2 * twist[2];
+        let t30 = twist[1] - t29;
+        let rate_1_leg1 = g1_vx_leg1 * t22 + g1_vy_leg1 * t30;
+        let t34 = twist[2] * t21;
+        let t36 = twist[2] * t29;
+        let t38 = t27 * t34 - t17 * t36;
+        let minus_g2_vx_leg1 = t16 * t19;
+        let minus_g2_vy_leg1 = t26 * t19;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t22 + minus_g2_vy_leg1 * t30;
+        let t44 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t46 = t38 - 0.0784 * t44;
+        let t47 = rate_1_leg1 * rate_1_leg1;
+        let t48 = t11 - 0.1568;
+        let t49 = 0.5 * t48;
+        let minus_rate_dot_1_leg1 = t19 * (t46 - t47 * t49);
+        let minus_rate_dot_2_leg1 = t19
+            * (t16 * t36 - t26 * t34 + 0.0784 * t47 + t44 * t49);
+        let t72 = 3.5714285714285716 * t46;
+        let t81 = 3.5714285714285716 * (t18 * t47)
+            - 1.7857142857142858 * (t48 * minus_rate_dot_1_leg1);
+        let t88 = 3.5714285714285716 * t18
+            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t44
+                - parameters[8] * t72)
+            + 1.7857142857142858 * t48
+                * (parameters[8] * t81
+                    - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t44));
+        let t90 = rate_1_leg1 + minus_rate_2_leg1;
+        let t94 = parameters[11]
+            - (parameters[9] * t90 + ::overact::math::signed(parameters[10], t90));
+        let t95 = parameters[2] * rate_1_leg1 - parameters[1] * minus_rate_dot_1_leg1
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4]
+            - parameters[0] * minus_rate_dot_1_leg1 + t88 - t94;
+        let t103 = minus_rate_2_leg1 + twist[2];
+        let t107 = parameters[12] * t103 + ::overact::math::signed(parameters[13], t103)
             + parameters[14];
-        let t119 = parameters[5] * t83 + parameters[6] * t96 - parameters[7] * t76 + t105
-            - t118;
-        let t122 = t3 + 0.3950502153918333;
-        let t125 = t122 * t122 + t10;
-        let t127 = 0.0784 / t125 - 0.25;
-        ::overact::guard::reach(t127, "leg2")?;
-        let t128 = ::overact::math::sqrt(t127);
-        let t130 = 0.5 * t122 - t8 * t128;
-        let t131 = t122 - t130;
-        let t133 = t18 + t122 * t128;
-        let t134 = t8 - t133;
-        let t136 = t130 + t131 - t131;
-        let t139 = t134 - (t133 + t134);
-        let t141 = t134 * t136 + t131 * t139;
-        ::overact::guard::leg(t141, 0.078399138102973, "leg2")?;
-        let t142 = 1.0 / t141;
-        let g1_vx_leg2 = t131 * t142;
-        let g1_vy_leg2 = t134 * t142;
-        let rate_1_leg2 = g1_vx_leg2 * t34 + g1_vy_leg2 * t37;
-        let t148 = rate_1_leg2 * rate_1_leg2;
-        let g2_vy_leg2 = t139 * t142;
-        let minus_g2_vx_leg2 = t136 * t142;
-        let rate_2_leg2 = g2_vy_leg2 * t37 - minus_g2_vx_leg2 * t34;
-        let t155 = rate_2_leg2 - rate_1_leg2;
-        let t156 = rate_1_leg2 + t155;
-        let t157 = t156 * t156;
-        let t160 = t32 + t130 * t148 + t131 * t157;
-        let t165 = t133 * t148 + t134 * t157 - t57;
-        let rate_dot_1_leg2 = g1_vx_leg2 * t160 + g1_vy_leg2 * t165;
-        let t176 = t125 * t128;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t165 - minus_g2_vx_leg2 * t160;
-        let t183 = rate_dot_1_leg2 + rate_dot_2_leg2 - rate_dot_1_leg2;
-        let t186 = t125 - 0.1568;
-        let t191 = 1.7857142857142858 * (t186 * t148)
-            + 3.5714285714285716 * (t176 * rate_dot_1_leg2);
-        let t203 = 1.7857142857142858 * (t186 * rate_dot_1_leg2)
-            - 3.5714285714285716 * (t176 * t148);
-        let t207 = 3.5714285714285716 * t176
-            * (parameters[21] * t157 + parameters[22] * t183 + parameters[23] * t191)
-            + 1.7857142857142858 * t186
-                * (parameters[21] * t183 - parameters[22] * t157
-                    + parameters[23] * t203);
-        let t212 = parameters[24] * t155 + ::overact::math::signed(parameters[25], t155)
+        let t108 = parameters[6] * t81 - parameters[5] * minus_rate_dot_2_leg1
+            + parameters[7] * t72 + t94 - t107;
+        let t111 = t3 + 0.3950502153918333;
+        let t114 = t111 * t111 + t10;
+        let t116 = 0.0784 / t114 - 0.25;
+        ::overact::guard::reach(t116, "leg2")?;
+        let t117 = ::overact::math::sqrt(t116);
+        let t119 = 0.5 * t111 - t8 * t117;
+        let t120 = t114 * t117;
+        ::overact::guard::leg(t120, 0.07839913810297301, "leg2")?;
+        let t121 = 1.0 / t120;
+        let g2_vx_leg2 = t119 * t121;
+        let t125 = t24 + t111 * t117;
+        let t128 = t111 - t119;
+        let minus_g1_vx_leg2 = t128 * t121;
+        let t131 = t8 - t125;
+        let minus_g1_vy_leg2 = t131 * t121;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t22 + minus_g1_vy_leg2 * t30;
+        let t135 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let g2_vy_leg2 = t125 * t121;
+        let rate_2_leg2 = g2_vx_leg2 * t22 + g2_vy_leg2 * t30;
+        let t142 = rate_2_leg2 * rate_2_leg2;
+        let t143 = t114 - 0.1568;
+        let t144 = 0.5 * t143;
+        let rate_dot_2_leg2 = t121
+            * (t119 * t36 - t125 * t34 + 0.0784 * t135 + t142 * t144);
+        let t153 = t131 * t34 - t128 * t36 - 0.0784 * t142;
+        let rate_dot_1_leg2 = t121 * (t153 - t135 * t144);
+        let t161 = 1.7857142857142858 * (t143 * rate_dot_1_leg2)
+            - 3.5714285714285716 * (t120 * t135);
+        let t164 = 3.5714285714285716 * t153;
+        let t167 = minus_rate_1_leg2 + rate_2_leg2;
+        let t171 = parameters[24] * t167 + ::overact::math::signed(parameters[25], t167)
             + parameters[26];
-        let t213 = parameters[15] * rate_dot_1_leg2 + parameters[16] * rate_dot_1_leg2
-            + parameters[17] * rate_1_leg2
-            + ::overact::math::signed(parameters[18], rate_1_leg2) + parameters[19]
-            + t207 - t212;
-        let t221 = twist[2] - rate_2_leg2;
-        let t225 = parameters[27] * t221 + ::overact::math::signed(parameters[28], t221)
+        let t173 = twist[2] - rate_2_leg2;
+        let t177 = parameters[27] * t173 + ::overact::math::signed(parameters[28], t173)
             + parameters[29];
-        let t226 = parameters[20] * t183 + parameters[21] * t203 + parameters[22] * t191
-            + t212 - t225;
-        let t230 = pose[0] + t2;
-        let t231 = t230 + 0.3950502153918333;
-        let t234 = pose[1] - t6 + 0.10970563941232059;
-        let t236 = t234 * t234;
-        let t237 = t231 * t231 + t236;
-        let t239 = 0.0784 / t237 - 0.25;
-        ::overact::guard::reach(t239, "leg3")?;
-        let t240 = ::overact::math::sqrt(t239);
-        let t242 = 0.5 * t231 + t234 * t240;
-        let t243 = t231 - t242;
-        let t244 = 0.5 * t234;
-        let t246 = t244 - t231 * t240;
-        let t247 = t234 - t246;
-        let t249 = t242 + t243 - t243;
-        let t252 = t247 - (t246 + t247);
-        let t254 = t247 * t249 + t243 * t252;
-        ::overact::guard::leg(t254, 0.078399138102973, "leg3")?;
-        let t255 = 1.0 / t254;
-        let g1_vx_leg3 = t243 * t255;
-        let t257 = twist[0] + t33;
-        let g1_vy_leg3 = t247 * t255;
-        let t260 = twist[1] + t31;
-        let rate_1_leg3 = g1_vx_leg3 * t257 + g1_vy_leg3 * t260;
-        let t263 = rate_1_leg3 * rate_1_leg3;
-        let g2_vy_leg3 = t252 * t255;
-        let minus_g2_vx_leg3 = t249 * t255;
-        let rate_2_leg3 = g2_vy_leg3 * t260 - minus_g2_vx_leg3 * t257;
-        let t270 = rate_2_leg3 - rate_1_leg3;
-        let t271 = rate_1_leg3 + t270;
-        let t272 = t271 * t271;
-        let t275 = t242 * t263 + t243 * t272 - t32;
-        let t280 = t57 + t246 * t263 + t247 * t272;
-        let rate_dot_1_leg3 = g1_vx_leg3 * t275 + g1_vy_leg3 * t280;
-        let t291 = t237 * t240;
-        let t295 = t237 - 0.1568;
-        let t298 = 3.5714285714285716 * (t291 * rate_dot_1_leg3)
-            - 1.7857142857142858 * (t295 * t263);
-        let rate_dot_2_leg3 = g2_vy_leg3 * t280 - minus_g2_vx_leg3 * t275;
-        let t305 = rate_dot_1_leg3 + rate_dot_2_leg3 - rate_dot_1_leg3;
-        let t318 = 3.5714285714285716 * (t291 * t263)
-            + 1.7857142857142858 * (t295 * rate_dot_1_leg3);
-        let t322 = 3.5714285714285716 * t291
-            * (parameters[38] * t298 - (parameters[36] * t272 + parameters[37] * t305))
-            + 1.7857142857142858 * t295
-                * (parameters[36] * t305 - parameters[37] * t272
-                    + parameters[38] * t318);
-        let t327 = parameters[39] * t270 + ::overact::math::signed(parameters[40], t270)
-            + parameters[41];
-        let t328 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
-            + parameters[32] * rate_1_leg3
+        let t178 = parameters[20] * rate_dot_2_leg2 + parameters[21] * t161
+            + parameters[22] * t164 + t171 - t177;
+        let t202 = 3.5714285714285716 * t120
+            * (parameters[21] * t142 + parameters[22] * rate_dot_2_leg2
+                + parameters[23] * t164)
+            + 1.7857142857142858 * t143
+                * (parameters[21] * rate_dot_2_leg2 - parameters[22] * t142
+                    + parameters[23] * t161);
+        let t204 = parameters[15] * rate_dot_1_leg2 + parameters[16] * rate_dot_1_leg2
+            - parameters[17] * minus_rate_1_leg2
+            - ::overact::math::signed(parameters[18], minus_rate_1_leg2) + parameters[19]
+            + t202 - t171;
+        let t208 = pose[0] + t2;
+        let t209 = t208 + 0.3950502153918333;
+        let t212 = pose[1] - t6 + 0.10970563941232059;
+        let t214 = t212 * t212;
+        let t215 = t209 * t209 + t214;
+        let t217 = 0.0784 / t215 - 0.25;
+        ::overact::guard::reach(t217, "leg3")?;
+        let t218 = ::overact::math::sqrt(t217);
+        let t220 = 0.5 * t209 + t212 * t218;
+        let t221 = t209 - t220;
+        let t222 = t215 * t218;
+        ::overact::guard::leg(t222, 0.07839913810297301, "leg3")?;
+        let t223 = 1.0 / t222;
+        let g1_vx_leg3 = t221 * t223;
+        let t225 = twist[0] + t21;
+        let t227 = 0.5 * t212;
+        let t229 = t227 - t209 * t218;
+        let t230 = t212 - t229;
+        let g1_vy_leg3 = t230 * t223;
+        let t232 = twist[1] + t29;
+        let rate_1_leg3 = g1_vx_leg3 * t225 + g1_vy_leg3 * t232;
+        let minus_g2_vx_leg3 = t220 * t223;
+        let minus_g2_vy_leg3 = t229 * t223;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t225 + minus_g2_vy_leg3 * t232;
+        let t244 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t246 = t221 * t36 - t230 * t34 - 0.0784 * t244;
+        let t247 = rate_1_leg3 * rate_1_leg3;
+        let t248 = t215 - 0.1568;
+        let t249 = 0.5 * t248;
+        let minus_rate_dot_1_leg3 = t223 * (t246 - t247 * t249);
+        let minus_rate_dot_2_leg3 = t223
+            * (t229 * t34 - t220 * t36 + 0.0784 * t247 + t244 * t249);
+        let t272 = 3.5714285714285716 * t246;
+        let t281 = 3.5714285714285716 * (t222 * t247)
+            - 1.7857142857142858 * (t248 * minus_rate_dot_1_leg3);
+        let t288 = 3.5714285714285716 * t222
+            * (parameters[37] * minus_rate_dot_2_leg3 - parameters[36] * t244
+                - parameters[38] * t272)
+            + 1.7857142857142858 * t248
+                * (parameters[38] * t281
+                    - (parameters[36] * minus_rate_dot_2_leg3 + parameters[37] * t244));
+        let t290 = rate_1_leg3 + minus_rate_2_leg3;
+        let t294 = parameters[41]
+            - (parameters[39] * t290 + ::overact::math::signed(parameters[40], t290));
+        let t295 = parameters[32] * rate_1_leg3 - parameters[31] * minus_rate_dot_1_leg3
             + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34]
-            + t322 - t327;
-        let t336 = twist[2] - rate_2_leg3;
-        let t340 = parameters[42] * t336 + ::overact::math::signed(parameters[43], t336)
+            - parameters[30] * minus_rate_dot_1_leg3 + t288 - t294;
+        let t303 = minus_rate_2_leg3 + twist[2];
+        let t307 = parameters[42] * t303 + ::overact::math::signed(parameters[43], t303)
             + parameters[44];
-        let t341 = parameters[35] * t305 + parameters[36] * t318 - parameters[37] * t298
-            + t327 - t340;
-        let t344 = g1_vx_leg1 * t106 - minus_g2_vx_leg1 * t119 + g1_vx_leg2 * t213
-            - minus_g2_vx_leg2 * t226 + g1_vx_leg3 * t328 - minus_g2_vx_leg3 * t341;
-        let t345 = t230 - 0.3950502153918333;
-        let t348 = t345 * t345 + t236;
-        let t350 = 0.0784 / t348 - 0.25;
-        ::overact::guard::reach(t350, "leg4")?;
-        let t351 = ::overact::math::sqrt(t350);
-        let t353 = 0.5 * t345 - t234 * t351;
-        let t354 = t345 - t353;
-        let t356 = t244 + t345 * t351;
-        let t357 = t234 - t356;
-        let t359 = t353 + t354 - t354;
-        let t362 = t357 - (t356 + t357);
-        let t364 = t357 * t359 + t354 * t362;
-        ::overact::guard::leg(t364, 0.078399138102973, "leg4")?;
-        let t365 = 1.0 / t364;
-        let g1_vx_leg4 = t354 * t365;
-        let g1_vy_leg4 = t357 * t365;
-        let rate_1_leg4 = g1_vx_leg4 * t257 + g1_vy_leg4 * t260;
-        let t371 = rate_1_leg4 * rate_1_leg4;
-        let g2_vy_leg4 = t362 * t365;
-        let minus_g2_vx_leg4 = t359 * t365;
-        let rate_2_leg4 = g2_vy_leg4 * t260 - minus_g2_vx_leg4 * t257;
-        let t378 = rate_2_leg4 - rate_1_leg4;
-        let t379 = rate_1_leg4 + t378;
-        let t380 = t379 * t379;
-        let t383 = t353 * t371 + t354 * t380 - t32;
-        let t388 = t57 + t356 * t371 + t357 * t380;
-        let rate_dot_1_leg4 = g1_vx_leg4 * t383 + g1_vy_leg4 * t388;
-        let t399 = t348 * t351;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t388 - minus_g2_vx_leg4 * t383;
-        let t406 = rate_dot_1_leg4 + rate_dot_2_leg4 - rate_dot_1_leg4;
-        let t409 = t348 - 0.1568;
-        let t414 = 1.7857142857142858 * (t409 * t371)
-            + 3.5714285714285716 * (t399 * rate_dot_1_leg4);
-        let t426 = 1.7857142857142858 * (t409 * rate_dot_1_leg4)
-            - 3.5714285714285716 * (t399 * t371);
-        let t430 = 3.5714285714285716 * t399
-            * (parameters[51] * t380 + parameters[52] * t406 + parameters[53] * t414)
-            + 1.7857142857142858 * t409
-                * (parameters[51] * t406 - parameters[52] * t380
-                    + parameters[53] * t426);
-        let t435 = parameters[54] * t378 + ::overact::math::signed(parameters[55], t378)
+        let t308 = parameters[36] * t281 - parameters[35] * minus_rate_dot_2_leg3
+            + parameters[37] * t272 + t294 - t307;
+        let t311 = g1_vx_leg1 * t95 - minus_g2_vx_leg1 * t108 + g2_vx_leg2 * t178
+            - minus_g1_vx_leg2 * t204 + g1_vx_leg3 * t295 - minus_g2_vx_leg3 * t308;
+        let t312 = t208 - 0.3950502153918333;
+        let t315 = t312 * t312 + t214;
+        let t317 = 0.0784 / t315 - 0.25;
+        ::overact::guard::reach(t317, "leg4")?;
+        let t318 = ::overact::math::sqrt(t317);
+        let t320 = 0.5 * t312 - t212 * t318;
+        let t321 = t315 * t318;
+        ::overact::guard::leg(t321, 0.07839913810297301, "leg4")?;
+        let t322 = 1.0 / t321;
+        let g2_vx_leg4 = t320 * t322;
+        let t325 = t227 + t312 * t318;
+        let t329 = t312 - t320;
+        let minus_g1_vx_leg4 = t329 * t322;
+        let t332 = t212 - t325;
+        let minus_g1_vy_leg4 = t332 * t322;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t225 + minus_g1_vy_leg4 * t232;
+        let t336 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let g2_vy_leg4 = t325 * t322;
+        let rate_2_leg4 = g2_vx_leg4 * t225 + g2_vy_leg4 * t232;
+        let t343 = rate_2_leg4 * rate_2_leg4;
+        let t344 = t315 - 0.1568;
+        let t345 = 0.5 * t344;
+        let rate_dot_2_leg4 = t322
+            * (t325 * t34 - t320 * t36 + 0.0784 * t336 + t343 * t345);
+        let t354 = t329 * t36 - t332 * t34 - 0.0784 * t343;
+        let rate_dot_1_leg4 = t322 * (t354 - t336 * t345);
+        let t362 = 1.7857142857142858 * (t344 * rate_dot_1_leg4)
+            - 3.5714285714285716 * (t321 * t336);
+        let t365 = 3.5714285714285716 * t354;
+        let t368 = minus_rate_1_leg4 + rate_2_leg4;
+        let t372 = parameters[54] * t368 + ::overact::math::signed(parameters[55], t368)
             + parameters[56];
-        let t436 = parameters[45] * rate_dot_1_leg4 + parameters[46] * rate_dot_1_leg4
-            + parameters[47] * rate_1_leg4
-            + ::overact::math::signed(parameters[48], rate_1_leg4) + parameters[49]
-            + t430 - t435;
-        let t444 = twist[2] - rate_2_leg4;
-        let t448 = parameters[57] * t444 + ::overact::math::signed(parameters[58], t444)
+        let t374 = twist[2] - rate_2_leg4;
+        let t378 = parameters[57] * t374 + ::overact::math::signed(parameters[58], t374)
             + parameters[59];
-        let t449 = parameters[50] * t406 + parameters[51] * t426 + parameters[52] * t414
-            + t435 - t448;
-        let t453 = twist[2] * twist[2];
-        let t456 = parameters[62] * t453 + parameters[66] * t453;
-        let t460 = parameters[61] * t453 + parameters[65] * t453;
-        let t474 = g1_vy_leg1 * t106 + g2_vy_leg1 * t119 + g1_vy_leg2 * t213
-            + g2_vy_leg2 * t226 + g1_vy_leg3 * t328 + g2_vy_leg3 * t341;
-        let g2_wz_leg1 = t6 * minus_g2_vx_leg1 - t2 * g2_vy_leg1;
+        let t379 = parameters[50] * rate_dot_2_leg4 + parameters[51] * t362
+            + parameters[52] * t365 + t372 - t378;
+        let t403 = 3.5714285714285716 * t321
+            * (parameters[51] * t343 + parameters[52] * rate_dot_2_leg4
+                + parameters[53] * t365)
+            + 1.7857142857142858 * t344
+                * (parameters[51] * rate_dot_2_leg4 - parameters[52] * t343
+                    + parameters[53] * t362);
+        let t405 = parameters[45] * rate_dot_1_leg4 + parameters[46] * rate_dot_1_leg4
+            - parameters[47] * minus_rate_1_leg4
+            - ::overact::math::signed(parameters[48], minus_rate_1_leg4) + parameters[49]
+            + t403 - t372;
+        let s12_leg1 = 3.5714285714285716 * t27;
+        let c12_leg1 = 3.5714285714285716 * t17;
+        let s3_leg1 = c_phi * s12_leg1 - s_phi * c12_leg1;
+        let minus_c3_leg1 = c_phi * c12_leg1 + s_phi * s12_leg1;
+        let t423 = 9.090909090909092
+            * (s3_leg1 * (3.5714285714285716 * t38)
+                - minus_c3_leg1 * (t81 - 0.28 * minus_rate_dot_2_leg1));
+        let t426 = parameters[62] * t423 + parameters[66] * t423;
+        let t430 = parameters[61] * t423 + parameters[65] * t423;
+        let t444 = g1_vy_leg1 * t95 - minus_g2_vy_leg1 * t108 + g2_vy_leg2 * t178
+            - minus_g1_vy_leg2 * t204 + g1_vy_leg3 * t295 - minus_g2_vy_leg3 * t308;
+        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let g2_wz_leg2 = t6 * minus_g2_vx_leg2 - t2 * g2_vy_leg2;
-        let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t6 * g1_vx_leg2;
+        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
+        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let g2_wz_leg3 = t2 * g2_vy_leg3 - t6 * minus_g2_vx_leg3;
-        let t514 = g2_wz_leg1 * t119 - minus_g1_wz_leg1 * t106 + t118 + g2_wz_leg2 * t226
-            - minus_g1_wz_leg2 * t213 + t225 + g1_wz_leg3 * t328 + g2_wz_leg3 * t341
-            + t340;
-        let g1_wz_leg4 = t2 * g1_vy_leg4 + t6 * g1_vx_leg4;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 - t6 * minus_g2_vx_leg4;
+        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
+        let t484 = g2_wz_leg1 * t108 - minus_g1_wz_leg1 * t95 + t107 + g1_wz_leg2 * t204
+            - minus_g2_wz_leg2 * t178 + t177 + g1_wz_leg3 * t295
+            - minus_g2_wz_leg3 * t308 + t307;
+        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
+        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
         Ok([
-            t344 + g1_vx_leg4 * t436 - minus_g2_vx_leg4 * t449 + s_phi * t456
-                - c_phi * t460,
-            t474 + g1_vy_leg4 * t436 + g2_vy_leg4 * t449 - (s_phi * t460 + c_phi * t456),
-            t514 + g1_wz_leg4 * t436 + g2_wz_leg4 * t449 + t448,
+            t311 + g2_vx_leg4 * t379 - minus_g1_vx_leg4 * t405 + s_phi * t426
+                - c_phi * t430,
+            t444 + g2_vy_leg4 * t379 - minus_g1_vy_leg4 * t405
+                - (s_phi * t430 + c_phi * t426),
+            t484 + g2_wz_leg4 * t379 - minus_g1_wz_leg4 * t405 + t378,
         ])
     }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
@@ -7305,7 +6924,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 699 operations (319 additions, 368 multiplications, 12 divisions), 5 square roots, 1 trigonometric pairs, 12 signs, 714 intermediates.
+    /// 648 operations (280 additions, 356 multiplications, 12 divisions), 5 square roots, 1 trigonometric pairs, 12 signs, 663 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7329,306 +6948,298 @@ impl DualV {
         let t14 = ::overact::math::sqrt(t13);
         let t16 = 0.5 * t4 + t8 * t14;
         let t17 = t4 - t16;
-        let t18 = 0.5 * t8;
-        let t20 = t18 - t4 * t14;
-        let t21 = t8 - t20;
-        let t23 = t16 + t17 - t17;
-        let t26 = t21 - (t20 + t21);
-        let t28 = t21 * t23 + t17 * t26;
-        ::overact::guard::leg(t28, 0.078399138102973, "leg1")?;
-        let t29 = 1.0 / t28;
-        let g1_vx_leg1 = t17 * t29;
-        let t31 = t6 * acceleration[2];
-        let t33 = t2 * twist[2];
+        let t18 = t11 * t14;
+        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
+        let t19 = 1.0 / t18;
+        let g1_vx_leg1 = t17 * t19;
+        let t21 = t6 * acceleration[2];
+        let t23 = t2 * twist[2];
+        let t24 = twist[2] * t23;
+        let t25 = acceleration[0] - t21 + t24;
+        let t27 = 0.5 * t8;
+        let t29 = t27 - t4 * t14;
+        let t30 = t8 - t29;
+        let t31 = t2 * acceleration[2];
+        let t33 = t6 * twist[2];
         let t34 = twist[2] * t33;
-        let t35 = acceleration[0] - t31 + t34;
-        let t36 = t6 * twist[2];
-        let t37 = twist[0] - t36;
-        let g1_vy_leg1 = t21 * t29;
-        let t40 = twist[1] - t33;
-        let rate_1_leg1 = g1_vx_leg1 * t37 + g1_vy_leg1 * t40;
-        let t43 = rate_1_leg1 * rate_1_leg1;
-        let g2_vy_leg1 = t26 * t29;
-        let minus_g2_vx_leg1 = t23 * t29;
-        let rate_2_leg1 = g2_vy_leg1 * t40 - minus_g2_vx_leg1 * t37;
-        let t50 = rate_2_leg1 - rate_1_leg1;
-        let t51 = rate_1_leg1 + t50;
-        let t52 = t51 * t51;
-        let t55 = t35 + t16 * t43 + t17 * t52;
-        let t57 = t2 * acceleration[2];
-        let t59 = twist[2] * t36;
-        let t60 = acceleration[1] - t57 - t59;
-        let t64 = t60 + t20 * t43 + t21 * t52;
-        let rate_dot_1_leg1 = g1_vx_leg1 * t55 + g1_vy_leg1 * t64;
-        let t75 = t11 * t14;
-        let t79 = t11 - 0.1568;
-        let t82 = 3.5714285714285716 * (t75 * rate_dot_1_leg1)
-            - 1.7857142857142858 * (t79 * t43);
-        let rate_dot_2_leg1 = g2_vy_leg1 * t64 - minus_g2_vx_leg1 * t55;
-        let t89 = rate_dot_1_leg1 + rate_dot_2_leg1 - rate_dot_1_leg1;
-        let t102 = 3.5714285714285716 * (t75 * t43)
-            + 1.7857142857142858 * (t79 * rate_dot_1_leg1);
-        let t106 = 3.5714285714285716 * t75
-            * (parameters[8] * t82 - (parameters[6] * t52 + parameters[7] * t89))
-            + 1.7857142857142858 * t79
-                * (parameters[6] * t89 - parameters[7] * t52 + parameters[8] * t102);
-        let t111 = parameters[9] * t50 + ::overact::math::signed(parameters[10], t50)
-            + parameters[11];
-        let t112 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
+        let t35 = acceleration[1] - t31 - t34;
+        let minus_g2_vx_leg1 = t16 * t19;
+        let t39 = twist[0] - t33;
+        let minus_g2_vy_leg1 = t29 * t19;
+        let t42 = twist[1] - t23;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t39 + minus_g2_vy_leg1 * t42;
+        let t45 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t47 = t17 * t25 + t30 * t35 + 0.0784 * t45;
+        let g1_vy_leg1 = t30 * t19;
+        let rate_1_leg1 = g1_vx_leg1 * t39 + g1_vy_leg1 * t42;
+        let t52 = rate_1_leg1 * rate_1_leg1;
+        let t53 = t11 - 0.1568;
+        let t54 = 0.5 * t53;
+        let rate_dot_1_leg1 = t19 * (t47 + t52 * t54);
+        let minus_rate_dot_2_leg1 = t19
+            * (t16 * t25 + t29 * t35 + 0.0784 * t52 + t45 * t54);
+        let t78 = 3.5714285714285716 * t47;
+        let t87 = 3.5714285714285716 * (t18 * t52)
+            + 1.7857142857142858 * (t53 * rate_dot_1_leg1);
+        let t94 = 3.5714285714285716 * t18
+            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t45
+                + parameters[8] * t78)
+            + 1.7857142857142858 * t53
+                * (parameters[8] * t87
+                    - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t45));
+        let t96 = rate_1_leg1 + minus_rate_2_leg1;
+        let t100 = parameters[11]
+            - (parameters[9] * t96 + ::overact::math::signed(parameters[10], t96));
+        let t101 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
             + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t106
-            - t111;
-        let t120 = twist[2] - rate_2_leg1;
-        let t124 = parameters[12] * t120 + ::overact::math::signed(parameters[13], t120)
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t94
+            - t100;
+        let t109 = minus_rate_2_leg1 + twist[2];
+        let t113 = parameters[12] * t109 + ::overact::math::signed(parameters[13], t109)
             + parameters[14];
-        let t125 = parameters[5] * t89 + parameters[6] * t102 - parameters[7] * t82
-            + t111 - t124;
-        let t128 = t3 + 0.3950502153918333;
-        let t131 = t128 * t128 + t10;
-        let t133 = 0.0784 / t131 - 0.25;
-        ::overact::guard::reach(t133, "leg2")?;
-        let t134 = ::overact::math::sqrt(t133);
-        let t136 = 0.5 * t128 - t8 * t134;
-        let t137 = t128 - t136;
-        let t139 = t18 + t128 * t134;
-        let t140 = t8 - t139;
-        let t142 = t136 + t137 - t137;
-        let t145 = t140 - (t139 + t140);
-        let t147 = t140 * t142 + t137 * t145;
-        ::overact::guard::leg(t147, 0.078399138102973, "leg2")?;
-        let t148 = 1.0 / t147;
-        let g1_vx_leg2 = t137 * t148;
-        let g1_vy_leg2 = t140 * t148;
-        let rate_1_leg2 = g1_vx_leg2 * t37 + g1_vy_leg2 * t40;
-        let t154 = rate_1_leg2 * rate_1_leg2;
-        let g2_vy_leg2 = t145 * t148;
-        let minus_g2_vx_leg2 = t142 * t148;
-        let rate_2_leg2 = g2_vy_leg2 * t40 - minus_g2_vx_leg2 * t37;
-        let t161 = rate_2_leg2 - rate_1_leg2;
-        let t162 = rate_1_leg2 + t161;
-        let t163 = t162 * t162;
-        let t166 = t35 + t136 * t154 + t137 * t163;
-        let t171 = t60 + t139 * t154 + t140 * t163;
-        let rate_dot_1_leg2 = g1_vx_leg2 * t166 + g1_vy_leg2 * t171;
-        let t182 = t131 * t134;
-        let rate_dot_2_leg2 = g2_vy_leg2 * t171 - minus_g2_vx_leg2 * t166;
-        let t189 = rate_dot_1_leg2 + rate_dot_2_leg2 - rate_dot_1_leg2;
-        let t192 = t131 - 0.1568;
-        let t197 = 1.7857142857142858 * (t192 * t154)
-            + 3.5714285714285716 * (t182 * rate_dot_1_leg2);
-        let t209 = 1.7857142857142858 * (t192 * rate_dot_1_leg2)
-            - 3.5714285714285716 * (t182 * t154);
-        let t213 = 3.5714285714285716 * t182
-            * (parameters[21] * t163 + parameters[22] * t189 + parameters[23] * t197)
-            + 1.7857142857142858 * t192
-                * (parameters[21] * t189 - parameters[22] * t163
-                    + parameters[23] * t209);
-        let t218 = parameters[24] * t161 + ::overact::math::signed(parameters[25], t161)
+        let t114 = parameters[6] * t87 - parameters[5] * minus_rate_dot_2_leg1
+            - parameters[7] * t78 + t100 - t113;
+        let t117 = t3 + 0.3950502153918333;
+        let t120 = t117 * t117 + t10;
+        let t122 = 0.0784 / t120 - 0.25;
+        ::overact::guard::reach(t122, "leg2")?;
+        let t123 = ::overact::math::sqrt(t122);
+        let t125 = 0.5 * t117 - t8 * t123;
+        let t126 = t120 * t123;
+        ::overact::guard::leg(t126, 0.07839913810297301, "leg2")?;
+        let t127 = 1.0 / t126;
+        let g2_vx_leg2 = t125 * t127;
+        let t131 = t27 + t117 * t123;
+        let t134 = t117 - t125;
+        let minus_g1_vx_leg2 = t134 * t127;
+        let t137 = t8 - t131;
+        let minus_g1_vy_leg2 = t137 * t127;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t39 + minus_g1_vy_leg2 * t42;
+        let t141 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let g2_vy_leg2 = t131 * t127;
+        let rate_2_leg2 = g2_vx_leg2 * t39 + g2_vy_leg2 * t42;
+        let t148 = rate_2_leg2 * rate_2_leg2;
+        let t149 = t120 - 0.1568;
+        let t150 = 0.5 * t149;
+        let rate_dot_2_leg2 = t127
+            * (t125 * t25 + t131 * t35 + 0.0784 * t141 + t148 * t150);
+        let t161 = t134 * t25 + t137 * t35 + 0.0784 * t148;
+        let minus_rate_dot_1_leg2 = t127 * (t161 + t141 * t150);
+        let t167 = 3.5714285714285716 * (t126 * t141)
+            + 1.7857142857142858 * (t149 * minus_rate_dot_1_leg2);
+        let t170 = 3.5714285714285716 * t161;
+        let t173 = minus_rate_1_leg2 + rate_2_leg2;
+        let t177 = parameters[24] * t173 + ::overact::math::signed(parameters[25], t173)
             + parameters[26];
-        let t219 = parameters[15] * rate_dot_1_leg2 + parameters[16] * rate_dot_1_leg2
-            + parameters[17] * rate_1_leg2
-            + ::overact::math::signed(parameters[18], rate_1_leg2) + parameters[19]
-            + t213 - t218;
-        let t227 = twist[2] - rate_2_leg2;
-        let t231 = parameters[27] * t227 + ::overact::math::signed(parameters[28], t227)
+        let t179 = twist[2] - rate_2_leg2;
+        let t183 = parameters[27] * t179 + ::overact::math::signed(parameters[28], t179)
             + parameters[29];
-        let t232 = parameters[20] * t189 + parameters[21] * t209 + parameters[22] * t197
-            + t218 - t231;
-        let t236 = pose[0] + t2;
-        let t237 = t236 + 0.3950502153918333;
-        let t240 = pose[1] - t6 + 0.10970563941232059;
-        let t242 = t240 * t240;
-        let t243 = t237 * t237 + t242;
-        let t245 = 0.0784 / t243 - 0.25;
-        ::overact::guard::reach(t245, "leg3")?;
-        let t246 = ::overact::math::sqrt(t245);
-        let t248 = 0.5 * t237 + t240 * t246;
-        let t249 = t237 - t248;
-        let t250 = 0.5 * t240;
-        let t252 = t250 - t237 * t246;
-        let t253 = t240 - t252;
-        let t255 = t248 + t249 - t249;
-        let t258 = t253 - (t252 + t253);
-        let t260 = t253 * t255 + t249 * t258;
-        ::overact::guard::leg(t260, 0.078399138102973, "leg3")?;
-        let t261 = 1.0 / t260;
-        let g1_vx_leg3 = t249 * t261;
-        let t264 = acceleration[0] + t31 - t34;
-        let t265 = twist[0] + t36;
-        let g1_vy_leg3 = t253 * t261;
-        let t268 = twist[1] + t33;
-        let rate_1_leg3 = g1_vx_leg3 * t265 + g1_vy_leg3 * t268;
-        let t271 = rate_1_leg3 * rate_1_leg3;
-        let g2_vy_leg3 = t258 * t261;
-        let minus_g2_vx_leg3 = t255 * t261;
-        let rate_2_leg3 = g2_vy_leg3 * t268 - minus_g2_vx_leg3 * t265;
-        let t278 = rate_2_leg3 - rate_1_leg3;
-        let t279 = rate_1_leg3 + t278;
-        let t280 = t279 * t279;
-        let t283 = t264 + t248 * t271 + t249 * t280;
-        let t286 = acceleration[1] + t57 + t59;
-        let t290 = t286 + t252 * t271 + t253 * t280;
-        let rate_dot_1_leg3 = g1_vx_leg3 * t283 + g1_vy_leg3 * t290;
-        let t301 = t243 * t246;
-        let t305 = t243 - 0.1568;
-        let t308 = 3.5714285714285716 * (t301 * rate_dot_1_leg3)
-            - 1.7857142857142858 * (t305 * t271);
-        let rate_dot_2_leg3 = g2_vy_leg3 * t290 - minus_g2_vx_leg3 * t283;
-        let t315 = rate_dot_1_leg3 + rate_dot_2_leg3 - rate_dot_1_leg3;
-        let t328 = 3.5714285714285716 * (t301 * t271)
-            + 1.7857142857142858 * (t305 * rate_dot_1_leg3);
-        let t332 = 3.5714285714285716 * t301
-            * (parameters[38] * t308 - (parameters[36] * t280 + parameters[37] * t315))
-            + 1.7857142857142858 * t305
-                * (parameters[36] * t315 - parameters[37] * t280
-                    + parameters[38] * t328);
-        let t337 = parameters[39] * t278 + ::overact::math::signed(parameters[40], t278)
-            + parameters[41];
-        let t338 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
+        let t184 = parameters[20] * rate_dot_2_leg2 - parameters[21] * t167
+            - parameters[22] * t170 + t177 - t183;
+        let t208 = 1.7857142857142858 * t149
+            * (parameters[21] * rate_dot_2_leg2 - parameters[22] * t148
+                - parameters[23] * t167)
+            - 3.5714285714285716 * t126
+                * (parameters[23] * t170
+                    - (parameters[21] * t148 + parameters[22] * rate_dot_2_leg2));
+        let t210 = parameters[19]
+            - (parameters[16] * minus_rate_dot_1_leg2
+                + parameters[17] * minus_rate_1_leg2
+                + ::overact::math::signed(parameters[18], minus_rate_1_leg2))
+            - parameters[15] * minus_rate_dot_1_leg2 + t208 - t177;
+        let t214 = pose[0] + t2;
+        let t215 = t214 + 0.3950502153918333;
+        let t218 = pose[1] - t6 + 0.10970563941232059;
+        let t220 = t218 * t218;
+        let t221 = t215 * t215 + t220;
+        let t223 = 0.0784 / t221 - 0.25;
+        ::overact::guard::reach(t223, "leg3")?;
+        let t224 = ::overact::math::sqrt(t223);
+        let t226 = 0.5 * t215 + t218 * t224;
+        let t227 = t215 - t226;
+        let t228 = t221 * t224;
+        ::overact::guard::leg(t228, 0.07839913810297301, "leg3")?;
+        let t229 = 1.0 / t228;
+        let g1_vx_leg3 = t227 * t229;
+        let t232 = acceleration[0] + t21 - t24;
+        let t234 = 0.5 * t218;
+        let t236 = t234 - t215 * t224;
+        let t237 = t218 - t236;
+        let t239 = acceleration[1] + t31 + t34;
+        let minus_g2_vx_leg3 = t226 * t229;
+        let t243 = twist[0] + t33;
+        let minus_g2_vy_leg3 = t236 * t229;
+        let t246 = twist[1] + t23;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t243 + minus_g2_vy_leg3 * t246;
+        let t249 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t251 = t227 * t232 + t237 * t239 + 0.0784 * t249;
+        let g1_vy_leg3 = t237 * t229;
+        let rate_1_leg3 = g1_vx_leg3 * t243 + g1_vy_leg3 * t246;
+        let t256 = rate_1_leg3 * rate_1_leg3;
+        let t257 = t221 - 0.1568;
+        let t258 = 0.5 * t257;
+        let rate_dot_1_leg3 = t229 * (t251 + t256 * t258);
+        let minus_rate_dot_2_leg3 = t229
+            * (t226 * t232 + t236 * t239 + 0.0784 * t256 + t249 * t258);
+        let t282 = 3.5714285714285716 * t251;
+        let t291 = 3.5714285714285716 * (t228 * t256)
+            + 1.7857142857142858 * (t257 * rate_dot_1_leg3);
+        let t298 = 3.5714285714285716 * t228
+            * (parameters[37] * minus_rate_dot_2_leg3 - parameters[36] * t249
+                + parameters[38] * t282)
+            + 1.7857142857142858 * t257
+                * (parameters[38] * t291
+                    - (parameters[36] * minus_rate_dot_2_leg3 + parameters[37] * t249));
+        let t300 = rate_1_leg3 + minus_rate_2_leg3;
+        let t304 = parameters[41]
+            - (parameters[39] * t300 + ::overact::math::signed(parameters[40], t300));
+        let t305 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
             + parameters[32] * rate_1_leg3
             + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34]
-            + t332 - t337;
-        let t346 = twist[2] - rate_2_leg3;
-        let t350 = parameters[42] * t346 + ::overact::math::signed(parameters[43], t346)
+            + t298 - t304;
+        let t313 = minus_rate_2_leg3 + twist[2];
+        let t317 = parameters[42] * t313 + ::overact::math::signed(parameters[43], t313)
             + parameters[44];
-        let t351 = parameters[35] * t315 + parameters[36] * t328 - parameters[37] * t308
-            + t337 - t350;
-        let t354 = g1_vx_leg1 * t112 - minus_g2_vx_leg1 * t125 + g1_vx_leg2 * t219
-            - minus_g2_vx_leg2 * t232 + g1_vx_leg3 * t338 - minus_g2_vx_leg3 * t351;
-        let t355 = t236 - 0.3950502153918333;
-        let t358 = t355 * t355 + t242;
-        let t360 = 0.0784 / t358 - 0.25;
-        ::overact::guard::reach(t360, "leg4")?;
-        let t361 = ::overact::math::sqrt(t360);
-        let t363 = 0.5 * t355 - t240 * t361;
-        let t364 = t355 - t363;
-        let t366 = t250 + t355 * t361;
-        let t367 = t240 - t366;
-        let t369 = t363 + t364 - t364;
-        let t372 = t367 - (t366 + t367);
-        let t374 = t367 * t369 + t364 * t372;
-        ::overact::guard::leg(t374, 0.078399138102973, "leg4")?;
-        let t375 = 1.0 / t374;
-        let g1_vx_leg4 = t364 * t375;
-        let g1_vy_leg4 = t367 * t375;
-        let rate_1_leg4 = g1_vx_leg4 * t265 + g1_vy_leg4 * t268;
-        let t381 = rate_1_leg4 * rate_1_leg4;
-        let g2_vy_leg4 = t372 * t375;
-        let minus_g2_vx_leg4 = t369 * t375;
-        let rate_2_leg4 = g2_vy_leg4 * t268 - minus_g2_vx_leg4 * t265;
-        let t388 = rate_2_leg4 - rate_1_leg4;
-        let t389 = rate_1_leg4 + t388;
-        let t390 = t389 * t389;
-        let t393 = t264 + t363 * t381 + t364 * t390;
-        let t398 = t286 + t366 * t381 + t367 * t390;
-        let rate_dot_1_leg4 = g1_vx_leg4 * t393 + g1_vy_leg4 * t398;
-        let t409 = t358 * t361;
-        let rate_dot_2_leg4 = g2_vy_leg4 * t398 - minus_g2_vx_leg4 * t393;
-        let t416 = rate_dot_1_leg4 + rate_dot_2_leg4 - rate_dot_1_leg4;
-        let t419 = t358 - 0.1568;
-        let t424 = 1.7857142857142858 * (t419 * t381)
-            + 3.5714285714285716 * (t409 * rate_dot_1_leg4);
-        let t436 = 1.7857142857142858 * (t419 * rate_dot_1_leg4)
-            - 3.5714285714285716 * (t409 * t381);
-        let t440 = 3.5714285714285716 * t409
-            * (parameters[51] * t390 + parameters[52] * t416 + parameters[53] * t424)
-            + 1.7857142857142858 * t419
-                * (parameters[51] * t416 - parameters[52] * t390
-                    + parameters[53] * t436);
-        let t445 = parameters[54] * t388 + ::overact::math::signed(parameters[55], t388)
+        let t318 = parameters[36] * t291 - parameters[35] * minus_rate_dot_2_leg3
+            - parameters[37] * t282 + t304 - t317;
+        let t321 = g1_vx_leg1 * t101 - minus_g2_vx_leg1 * t114 + g2_vx_leg2 * t184
+            - minus_g1_vx_leg2 * t210 + g1_vx_leg3 * t305 - minus_g2_vx_leg3 * t318;
+        let t322 = t214 - 0.3950502153918333;
+        let t325 = t322 * t322 + t220;
+        let t327 = 0.0784 / t325 - 0.25;
+        ::overact::guard::reach(t327, "leg4")?;
+        let t328 = ::overact::math::sqrt(t327);
+        let t330 = 0.5 * t322 - t218 * t328;
+        let t331 = t325 * t328;
+        ::overact::guard::leg(t331, 0.07839913810297301, "leg4")?;
+        let t332 = 1.0 / t331;
+        let g2_vx_leg4 = t330 * t332;
+        let t336 = t234 + t322 * t328;
+        let t339 = t322 - t330;
+        let minus_g1_vx_leg4 = t339 * t332;
+        let t342 = t218 - t336;
+        let minus_g1_vy_leg4 = t342 * t332;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t243 + minus_g1_vy_leg4 * t246;
+        let t346 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let g2_vy_leg4 = t336 * t332;
+        let rate_2_leg4 = g2_vx_leg4 * t243 + g2_vy_leg4 * t246;
+        let t353 = rate_2_leg4 * rate_2_leg4;
+        let t354 = t325 - 0.1568;
+        let t355 = 0.5 * t354;
+        let rate_dot_2_leg4 = t332
+            * (t330 * t232 + t336 * t239 + 0.0784 * t346 + t353 * t355);
+        let t366 = t339 * t232 + t342 * t239 + 0.0784 * t353;
+        let minus_rate_dot_1_leg4 = t332 * (t366 + t346 * t355);
+        let t372 = 3.5714285714285716 * (t331 * t346)
+            + 1.7857142857142858 * (t354 * minus_rate_dot_1_leg4);
+        let t375 = 3.5714285714285716 * t366;
+        let t378 = minus_rate_1_leg4 + rate_2_leg4;
+        let t382 = parameters[54] * t378 + ::overact::math::signed(parameters[55], t378)
             + parameters[56];
-        let t446 = parameters[45] * rate_dot_1_leg4 + parameters[46] * rate_dot_1_leg4
-            + parameters[47] * rate_1_leg4
-            + ::overact::math::signed(parameters[48], rate_1_leg4) + parameters[49]
-            + t440 - t445;
-        let t454 = twist[2] - rate_2_leg4;
-        let t458 = parameters[57] * t454 + ::overact::math::signed(parameters[58], t454)
+        let t384 = twist[2] - rate_2_leg4;
+        let t388 = parameters[57] * t384 + ::overact::math::signed(parameters[58], t384)
             + parameters[59];
-        let t459 = parameters[50] * t416 + parameters[51] * t436 + parameters[52] * t424
-            + t445 - t458;
-        let t465 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t467 = twist[2] * twist[2];
-        let t477 = parameters[63] * t465
-            - (parameters[61] * t467 + acceleration[2] * parameters[62])
-            - parameters[65] * t467 - acceleration[2] * parameters[66]
-            + parameters[67] * t465;
-        let t484 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t492 = acceleration[2] * parameters[61] - parameters[62] * t467
-            + parameters[63] * t484 + acceleration[2] * parameters[65]
-            - parameters[66] * t467 + parameters[67] * t484;
-        let t495 = t354 + g1_vx_leg4 * t446 - minus_g2_vx_leg4 * t459 + c_phi * t477
-            - s_phi * t492;
-        let t502 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t502, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(t502, 25.429161076750646, "actuators")?;
-        let t503 = 1.0 / t502;
-        let t511 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
-        let t512 = t511 * t503;
-        let t521 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t511 * t512;
-        ::overact::guard::platform(t521, 25.59236889935335, "actuators")?;
-        ::overact::guard::platform(t521, 25.59236889935335, "actuators")?;
-        let t522 = 1.0 / t521;
-        let t533 = g1_vy_leg1 * t112 + g2_vy_leg1 * t125 + g1_vy_leg2 * t219
-            + g2_vy_leg2 * t232 + g1_vy_leg3 * t338 + g2_vy_leg3 * t351;
-        let t543 = t533 + g1_vy_leg4 * t446 + g2_vy_leg4 * t459 + s_phi * t477
-            + c_phi * t492 - t495 * t512;
+        let t389 = parameters[50] * rate_dot_2_leg4 - parameters[51] * t372
+            - parameters[52] * t375 + t382 - t388;
+        let t413 = 1.7857142857142858 * t354
+            * (parameters[51] * rate_dot_2_leg4 - parameters[52] * t353
+                - parameters[53] * t372)
+            - 3.5714285714285716 * t331
+                * (parameters[53] * t375
+                    - (parameters[51] * t353 + parameters[52] * rate_dot_2_leg4));
+        let t415 = parameters[49]
+            - (parameters[46] * minus_rate_dot_1_leg4
+                + parameters[47] * minus_rate_1_leg4
+                + ::overact::math::signed(parameters[48], minus_rate_1_leg4))
+            - parameters[45] * minus_rate_dot_1_leg4 + t413 - t382;
+        let t421 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t423 = twist[2] * twist[2];
+        let t433 = parameters[63] * t421
+            - (parameters[61] * t423 + acceleration[2] * parameters[62])
+            - parameters[65] * t423 - acceleration[2] * parameters[66]
+            + parameters[67] * t421;
+        let t440 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t448 = acceleration[2] * parameters[61] - parameters[62] * t423
+            + parameters[63] * t440 + acceleration[2] * parameters[65]
+            - parameters[66] * t423 + parameters[67] * t440;
+        let t451 = t321 + g2_vx_leg4 * t389 - minus_g1_vx_leg4 * t415 + c_phi * t433
+            - s_phi * t448;
+        let t458 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t458, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(t458, 25.429161076750646, "actuators")?;
+        let t459 = 1.0 / t458;
+        let t467 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+        let t468 = t467 * t459;
+        let t477 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
+            - t467 * t468;
+        ::overact::guard::platform(t477, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(t477, 25.592368899353342, "actuators")?;
+        let t478 = 1.0 / t477;
+        let t489 = g1_vy_leg1 * t101 - minus_g2_vy_leg1 * t114 + g2_vy_leg2 * t184
+            - minus_g1_vy_leg2 * t210 + g1_vy_leg3 * t305 - minus_g2_vy_leg3 * t318;
+        let t499 = t489 + g2_vy_leg4 * t389 - minus_g1_vy_leg4 * t415 + s_phi * t433
+            + c_phi * t448 - t451 * t468;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t6 * g1_vx_leg2;
-        let g1_wz_leg4 = t2 * g1_vy_leg4 + t6 * g1_vx_leg4;
-        let t570 = g1_vx_leg3 * g1_wz_leg3
-            - (g1_vx_leg1 * minus_g1_wz_leg1 + g1_vx_leg2 * minus_g1_wz_leg2)
-            + g1_vx_leg4 * g1_wz_leg4;
-        let t571 = t570 * t503;
-        let t573 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
-            + g1_vy_leg4 * g1_wz_leg4 - t511 * t571;
-        let t574 = t573 * t522;
-        let t585 = minus_g1_wz_leg1 * minus_g1_wz_leg1
-            + minus_g1_wz_leg2 * minus_g1_wz_leg2 + g1_wz_leg3 * g1_wz_leg3
-            + g1_wz_leg4 * g1_wz_leg4 - t570 * t571 - t573 * t574;
-        ::overact::guard::platform(t585, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t585, 0.3076928490286828, "actuators")?;
-        let t586 = 1.0 / t585;
-        let g2_wz_leg1 = t6 * minus_g2_vx_leg1 - t2 * g2_vy_leg1;
-        let g2_wz_leg2 = t6 * minus_g2_vx_leg2 - t2 * g2_vy_leg2;
-        let g2_wz_leg3 = t2 * g2_vy_leg3 - t6 * minus_g2_vx_leg3;
-        let t609 = g2_wz_leg1 * t125 - minus_g1_wz_leg1 * t112 + t124 + g2_wz_leg2 * t232
-            - minus_g1_wz_leg2 * t219 + t231 + g1_wz_leg3 * t338 + g2_wz_leg3 * t351
-            + t350;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 - t6 * minus_g2_vx_leg4;
-        let t628 = acceleration[2] * parameters[60] + parameters[61] * t484
-            - parameters[62] * t465 + acceleration[2] * parameters[64]
-            + parameters[65] * t484 - parameters[66] * t465;
-        let t633 = t609 + g1_wz_leg4 * t446 + g2_wz_leg4 * t459 + t458 + t628
-            - t495 * t571 - t574 * t543;
-        let t634 = t586 * t633;
-        let t636 = t522 * t543 - t574 * t634;
-        let t640 = t495 * t503 - t512 * t636 - t571 * t634;
-        let t648 = g1_vy_leg4 - g1_vx_leg4 * t512;
-        let t654 = t586 * (g1_wz_leg4 - g1_vx_leg4 * t571 - t574 * t648);
-        let t656 = t522 * t648 - t574 * t654;
-        let t660 = g1_vx_leg4 * t503 - t512 * t656 - t571 * t654;
-        let t665 = g1_vx_leg1 * t660 + g1_vy_leg1 * t656 - minus_g1_wz_leg1 * t654;
-        let t671 = g1_vx_leg2 * t660 + g1_vy_leg2 * t656 - minus_g1_wz_leg2 * t654;
-        let t678 = g1_vx_leg3 * t660 + g1_vy_leg3 * t656 + g1_wz_leg3 * t654;
-        let t686 = 1.0 - (g1_vx_leg4 * t660 + g1_vy_leg4 * t656 + g1_wz_leg4 * t654);
-        let t690 = 1.0
-            / ::overact::math::sqrt(
-                t665 * t665 + t671 * t671 + t678 * t678 + t686 * t686,
-            );
+        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
+        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
+        let t526 = g1_vx_leg3 * g1_wz_leg3
+            - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+            + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+        let t527 = t526 * t459;
+        let t529 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t467 * t527;
+        let t530 = t529 * t478;
+        let t541 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t526 * t527
+            - t529 * t530;
+        ::overact::guard::platform(t541, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(t541, 0.3076928490286828, "actuators")?;
+        let t542 = 1.0 / t541;
+        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
+        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
+        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
+        let t565 = g2_wz_leg1 * t114 - minus_g1_wz_leg1 * t101 + t113 + g1_wz_leg2 * t210
+            - minus_g2_wz_leg2 * t184 + t183 + g1_wz_leg3 * t305
+            - minus_g2_wz_leg3 * t318 + t317;
+        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
+        let t584 = acceleration[2] * parameters[60] + parameters[61] * t440
+            - parameters[62] * t421 + acceleration[2] * parameters[64]
+            + parameters[65] * t440 - parameters[66] * t421;
+        let t589 = t565 + g2_wz_leg4 * t389 - minus_g1_wz_leg4 * t415 + t388 + t584
+            - t451 * t527 - t530 * t499;
+        let t590 = t542 * t589;
+        let t592 = t478 * t499 - t530 * t590;
+        let t596 = t451 * t459 - t468 * t592 - t527 * t590;
+        let t603 = minus_g1_vx_leg4 * t468 - minus_g1_vy_leg4;
+        let t609 = t542 * (minus_g1_vx_leg4 * t527 - minus_g1_wz_leg4 - t530 * t603);
+        let t611 = t478 * t603 - t530 * t609;
+        let t617 = minus_g1_vx_leg4 * t459 + t468 * t611 + t527 * t609;
+        let t627 = 1.0
+            - (minus_g1_vx_leg4 * t617 - minus_g1_vy_leg4 * t611
+                - minus_g1_wz_leg4 * t609);
+        let t629 = 1.0 / ::overact::math::sqrt(t627);
+        let t632 = g1_vx_leg1 * t596 + g1_vy_leg1 * t592 - minus_g1_wz_leg1 * t590
+            - preload[0]
+                * ((g1_vy_leg1 * t611 - g1_vx_leg1 * t617 - minus_g1_wz_leg1 * t609)
+                    * t629);
+        let t645 = g1_wz_leg2 * t590
+            - (minus_g1_vx_leg2 * t596 + minus_g1_vy_leg2 * t592)
+            - preload[0]
+                * ((minus_g1_vx_leg2 * t617 - minus_g1_vy_leg2 * t611
+                    + g1_wz_leg2 * t609) * t629);
+        let t658 = g1_vx_leg3 * t596 + g1_vy_leg3 * t592 + g1_wz_leg3 * t590
+            - preload[0]
+                * ((g1_vy_leg3 * t611 - g1_vx_leg3 * t617 + g1_wz_leg3 * t609) * t629);
         Ok([
-            g1_vx_leg1 * t640 + g1_vy_leg1 * t636 - minus_g1_wz_leg1 * t634
-                - preload[0] * (t665 * t690),
-            g1_vx_leg2 * t640 + g1_vy_leg2 * t636 - minus_g1_wz_leg2 * t634
-                - preload[0] * (t671 * t690),
-            g1_vx_leg3 * t640 + g1_vy_leg3 * t636 + g1_wz_leg3 * t634
-                - preload[0] * (t678 * t690),
-            g1_vx_leg4 * t640 + g1_vy_leg4 * t636 + g1_wz_leg4 * t634
-                + preload[0] * (t686 * t690),
+            t632, t645, t658,
+            preload[0] * (t627 * t629)
+                - (minus_g1_vx_leg4 * t596 + minus_g1_vy_leg4 * t592
+                    + minus_g1_wz_leg4 * t590),
         ])
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50).
@@ -7639,7 +7250,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 223 operations (103 additions, 109 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 225 intermediates.
+    /// 199 operations (83 additions, 105 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 201 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7654,104 +7265,94 @@ impl DualV {
         let t6 = 0.11 * c_phi;
         let t8 = pose[1] + t6 - 0.10970563941232059;
         let t10 = t8 * t8;
-        let t13 = 0.0784 / (t4 * t4 + t10) - 0.25;
+        let t11 = t4 * t4 + t10;
+        let t13 = 0.0784 / t11 - 0.25;
         ::overact::guard::reach(t13, "leg1")?;
         let t14 = ::overact::math::sqrt(t13);
-        let t16 = 0.5 * t4 + t8 * t14;
-        let t17 = t4 - t16;
-        let t18 = 0.5 * t8;
-        let t20 = t18 - t4 * t14;
-        let t21 = t8 - t20;
-        let t28 = t21 * (t16 + t17 - t17) + t17 * (t21 - (t20 + t21));
-        ::overact::guard::leg(t28, 0.078399138102973, "leg1")?;
-        let t29 = 1.0 / t28;
-        let g1_vx_leg1 = t17 * t29;
-        let t32 = t3 + 0.3950502153918333;
-        let t37 = 0.0784 / (t32 * t32 + t10) - 0.25;
-        ::overact::guard::reach(t37, "leg2")?;
-        let t38 = ::overact::math::sqrt(t37);
-        let t40 = 0.5 * t32 - t8 * t38;
-        let t41 = t32 - t40;
-        let t43 = t18 + t32 * t38;
-        let t44 = t8 - t43;
-        let t51 = t44 * (t40 + t41 - t41) + t41 * (t44 - (t43 + t44));
-        ::overact::guard::leg(t51, 0.078399138102973, "leg2")?;
+        let t18 = t11 * t14;
+        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
+        let t19 = 1.0 / t18;
+        let g1_vx_leg1 = (t4 - (0.5 * t4 + t8 * t14)) * t19;
+        let t22 = t3 + 0.3950502153918333;
+        let t25 = t22 * t22 + t10;
+        let t27 = 0.0784 / t25 - 0.25;
+        ::overact::guard::reach(t27, "leg2")?;
+        let t28 = ::overact::math::sqrt(t27);
+        let t32 = t25 * t28;
+        ::overact::guard::leg(t32, 0.07839913810297301, "leg2")?;
+        let t33 = 1.0 / t32;
+        let minus_g1_vx_leg2 = (t22 - (0.5 * t22 - t8 * t28)) * t33;
+        let t37 = pose[0] + t2;
+        let t38 = t37 + 0.3950502153918333;
+        let t41 = pose[1] - t6 + 0.10970563941232059;
+        let t43 = t41 * t41;
+        let t44 = t38 * t38 + t43;
+        let t46 = 0.0784 / t44 - 0.25;
+        ::overact::guard::reach(t46, "leg3")?;
+        let t47 = ::overact::math::sqrt(t46);
+        let t51 = t44 * t47;
+        ::overact::guard::leg(t51, 0.07839913810297301, "leg3")?;
         let t52 = 1.0 / t51;
-        let g1_vx_leg2 = t41 * t52;
-        let t56 = pose[0] + t2;
-        let t57 = t56 + 0.3950502153918333;
-        let t60 = pose[1] - t6 + 0.10970563941232059;
-        let t62 = t60 * t60;
-        let t65 = 0.0784 / (t57 * t57 + t62) - 0.25;
-        ::overact::guard::reach(t65, "leg3")?;
-        let t66 = ::overact::math::sqrt(t65);
-        let t68 = 0.5 * t57 + t60 * t66;
-        let t69 = t57 - t68;
-        let t70 = 0.5 * t60;
-        let t72 = t70 - t57 * t66;
-        let t73 = t60 - t72;
-        let t80 = t73 * (t68 + t69 - t69) + t69 * (t73 - (t72 + t73));
-        ::overact::guard::leg(t80, 0.078399138102973, "leg3")?;
-        let t81 = 1.0 / t80;
-        let g1_vx_leg3 = t69 * t81;
-        let t85 = t56 - 0.3950502153918333;
-        let t90 = 0.0784 / (t85 * t85 + t62) - 0.25;
-        ::overact::guard::reach(t90, "leg4")?;
-        let t91 = ::overact::math::sqrt(t90);
-        let t93 = 0.5 * t85 - t60 * t91;
-        let t94 = t85 - t93;
-        let t96 = t70 + t85 * t91;
-        let t97 = t60 - t96;
-        let t104 = t97 * (t93 + t94 - t94) + t94 * (t97 - (t96 + t97));
-        ::overact::guard::leg(t104, 0.078399138102973, "leg4")?;
-        let t105 = 1.0 / t104;
-        let g1_vx_leg4 = t94 * t105;
-        let t108 = g1_vx_leg1 * torques[0] + g1_vx_leg2 * torques[1]
-            + g1_vx_leg3 * torques[2] + g1_vx_leg4 * torques[3];
-        let t115 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t115, 25.429161076750646, "actuators")?;
-        let t116 = 1.0 / t115;
-        let g1_vy_leg1 = t21 * t29;
-        let g1_vy_leg2 = t44 * t52;
-        let g1_vy_leg3 = t73 * t81;
-        let g1_vy_leg4 = t97 * t105;
-        let t128 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
-        let t129 = t128 * t116;
-        let t138 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t128 * t129;
-        ::overact::guard::platform(t138, 25.59236889935335, "actuators")?;
-        let t139 = 1.0 / t138;
-        let t148 = g1_vy_leg1 * torques[0] + g1_vy_leg2 * torques[1]
-            + g1_vy_leg3 * torques[2] + g1_vy_leg4 * torques[3] - t108 * t129;
+        let g1_vx_leg3 = (t38 - (0.5 * t38 + t41 * t47)) * t52;
+        let t56 = t37 - 0.3950502153918333;
+        let t59 = t56 * t56 + t43;
+        let t61 = 0.0784 / t59 - 0.25;
+        ::overact::guard::reach(t61, "leg4")?;
+        let t62 = ::overact::math::sqrt(t61);
+        let t66 = t59 * t62;
+        ::overact::guard::leg(t66, 0.07839913810297301, "leg4")?;
+        let t67 = 1.0 / t66;
+        let minus_g1_vx_leg4 = (t56 - (0.5 * t56 - t41 * t62)) * t67;
+        let t70 = g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
+            + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3];
+        let t77 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t77, 25.429161076750646, "actuators")?;
+        let t78 = 1.0 / t77;
+        let t80 = 0.5 * t8;
+        let g1_vy_leg1 = (t8 - (t80 - t4 * t14)) * t19;
+        let minus_g1_vy_leg2 = (t8 - (t80 + t22 * t28)) * t33;
+        let t92 = 0.5 * t41;
+        let g1_vy_leg3 = (t41 - (t92 - t38 * t47)) * t52;
+        let minus_g1_vy_leg4 = (t41 - (t92 + t56 * t62)) * t67;
+        let t104 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+        let t105 = t104 * t78;
+        let t114 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
+            - t104 * t105;
+        ::overact::guard::platform(t114, 25.592368899353342, "actuators")?;
+        let t115 = 1.0 / t114;
+        let t124 = g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
+            + g1_vy_leg3 * torques[2] - minus_g1_vy_leg4 * torques[3] - t70 * t105;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t6 * g1_vx_leg2;
-        let g1_wz_leg4 = t2 * g1_vy_leg4 + t6 * g1_vx_leg4;
-        let t175 = g1_vx_leg3 * g1_wz_leg3
-            - (g1_vx_leg1 * minus_g1_wz_leg1 + g1_vx_leg2 * minus_g1_wz_leg2)
-            + g1_vx_leg4 * g1_wz_leg4;
-        let t176 = t175 * t116;
-        let t178 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
-            + g1_vy_leg4 * g1_wz_leg4 - t128 * t176;
-        let t179 = t178 * t139;
-        let t190 = minus_g1_wz_leg1 * minus_g1_wz_leg1
-            + minus_g1_wz_leg2 * minus_g1_wz_leg2 + g1_wz_leg3 * g1_wz_leg3
-            + g1_wz_leg4 * g1_wz_leg4 - t175 * t176 - t178 * t179;
-        ::overact::guard::platform(t190, 0.3076928490286828, "actuators")?;
-        let t201 = g1_wz_leg3 * torques[2]
-            - (minus_g1_wz_leg1 * torques[0] + minus_g1_wz_leg2 * torques[1])
-            + g1_wz_leg4 * torques[3] - t108 * t176 - t179 * t148;
-        let t202 = t201 / t190;
-        let t204 = t139 * t148 - t179 * t202;
-        let t208 = t108 * t116 - t129 * t204 - t176 * t202;
+        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
+        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
+        let t151 = g1_vx_leg3 * g1_wz_leg3
+            - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+            + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+        let t152 = t151 * t78;
+        let t154 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t104 * t152;
+        let t155 = t154 * t115;
+        let t166 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t151 * t152
+            - t154 * t155;
+        ::overact::guard::platform(t166, 0.3076928490286828, "actuators")?;
+        let t177 = g1_wz_leg2 * torques[1] - minus_g1_wz_leg1 * torques[0]
+            + g1_wz_leg3 * torques[2] - minus_g1_wz_leg4 * torques[3] - t70 * t152
+            - t155 * t124;
+        let t178 = t177 / t166;
+        let t180 = t115 * t124 - t155 * t178;
+        let t184 = t70 * t78 - t105 * t180 - t152 * t178;
         Ok([
-            g1_vx_leg1 * t208 + g1_vy_leg1 * t204 - minus_g1_wz_leg1 * t202,
-            g1_vx_leg2 * t208 + g1_vy_leg2 * t204 - minus_g1_wz_leg2 * t202,
-            g1_vx_leg3 * t208 + g1_vy_leg3 * t204 + g1_wz_leg3 * t202,
-            g1_vx_leg4 * t208 + g1_vy_leg4 * t204 + g1_wz_leg4 * t202,
+            g1_vx_leg1 * t184 + g1_vy_leg1 * t180 - minus_g1_wz_leg1 * t178,
+            g1_wz_leg2 * t178 - (minus_g1_vx_leg2 * t184 + minus_g1_vy_leg2 * t180),
+            g1_vx_leg3 * t184 + g1_vy_leg3 * t180 + g1_wz_leg3 * t178,
+            -(minus_g1_vx_leg4 * t184 + minus_g1_vy_leg4 * t180
+                + minus_g1_wz_leg4 * t178),
         ])
     }
     /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.
@@ -7761,114 +7362,109 @@ impl DualV {
     ///
     /// Output: 4 x 1.
     ///
-    /// 215 operations (98 additions, 105 multiplications, 12 divisions), 5 square roots, 1 trigonometric pairs, 0 signs, 218 intermediates.
+    /// 184 operations (75 additions, 97 multiplications, 12 divisions), 5 square roots, 1 trigonometric pairs, 0 signs, 187 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn null_space(pose: &[f64; 3]) -> Result<[[f64; 1]; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.11 * s_phi;
-        let t3 = pose[0] - t2;
-        let t4 = t3 - 0.3950502153918333;
-        let t6 = 0.11 * c_phi;
-        let t8 = pose[1] + t6 - 0.10970563941232059;
-        let t10 = t8 * t8;
-        let t13 = 0.0784 / (t4 * t4 + t10) - 0.25;
+        let t2 = 0.11 * c_phi;
+        let t4 = pose[1] + t2 - 0.10970563941232059;
+        let t5 = 0.5 * t4;
+        let t6 = 0.11 * s_phi;
+        let t7 = pose[0] - t6;
+        let t8 = t7 - 0.3950502153918333;
+        let t10 = t4 * t4;
+        let t11 = t8 * t8 + t10;
+        let t13 = 0.0784 / t11 - 0.25;
         ::overact::guard::reach(t13, "leg1")?;
         let t14 = ::overact::math::sqrt(t13);
-        let t16 = 0.5 * t4 + t8 * t14;
-        let t17 = t4 - t16;
-        let t18 = 0.5 * t8;
-        let t20 = t18 - t4 * t14;
-        let t21 = t8 - t20;
-        let t28 = t21 * (t16 + t17 - t17) + t17 * (t21 - (t20 + t21));
-        ::overact::guard::leg(t28, 0.078399138102973, "leg1")?;
-        let t29 = 1.0 / t28;
-        let g1_vx_leg1 = t17 * t29;
-        let t31 = pose[0] + t2;
-        let t32 = t31 - 0.3950502153918333;
-        let t35 = pose[1] - t6 + 0.10970563941232059;
-        let t37 = t35 * t35;
-        let t40 = 0.0784 / (t32 * t32 + t37) - 0.25;
-        ::overact::guard::reach(t40, "leg4")?;
-        let t41 = ::overact::math::sqrt(t40);
-        let t43 = 0.5 * t32 - t35 * t41;
-        let t44 = t32 - t43;
-        let t45 = 0.5 * t35;
-        let t47 = t45 + t32 * t41;
-        let t48 = t35 - t47;
-        let t55 = t48 * (t43 + t44 - t44) + t44 * (t48 - (t47 + t48));
-        ::overact::guard::leg(t55, 0.078399138102973, "leg4")?;
-        let t56 = 1.0 / t55;
-        let g1_vx_leg4 = t44 * t56;
-        let t59 = t3 + 0.3950502153918333;
-        let t64 = 0.0784 / (t59 * t59 + t10) - 0.25;
-        ::overact::guard::reach(t64, "leg2")?;
-        let t65 = ::overact::math::sqrt(t64);
-        let t67 = 0.5 * t59 - t8 * t65;
-        let t68 = t59 - t67;
-        let t70 = t18 + t59 * t65;
-        let t71 = t8 - t70;
-        let t78 = t71 * (t67 + t68 - t68) + t68 * (t71 - (t70 + t71));
-        ::overact::guard::leg(t78, 0.078399138102973, "leg2")?;
-        let t79 = 1.0 / t78;
-        let g1_vx_leg2 = t68 * t79;
-        let t83 = t31 + 0.3950502153918333;
-        let t88 = 0.0784 / (t83 * t83 + t37) - 0.25;
-        ::overact::guard::reach(t88, "leg3")?;
-        let t89 = ::overact::math::sqrt(t88);
-        let t91 = 0.5 * t83 + t35 * t89;
-        let t92 = t83 - t91;
-        let t94 = t45 - t83 * t89;
-        let t95 = t35 - t94;
-        let t102 = t95 * (t91 + t92 - t92) + t92 * (t95 - (t94 + t95));
-        ::overact::guard::leg(t102, 0.078399138102973, "leg3")?;
+        let t18 = t11 * t14;
+        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
+        let t19 = 1.0 / t18;
+        let g1_vy_leg1 = (t4 - (t5 - t8 * t14)) * t19;
+        let t22 = t7 + 0.3950502153918333;
+        let t24 = t22 * t22 + t10;
+        let t26 = 0.0784 / t24 - 0.25;
+        ::overact::guard::reach(t26, "leg2")?;
+        let t27 = ::overact::math::sqrt(t26);
+        let t31 = t24 * t27;
+        ::overact::guard::leg(t31, 0.07839913810297301, "leg2")?;
+        let t32 = 1.0 / t31;
+        let minus_g1_vy_leg2 = (t4 - (t5 + t22 * t27)) * t32;
+        let t37 = pose[1] - t2 + 0.10970563941232059;
+        let t38 = 0.5 * t37;
+        let t39 = pose[0] + t6;
+        let t40 = t39 + 0.3950502153918333;
+        let t42 = t37 * t37;
+        let t43 = t40 * t40 + t42;
+        let t45 = 0.0784 / t43 - 0.25;
+        ::overact::guard::reach(t45, "leg3")?;
+        let t46 = ::overact::math::sqrt(t45);
+        let t50 = t43 * t46;
+        ::overact::guard::leg(t50, 0.07839913810297301, "leg3")?;
+        let t51 = 1.0 / t50;
+        let g1_vy_leg3 = (t37 - (t38 - t40 * t46)) * t51;
+        let t55 = t39 - 0.3950502153918333;
+        let t57 = t55 * t55 + t42;
+        let t59 = 0.0784 / t57 - 0.25;
+        ::overact::guard::reach(t59, "leg4")?;
+        let t60 = ::overact::math::sqrt(t59);
+        let t64 = t57 * t60;
+        ::overact::guard::leg(t64, 0.07839913810297301, "leg4")?;
+        let t65 = 1.0 / t64;
+        let minus_g1_vy_leg4 = (t37 - (t38 + t55 * t60)) * t65;
+        let g1_vx_leg1 = (t8 - (0.5 * t8 + t4 * t14)) * t19;
+        let minus_g1_vx_leg2 = (t22 - (0.5 * t22 - t4 * t27)) * t32;
+        let g1_vx_leg3 = (t40 - (0.5 * t40 + t37 * t46)) * t51;
+        let minus_g1_vx_leg4 = (t55 - (0.5 * t55 - t37 * t60)) * t65;
+        let t95 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+        let t102 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t102, 25.429161076750646, "actuators")?;
         let t103 = 1.0 / t102;
-        let g1_vx_leg3 = t92 * t103;
-        let t108 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t108, 25.429161076750646, "actuators")?;
-        let t109 = 1.0 / t108;
-        let g1_vy_leg1 = t21 * t29;
-        let g1_vy_leg2 = t71 * t79;
-        let g1_vy_leg3 = t95 * t103;
-        let g1_vy_leg4 = t48 * t56;
-        let t121 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
-        let t122 = t121 * t109;
-        let t131 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t121 * t122;
-        ::overact::guard::platform(t131, 25.59236889935335, "actuators")?;
-        let t132 = 1.0 / t131;
-        let t134 = g1_vy_leg4 - g1_vx_leg4 * t122;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let minus_g1_wz_leg2 = t2 * g1_vy_leg2 + t6 * g1_vx_leg2;
-        let g1_wz_leg4 = t2 * g1_vy_leg4 + t6 * g1_vx_leg4;
-        let t161 = g1_vx_leg3 * g1_wz_leg3
-            - (g1_vx_leg1 * minus_g1_wz_leg1 + g1_vx_leg2 * minus_g1_wz_leg2)
-            + g1_vx_leg4 * g1_wz_leg4;
-        let t162 = t161 * t109;
-        let t164 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
-            + g1_vy_leg4 * g1_wz_leg4 - t121 * t162;
-        let t165 = t164 * t132;
-        let t176 = minus_g1_wz_leg1 * minus_g1_wz_leg1
-            + minus_g1_wz_leg2 * minus_g1_wz_leg2 + g1_wz_leg3 * g1_wz_leg3
-            + g1_wz_leg4 * g1_wz_leg4 - t161 * t162 - t164 * t165;
-        ::overact::guard::platform(t176, 0.3076928490286828, "actuators")?;
-        let t181 = (g1_wz_leg4 - g1_vx_leg4 * t162 - t165 * t134) / t176;
-        let t183 = t132 * t134 - t165 * t181;
-        let t187 = g1_vx_leg4 * t109 - t122 * t183 - t162 * t181;
-        let t192 = g1_vx_leg1 * t187 + g1_vy_leg1 * t183 - minus_g1_wz_leg1 * t181;
-        let t198 = g1_vx_leg2 * t187 + g1_vy_leg2 * t183 - minus_g1_wz_leg2 * t181;
-        let t205 = g1_vx_leg3 * t187 + g1_vy_leg3 * t183 + g1_wz_leg3 * t181;
-        let t213 = 1.0 - (g1_vx_leg4 * t187 + g1_vy_leg4 * t183 + g1_wz_leg4 * t181);
-        let t217 = 1.0
-            / ::overact::math::sqrt(
-                t192 * t192 + t198 * t198 + t205 * t205 + t213 * t213,
-            );
-        Ok([[-(t192 * t217)], [-(t198 * t217)], [-(t205 * t217)], [t213 * t217]])
+        let t104 = t95 * t103;
+        let t106 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4 - t95 * t104;
+        ::overact::guard::platform(t106, 25.592368899353342, "actuators")?;
+        let t107 = 1.0 / t106;
+        let t109 = minus_g1_vx_leg4 * t104 - minus_g1_vy_leg4;
+        let g1_wz_leg3 = t6 * g1_vy_leg3 + t2 * g1_vx_leg3;
+        let minus_g1_wz_leg1 = t6 * g1_vy_leg1 + t2 * g1_vx_leg1;
+        let g1_wz_leg2 = t6 * minus_g1_vy_leg2 + t2 * minus_g1_vx_leg2;
+        let minus_g1_wz_leg4 = t6 * minus_g1_vy_leg4 + t2 * minus_g1_vx_leg4;
+        let t136 = g1_vx_leg3 * g1_wz_leg3
+            - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+            + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+        let t137 = t136 * t103;
+        let t139 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t95 * t137;
+        let t140 = t139 * t107;
+        let t151 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t136 * t137
+            - t139 * t140;
+        ::overact::guard::platform(t151, 0.3076928490286828, "actuators")?;
+        let t156 = (minus_g1_vx_leg4 * t137 - minus_g1_wz_leg4 - t140 * t109) / t151;
+        let t158 = t107 * t109 - t140 * t156;
+        let t164 = minus_g1_vx_leg4 * t103 + t104 * t158 + t137 * t156;
+        let t174 = 1.0
+            - (minus_g1_vx_leg4 * t164 - minus_g1_vy_leg4 * t158
+                - minus_g1_wz_leg4 * t156);
+        let t176 = 1.0 / ::overact::math::sqrt(t174);
+        Ok([
+            [
+                -((g1_vy_leg1 * t158 - g1_vx_leg1 * t164 - minus_g1_wz_leg1 * t156)
+                    * t176),
+            ],
+            [
+                -((minus_g1_vx_leg2 * t164 - minus_g1_vy_leg2 * t158 + g1_wz_leg2 * t156)
+                    * t176),
+            ],
+            [-((g1_vy_leg3 * t158 - g1_vx_leg3 * t164 + g1_wz_leg3 * t156) * t176)],
+            [t174 * t176],
+        ])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
     ///
@@ -8013,4 +7609,3 @@ impl ::overact::Model for DualV {
         Ok(())
     }
 }
-

@@ -480,4 +480,3 @@ impl ::overact::Model for Emps {
         Ok(())
     }
 }
-

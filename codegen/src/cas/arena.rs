@@ -5,6 +5,7 @@ use super::expr::Expr;
 use super::field::{Element, mix, mix_name};
 use super::number::Number;
 use super::ratio::Ratio;
+use super::sample::Sample;
 use std::cell::RefCell;
 use std::collections::HashMap;
 
@@ -65,7 +66,7 @@ const POINTS: usize = 2;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Meaning {
     pub(crate) image: [Element; POINTS],
-    pub(crate) sample: f64,
+    pub(crate) sample: Sample,
 }
 
 #[derive(Debug)]
@@ -312,7 +313,7 @@ impl Arena {
         let (n, d) = meaning.image[0].to_rational()?;
         let value = n as f64 / d as f64;
         let size = self.tables.borrow().operand_size(op);
-        if (value - meaning.sample).abs() > 1e-9 * (1.0 + size) {
+        if (Sample::real(value) - meaning.sample).size() > 1e-9 * (1.0 + size) {
             return None;
         }
         Some(self.constant(Number::ratio(Ratio::new(n.into(), d.into())?)))
@@ -323,7 +324,7 @@ impl Arena {
         let (key, negative) = canonical(meaning.image);
         let tables = self.tables.borrow();
         let found = tables.by_meaning.get(&key)?.with_sign_of(negative);
-        agree(tables.sample(found), meaning.sample).then_some(found)
+        tables.sample(found).agrees(meaning.sample).then_some(found)
     }
 
     /// The node of which this one is a rational multiple.
@@ -340,7 +341,7 @@ impl Arena {
                 return None;
             }
             let (n, d) = ratio.to_rational()?;
-            if !agree(theirs.sample * n as f64 / d as f64, meaning.sample) {
+            if !(theirs.sample * Sample::real(n as f64 / d as f64)).agrees(meaning.sample) {
                 return None;
             }
             (other, Number::ratio(Ratio::new(n.into(), d.into())?))
@@ -385,7 +386,7 @@ impl Tables {
         if handle.is_negative() { -image } else { image }
     }
 
-    fn sample(&self, handle: Handle) -> f64 {
+    fn sample(&self, handle: Handle) -> Sample {
         let sample = self.nodes[handle.index()].meaning.sample;
         if handle.is_negative() {
             -sample
@@ -397,7 +398,7 @@ impl Tables {
     /// The magnitude against which rounding of the node's sample is judged.
     fn operand_size(&self, op: &Op) -> f64 {
         match op {
-            Op::Add(a, b) | Op::Sub(a, b) => self.sample(*a).abs().max(self.sample(*b).abs()),
+            Op::Add(a, b) | Op::Sub(a, b) => self.sample(*a).size().max(self.sample(*b).size()),
             _ => 0.0,
         }
     }
@@ -456,20 +457,20 @@ impl Tables {
         result
     }
 
-    fn sample_of(&self, op: &Op) -> f64 {
+    fn sample_of(&self, op: &Op) -> Sample {
         let sample = |handle: &Handle| self.sample(*handle);
         match op {
-            Op::Constant(id) => self.constants[*id as usize].value(),
-            Op::Symbol(id) => self.symbols[id.0 as usize].sample,
-            Op::Cosine(id) => self.angle_sample(*id).cos(),
-            Op::Sine(id) => self.angle_sample(*id).sin(),
+            Op::Constant(id) => Sample::real(self.constants[*id as usize].value()),
+            Op::Symbol(id) => Sample::real(self.symbols[id.0 as usize].sample),
+            Op::Cosine(id) => Sample::real(self.angle_sample(*id).cos()),
+            Op::Sine(id) => Sample::real(self.angle_sample(*id).sin()),
             Op::Add(a, b) => sample(a) + sample(b),
             Op::Sub(a, b) => sample(a) - sample(b),
             Op::Mul(a, b) => sample(a) * sample(b),
             Op::Div(a, b) => sample(a) / sample(b),
             Op::Sqrt(a) => sample(a).sqrt(),
-            Op::Sign(a) => sample(a).signum(),
-            Op::Atan2(y, x) => sample(y).atan2(sample(x)),
+            Op::Sign(a) => Sample::real(sample(a).re().signum()),
+            Op::Atan2(y, x) => Sample::real(sample(y).re().atan2(sample(x).re())),
         }
     }
 
@@ -506,10 +507,4 @@ fn canonical(image: [Element; POINTS]) -> ([Element; POINTS], bool) {
 /// The ratio of the values at the two points, equal for nodes that differ by a constant factor.
 fn ratio_key(meaning: &Meaning) -> Option<Element> {
     (meaning.image[1] != Element::ZERO).then(|| meaning.image[0] * meaning.image[1].inverse())
-}
-
-/// Whether two floating-point samples of what the field calls equal agree; samples outside a
-/// function's domain (NaN) prove nothing and are not taken as agreement.
-fn agree(a: f64, b: f64) -> bool {
-    (a - b).abs() <= 1e-6 * (1e-6 + a.abs().max(b.abs()))
 }

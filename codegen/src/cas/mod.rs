@@ -23,6 +23,7 @@ pub mod field;
 pub mod number;
 pub mod print;
 pub mod ratio;
+mod sample;
 pub mod vector;
 
 pub use angle::Angle;

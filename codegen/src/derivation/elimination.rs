@@ -37,8 +37,11 @@ pub struct Inverse<'a> {
     pub rows: Rows<'a>,
     /// The same rows with the reciprocals of the determinants taken out.
     pub scaled: Vec<ScaledRow<'a>>,
-    /// The divisor of each row: the determinant (or pivot) of the block that determines it.
+    /// The divisor of each row: the determinant (or pivot) of the block that determines it, but for
+    /// its sign.
     pub determinants: Vec<Expr<'a>>,
+    /// The determinant of the whole matrix.
+    pub determinant: Expr<'a>,
 }
 
 /// Inverts a square matrix; `home` gives an expression's value at the home configuration.
@@ -51,6 +54,14 @@ pub fn inverse<'a>(matrix: &Rows<'a>, home: &dyn Fn(Expr<'a>) -> f64) -> Option<
     let zero_row = vec![arena.zero(); n];
     let mut rows: Rows<'a> = vec![zero_row.clone(); n];
     let mut determinants = vec![arena.one(); n];
+    // Rows are put in the order of their columns, block by block.
+    let order: Vec<usize> = blocks
+        .iter()
+        .flatten()
+        .map(|&column| row_of[column])
+        .collect();
+    let columns: Vec<usize> = blocks.iter().flatten().copied().collect();
+    let mut determinant = arena.integer(parity(&order) * parity(&columns));
     let unit = ScaledRow {
         factor: arena.one(),
         entries: zero_row.clone(),
@@ -62,7 +73,8 @@ pub fn inverse<'a>(matrix: &Rows<'a>, home: &dyn Fn(Expr<'a>) -> f64) -> Option<
             .iter()
             .map(|&r| block.iter().map(|&c| matrix[r][c]).collect())
             .collect();
-        let (block_inverse, block_determinants) = invert_block(&inner, home)?;
+        let (block_inverse, block_determinants, of_block) = invert_block(&inner, home)?;
+        determinant = determinant * of_block;
         // What the right-hand side is after the unknowns of earlier blocks are taken out.
         let right: Rows<'a> = block_rows
             .iter()
@@ -93,7 +105,17 @@ pub fn inverse<'a>(matrix: &Rows<'a>, home: &dyn Fn(Expr<'a>) -> f64) -> Option<
         rows,
         scaled,
         determinants,
+        determinant,
     })
+}
+
+/// 1 or -1 for an even or odd permutation.
+fn parity(permutation: &[usize]) -> i64 {
+    let pairs = (0..permutation.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
+    let inversions = pairs
+        .filter(|&(i, j)| permutation[i] > permutation[j])
+        .count();
+    if inversions.is_multiple_of(2) { 1 } else { -1 }
 }
 
 /// target -= factor * row
@@ -208,7 +230,8 @@ fn components(matrix: &Rows<'_>, row_of: &[usize]) -> Vec<Vec<usize>> {
     search.blocks
 }
 
-type BlockInverse<'a> = (Vec<ScaledRow<'a>>, Vec<Expr<'a>>);
+/// Rows of the inverse, the divisor of each, and the determinant.
+type BlockInverse<'a> = (Vec<ScaledRow<'a>>, Vec<Expr<'a>>, Expr<'a>);
 
 fn invert_block<'a>(block: &Rows<'a>, home: &dyn Fn(Expr<'a>) -> f64) -> Option<BlockInverse<'a>> {
     match block.len() {
@@ -231,7 +254,7 @@ fn by_adjugate<'a>(block: &Rows<'a>) -> Option<BlockInverse<'a>> {
         .iter()
         .map(|row| scaled_row(row, reciprocal, scale))
         .collect();
-    Some((rows, vec![determinant; n]))
+    Some((rows, vec![determinant; n], determinant))
 }
 
 /// The adjugate of a matrix of up to three rows: its entry (i, j) is the cofactor of (j, i).
@@ -327,5 +350,9 @@ fn by_elimination<'a>(
         factor: one,
         entries: right[r].clone(),
     };
-    Some((row_of.iter().map(row).collect(), pivots))
+    let determinant = pivots
+        .iter()
+        .copied()
+        .fold(arena.integer(parity(&row_of)), |d, p| d * p);
+    Some((row_of.iter().map(row).collect(), pivots, determinant))
 }

@@ -484,15 +484,11 @@ impl<'a> Sheet<'a, '_> {
         let actuated = mechanism.actuated();
         let n = actuated.len();
         let scale = |k: usize| {
-            let index = joints[actuated[k]];
-            let state = &self.robot.legs[index.leg];
-            let at = mechanism.legs[index.leg]
-                .independent()
-                .position(|j| j == index.joint);
-            let closure = state.closure.as_ref();
-            closure
-                .zip(at)
-                .map_or_else(|| arena.one(), |(c, at)| c.determinants[at])
+            let state = &self.robot.legs[joints[actuated[k]].leg];
+            state
+                .closure
+                .as_ref()
+                .map_or_else(|| arena.one(), |c| c.determinant)
         };
         let scales: Vec<Expr<'a>> = (0..n).map(scale).collect();
         let platform = (0..n)

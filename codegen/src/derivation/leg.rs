@@ -224,6 +224,8 @@ pub struct LegClosure<'a> {
     pub wrenches: Vec<Wrench<'a>>,
     /// The determinant that each row was divided by.
     pub determinants: Vec<Expr<'a>>,
+    /// The determinant of the leg's Jacobian J_k.
+    pub determinant: Expr<'a>,
     /// From the platform's origin to P, in the base frame.
     pub arm: Vector3<'a>,
 }
@@ -261,6 +263,7 @@ impl<'a> LegClosure<'a> {
             rows: inverse,
             scaled,
             determinants,
+            determinant,
         } = inverse(&matrix, home)?;
         let wrench = |part: usize, entries: &Vec<Expr<'a>>| {
             let mut vector = Vector3::zero(arena);
@@ -289,6 +292,7 @@ impl<'a> LegClosure<'a> {
                 })
                 .collect(),
             determinants,
+            determinant,
             arm,
         })
     }

@@ -42,17 +42,18 @@ pub(super) fn read(source: &Source) -> Result<Description, Diagnostics> {
     }
 }
 
-/// The parser's own messages.
+/// The parser's first message: what follows a broken line is mostly its consequence.
 fn syntax(errors: &[toml::de::Error]) -> Diagnostics {
-    let mut all = Diagnostics::new();
-    for error in errors {
+    let place = |error: &&toml::de::Error| error.span().map_or(usize::MAX, |span| span.start);
+    let first = errors.iter().min_by_key(place);
+    let diagnostic = |error: &toml::de::Error| {
         let message = format!("this is no TOML: {}", error.message());
-        all.push(match error.span() {
+        match error.span() {
             Some(span) => Diagnostic::new(message, span),
             None => Diagnostic::global(message),
-        });
-    }
-    all
+        }
+    };
+    first.map_or_else(Diagnostics::new, |error| diagnostic(error).into())
 }
 
 fn root(table: &Table<'_, '_>) -> Option<Description> {
@@ -237,9 +238,11 @@ fn check_actuators(table: &Table<'_, '_>, platform: Option<&Platform>, legs: &[L
         return;
     };
     let dof = platform.motion.value.coordinates().len();
-    if !legs.is_empty() && count < dof {
+    // After another error nobody knows which joints were meant to be actuated.
+    if !legs.is_empty() && count < dof && table.context.is_clean() {
+        let actuators = if count == 1 { "actuator" } else { "actuators" };
         let message = format!(
-            "the platform has {dof} degrees of freedom, but the robot has {count} actuators"
+            "the platform has {dof} degrees of freedom, but the robot has {count} {actuators}"
         );
         let diagnostic = Diagnostic::new(message, platform.motion.span.clone());
         table

@@ -137,6 +137,12 @@ fn documentation(model: &RobotModel, function: &Function) -> Vec<String> {
             }
         }
     }
+    if function.from == From::Actuators {
+        lines.push(" - `actuators`: q, positions of the actuated joints (m, rad)".to_owned());
+        lines.push(
+            " - `start`: a pose near the wanted one, in its assembly mode (m, rad)".to_owned(),
+        );
+    }
     let shape: Vec<String> = function
         .program
         .output

@@ -210,7 +210,8 @@ fn check_mobility(
         .into_owned();
     let jacobian = leg.end_jacobian(&mechanism.home.joints[mechanism.leg_range(index)]);
     let jacobian = jacobian.rows(0, rows).into_owned();
-    let Ok(pseudo_inverse) = jacobian.clone().pseudo_inverse(1e-9) else {
+    let svd = nalgebra::SVD::try_new(jacobian.clone(), true, true, f64::EPSILON, 1000);
+    let Some(Ok(pseudo_inverse)) = svd.map(|svd| svd.pseudo_inverse(1e-9)) else {
         return;
     };
     let missed = &wanted - &jacobian * (pseudo_inverse * &wanted);

@@ -98,6 +98,10 @@ fn close(
     for _ in 0..STEPS {
         let error = DVector::from_row_slice(&closure_error(leg, &q, target, oriented)[..rows]);
         gap = error.amax();
+        // The maximum of numbers passes over NaN.
+        if error.iter().any(|e| !e.is_finite()) {
+            return Err(Failure::Open(f64::INFINITY));
+        }
         if gap < CLOSED {
             break;
         }
@@ -128,12 +132,7 @@ fn close(
     if gap.is_nan() || gap >= CLOSED {
         return Err(Failure::Open(gap));
     }
-    let singular_values = leg
-        .end_jacobian(&q)
-        .rows(0, rows)
-        .into_owned()
-        .singular_values();
-    let condition = singular_values.max() / singular_values.min();
+    let condition = condition(&leg.end_jacobian(&q).rows(0, rows).into_owned());
     if q.len() > rows || condition.is_nan() || condition >= SINGULAR {
         return Err(Failure::Singular(condition));
     }
@@ -151,10 +150,24 @@ pub fn close_from(
 ) -> Option<Vec<f64>> {
     let q = close(leg, start, target, oriented).ok()?;
     let rows = if oriented { 6 } else { 3 };
-    let values = leg
-        .end_jacobian(&q)
-        .rows(0, rows)
-        .into_owned()
-        .singular_values();
-    (values.max() < 50.0 * values.min()).then_some(q)
+    (condition(&leg.end_jacobian(&q).rows(0, rows).into_owned()) < 50.0).then_some(q)
+}
+
+/// Ratio of the largest and smallest singular value; infinite for entries that are not finite and
+/// where the singular values are not found.
+#[must_use]
+pub fn condition(matrix: &DMatrix<f64>) -> f64 {
+    if matrix.iter().any(|e| !e.is_finite()) {
+        return f64::INFINITY;
+    }
+    // Scaled to entries of about one, so that no square overflows.
+    let size = matrix.amax();
+    if size == 0.0 {
+        return f64::INFINITY;
+    }
+    let svd = nalgebra::SVD::try_new(matrix / size, false, false, f64::EPSILON, 1000);
+    svd.map_or(f64::INFINITY, |svd| {
+        let values = svd.singular_values;
+        values.max() / values.min()
+    })
 }

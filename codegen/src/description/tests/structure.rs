@@ -127,10 +127,6 @@ fn platforms() {
             "motion = \"planar\"\nparameters = [\"ia\"]",
             "4:15 a free body has no parameter `ia`",
         ),
-        (
-            "motion = \"point\"",
-            "3:10 the platform has 2 degrees of freedom, but the robot has 1 actuators",
-        ),
     ];
     for (keys, expected) in cases {
         let found = root(&format!("[platform]\n{keys}"));
@@ -155,13 +151,10 @@ fn platforms() {
 #[test]
 fn broken_toml() {
     let found = listed("name = \"A\"\nb = = 2\n[c\n");
-    assert_eq!(found.len(), 3, "{found:#?}");
+    // The unclosed table of the next line is not reported: it may be a consequence.
+    assert_eq!(found.len(), 1, "{found:#?}");
     assert!(
         found[0].starts_with("2:5 this is no TOML: extra `=`"),
-        "{found:#?}"
-    );
-    assert!(
-        found[2].starts_with("3:3 this is no TOML: unclosed table"),
         "{found:#?}"
     );
 }
