@@ -8,6 +8,7 @@ use crate::description;
 use crate::diagnostic::{Diagnostics, Source};
 use crate::mechanism::{self, Mechanism};
 use crate::model::{Function, RobotModel};
+use crate::parallel;
 
 /// From a description's text to a robot's model: parse, check, derive, choose columns, lower.
 ///
@@ -39,18 +40,18 @@ pub fn model(mechanism: Mechanism) -> Result<RobotModel, Underivable> {
     selection.combined = cheaper_columns(&mechanism, &selection, &exact)?;
     let joints = joints_by(&mechanism, &selection)?;
     let tree = mechanism.platform.is_none();
-    let functions = Family::all(&mechanism, joints)
-        .into_iter()
-        .map(|(family, from)| {
-            let program = cheapest(&mechanism, &selection, family, from, joints)?;
-            Ok(Function {
-                name: family.function_name(from, tree),
-                family,
-                from,
-                program,
-            })
+    let all = Family::all(&mechanism, joints);
+    let functions = parallel::map(&all, |&(family, from)| {
+        let program = cheapest(&mechanism, &selection, family, from, joints)?;
+        let name = family.function_name(from, tree);
+        Ok(Function {
+            name,
+            family,
+            from,
+            program,
         })
-        .collect::<Result<_, Underivable>>()?;
+    });
+    let functions = functions.into_iter().collect::<Result<_, Underivable>>()?;
     Ok(RobotModel {
         mechanism,
         selection,

@@ -35,6 +35,7 @@ pub mod evaluation;
 pub mod lowering;
 pub mod mechanism;
 pub mod model;
+mod parallel;
 pub mod states;
 
 pub use compile::compile;

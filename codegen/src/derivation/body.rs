@@ -1,7 +1,7 @@
 //! Bodies in their own frames: velocities, accelerations, partial velocities, and the wrench that one
 //! standard parameter produces.
 //!
-//! The recursion is Khalil's: with U = [ω̇]× + [ω]×[ω]×, the acceleration of the next origin is a + U l.
+//! The recursion is Khalil's: with `U = [ω̇]× + [ω]×[ω]×`, the acceleration of the next origin is a + U l.
 //! Gravity enters as an acceleration -g of the base. Partial velocities ∂V/∂u_i and ∂Ω/∂u_i follow the
 //! same path; by virtual power (Kane) the generalised force of parameter p on u_i is their scalar
 //! product with the wrench that p alone produces.
@@ -23,7 +23,7 @@ pub struct BodyMotion<'a> {
     pub alpha: Vector3<'a>,
     /// Acceleration of the frame's origin less gravity.
     pub acceleration: Vector3<'a>,
-    /// U = [ω̇]× + [ω]×[ω]×.
+    /// `U = [ω̇]× + [ω]×[ω]×`.
     pub u_matrix: Matrix3<'a>,
     /// ∂V/∂u_i and ∂Ω/∂u_i: partial velocities of the frame.
     pub partials: Vec<[Vector3<'a>; 2]>,
@@ -94,7 +94,7 @@ impl<'a> BodyMotion<'a> {
     }
 }
 
-/// [ω̇]× + [ω]×[ω]×, with the products ω_i ω_j shared.
+/// `[ω̇]× + [ω]×[ω]×`, with the products ω_i ω_j shared.
 fn u_matrix<'a>(omega: Vector3<'a>, alpha: Vector3<'a>) -> Matrix3<'a> {
     let ([x, y, z], [ax, ay, az]) = (omega.0, alpha.0);
     let (xx, yy, zz) = (x * x, y * y, z * z);
