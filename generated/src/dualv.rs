@@ -258,7 +258,6 @@ impl DualV {
         let t16 = t5 - t8 * t14;
         let t20 = 0.5 * t8 + t4 * t14;
         let t29 = t11 * t14;
-        ::overact::guard::leg(t29, 0.07839913810297301, "leg1")?;
         let t31 = t11 - 0.1568;
         let s12_leg1 = 3.5714285714285716 * (t4 - t16);
         let c12_leg1 = 3.5714285714285716 * (t8 - t20);
@@ -272,7 +271,6 @@ impl DualV {
         let t66 = t5 + t59 * t64;
         let t70 = 0.5 * t59 - t4 * t64;
         let t78 = t61 * t64;
-        ::overact::guard::leg(t78, 0.07839913810297301, "leg2")?;
         let t80 = t61 - 0.1568;
         let s12_leg2 = 3.5714285714285716 * (t4 - t66);
         let c12_leg2 = 3.5714285714285716 * (t59 - t70);
@@ -290,7 +288,6 @@ impl DualV {
         let t119 = t109 - t111 * t117;
         let t123 = 0.5 * t111 + t108 * t117;
         let t131 = t114 * t117;
-        ::overact::guard::leg(t131, 0.07839913810297301, "leg3")?;
         let t133 = t114 - 0.1568;
         let c12_leg3 = 3.5714285714285716 * (t111 - t123);
         let s12_leg3 = 3.5714285714285716 * (t108 - t119);
@@ -304,7 +301,6 @@ impl DualV {
         let t168 = 0.5 * t160 - t108 * t166;
         let t171 = t109 + t160 * t166;
         let t180 = t163 * t166;
-        ::overact::guard::leg(t180, 0.07839913810297301, "leg4")?;
         let t182 = t163 - 0.1568;
         let c12_leg4 = 3.5714285714285716 * (t160 - t168);
         let s12_leg4 = 3.5714285714285716 * (t108 - t171);
@@ -827,25 +823,19 @@ impl DualV {
     /// Output: 4 x 4.
     ///
     /// 4 operations (0 additions, 4 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 0 signs, 4 intermediates.
-    ///
-    /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    #[must_use]
     pub fn closure_actuator_jacobian_from_joints(
         _pose: &[f64; 3],
         joints: &[f64; 12],
-    ) -> Result<[[f64; 4]; 4], ::overact::Error> {
+    ) -> [[f64; 4]; 4] {
         let s2_leg1 = ::overact::math::sin_cos(joints[1]).0;
-        ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
         let s2_leg2 = ::overact::math::sin_cos(joints[4]).0;
-        ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
         let s2_leg3 = ::overact::math::sin_cos(joints[7]).0;
-        ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
         let s2_leg4 = ::overact::math::sin_cos(joints[10]).0;
-        ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
-        Ok([
+        [
             [-(0.0784 * s2_leg1), 0.0, 0.0, 0.0], [0.0, -(0.0784 * s2_leg2), 0.0, 0.0],
             [0.0, 0.0, -(0.0784 * s2_leg3), 0.0], [0.0, 0.0, 0.0, -(0.0784 * s2_leg4)],
-        ])
+        ]
     }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///

@@ -14,15 +14,22 @@ pub fn item(model: &RobotModel, function: &Function) -> TokenStream {
         return super::inverse::item(model);
     }
     let program = &function.program;
-    let (statements, value) = Body::write(program);
+    let fallible = is_fallible(model, function);
+    let (statements, value) = match twin(model, function) {
+        Some(twin) => (TokenStream::new(), call(twin, is_fallible(model, twin))),
+        None => {
+            let (statements, value) = Body::write(program);
+            let value = if fallible { quote!(Ok(#value)) } else { value };
+            (statements, value)
+        }
+    };
     let name = format_ident!("{}", function.name);
     let from_actuators = function.from == From::Actuators;
-    let finds_joints = model.finds_joints(function);
-    let fallible = is_fallible(model, function);
+    let finds_joints = needs_joints(model, function);
     let output = array_type(&program.output);
     let arguments = arguments(model, function);
     let documentation = documentation(model, function);
-    let find_pose = from_actuators.then(|| {
+    let find_pose = (from_actuators && needs_pose(model, function)).then(|| {
         quote! {
             let pose = &Self::pose_from_actuators(actuators, start)?;
         }
@@ -33,7 +40,6 @@ pub fn item(model: &RobotModel, function: &Function) -> TokenStream {
     } else {
         quote!(#[must_use] pub fn #name(#arguments) -> #output)
     };
-    let value = if fallible { quote!(Ok(#value)) } else { value };
     quote! {
         #(#[doc = #documentation])*
         #signature {
@@ -45,12 +51,56 @@ pub fn item(model: &RobotModel, function: &Function) -> TokenStream {
     }
 }
 
+/// The function from joints that has the same program: where Newton's method finds the joints of a
+/// pose, the function from the pose only calls it.
+fn twin<'m>(model: &'m RobotModel, function: &Function) -> Option<&'m Function> {
+    let is_pose = needs_joints(model, function) && function.from == From::Pose;
+    is_pose
+        .then(|| model.function(function.family, From::Joints))
+        .flatten()
+}
+
+/// The call of a function with arguments of the names of its inputs, as a `Result`.
+fn call(function: &Function, fallible: bool) -> TokenStream {
+    let name = format_ident!("{}", function.name);
+    let inputs = function
+        .program
+        .inputs
+        .iter()
+        .map(|array| format_ident!("{}", array.name));
+    let call = quote!(Self::#name(#(#inputs),*));
+    if fallible { call } else { quote!(Ok(#call)) }
+}
+
 /// Whether the function returns a `Result`.
 #[must_use]
 pub fn is_fallible(model: &RobotModel, function: &Function) -> bool {
     function.from == From::Actuators
-        || model.finds_joints(function)
+        || needs_joints(model, function)
         || !function.program.guards.is_empty()
+}
+
+/// Whether the function's program, or the search of its joints, uses the pose.
+fn needs_pose(model: &RobotModel, function: &Function) -> bool {
+    let used = used_inputs(&function.program);
+    let pose = function
+        .program
+        .inputs
+        .iter()
+        .position(|array| array.name == "pose");
+    pose.is_some_and(|at| used[at]) || needs_joints(model, function)
+}
+
+/// Whether the function's program uses joints that Newton's method has to find first.
+fn needs_joints(model: &RobotModel, function: &Function) -> bool {
+    let inputs = &function.program.inputs;
+    let used = used_inputs(&function.program);
+    let joints = inputs
+        .iter()
+        .zip(used)
+        .any(|(array, used)| array.name == "joints" && used);
+    // The joints themselves are what Newton's method gives.
+    model.finds_joints(function) && (joints || function.family == Family::Joints)
 }
 
 /// `[f64; 3]` or `[[f64; 64]; 3]`.
@@ -71,6 +121,11 @@ pub fn array_type(array: &Array) -> TokenStream {
 
 fn arguments(model: &RobotModel, function: &Function) -> TokenStream {
     let used = used_inputs(&function.program);
+    // A pose is needed to find the joints; a function that only calls another one hands all on.
+    let hands_on = twin(model, function).is_some();
+    let finds_joints = needs_joints(model, function);
+    let is_needed = |name: &str| hands_on || (finds_joints && name == "pose");
+    let unused = if needs_pose(model, function) { "" } else { "_" };
     let mut arguments = Vec::new();
     for (index, array) in function.program.inputs.iter().enumerate() {
         if model.finds_joints(function) && array.name == "joints" {
@@ -80,13 +135,13 @@ fn arguments(model: &RobotModel, function: &Function) -> TokenStream {
         let (name, array) = if pose_is_found {
             let actuators = model.mechanism.actuated().len();
             (
-                "actuators".to_owned(),
+                format!("{unused}actuators"),
                 Array {
                     name: String::new(),
                     shape: vec![actuators],
                 },
             )
-        } else if used[index] || (model.finds_joints(function) && array.name == "pose") {
+        } else if used[index] || is_needed(&array.name) {
             (array.name.clone(), array.clone())
         } else {
             (format!("_{}", array.name), array.clone())
@@ -97,7 +152,8 @@ fn arguments(model: &RobotModel, function: &Function) -> TokenStream {
     }
     if function.from == From::Actuators {
         let pose = Literal::usize_unsuffixed(model.mechanism.pose_len());
-        arguments.push(quote!(start: &[f64; #pose]));
+        let start = format_ident!("{unused}start");
+        arguments.push(quote!(#start: &[f64; #pose]));
     }
     quote!(#(#arguments),*)
 }

@@ -1,5 +1,7 @@
 //! Inverse kinematics of robots whose legs no rule solves: Newton's method on the generated closure.
 
+use super::function::is_fallible;
+use crate::derivation::{Family, From};
 use crate::mechanism::Motion;
 use crate::model::RobotModel;
 use proc_macro2::{Literal, TokenStream};
@@ -9,6 +11,13 @@ use quote::quote;
 #[must_use]
 pub fn item(model: &RobotModel) -> TokenStream {
     let mechanism = &model.mechanism;
+    let mark = |family: Family| {
+        let function = model.function(family, From::Joints);
+        function
+            .filter(|f| is_fallible(model, f))
+            .map(|_| quote!(?))
+    };
+    let (error, jacobian) = (mark(Family::ClosureError), mark(Family::LegsJacobian));
     let counts = mechanism
         .legs
         .iter()
@@ -41,8 +50,8 @@ pub fn item(model: &RobotModel) -> TokenStream {
                 },
                 |pose, joints, error, jacobian| {
                     let (pose, joints) = (::overact::block::array(pose)?, ::overact::block::array(joints)?);
-                    ::overact::block::write(&Self::closure_error_from_joints(pose, joints), error);
-                    ::overact::block::write(&Self::legs_jacobian_from_joints(pose, joints), jacobian);
+                    ::overact::block::write(&Self::closure_error_from_joints(pose, joints)#error, error);
+                    ::overact::block::write(&Self::legs_jacobian_from_joints(pose, joints)#jacobian, jacobian);
                     Ok(())
                 },
             )?;

@@ -16,7 +16,7 @@ pub struct GuardedExpr<'a> {
 }
 
 /// Lowers the expressions of one function. `inputs` are the arrays whose elements the graph's symbols
-/// `name[index]` stand for; a guard is kept if its expression is computed anyway.
+/// `name[index]` stand for; a guard is kept if the program divides by its expression or takes its root.
 ///
 /// Entries are visited column by column, so that the program works through leg after leg.
 #[must_use]
@@ -40,14 +40,20 @@ pub fn lower<'a>(
         }
     }
     let entries: Vec<Entry> = found.into_iter().flatten().collect();
+    // A condition matters where its value is divided by or has its root taken.
+    let matters = |source: Source| {
+        lowering.steps.iter().any(|step| match step.operation {
+            Operation::Div(_, by) => by == source,
+            Operation::Sqrt(of) => of == source,
+            _ => false,
+        })
+    };
     let guards = guards
         .iter()
         .filter_map(|guard| {
             let source = *lowering.done.get(&guard.value.handle().index())?;
-            Some(Guard {
-                source,
-                condition: guard.condition.clone(),
-            })
+            let condition = guard.condition.clone();
+            matters(source).then_some(Guard { source, condition })
         })
         .collect();
     let program = Program {

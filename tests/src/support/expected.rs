@@ -3,7 +3,7 @@
 use super::sample::fitted_acceleration;
 use super::{Failure, Sample};
 use crate::reference::linear::pseudo_inverse;
-use crate::reference::parameters::names;
+use crate::reference::parameters::{BODY, INERTIAL, leg_start, names, platform_start};
 use crate::reference::{Dynamics, Mechanism, State};
 use nalgebra::{DMatrix, DVector};
 use overact_codegen::RobotModel;
@@ -47,6 +47,28 @@ impl Expected {
             kept: model.selection.kept_actuators.clone(),
             mechanism,
         })
+    }
+
+    /// The reference for a model, its columns found by leg, joint and symbol instead of by name.
+    #[must_use]
+    pub fn by_position(model: &RobotModel, mechanism: Mechanism) -> Self {
+        let at = |parameter: &BodyParameter| match *parameter {
+            BodyParameter::Leg { leg, joint, symbol } => {
+                leg_start(&mechanism, leg) + BODY * joint + symbol as usize
+            }
+            BodyParameter::Platform(symbol) => platform_start(&mechanism) + symbol as usize,
+            BodyParameter::Payload(symbol) => {
+                platform_start(&mechanism) + INERTIAL + symbol as usize
+            }
+        };
+        let columns = |of: &[BodyParameter]| of.iter().map(at).collect::<Vec<usize>>();
+        Self {
+            standard: columns(&model.selection.standard),
+            base: columns(&model.selection.base),
+            payload: columns(&model.selection.payload),
+            kept: model.selection.kept_actuators.clone(),
+            mechanism,
+        }
     }
 
     /// Columns of all parameters that inverse dynamics takes.
