@@ -6,8 +6,8 @@ use super::family::{Columns, Family};
 use super::linear::{Factored, apply, null_space, product, pseudo_inverse, transposed};
 use super::regressor::{BodyParameter, Projection};
 use super::robot::{Guard, GuardKind, Robot, Underivable};
-use crate::cas::{Arena, Expr, Number, Ratio, Vector3};
-use crate::mechanism::{End, JointKind, Mechanism};
+use crate::cas::{Arena, Expr, Number};
+use crate::mechanism::{JointKind, Mechanism};
 
 /// A function as expressions.
 #[derive(Debug)]
@@ -93,8 +93,8 @@ pub fn derive<'a>(
 }
 
 /// A function being derived.
-struct Sheet<'a, 's> {
-    robot: Robot<'a>,
+pub(super) struct Sheet<'a, 's> {
+    pub(super) robot: Robot<'a>,
     selection: &'s Selection,
     from: From,
     twist: Vec<Expr<'a>>,
@@ -475,85 +475,8 @@ impl<'a> Sheet<'a, '_> {
             .map(|f| (0..dof).map(|i| derivative(f, i)).collect())
             .collect()
     }
-
-    /// A_p (n x r) and B_p (n x n), eq. (11): the rows of the legs' adjugates.
-    fn closure_matrices(&mut self) -> (Rows<'a>, Rows<'a>) {
-        let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
-        let joints = mechanism.joints();
-        let jacobian = self.robot.inverse_jacobian();
-        let actuated = mechanism.actuated();
-        let n = actuated.len();
-        let scale = |k: usize| {
-            let state = &self.robot.legs[joints[actuated[k]].leg];
-            state
-                .closure
-                .as_ref()
-                .map_or_else(|| arena.one(), |c| c.determinant)
-        };
-        let scales: Vec<Expr<'a>> = (0..n).map(scale).collect();
-        let platform = (0..n)
-            .map(|k| jacobian[k].iter().map(|&g| g * scales[k]).collect())
-            .collect();
-        let diagonal = |i: usize, j: usize| if i == j { -scales[i] } else { arena.zero() };
-        let actuators = (0..n)
-            .map(|i| (0..n).map(|j| diagonal(i, j)).collect())
-            .collect();
-        (platform, actuators)
-    }
-
-    /// By how much the legs' ends miss the platform, in the rows of J_k: positions (m), and half the
-    /// axial vector of the rotation that is left (rad for small ones).
-    fn closure_error(&mut self) -> Rows<'a> {
-        let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
-        let mut errors = Vec::new();
-        for (leg, state) in mechanism.legs.iter().zip(&self.robot.legs) {
-            let (Some(closure), Some(platform)) = (&state.closure, &self.robot.platform) else {
-                continue;
-            };
-            let Some(last) = state.frames.frames.last() else {
-                continue;
-            };
-            let base = Vector3::constant(arena, leg.base.at);
-            let position = platform.origin + closure.arm - base - last.origin;
-            let turn = match &leg.end {
-                Some(End::Rigid(placement)) => {
-                    let left = platform.orientation(placement) * last.rotation.transposed();
-                    let half = Number::ratio(Ratio::new(1, 2).unwrap_or(Ratio::ONE));
-                    let m = left.0;
-                    let axial = [m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]];
-                    Vector3(axial.map(|a| a * half))
-                }
-                _ => Vector3::zero(arena),
-            };
-            let rows = closure.rows.iter();
-            errors.extend(rows.map(|&row| [position, turn][row / 3].0[row % 3]));
-        }
-        column(errors)
-    }
-
-    /// J_k (n_t x n_t) and J_tk (n_t x r), eq. (9), in the base frame.
-    fn leg_matrices(&mut self) -> (Rows<'a>, Rows<'a>) {
-        let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
-        let total = mechanism.joints().len();
-        let (mut legs, mut platform) = (Vec::new(), Vec::new());
-        for (leg, state) in mechanism.legs.iter().zip(&self.robot.legs) {
-            let Some(closure) = &state.closure else {
-                continue;
-            };
-            let columns = closure.independent_columns(leg, arena);
-            for &row in &closure.rows {
-                let mut entries = vec![arena.zero(); total];
-                for (k, column) in columns.iter().enumerate() {
-                    entries[state.first_joint + k] = column[row / 3].0[row % 3];
-                }
-                legs.push(entries);
-                platform.push(closure.platform_row(row, &self.robot.twist, arena));
-            }
-        }
-        (legs, platform)
-    }
 }
 
-fn column(values: Vec<Expr<'_>>) -> Rows<'_> {
+pub(super) fn column(values: Vec<Expr<'_>>) -> Rows<'_> {
     values.into_iter().map(|v| vec![v]).collect()
 }

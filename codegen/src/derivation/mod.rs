@@ -1,4 +1,12 @@
 //! From the mechanism to symbolic kinematics, Jacobians and regressors.
+//!
+//! [`leg`] opens the robot at its platform and closes it again, eqs. (9) to (13): quasi-velocities
+//! ([`rates`]), frames, and the wrenches that feel one joint alone ([`elimination`], [`bias`]). [`body`]
+//! runs the recursion of Newton and Euler in the bodies' own frames. [`regressor`] projects what each
+//! standard parameter produces on the platform, eq. (30), or on kept actuators, eq. (36). [`robot`] holds
+//! one derivation together, and [`functions`] names what comes out of it.
+
+pub mod bias;
 pub mod body;
 pub mod configuration;
 pub mod elimination;
@@ -7,6 +15,7 @@ pub mod functions;
 pub mod inverse_kinematics;
 pub mod leg;
 pub mod linear;
+mod matrices;
 pub mod platform;
 pub mod rates;
 pub mod regressor;

@@ -1,11 +1,12 @@
 //! The derivation of one robot in one graph: configuration, closures, motion, and what every
 //! function is made of.
 
+use super::bias::end_bias;
 use super::body::{BodyMotion, leg_bodies};
 use super::configuration::{Configuration, From};
 use super::elimination::Rows;
 use super::inverse_kinematics::solve_leg;
-use super::leg::{LegClosure, LegFrames, end_bias};
+use super::leg::{LegClosure, LegFrames};
 use super::platform::PlatformPose;
 use super::rates::Rates;
 use crate::cas::{Arena, Expr, Vector3};
