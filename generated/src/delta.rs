@@ -243,7 +243,7 @@ impl Delta {
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     ///
     /// Output: 3.
     ///
@@ -258,7 +258,7 @@ impl Delta {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     ///
     /// Output: 3 x 3.
     ///
@@ -273,7 +273,7 @@ impl Delta {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 3 x 3.
@@ -352,7 +352,7 @@ impl Delta {
     /// The pseudo-inverse of J_p^inv: v = J_p^inv+ times the actuator velocities, eqs. (21) and (22).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     ///
     /// Output: 3 x 3.
     ///
@@ -462,7 +462,7 @@ impl Delta {
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 9 x 9.
@@ -545,7 +545,7 @@ impl Delta {
     /// J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 9 x 3.
@@ -564,7 +564,7 @@ impl Delta {
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 3 x 3.
@@ -625,7 +625,7 @@ impl Delta {
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 3 x 3.
@@ -695,7 +695,7 @@ impl Delta {
     /// By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m, rad).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 9.
@@ -748,8 +748,8 @@ impl Delta {
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     ///
     /// Output: 9.
     ///
@@ -867,8 +867,8 @@ impl Delta {
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 9.
@@ -1071,7 +1071,7 @@ impl Delta {
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     ///
     /// Output: 3.
@@ -1178,8 +1178,8 @@ impl Delta {
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     ///
     /// Output: 3.
@@ -1389,8 +1389,8 @@ impl Delta {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 52.
@@ -1411,9 +1411,9 @@ impl Delta {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 52.
@@ -2477,8 +2477,8 @@ impl Delta {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 52.
@@ -2499,9 +2499,9 @@ impl Delta {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 52.
@@ -3523,8 +3523,8 @@ impl Delta {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 43.
@@ -3545,9 +3545,9 @@ impl Delta {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 43.
@@ -4371,8 +4371,8 @@ impl Delta {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 43.
@@ -4393,9 +4393,9 @@ impl Delta {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 43.
@@ -5244,8 +5244,8 @@ impl Delta {
     /// The payload's columns of case 1, eq. (38).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 1.
@@ -5263,9 +5263,9 @@ impl Delta {
     /// The payload's columns of case 1, eq. (38).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 1.
@@ -5510,8 +5510,8 @@ impl Delta {
     /// The payload's columns of case 2, eq. (38).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 1.
@@ -5621,7 +5621,7 @@ impl Delta {
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 3.
@@ -5704,7 +5704,7 @@ impl Delta {
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 3.
@@ -5717,8 +5717,8 @@ impl Delta {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -5740,9 +5740,9 @@ impl Delta {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -6593,7 +6593,7 @@ impl Delta {
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 3 x 3.
@@ -6952,8 +6952,8 @@ impl Delta {
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 3.

@@ -306,7 +306,7 @@ impl Delta4 {
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     ///
     /// Output: 4.
     ///
@@ -321,7 +321,7 @@ impl Delta4 {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     ///
     /// Output: 4 x 3.
     ///
@@ -336,7 +336,7 @@ impl Delta4 {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 4 x 3.
@@ -407,7 +407,7 @@ impl Delta4 {
     /// The pseudo-inverse of J_p^inv: v = J_p^inv+ times the actuator velocities, eqs. (21) and (22).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     ///
     /// Output: 3 x 4.
     ///
@@ -515,7 +515,7 @@ impl Delta4 {
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 12 x 12.
@@ -596,7 +596,7 @@ impl Delta4 {
     /// J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 12 x 3.
@@ -616,7 +616,7 @@ impl Delta4 {
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 4 x 3.
@@ -693,7 +693,7 @@ impl Delta4 {
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 4 x 4.
@@ -759,7 +759,7 @@ impl Delta4 {
     /// By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m, rad).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 12.
@@ -805,8 +805,8 @@ impl Delta4 {
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     ///
     /// Output: 12.
     ///
@@ -937,8 +937,8 @@ impl Delta4 {
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 12.
@@ -1145,7 +1145,7 @@ impl Delta4 {
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     ///
     /// Output: 3.
@@ -1249,8 +1249,8 @@ impl Delta4 {
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     ///
     /// Output: 3.
@@ -1467,8 +1467,8 @@ impl Delta4 {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 69.
@@ -1489,9 +1489,9 @@ impl Delta4 {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 69.
@@ -2651,8 +2651,8 @@ impl Delta4 {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 69.
@@ -2673,9 +2673,9 @@ impl Delta4 {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 69.
@@ -3906,8 +3906,8 @@ impl Delta4 {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 55.
@@ -3928,9 +3928,9 @@ impl Delta4 {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 55.
@@ -4910,8 +4910,8 @@ impl Delta4 {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 55.
@@ -4932,9 +4932,9 @@ impl Delta4 {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 55.
@@ -5936,8 +5936,8 @@ impl Delta4 {
     /// The payload's columns of case 1, eq. (38).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 1.
@@ -5955,9 +5955,9 @@ impl Delta4 {
     /// The payload's columns of case 1, eq. (38).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 1.
@@ -6215,8 +6215,8 @@ impl Delta4 {
     /// The payload's columns of case 2, eq. (38).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 1.
@@ -6302,7 +6302,7 @@ impl Delta4 {
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 3.
@@ -6377,7 +6377,7 @@ impl Delta4 {
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 3.
@@ -6481,8 +6481,8 @@ impl Delta4 {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -6504,9 +6504,9 @@ impl Delta4 {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -7516,7 +7516,7 @@ impl Delta4 {
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 3 x 3.
@@ -7929,8 +7929,8 @@ impl Delta4 {
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 3.
@@ -8364,8 +8364,8 @@ impl Delta4 {
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     /// - `preload`: coordinates of the internal torque on `null_space` (N, N m)
@@ -8872,7 +8872,7 @@ impl Delta4 {
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 4.
@@ -8977,7 +8977,7 @@ impl Delta4 {
     /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     ///
     /// Output: 4 x 1.
     ///

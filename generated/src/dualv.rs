@@ -234,7 +234,7 @@ impl DualV {
     /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     ///
     /// Output: 12.
     ///
@@ -360,7 +360,7 @@ impl DualV {
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     ///
     /// Output: 4.
     ///
@@ -426,7 +426,7 @@ impl DualV {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     ///
     /// Output: 4 x 3.
     ///
@@ -500,7 +500,7 @@ impl DualV {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 4 x 3.
@@ -557,7 +557,7 @@ impl DualV {
     /// The pseudo-inverse of J_p^inv: v = J_p^inv+ times the actuator velocities, eqs. (21) and (22).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     ///
     /// Output: 3 x 4.
     ///
@@ -671,7 +671,7 @@ impl DualV {
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 12 x 12.
@@ -736,7 +736,7 @@ impl DualV {
     /// J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 12 x 3.
@@ -759,7 +759,7 @@ impl DualV {
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 4 x 3.
@@ -817,7 +817,7 @@ impl DualV {
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 4 x 4.
@@ -840,8 +840,8 @@ impl DualV {
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     ///
     /// Output: 12.
     ///
@@ -944,8 +944,8 @@ impl DualV {
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 12.
@@ -1094,7 +1094,7 @@ impl DualV {
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     ///
     /// Output: 3.
@@ -1205,8 +1205,8 @@ impl DualV {
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     ///
     /// Output: 3.
@@ -1370,8 +1370,8 @@ impl DualV {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 64.
@@ -1675,9 +1675,9 @@ impl DualV {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 64.
@@ -2299,8 +2299,8 @@ impl DualV {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 64.
@@ -2609,9 +2609,9 @@ impl DualV {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 64.
@@ -3260,8 +3260,8 @@ impl DualV {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 49.
@@ -3525,9 +3525,9 @@ impl DualV {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 49.
@@ -4086,8 +4086,8 @@ impl DualV {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 49.
@@ -4360,9 +4360,9 @@ impl DualV {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 49.
@@ -4941,8 +4941,8 @@ impl DualV {
     /// The payload's columns of case 1, eq. (38).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 4.
@@ -4972,9 +4972,9 @@ impl DualV {
     /// The payload's columns of case 1, eq. (38).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 4.
@@ -5201,8 +5201,8 @@ impl DualV {
     /// The payload's columns of case 2, eq. (38).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 4.
@@ -5300,7 +5300,7 @@ impl DualV {
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 3.
@@ -5380,7 +5380,7 @@ impl DualV {
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 3.
@@ -5486,8 +5486,8 @@ impl DualV {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -5790,9 +5790,9 @@ impl DualV {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -6417,7 +6417,7 @@ impl DualV {
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 3 x 3.
@@ -6650,8 +6650,8 @@ impl DualV {
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 3.
@@ -6906,8 +6906,8 @@ impl DualV {
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     /// - `preload`: coordinates of the internal torque on `null_space` (N, N m)
@@ -7235,7 +7235,7 @@ impl DualV {
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 4.
@@ -7348,7 +7348,7 @@ impl DualV {
     /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     ///
     /// Output: 4 x 1.
     ///

@@ -580,7 +580,7 @@ impl Hexapod {
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     ///
     /// Output: 6.
     ///
@@ -595,7 +595,7 @@ impl Hexapod {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     ///
     /// Output: 6 x 6.
     ///
@@ -610,7 +610,7 @@ impl Hexapod {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 6 x 6.
@@ -765,7 +765,7 @@ impl Hexapod {
     /// The pseudo-inverse of J_p^inv: v = J_p^inv+ times the actuator velocities, eqs. (21) and (22).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     ///
     /// Output: 6 x 6.
     ///
@@ -1104,7 +1104,7 @@ impl Hexapod {
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 18 x 18.
@@ -1292,7 +1292,7 @@ impl Hexapod {
     /// J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 18 x 6.
@@ -1360,7 +1360,7 @@ impl Hexapod {
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 6 x 6.
@@ -1605,7 +1605,7 @@ impl Hexapod {
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 6 x 6.
@@ -1766,7 +1766,7 @@ impl Hexapod {
     /// By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m, rad).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 18.
@@ -1881,8 +1881,8 @@ impl Hexapod {
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     ///
     /// Output: 18.
     ///
@@ -2200,8 +2200,8 @@ impl Hexapod {
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 18.
@@ -2739,7 +2739,7 @@ impl Hexapod {
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     ///
     /// Output: 6.
@@ -3042,8 +3042,8 @@ impl Hexapod {
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     ///
     /// Output: 6.
@@ -3706,8 +3706,8 @@ impl Hexapod {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 6 x 148.
@@ -3728,9 +3728,9 @@ impl Hexapod {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 6 x 148.
@@ -8189,8 +8189,8 @@ impl Hexapod {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 6 x 148.
@@ -8211,9 +8211,9 @@ impl Hexapod {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 6 x 148.
@@ -11975,8 +11975,8 @@ impl Hexapod {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 6 x 106.
@@ -11997,9 +11997,9 @@ impl Hexapod {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 6 x 106.
@@ -15380,8 +15380,8 @@ impl Hexapod {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 6 x 106.
@@ -15402,9 +15402,9 @@ impl Hexapod {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 6 x 106.
@@ -18801,8 +18801,8 @@ impl Hexapod {
     /// The payload's columns of case 1, eq. (38).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 6 x 10.
@@ -18912,9 +18912,9 @@ impl Hexapod {
     /// The payload's columns of case 1, eq. (38).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 6 x 10.
@@ -19809,8 +19809,8 @@ impl Hexapod {
     /// The payload's columns of case 2, eq. (38).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 6 x 10.
@@ -20210,7 +20210,7 @@ impl Hexapod {
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 6.
@@ -20364,7 +20364,7 @@ impl Hexapod {
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 6.
@@ -20377,8 +20377,8 @@ impl Hexapod {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -20400,9 +20400,9 @@ impl Hexapod {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -23096,7 +23096,7 @@ impl Hexapod {
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 6 x 6.
@@ -24880,8 +24880,8 @@ impl Hexapod {
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 6.

@@ -717,7 +717,7 @@ impl Octopod {
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     ///
     /// Output: 8.
     ///
@@ -735,7 +735,7 @@ impl Octopod {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     ///
     /// Output: 8 x 6.
     ///
@@ -750,7 +750,7 @@ impl Octopod {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 8 x 6.
@@ -931,7 +931,7 @@ impl Octopod {
     /// The pseudo-inverse of J_p^inv: v = J_p^inv+ times the actuator velocities, eqs. (21) and (22).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     ///
     /// Output: 6 x 8.
     ///
@@ -1355,7 +1355,7 @@ impl Octopod {
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 24 x 24.
@@ -1605,7 +1605,7 @@ impl Octopod {
     /// J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 24 x 6.
@@ -1670,7 +1670,7 @@ impl Octopod {
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 8 x 6.
@@ -1971,7 +1971,7 @@ impl Octopod {
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 8 x 8.
@@ -2193,7 +2193,7 @@ impl Octopod {
     /// By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m, rad).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 24.
@@ -2339,8 +2339,8 @@ impl Octopod {
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     ///
     /// Output: 24.
     ///
@@ -2753,8 +2753,8 @@ impl Octopod {
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 24.
@@ -3438,7 +3438,7 @@ impl Octopod {
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     ///
     /// Output: 6.
@@ -3800,8 +3800,8 @@ impl Octopod {
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     ///
     /// Output: 6.
@@ -4644,8 +4644,8 @@ impl Octopod {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 6 x 194.
@@ -4666,9 +4666,9 @@ impl Octopod {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 6 x 194.
@@ -10553,8 +10553,8 @@ impl Octopod {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 6 x 194.
@@ -10575,9 +10575,9 @@ impl Octopod {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 6 x 194.
@@ -15495,8 +15495,8 @@ impl Octopod {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 6 x 138.
@@ -15517,9 +15517,9 @@ impl Octopod {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 6 x 138.
@@ -19944,8 +19944,8 @@ impl Octopod {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 6 x 138.
@@ -19966,9 +19966,9 @@ impl Octopod {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 6 x 138.
@@ -24374,8 +24374,8 @@ impl Octopod {
     /// The payload's columns of case 1, eq. (38).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 6 x 10.
@@ -24485,9 +24485,9 @@ impl Octopod {
     /// The payload's columns of case 1, eq. (38).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 6 x 10.
@@ -25611,8 +25611,8 @@ impl Octopod {
     /// The payload's columns of case 2, eq. (38).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 6 x 10.
@@ -26008,7 +26008,7 @@ impl Octopod {
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 6.
@@ -26187,7 +26187,7 @@ impl Octopod {
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 6.
@@ -26480,8 +26480,8 @@ impl Octopod {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -26503,9 +26503,9 @@ impl Octopod {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -29989,7 +29989,7 @@ impl Octopod {
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 6 x 6.
@@ -32331,8 +32331,8 @@ impl Octopod {
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 6.
@@ -33770,8 +33770,8 @@ impl Octopod {
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     /// - `preload`: coordinates of the internal torque on `null_space` (N, N m)
@@ -35544,7 +35544,7 @@ impl Octopod {
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 8.
@@ -35908,7 +35908,7 @@ impl Octopod {
     /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, qw, qx, qy, qz]` (m, rad), in the base frame
     ///
     /// Output: 8 x 2.
     ///

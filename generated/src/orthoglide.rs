@@ -428,7 +428,7 @@ impl Orthoglide {
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     ///
     /// Output: 3.
     ///
@@ -443,7 +443,7 @@ impl Orthoglide {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     ///
     /// Output: 3 x 3.
     ///
@@ -458,7 +458,7 @@ impl Orthoglide {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 3 x 3.
@@ -528,7 +528,7 @@ impl Orthoglide {
     /// The pseudo-inverse of J_p^inv: v = J_p^inv+ times the actuator velocities, eqs. (21) and (22).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     ///
     /// Output: 3 x 3.
     ///
@@ -631,7 +631,7 @@ impl Orthoglide {
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 12 x 12.
@@ -700,7 +700,7 @@ impl Orthoglide {
     /// J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 12 x 3.
@@ -720,7 +720,7 @@ impl Orthoglide {
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 3 x 3.
@@ -793,7 +793,7 @@ impl Orthoglide {
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 3 x 3.
@@ -825,7 +825,7 @@ impl Orthoglide {
     /// By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m, rad).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 12.
@@ -875,8 +875,8 @@ impl Orthoglide {
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     ///
     /// Output: 12.
     ///
@@ -965,8 +965,8 @@ impl Orthoglide {
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 12.
@@ -1100,7 +1100,7 @@ impl Orthoglide {
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     ///
     /// Output: 3.
@@ -1199,8 +1199,8 @@ impl Orthoglide {
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     ///
     /// Output: 3.
@@ -1350,8 +1350,8 @@ impl Orthoglide {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 100.
@@ -1372,9 +1372,9 @@ impl Orthoglide {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 100.
@@ -2425,8 +2425,8 @@ impl Orthoglide {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 100.
@@ -2447,9 +2447,9 @@ impl Orthoglide {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 100.
@@ -3363,8 +3363,8 @@ impl Orthoglide {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 43.
@@ -3385,9 +3385,9 @@ impl Orthoglide {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 43.
@@ -4158,8 +4158,8 @@ impl Orthoglide {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 43.
@@ -4180,9 +4180,9 @@ impl Orthoglide {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 43.
@@ -4959,8 +4959,8 @@ impl Orthoglide {
     /// The payload's columns of case 1, eq. (38).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 1.
@@ -4981,9 +4981,9 @@ impl Orthoglide {
     /// The payload's columns of case 1, eq. (38).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 1.
@@ -5235,8 +5235,8 @@ impl Orthoglide {
     /// The payload's columns of case 2, eq. (38).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 1.
@@ -5361,7 +5361,7 @@ impl Orthoglide {
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 3.
@@ -5436,7 +5436,7 @@ impl Orthoglide {
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 3.
@@ -5449,8 +5449,8 @@ impl Orthoglide {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -5472,9 +5472,9 @@ impl Orthoglide {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -6436,7 +6436,7 @@ impl Orthoglide {
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 3 x 3.
@@ -6833,8 +6833,8 @@ impl Orthoglide {
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z]` (m/s, rad/s), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 3.

@@ -222,7 +222,7 @@ impl Planar3Prr {
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     ///
     /// Output: 3.
     ///
@@ -237,7 +237,7 @@ impl Planar3Prr {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     ///
     /// Output: 3 x 3.
     ///
@@ -252,7 +252,7 @@ impl Planar3Prr {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 3 x 3.
@@ -294,7 +294,7 @@ impl Planar3Prr {
     /// The pseudo-inverse of J_p^inv: v = J_p^inv+ times the actuator velocities, eqs. (21) and (22).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     ///
     /// Output: 3 x 3.
     ///
@@ -365,7 +365,7 @@ impl Planar3Prr {
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 9 x 9.
@@ -406,7 +406,7 @@ impl Planar3Prr {
     /// J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 9 x 3.
@@ -431,7 +431,7 @@ impl Planar3Prr {
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 3 x 3.
@@ -479,7 +479,7 @@ impl Planar3Prr {
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 3 x 3.
@@ -501,7 +501,7 @@ impl Planar3Prr {
     /// By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m, rad).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 9.
@@ -547,8 +547,8 @@ impl Planar3Prr {
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     ///
     /// Output: 9.
     ///
@@ -604,8 +604,8 @@ impl Planar3Prr {
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 9.
@@ -685,7 +685,7 @@ impl Planar3Prr {
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     ///
     /// Output: 3.
@@ -752,8 +752,8 @@ impl Planar3Prr {
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     ///
     /// Output: 3.
@@ -855,8 +855,8 @@ impl Planar3Prr {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 37.
@@ -877,9 +877,9 @@ impl Planar3Prr {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 37.
@@ -1287,8 +1287,8 @@ impl Planar3Prr {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 37.
@@ -1309,9 +1309,9 @@ impl Planar3Prr {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 37.
@@ -1732,8 +1732,8 @@ impl Planar3Prr {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 28.
@@ -1754,9 +1754,9 @@ impl Planar3Prr {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 28.
@@ -2130,8 +2130,8 @@ impl Planar3Prr {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 28.
@@ -2152,9 +2152,9 @@ impl Planar3Prr {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 28.
@@ -2560,7 +2560,7 @@ impl Planar3Prr {
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 3.
@@ -2606,7 +2606,7 @@ impl Planar3Prr {
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 3.
@@ -2619,8 +2619,8 @@ impl Planar3Prr {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -2642,9 +2642,9 @@ impl Planar3Prr {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -3050,7 +3050,7 @@ impl Planar3Prr {
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 3 x 3.
@@ -3181,8 +3181,8 @@ impl Planar3Prr {
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 3.

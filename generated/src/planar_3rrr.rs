@@ -182,7 +182,7 @@ impl Planar3Rrr {
     /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     ///
     /// Output: 9.
     ///
@@ -284,7 +284,7 @@ impl Planar3Rrr {
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     ///
     /// Output: 3.
     ///
@@ -340,7 +340,7 @@ impl Planar3Rrr {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     ///
     /// Output: 3 x 3.
     ///
@@ -411,7 +411,7 @@ impl Planar3Rrr {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 3 x 3.
@@ -462,7 +462,7 @@ impl Planar3Rrr {
     /// The pseudo-inverse of J_p^inv: v = J_p^inv+ times the actuator velocities, eqs. (21) and (22).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     ///
     /// Output: 3 x 3.
     ///
@@ -567,7 +567,7 @@ impl Planar3Rrr {
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 9 x 9.
@@ -622,7 +622,7 @@ impl Planar3Rrr {
     /// J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 9 x 3.
@@ -647,7 +647,7 @@ impl Planar3Rrr {
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 3 x 3.
@@ -702,7 +702,7 @@ impl Planar3Rrr {
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 3 x 3.
@@ -724,8 +724,8 @@ impl Planar3Rrr {
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     ///
     /// Output: 9.
     ///
@@ -820,8 +820,8 @@ impl Planar3Rrr {
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 9.
@@ -961,7 +961,7 @@ impl Planar3Rrr {
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     ///
     /// Output: 3.
@@ -1063,8 +1063,8 @@ impl Planar3Rrr {
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     ///
     /// Output: 3.
@@ -1213,8 +1213,8 @@ impl Planar3Rrr {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 37.
@@ -1453,9 +1453,9 @@ impl Planar3Rrr {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 37.
@@ -1953,8 +1953,8 @@ impl Planar3Rrr {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 37.
@@ -2196,9 +2196,9 @@ impl Planar3Rrr {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 37.
@@ -2702,8 +2702,8 @@ impl Planar3Rrr {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 28.
@@ -2919,9 +2919,9 @@ impl Planar3Rrr {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 28.
@@ -3377,8 +3377,8 @@ impl Planar3Rrr {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 28.
@@ -3606,9 +3606,9 @@ impl Planar3Rrr {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 28.
@@ -4084,8 +4084,8 @@ impl Planar3Rrr {
     /// The payload's columns of case 1, eq. (38).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 4.
@@ -4114,9 +4114,9 @@ impl Planar3Rrr {
     /// The payload's columns of case 1, eq. (38).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 4.
@@ -4318,8 +4318,8 @@ impl Planar3Rrr {
     /// The payload's columns of case 2, eq. (38).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 4.
@@ -4434,7 +4434,7 @@ impl Planar3Rrr {
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 3.
@@ -4512,7 +4512,7 @@ impl Planar3Rrr {
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 3.
@@ -4525,8 +4525,8 @@ impl Planar3Rrr {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -4771,9 +4771,9 @@ impl Planar3Rrr {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -5290,7 +5290,7 @@ impl Planar3Rrr {
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 3 x 3.
@@ -5477,8 +5477,8 @@ impl Planar3Rrr {
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 3.

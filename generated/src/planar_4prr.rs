@@ -259,7 +259,7 @@ impl Planar4Prr {
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     ///
     /// Output: 4.
     ///
@@ -274,7 +274,7 @@ impl Planar4Prr {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     ///
     /// Output: 4 x 3.
     ///
@@ -289,7 +289,7 @@ impl Planar4Prr {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 4 x 3.
@@ -339,7 +339,7 @@ impl Planar4Prr {
     /// The pseudo-inverse of J_p^inv: v = J_p^inv+ times the actuator velocities, eqs. (21) and (22).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     ///
     /// Output: 3 x 4.
     ///
@@ -424,7 +424,7 @@ impl Planar4Prr {
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 12 x 12.
@@ -481,7 +481,7 @@ impl Planar4Prr {
     /// J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 12 x 3.
@@ -504,7 +504,7 @@ impl Planar4Prr {
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 4 x 3.
@@ -571,7 +571,7 @@ impl Planar4Prr {
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 4 x 4.
@@ -594,7 +594,7 @@ impl Planar4Prr {
     /// By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m, rad).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 12.
@@ -651,8 +651,8 @@ impl Planar4Prr {
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     ///
     /// Output: 12.
     ///
@@ -721,8 +721,8 @@ impl Planar4Prr {
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 12.
@@ -812,7 +812,7 @@ impl Planar4Prr {
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     ///
     /// Output: 3.
@@ -892,8 +892,8 @@ impl Planar4Prr {
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     ///
     /// Output: 3.
@@ -1013,8 +1013,8 @@ impl Planar4Prr {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 48.
@@ -1035,9 +1035,9 @@ impl Planar4Prr {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 48.
@@ -1566,8 +1566,8 @@ impl Planar4Prr {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 48.
@@ -1588,9 +1588,9 @@ impl Planar4Prr {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 48.
@@ -2131,8 +2131,8 @@ impl Planar4Prr {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 36.
@@ -2153,9 +2153,9 @@ impl Planar4Prr {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 36.
@@ -2629,8 +2629,8 @@ impl Planar4Prr {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 36.
@@ -2651,9 +2651,9 @@ impl Planar4Prr {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 36.
@@ -3169,7 +3169,7 @@ impl Planar4Prr {
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 3.
@@ -3222,7 +3222,7 @@ impl Planar4Prr {
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 3.
@@ -3302,8 +3302,8 @@ impl Planar4Prr {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -3325,9 +3325,9 @@ impl Planar4Prr {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -3844,7 +3844,7 @@ impl Planar4Prr {
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 3 x 3.
@@ -4025,8 +4025,8 @@ impl Planar4Prr {
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 3.
@@ -4213,8 +4213,8 @@ impl Planar4Prr {
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     /// - `preload`: coordinates of the internal torque on `null_space` (N, N m)
@@ -4473,7 +4473,7 @@ impl Planar4Prr {
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 4.
@@ -4556,7 +4556,7 @@ impl Planar4Prr {
     /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     ///
     /// Output: 4 x 1.
     ///

@@ -341,7 +341,7 @@ impl Schoenflies4 {
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
     ///
     /// Output: 4.
     ///
@@ -356,7 +356,7 @@ impl Schoenflies4 {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
     ///
     /// Output: 4 x 4.
     ///
@@ -371,7 +371,7 @@ impl Schoenflies4 {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 4 x 4.
@@ -457,7 +457,7 @@ impl Schoenflies4 {
     /// The pseudo-inverse of J_p^inv: v = J_p^inv+ times the actuator velocities, eqs. (21) and (22).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
     ///
     /// Output: 4 x 4.
     ///
@@ -612,7 +612,7 @@ impl Schoenflies4 {
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 12 x 12.
@@ -693,7 +693,7 @@ impl Schoenflies4 {
     /// J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 12 x 4.
@@ -722,7 +722,7 @@ impl Schoenflies4 {
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 4 x 4.
@@ -822,7 +822,7 @@ impl Schoenflies4 {
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 4 x 4.
@@ -888,7 +888,7 @@ impl Schoenflies4 {
     /// By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m, rad).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 12.
@@ -943,8 +943,8 @@ impl Schoenflies4 {
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_z]` (m/s, rad/s), in the base frame
     ///
     /// Output: 12.
     ///
@@ -1092,8 +1092,8 @@ impl Schoenflies4 {
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 12.
@@ -1328,7 +1328,7 @@ impl Schoenflies4 {
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     ///
     /// Output: 4.
@@ -1471,8 +1471,8 @@ impl Schoenflies4 {
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_z]` (m/s, rad/s), in the base frame
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     ///
     /// Output: 4.
@@ -1742,8 +1742,8 @@ impl Schoenflies4 {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 4 x 72.
@@ -1764,9 +1764,9 @@ impl Schoenflies4 {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 4 x 72.
@@ -3205,8 +3205,8 @@ impl Schoenflies4 {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 4 x 72.
@@ -3227,9 +3227,9 @@ impl Schoenflies4 {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 4 x 72.
@@ -4525,8 +4525,8 @@ impl Schoenflies4 {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 4 x 60.
@@ -4547,9 +4547,9 @@ impl Schoenflies4 {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 4 x 60.
@@ -5710,8 +5710,8 @@ impl Schoenflies4 {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 4 x 60.
@@ -5732,9 +5732,9 @@ impl Schoenflies4 {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 4 x 60.
@@ -6960,8 +6960,8 @@ impl Schoenflies4 {
     /// The payload's columns of case 1, eq. (38).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 4 x 4.
@@ -6990,9 +6990,9 @@ impl Schoenflies4 {
     /// The payload's columns of case 1, eq. (38).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 4 x 4.
@@ -7317,8 +7317,8 @@ impl Schoenflies4 {
     /// The payload's columns of case 2, eq. (38).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 4 x 4.
@@ -7471,7 +7471,7 @@ impl Schoenflies4 {
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 4.
@@ -7560,7 +7560,7 @@ impl Schoenflies4 {
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 4.
@@ -7573,8 +7573,8 @@ impl Schoenflies4 {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -7596,9 +7596,9 @@ impl Schoenflies4 {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y, v_z, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -8767,7 +8767,7 @@ impl Schoenflies4 {
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 4 x 4.
@@ -9345,8 +9345,8 @@ impl Schoenflies4 {
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y, z, phi] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y, v_z, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y, v_z, omega_z]` (m/s, rad/s), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 4.

@@ -259,7 +259,7 @@ impl Spherical3Rrr {
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     ///
     /// Output: 3.
     ///
@@ -274,7 +274,7 @@ impl Spherical3Rrr {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     ///
     /// Output: 3 x 3.
     ///
@@ -289,7 +289,7 @@ impl Spherical3Rrr {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 3 x 3.
@@ -341,7 +341,7 @@ impl Spherical3Rrr {
     /// The pseudo-inverse of J_p^inv: v = J_p^inv+ times the actuator velocities, eqs. (21) and (22).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     ///
     /// Output: 3 x 3.
     ///
@@ -423,7 +423,7 @@ impl Spherical3Rrr {
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 9 x 9.
@@ -479,7 +479,7 @@ impl Spherical3Rrr {
     /// J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 9 x 3.
@@ -498,7 +498,7 @@ impl Spherical3Rrr {
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 3 x 3.
@@ -539,7 +539,7 @@ impl Spherical3Rrr {
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 3 x 3.
@@ -561,7 +561,7 @@ impl Spherical3Rrr {
     /// By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m, rad).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 9.
@@ -660,8 +660,8 @@ impl Spherical3Rrr {
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     ///
     /// Output: 9.
     ///
@@ -728,8 +728,8 @@ impl Spherical3Rrr {
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 9.
@@ -839,7 +839,7 @@ impl Spherical3Rrr {
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     ///
     /// Output: 3.
@@ -916,8 +916,8 @@ impl Spherical3Rrr {
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     ///
     /// Output: 3.
@@ -1041,8 +1041,8 @@ impl Spherical3Rrr {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 54.
@@ -1063,9 +1063,9 @@ impl Spherical3Rrr {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 54.
@@ -1736,8 +1736,8 @@ impl Spherical3Rrr {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 54.
@@ -1758,9 +1758,9 @@ impl Spherical3Rrr {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 54.
@@ -2580,8 +2580,8 @@ impl Spherical3Rrr {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 40.
@@ -2602,9 +2602,9 @@ impl Spherical3Rrr {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 40.
@@ -3236,8 +3236,8 @@ impl Spherical3Rrr {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 40.
@@ -3258,9 +3258,9 @@ impl Spherical3Rrr {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 40.
@@ -3953,7 +3953,7 @@ impl Spherical3Rrr {
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 3.
@@ -4006,7 +4006,7 @@ impl Spherical3Rrr {
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 3.
@@ -4019,8 +4019,8 @@ impl Spherical3Rrr {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -4042,9 +4042,9 @@ impl Spherical3Rrr {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -4670,7 +4670,7 @@ impl Spherical3Rrr {
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 3 x 3.
@@ -4864,8 +4864,8 @@ impl Spherical3Rrr {
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 3.

@@ -331,7 +331,7 @@ impl Spherical4Rrr {
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     ///
     /// Output: 4.
     ///
@@ -346,7 +346,7 @@ impl Spherical4Rrr {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     ///
     /// Output: 4 x 3.
     ///
@@ -361,7 +361,7 @@ impl Spherical4Rrr {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 4 x 3.
@@ -430,7 +430,7 @@ impl Spherical4Rrr {
     /// The pseudo-inverse of J_p^inv: v = J_p^inv+ times the actuator velocities, eqs. (21) and (22).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     ///
     /// Output: 3 x 4.
     ///
@@ -548,7 +548,7 @@ impl Spherical4Rrr {
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 12 x 12.
@@ -641,7 +641,7 @@ impl Spherical4Rrr {
     /// J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 12 x 3.
@@ -661,7 +661,7 @@ impl Spherical4Rrr {
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 4 x 3.
@@ -706,7 +706,7 @@ impl Spherical4Rrr {
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 4 x 4.
@@ -729,7 +729,7 @@ impl Spherical4Rrr {
     /// By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m, rad).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 12.
@@ -900,8 +900,8 @@ impl Spherical4Rrr {
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     ///
     /// Output: 12.
     ///
@@ -1007,8 +1007,8 @@ impl Spherical4Rrr {
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 12.
@@ -1197,7 +1197,7 @@ impl Spherical4Rrr {
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     ///
     /// Output: 3.
@@ -1307,8 +1307,8 @@ impl Spherical4Rrr {
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     ///
     /// Output: 3.
@@ -1521,8 +1521,8 @@ impl Spherical4Rrr {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 73.
@@ -1543,9 +1543,9 @@ impl Spherical4Rrr {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 73.
@@ -2689,8 +2689,8 @@ impl Spherical4Rrr {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 73.
@@ -2711,9 +2711,9 @@ impl Spherical4Rrr {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 73.
@@ -3981,8 +3981,8 @@ impl Spherical4Rrr {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 53.
@@ -4003,9 +4003,9 @@ impl Spherical4Rrr {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 53.
@@ -5044,8 +5044,8 @@ impl Spherical4Rrr {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 53.
@@ -5066,9 +5066,9 @@ impl Spherical4Rrr {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 3 x 53.
@@ -6114,7 +6114,7 @@ impl Spherical4Rrr {
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 3.
@@ -6186,7 +6186,7 @@ impl Spherical4Rrr {
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 3.
@@ -6293,8 +6293,8 @@ impl Spherical4Rrr {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -6316,9 +6316,9 @@ impl Spherical4Rrr {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -7286,7 +7286,7 @@ impl Spherical4Rrr {
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 3 x 3.
@@ -7554,8 +7554,8 @@ impl Spherical4Rrr {
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 3.
@@ -7963,8 +7963,8 @@ impl Spherical4Rrr {
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
-    /// - `twist`: v = [omega_x, omega_y, omega_z] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     /// - `preload`: coordinates of the internal torque on `null_space` (N, N m)
@@ -8445,7 +8445,7 @@ impl Spherical4Rrr {
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 4.
@@ -8561,7 +8561,7 @@ impl Spherical4Rrr {
     /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [qw, qx, qy, qz] (m, rad), in the base frame
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
     ///
     /// Output: 4 x 1.
     ///

@@ -134,7 +134,7 @@ impl ThreeLegPoint {
     /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     ///
     /// Output: 6.
     ///
@@ -207,7 +207,7 @@ impl ThreeLegPoint {
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     ///
     /// Output: 3.
     ///
@@ -259,7 +259,7 @@ impl ThreeLegPoint {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     ///
     /// Output: 3 x 2.
     ///
@@ -319,7 +319,7 @@ impl ThreeLegPoint {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 3 x 2.
@@ -361,7 +361,7 @@ impl ThreeLegPoint {
     /// The pseudo-inverse of J_p^inv: v = J_p^inv+ times the actuator velocities, eqs. (21) and (22).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     ///
     /// Output: 2 x 3.
     ///
@@ -438,7 +438,7 @@ impl ThreeLegPoint {
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 6 x 6.
@@ -486,7 +486,7 @@ impl ThreeLegPoint {
     /// J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 6 x 2.
@@ -502,7 +502,7 @@ impl ThreeLegPoint {
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 3 x 2.
@@ -534,7 +534,7 @@ impl ThreeLegPoint {
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 3 x 3.
@@ -556,8 +556,8 @@ impl ThreeLegPoint {
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
     ///
     /// Output: 6.
     ///
@@ -641,8 +641,8 @@ impl ThreeLegPoint {
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 6.
@@ -758,7 +758,7 @@ impl ThreeLegPoint {
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     ///
     /// Output: 2.
@@ -835,8 +835,8 @@ impl ThreeLegPoint {
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     ///
     /// Output: 2.
@@ -944,8 +944,8 @@ impl ThreeLegPoint {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 2 x 31.
@@ -1106,9 +1106,9 @@ impl ThreeLegPoint {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 2 x 31.
@@ -1442,8 +1442,8 @@ impl ThreeLegPoint {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 2 x 31.
@@ -1608,9 +1608,9 @@ impl ThreeLegPoint {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 2 x 31.
@@ -1955,8 +1955,8 @@ impl ThreeLegPoint {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 2 x 22.
@@ -2105,9 +2105,9 @@ impl ThreeLegPoint {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 2 x 22.
@@ -2419,8 +2419,8 @@ impl ThreeLegPoint {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 2 x 22.
@@ -2571,9 +2571,9 @@ impl ThreeLegPoint {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 2 x 22.
@@ -2889,7 +2889,7 @@ impl ThreeLegPoint {
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 2.
@@ -2955,7 +2955,7 @@ impl ThreeLegPoint {
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 2.
@@ -3029,8 +3029,8 @@ impl ThreeLegPoint {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -3217,9 +3217,9 @@ impl ThreeLegPoint {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x, v_y] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -3587,7 +3587,7 @@ impl ThreeLegPoint {
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 2 x 2.
@@ -3724,8 +3724,8 @@ impl ThreeLegPoint {
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 2.
@@ -3873,8 +3873,8 @@ impl ThreeLegPoint {
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
-    /// - `twist`: v = [v_x, v_y] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     /// - `preload`: coordinates of the internal torque on `null_space` (N, N m)
@@ -4072,7 +4072,7 @@ impl ThreeLegPoint {
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 3.
@@ -4152,7 +4152,7 @@ impl ThreeLegPoint {
     /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x, y] (m, rad), in the base frame
+    /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     ///
     /// Output: 3 x 1.
     ///

@@ -115,7 +115,7 @@ impl TwoMotorAxis {
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x] (m, rad), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
     ///
     /// Output: 2.
     ///
@@ -130,7 +130,7 @@ impl TwoMotorAxis {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x] (m, rad), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
     ///
     /// Output: 2 x 1.
     ///
@@ -142,7 +142,7 @@ impl TwoMotorAxis {
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x] (m, rad), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 2 x 1.
@@ -158,7 +158,7 @@ impl TwoMotorAxis {
     /// The pseudo-inverse of J_p^inv: v = J_p^inv+ times the actuator velocities, eqs. (21) and (22).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x] (m, rad), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
     ///
     /// Output: 1 x 2.
     ///
@@ -170,7 +170,7 @@ impl TwoMotorAxis {
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x] (m, rad), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 2 x 2.
@@ -186,7 +186,7 @@ impl TwoMotorAxis {
     /// J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x] (m, rad), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 2 x 1.
@@ -202,7 +202,7 @@ impl TwoMotorAxis {
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x] (m, rad), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 2 x 1.
@@ -218,7 +218,7 @@ impl TwoMotorAxis {
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x] (m, rad), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 2 x 2.
@@ -234,7 +234,7 @@ impl TwoMotorAxis {
     /// By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m, rad).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x] (m, rad), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
     /// Output: 2.
@@ -247,8 +247,8 @@ impl TwoMotorAxis {
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x] (m, rad), in the base frame
-    /// - `twist`: v = [v_x] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x]` (m/s, rad/s), in the base frame
     ///
     /// Output: 2.
     ///
@@ -260,8 +260,8 @@ impl TwoMotorAxis {
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x] (m, rad), in the base frame
-    /// - `twist`: v = [v_x] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 2.
@@ -278,7 +278,7 @@ impl TwoMotorAxis {
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x] (m, rad), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     ///
     /// Output: 1.
@@ -294,8 +294,8 @@ impl TwoMotorAxis {
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x] (m, rad), in the base frame
-    /// - `twist`: v = [v_x] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x]` (m/s, rad/s), in the base frame
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     ///
     /// Output: 1.
@@ -312,8 +312,8 @@ impl TwoMotorAxis {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x] (m, rad), in the base frame
-    /// - `twist`: v = [v_x] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 1 x 9.
@@ -337,9 +337,9 @@ impl TwoMotorAxis {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x] (m, rad), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 1 x 9.
@@ -397,8 +397,8 @@ impl TwoMotorAxis {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x] (m, rad), in the base frame
-    /// - `twist`: v = [v_x] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 1 x 9.
@@ -422,9 +422,9 @@ impl TwoMotorAxis {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x] (m, rad), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 1 x 9.
@@ -482,8 +482,8 @@ impl TwoMotorAxis {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x] (m, rad), in the base frame
-    /// - `twist`: v = [v_x] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 1 x 4.
@@ -501,9 +501,9 @@ impl TwoMotorAxis {
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x] (m, rad), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 1 x 4.
@@ -549,8 +549,8 @@ impl TwoMotorAxis {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x] (m, rad), in the base frame
-    /// - `twist`: v = [v_x] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 1 x 4.
@@ -568,9 +568,9 @@ impl TwoMotorAxis {
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x] (m, rad), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     ///
     /// Output: 1 x 4.
@@ -616,7 +616,7 @@ impl TwoMotorAxis {
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x] (m, rad), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 1.
@@ -629,7 +629,7 @@ impl TwoMotorAxis {
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x] (m, rad), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 1.
@@ -642,8 +642,8 @@ impl TwoMotorAxis {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x] (m, rad), in the base frame
-    /// - `twist`: v = [v_x] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -668,9 +668,9 @@ impl TwoMotorAxis {
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
     /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = [x] (m, rad), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = [v_x] (m/s, rad/s), in the base frame
+    /// - `twist`: v = `[v_x]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
@@ -730,7 +730,7 @@ impl TwoMotorAxis {
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x] (m, rad), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 1 x 1.
@@ -743,8 +743,8 @@ impl TwoMotorAxis {
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x] (m, rad), in the base frame
-    /// - `twist`: v = [v_x] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x]` (m/s, rad/s), in the base frame
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     ///
     /// Output: 1.
@@ -763,8 +763,8 @@ impl TwoMotorAxis {
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x] (m, rad), in the base frame
-    /// - `twist`: v = [v_x] (m/s, rad/s), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
+    /// - `twist`: v = `[v_x]` (m/s, rad/s), in the base frame
     /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     /// - `preload`: coordinates of the internal torque on `null_space` (N, N m)
@@ -792,7 +792,7 @@ impl TwoMotorAxis {
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50).
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x] (m, rad), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
     /// - `torques`: τ, forces and torques of the actuators (N, N m)
     ///
     /// Output: 2.
@@ -806,7 +806,7 @@ impl TwoMotorAxis {
     /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.
     ///
     /// From the platform's pose and motion.
-    /// - `pose`: x = [x] (m, rad), in the base frame
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
     ///
     /// Output: 2 x 1.
     ///

@@ -243,9 +243,9 @@ fn input_meaning(model: &RobotModel, name: &str) -> Option<String> {
             .unwrap_or_default()
     };
     Some(match name {
-        "pose" => format!("x = [{}] (m, rad), in the base frame", coordinates()),
+        "pose" => format!("x = `[{}]` (m, rad), in the base frame", coordinates()),
         "joints" => "q_t, all joint positions, leg by leg (m, rad)".to_owned(),
-        "twist" => format!("v = [{}] (m/s, rad/s), in the base frame", rates()),
+        "twist" => format!("v = `[{}]` (m/s, rad/s), in the base frame", rates()),
         "acceleration" => "the derivative of `twist` (m/s², rad/s²)".to_owned(),
         "joint_velocities" => "velocities of the joints (m/s, rad/s)".to_owned(),
         "joint_accelerations" => "accelerations of the joints (m/s², rad/s²)".to_owned(),
