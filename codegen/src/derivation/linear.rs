@@ -4,7 +4,7 @@
 //! L D Lᵀ without square roots.
 
 use super::elimination::Rows;
-use crate::cas::{Expr, Vector3};
+use crate::cas::Expr;
 
 /// S = L D Lᵀ.
 #[derive(Debug)]
@@ -141,13 +141,4 @@ pub fn null_space<'a>(jacobian: &Rows<'a>, seeds: &[usize]) -> Rows<'a> {
     (0..n)
         .map(|i| basis.iter().map(|column| column[i]).collect())
         .collect()
-}
-
-/// Sum of vectors.
-#[must_use]
-pub fn sum<'a>(
-    arena: &'a crate::cas::Arena,
-    vectors: impl Iterator<Item = Vector3<'a>>,
-) -> Vector3<'a> {
-    vectors.fold(Vector3::zero(arena), |a, b| a + b)
 }
