@@ -4,7 +4,7 @@ use super::arena::{Arena, Handle, Op};
 use super::direction::{Direction, SymbolId};
 use super::expr::Expr;
 use super::number::Number;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 impl<'a> Expr<'a> {
     /// The derivative with respect to a symbol, be it a number or an angle. Sign functions count as
@@ -18,6 +18,45 @@ impl<'a> Expr<'a> {
         } else {
             derivative
         }
+    }
+
+    /// The symbols whose values the expression holds, in ascending order. Symbols that it holds as
+    /// angles are not among them.
+    #[must_use]
+    pub fn symbols(self) -> Vec<SymbolId> {
+        let symbol = |index: usize| match self.arena().op(index) {
+            Op::Symbol(id) => Some(id),
+            _ => None,
+        };
+        let symbols: BTreeSet<SymbolId> = self.nodes().into_iter().filter_map(symbol).collect();
+        symbols.into_iter().collect()
+    }
+
+    /// Number of nodes that the expression is made of, constants and symbols left out.
+    #[must_use]
+    pub fn size(self) -> usize {
+        let is_work =
+            |index: &usize| !matches!(self.arena().op(*index), Op::Constant(_) | Op::Symbol(_));
+        self.nodes().into_iter().filter(is_work).count()
+    }
+
+    /// Indices of all nodes that the expression is made of, in ascending order.
+    fn nodes(self) -> BTreeSet<usize> {
+        let mut seen = BTreeSet::new();
+        let mut open = vec![self.handle().index()];
+        while let Some(index) = open.pop() {
+            if !seen.insert(index) {
+                continue;
+            }
+            match self.arena().op(index) {
+                Op::Symbol(_) | Op::Constant(_) | Op::Cosine(_) | Op::Sine(_) => {}
+                Op::Sqrt(a) | Op::Sign(a) => open.push(a.index()),
+                Op::Add(a, b) | Op::Sub(a, b) | Op::Mul(a, b) | Op::Div(a, b) | Op::Atan2(a, b) => {
+                    open.extend([a.index(), b.index()]);
+                }
+            }
+        }
+        seen
     }
 
     /// The value for given values of the symbols (angles in radians).

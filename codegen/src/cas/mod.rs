@@ -29,7 +29,7 @@ pub mod vector;
 pub use angle::Angle;
 pub use arena::Arena;
 pub use calculus::Substitution;
-pub use direction::Direction;
+pub use direction::{Direction, SymbolId};
 pub use expr::Expr;
 pub use number::Number;
 pub use ratio::Ratio;

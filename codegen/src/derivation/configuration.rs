@@ -6,6 +6,7 @@
 
 use crate::cas::{Arena, Direction, Expr, Ratio};
 use crate::mechanism::Mechanism;
+use std::cell::RefCell;
 
 /// What a model is evaluated from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -22,10 +23,12 @@ pub enum From {
 pub type Unit<'a> = (Expr<'a>, Expr<'a>);
 
 /// The configuration of a robot as expressions.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Configuration<'a> {
     arena: &'a Arena,
     from: From,
+    /// What was asked for without being known, if that has symbols instead of no value.
+    unknowns: Option<RefCell<Vec<Unknown>>>,
     /// Angles whose sine and cosine are known from the closure.
     known: Vec<(Direction, Unit<'a>)>,
     /// Positions of prismatic joints known from the closure, by joint index in q_t.
@@ -48,6 +51,7 @@ impl<'a> Configuration<'a> {
         Self {
             arena,
             from,
+            unknowns: None,
             known: Vec::new(),
             positions: Vec::new(),
             names: names.collect(),
@@ -58,6 +62,31 @@ impl<'a> Configuration<'a> {
     #[must_use]
     pub const fn from(&self) -> From {
         self.from
+    }
+
+    /// The same configuration with symbols for what is not known, see [`Unknown`].
+    #[must_use]
+    pub fn with_unknowns(&self) -> Self {
+        Self {
+            unknowns: Some(RefCell::default()),
+            ..self.clone()
+        }
+    }
+
+    /// What was asked for without being known.
+    #[must_use]
+    pub fn unknowns(&self) -> Vec<Unknown> {
+        let list = self.unknowns.as_ref();
+        list.map_or_else(Vec::new, |list| list.borrow().clone())
+    }
+
+    /// Notes an unknown, where there may be any.
+    fn ask(&self, unknown: Unknown) -> Option<Unknown> {
+        let mut list = self.unknowns.as_ref()?.borrow_mut();
+        if !list.contains(&unknown) {
+            list.push(unknown.clone());
+        }
+        Some(unknown)
     }
 
     /// The input that holds joint `index` of q_t.
@@ -77,11 +106,11 @@ impl<'a> Configuration<'a> {
     pub fn joint_position(&self, index: usize) -> Option<Expr<'a>> {
         match self.from {
             From::Joints => Some(self.arena.variable(&Self::joint_symbol(index))),
-            From::Pose | From::Actuators => self
-                .positions
-                .iter()
-                .find(|(at, _)| *at == index)
-                .map(|p| p.1),
+            From::Pose | From::Actuators => {
+                let known = self.positions.iter().find(|(at, _)| *at == index);
+                let asked = || Some(self.ask(Unknown::Slide(index))?.slide(self.arena));
+                known.map(|p| p.1).or_else(asked)
+            }
         }
     }
 
@@ -102,10 +131,29 @@ impl<'a> Configuration<'a> {
         let unit = match self.from {
             From::Joints => self.arena.cosine_and_sine(angle),
             _ if self.is_input(angle) => self.arena.cosine_and_sine(angle),
-            From::Pose | From::Actuators => self.composed(angle)?,
+            From::Pose | From::Actuators => match self.composed(angle) {
+                Some(unit) => unit,
+                None => return self.unknown_unit(angle),
+            },
         };
         self.name(angle, unit);
         Some(unit)
+    }
+
+    /// Cosine and sine of an angle whose variable part is not known.
+    fn unknown_unit(&self, angle: &Direction) -> Option<Unit<'a>> {
+        let is_negative = angle.terms()[0].1.value() < 0.0;
+        let turn = if is_negative {
+            angle.negative()
+        } else {
+            angle.clone()
+        };
+        let offset = self
+            .arena
+            .cosine_and_sine(&Direction::constant(turn.offset()));
+        let unknown = self.ask(Unknown::Turn(turn.without_offset()))?;
+        let (cosine, sine) = add_angles(unknown.unit(self.arena), offset);
+        Some((cosine, if is_negative { -sine } else { sine }))
     }
 
     /// Whether the angle holds no joint.
@@ -191,6 +239,31 @@ impl<'a> Configuration<'a> {
         let (cosine, sine) = unit;
         let _ = cosine.named(&format!("c{separator}{label}{suffix}"));
         let _ = sine.named(&format!("s{separator}{label}{suffix}"));
+    }
+}
+
+/// A quantity of a leg that is not known yet. It has a symbol of its own in an equation, or two: the
+/// cosine and the sine of a direction are as independent as the equation's terms need.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Unknown {
+    /// A sum of joint angles without a constant, its first factor positive.
+    Turn(Direction),
+    /// The position of the prismatic joint of this index in q_t.
+    Slide(usize),
+}
+
+impl Unknown {
+    /// The symbols of an unknown turn's cosine and sine.
+    #[must_use]
+    pub fn unit<'a>(&self, arena: &'a Arena) -> Unit<'a> {
+        let symbol = |of: &str| arena.variable(&format!("{of} of unknown {self:?}"));
+        (symbol("cosine"), symbol("sine"))
+    }
+
+    /// The symbol of an unknown slide.
+    #[must_use]
+    pub fn slide<'a>(&self, arena: &'a Arena) -> Expr<'a> {
+        arena.variable(&format!("unknown {self:?}"))
     }
 }
 

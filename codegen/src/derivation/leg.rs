@@ -15,8 +15,8 @@ use super::configuration::Configuration;
 use super::elimination::{Inverse, Rows, inverse};
 use super::platform::{PlatformMotion, PlatformPose, constant_rotation};
 use super::rates::{Rates, parallel};
-use crate::cas::{Arena, Direction, Expr, Matrix3, Number, Ratio, Vector3};
-use crate::mechanism::{End, JointKind, Leg, TwistCoordinate};
+use crate::cas::{Angle, Arena, Direction, Expr, Matrix3, Number, Ratio, Vector3};
+use crate::mechanism::{End, Joint, JointKind, Leg, TwistCoordinate};
 
 /// Position and orientation of a joint's frame in the base frame.
 #[derive(Debug, Clone)]
@@ -67,45 +67,18 @@ impl<'a> LegFrames<'a> {
                 }
                 None => (
                     base,
-                    Direction::constant(crate::cas::Angle::ZERO),
+                    Direction::constant(Angle::ZERO),
                     base,
                     Vector3::zero(arena),
                 ),
             };
-            let turned = from_turn.plus(&Direction::constant(joint.gamma))?;
             let theta = joint_turn(leg, index, first_joint, configuration)?;
             // The joint's own sine and cosine come first: what turns out to be equal to them, a
             // determinant for instance, is then written as them.
             let _ = configuration.unit(&theta.plus(&Direction::constant(joint.gamma))?)?;
-            let (prefix, turn) = match parallel(joint.alpha) {
-                Some(sign) if sign == Ratio::ONE => (from_prefix, turned.plus(&theta)?),
-                Some(_) => {
-                    let flip = constant_rotation(
-                        arena,
-                        [
-                            joint.alpha,
-                            crate::cas::Angle::ZERO,
-                            crate::cas::Angle::ZERO,
-                        ],
-                    );
-                    (from_prefix * flip, turned.negative().plus(&theta)?)
-                }
-                None => {
-                    let (cosine, sine) = configuration.unit(&turned)?;
-                    let tilt = constant_rotation(
-                        arena,
-                        [
-                            joint.alpha,
-                            crate::cas::Angle::ZERO,
-                            crate::cas::Angle::ZERO,
-                        ],
-                    );
-                    (
-                        from_prefix * Matrix3::rotation(2, cosine, sine) * tilt,
-                        theta,
-                    )
-                }
-            };
+            let (prefix, before) =
+                before_turn(arena, joint, (from_prefix, &from_turn), configuration)?;
+            let turn = before.plus(&theta)?;
             let (cosine, sine) = configuration.unit(&turn)?;
             let rotation = prefix * Matrix3::rotation(2, cosine, sine);
             let link = from_rotation * link_vector(arena, leg, index, first_joint, configuration)?;
@@ -137,6 +110,27 @@ impl<'a> LegFrames<'a> {
     }
 }
 
+/// Orientation of a joint's frame before its own turn θ, as prefix and turn about z, from the same of
+/// its antecedent. Turns about parallel axes add up.
+pub(super) fn before_turn<'a>(
+    arena: &'a Arena,
+    joint: &Joint,
+    (prefix, turn): (Matrix3<'a>, &Direction),
+    configuration: &Configuration<'a>,
+) -> Option<(Matrix3<'a>, Direction)> {
+    let turned = turn.plus(&Direction::constant(joint.gamma))?;
+    let tilt = constant_rotation(arena, [joint.alpha, Angle::ZERO, Angle::ZERO]);
+    Some(match parallel(joint.alpha) {
+        Some(sign) if sign == Ratio::ONE => (prefix, turned),
+        Some(_) => (prefix * tilt, turned.negative()),
+        None => {
+            let (cosine, sine) = configuration.unit(&turned)?;
+            let turned = prefix * Matrix3::rotation(2, cosine, sine);
+            (turned * tilt, Direction::constant(Angle::ZERO))
+        }
+    })
+}
+
 /// The turn θ of a joint about its z axis.
 pub(super) fn joint_turn(
     leg: &Leg,
@@ -156,7 +150,7 @@ pub(super) fn joint_turn(
 }
 
 /// The value of a joint's position, for prismatic joints.
-fn joint_slide<'a>(
+pub(super) fn joint_slide<'a>(
     arena: &'a Arena,
     leg: &Leg,
     index: usize,

@@ -5,7 +5,7 @@ use super::bias::end_bias;
 use super::body::{BodyMotion, leg_bodies};
 use super::configuration::{Configuration, From};
 use super::elimination::Rows;
-use super::inverse_kinematics::solve_leg;
+use super::inverse_kinematics::{Task, solve_leg};
 use super::leg::{LegClosure, LegFrames};
 use super::platform::PlatformPose;
 use super::rates::Rates;
@@ -142,16 +142,15 @@ impl<'a> Robot<'a> {
         if let (Some(platform), From::Pose | From::Actuators) =
             (&self.platform, self.configuration.from())
         {
-            let home = &self.mechanism.home.joints;
-            let conditions = solve_leg(
+            let task = Task {
                 arena,
                 leg,
                 first_joint,
-                home,
+                home: &self.mechanism.home,
                 platform,
-                &mut self.configuration,
-            )
-            .ok_or_else(|| Underivable::InverseKinematics { leg: name() })?;
+            };
+            let conditions = solve_leg(task, &mut self.configuration)
+                .ok_or_else(|| Underivable::InverseKinematics { leg: name() })?;
             let guards = conditions.into_iter().map(|reach| Guard {
                 value: reach.radicand,
                 kind: GuardKind::Reach,
@@ -218,16 +217,7 @@ impl<'a> Robot<'a> {
     /// The value of an expression at the home configuration, with all rates set to small numbers.
     #[must_use]
     pub fn at_home(&self, expr: Expr<'a>) -> f64 {
-        let home = &self.mechanism.home;
-        expr.evaluate(&|symbol| {
-            let name = self.arena.symbol_name(symbol);
-            let index = |prefix: &str| -> Option<usize> {
-                name.strip_prefix(prefix)?.strip_suffix(']')?.parse().ok()
-            };
-            let value = index("joints[").and_then(|i| home.joints.get(i));
-            let value = value.or_else(|| index("pose[").and_then(|i| home.pose.get(i)));
-            value.copied().unwrap_or(0.1)
-        })
+        self.mechanism.home.value(self.arena, expr)
     }
 
     /// Inputs `name[0]`, `name[1]`, … as expressions.

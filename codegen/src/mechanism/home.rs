@@ -2,6 +2,7 @@
 
 use super::numeric::{closure_error, platform_frame, target};
 use super::{Leg, Mechanism};
+use crate::cas::{Arena, Expr};
 use nalgebra::{DMatrix, DVector};
 
 /// The home configuration.
@@ -11,6 +12,25 @@ pub struct Home {
     pub pose: Vec<f64>,
     /// Positions of all independent joints.
     pub joints: Vec<f64>,
+}
+
+impl Home {
+    /// The value of an input `pose[i]` or `joints[i]`.
+    #[must_use]
+    pub fn symbol(&self, name: &str) -> Option<f64> {
+        let index = |prefix: &str| -> Option<usize> {
+            name.strip_prefix(prefix)?.strip_suffix(']')?.parse().ok()
+        };
+        let joint = index("joints[").and_then(|i| self.joints.get(i));
+        let value = joint.or_else(|| index("pose[").and_then(|i| self.pose.get(i)));
+        value.copied()
+    }
+
+    /// The value of an expression at home, with all rates set to small numbers.
+    #[must_use]
+    pub fn value<'a>(&self, arena: &'a Arena, expr: Expr<'a>) -> f64 {
+        expr.evaluate(&|symbol| self.symbol(&arena.symbol_name(symbol)).unwrap_or(0.1))
+    }
 }
 
 /// Why a leg has no home configuration.

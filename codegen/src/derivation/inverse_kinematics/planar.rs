@@ -1,27 +1,17 @@
-//! Inverse kinematics by rule: what a leg's closure says of its joints, without an angle.
-//!
-//! *Two links in a plane.* When the leg's joints are revolute about parallel axes and its end depends
+//! Two links in a plane: when the leg's joints are revolute about parallel axes and its end depends
 //! on two of them, the end lies at A + l1 e(ψ1 + β1) + l2 e(ψ2 + β2) in the plane normal to the axes. With
 //! D from A to the end, ρ² = D², a = (ρ² + l1² - l2²)/(2ρ²) and h² = l1²/ρ² - a², the elbow is
 //! A + a D ± h D⊥: one square root per leg, whose sign is the working mode of the home
 //! configuration. The unit vectors of both links are then algebraic, and a last joint that the end's
 //! position does not depend on follows from the platform's orientation.
-//!
-//! The rule looks at the leg's geometry, never at a robot's name.
 
-use super::configuration::Configuration;
-use super::leg::joint_turn;
-use super::platform::{PlatformPose, constant_rotation};
-use super::rates::parallel;
-use crate::cas::{Angle, Arena, Direction, Expr, Matrix3, Number, Ratio, Vector3};
+use super::super::configuration::Configuration;
+use super::super::leg::joint_turn;
+use super::super::platform::constant_rotation;
+use super::super::rates::parallel;
+use super::{Reach, Task};
+use crate::cas::{Angle, Arena, Direction, Matrix3, Number, Ratio, Vector3};
 use crate::mechanism::{End, JointKind, Leg};
-
-/// A condition for the pose to be within reach: the expression must not be negative.
-#[derive(Debug, Clone, Copy)]
-pub struct Reach<'a> {
-    /// The radicand.
-    pub radicand: Expr<'a>,
-}
 
 /// A link in the plane: length and the angle of its direction.
 struct Link {
@@ -29,15 +19,18 @@ struct Link {
     direction: Direction,
 }
 
-/// Learns the leg's angles from the pose. `None` if no rule fits the leg.
-pub fn solve_leg<'a>(
-    arena: &'a Arena,
-    leg: &Leg,
-    first_joint: usize,
-    home: &[f64],
-    platform: &PlatformPose<'a>,
+/// Learns the leg's angles from the pose. `None` if the rule does not fit the leg.
+pub(super) fn solve<'a>(
+    task: Task<'a, '_>,
     configuration: &mut Configuration<'a>,
 ) -> Option<Vec<Reach<'a>>> {
+    let Task {
+        arena,
+        leg,
+        first_joint,
+        platform,
+        ..
+    } = task;
     let links = planar_links(leg, first_joint, configuration)?;
     let prefix = plane(arena, leg);
     let end = leg.end.as_ref()?;
@@ -49,7 +42,7 @@ pub fn solve_leg<'a>(
     let first = constant_rotation(arena, leg.base.rotation) * first_origin(arena, leg);
     let distance = platform.origin + platform.arm(at) - base - first;
     let in_plane = prefix.transposed() * distance;
-    let reach = two_links(arena, &links, in_plane, home, configuration)?;
+    let reach = two_links(task, &links, in_plane, configuration)?;
     let last = leg.joints.len() - 1;
     if let (End::Rigid(placement), true) = (end, leg.joints.len() == 3) {
         // The last frame's orientation is the platform's: its turn is known.
@@ -146,12 +139,12 @@ fn first_origin<'a>(arena: &'a Arena, leg: &Leg) -> Vector3<'a> {
 
 /// Both links' unit vectors from the end's position in the plane.
 fn two_links<'a>(
-    arena: &'a Arena,
+    task: Task<'a, '_>,
     [first, second]: &[Link; 2],
     end: Vector3<'a>,
-    home: &[f64],
     configuration: &mut Configuration<'a>,
 ) -> Option<Reach<'a>> {
+    let arena = task.arena;
     let (l1, l2) = (first.length, second.length);
     let (x, y) = (end.x(), end.y());
     let square = x * x + y * y;
@@ -163,7 +156,7 @@ fn two_links<'a>(
     let root = radicand.sqrt();
     // The bend from the first link to the second at home tells the elbow's side.
     let bend = second.direction.plus(&first.direction.negative())?;
-    let angle = bend_angle(&bend, home, configuration);
+    let angle = task.turn_at_home(&bend);
     let h = if angle.sin() > 0.0 { root } else { -root };
     let (along, across) = ((x * a, y * a), (x * h, y * h));
     // The elbow lies to the right of D when the second link bends to the left.
@@ -183,15 +176,4 @@ fn two_links<'a>(
     let sine = h * square * (Number::ONE / product);
     configuration.learn(bend, (cosine, sine));
     Some(Reach { radicand })
-}
-
-/// Value at home of a bend that is a sum of joint angles and a constant.
-fn bend_angle(bend: &Direction, home: &[f64], configuration: &Configuration<'_>) -> f64 {
-    bend.terms()
-        .iter()
-        .fold(bend.offset().value(), |sum, (symbol, factor)| {
-            let joint = (0..home.len())
-                .find(|&i| configuration.joint_angle(i) == Direction::symbol(*symbol));
-            sum + joint.map_or(0.0, |i| home[i]) * factor.value()
-        })
 }

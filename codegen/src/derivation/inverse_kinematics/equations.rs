@@ -1,0 +1,124 @@
+//! The scalar equations of a leg's closure in the frames of all its joints (Paul 1981).
+//!
+//! Let F be the frame of a joint before its own motion. Seen from F, the point X that the leg's end
+//! has to meet is P = R_Fᵀ (X - O_F), which the joints before F decide; the end of the chain behind F
+//! is Q, which the others decide. P = Q gives three equations and |P|² = |Q|² a fourth that no turn
+//! about F's origin changes. A rigid end gives the same for the platform's axes e_i, with those of the
+//! last frame g_i, and (X - O_F) · e_i = Q · g_i.
+
+use super::super::configuration::Configuration;
+use super::super::leg::{before_turn, joint_slide, joint_turn, path_to_end};
+use super::super::platform::constant_rotation;
+use super::Task;
+use crate::cas::{Angle, Direction, Expr, Matrix3, Vector3};
+use crate::mechanism::End;
+
+/// Orientation, as prefix and turn about z, and origin of a frame.
+#[derive(Debug, Clone)]
+struct Frame<'a> {
+    prefix: Matrix3<'a>,
+    turn: Direction,
+    origin: Vector3<'a>,
+}
+
+impl<'a> Frame<'a> {
+    fn rotation(&self, configuration: &Configuration<'a>) -> Option<Matrix3<'a>> {
+        let (cosine, sine) = configuration.unit(&self.turn)?;
+        Some(self.prefix * Matrix3::rotation(2, cosine, sine))
+    }
+}
+
+/// Expressions that vanish where the leg closes.
+pub(super) fn equations<'a>(
+    task: Task<'a, '_>,
+    configuration: &Configuration<'a>,
+) -> Option<Vec<Expr<'a>>> {
+    let Task { arena, leg, .. } = task;
+    let (at, axes) = match leg.end.as_ref()? {
+        End::Rigid(placement) => (placement.at, Some(task.platform.orientation(placement))),
+        End::Point(at) => (*at, None),
+    };
+    let target = task.platform.origin + task.platform.arm(at);
+    let mut path = path_to_end(leg);
+    path.reverse();
+    let mut frame = Frame {
+        prefix: constant_rotation(arena, leg.base.rotation),
+        turn: Direction::constant(Angle::ZERO),
+        origin: Vector3::constant(arena, leg.base.at),
+    };
+    let mut equations = Vec::new();
+    for at in 0..path.len() {
+        let before = step_to(task, configuration, path[at], &frame)?;
+        let rotation = before.rotation(configuration)?;
+        let arm = target - before.origin;
+        let (end, end_axes) = chain(task, configuration, &path[at..])?;
+        let seen = rotation.transposed() * arm;
+        equations.extend((0..3).map(|i| seen.0[i] - end.0[i]));
+        equations.push(arm.dot(arm) - end.dot(end));
+        if let Some(axes) = axes {
+            let seen = rotation.transposed() * axes;
+            for i in [2, 0, 1] {
+                equations.extend((0..3).map(|j| seen.0[j][i] - end_axes.0[j][i]));
+                equations.push(arm.dot(axes.column(i)) - end.dot(end_axes.column(i)));
+            }
+        }
+        frame = step_over(task, configuration, path[at], before)?;
+    }
+    equations.retain(|e| e.as_number().is_none());
+    Some(equations)
+}
+
+/// Origin and axes of the last frame, seen from the first joint of `path` before its motion.
+fn chain<'a>(
+    task: Task<'a, '_>,
+    configuration: &Configuration<'a>,
+    path: &[usize],
+) -> Option<(Vector3<'a>, Matrix3<'a>)> {
+    let mut frame = Frame {
+        prefix: Matrix3::identity(task.arena),
+        turn: Direction::constant(Angle::ZERO),
+        origin: Vector3::zero(task.arena),
+    };
+    for (i, &joint) in path.iter().enumerate() {
+        if i > 0 {
+            frame = step_to(task, configuration, joint, &frame)?;
+        }
+        frame = step_over(task, configuration, joint, frame)?;
+    }
+    Some((frame.origin, frame.rotation(configuration)?))
+}
+
+/// From a joint's antecedent to the joint before its motion.
+fn step_to<'a>(
+    task: Task<'a, '_>,
+    configuration: &Configuration<'a>,
+    joint: usize,
+    from: &Frame<'a>,
+) -> Option<Frame<'a>> {
+    let (arena, this) = (task.arena, &task.leg.joints[joint]);
+    let start = (from.prefix, &from.turn);
+    let (prefix, turn) = before_turn(arena, this, start, configuration)?;
+    let (cosine, sine) = this.gamma.cosine_and_sine();
+    let along = Vector3::constant(arena, [this.d * cosine, this.d * sine, this.b]);
+    Some(Frame {
+        prefix,
+        turn,
+        origin: from.origin + from.rotation(configuration)? * along,
+    })
+}
+
+/// From a joint before its motion to its frame.
+fn step_over<'a>(
+    task: Task<'a, '_>,
+    configuration: &Configuration<'a>,
+    joint: usize,
+    before: Frame<'a>,
+) -> Option<Frame<'a>> {
+    let slide = joint_slide(task.arena, task.leg, joint, task.first_joint, configuration)?;
+    let turn = joint_turn(task.leg, joint, task.first_joint, configuration)?;
+    Some(Frame {
+        turn: before.turn.plus(&turn)?,
+        origin: before.origin + before.prefix.column(2).scaled(slide),
+        prefix: before.prefix,
+    })
+}

@@ -1,0 +1,67 @@
+//! Inverse kinematics by rule: what a leg's closure says of its joints, without an angle.
+//!
+//! Two rules are tried, both on the leg's geometry and never on a robot's name. [`planar`] knows the
+//! two links in a plane. [`peeling`] takes a leg apart one joint at a time after Paul: the closure
+//! is written in the frame of every joint on the way, and of all the scalar equations that this gives
+//! ([`equations`]) one is looked for that holds a single unknown and is linear in its cosine and
+//! sine or quadratic in its slide. What is found makes others soluble.
+//!
+//! The closed forms hold square roots, whose signs are the working mode of the home configuration.
+
+mod equations;
+mod peeling;
+mod planar;
+mod polynomial;
+#[cfg(test)]
+mod tests;
+
+use super::configuration::Configuration;
+use super::platform::PlatformPose;
+use crate::cas::{Arena, Direction, Expr, SymbolId};
+use crate::mechanism::{Home, Leg};
+
+/// A condition for the pose to be within reach: the expression must not be negative.
+#[derive(Debug, Clone, Copy)]
+pub struct Reach<'a> {
+    /// The radicand.
+    pub radicand: Expr<'a>,
+}
+
+/// What a rule works on.
+#[derive(Debug, Clone, Copy)]
+pub struct Task<'a, 'm> {
+    /// The graph.
+    pub arena: &'a Arena,
+    /// The leg.
+    pub leg: &'m Leg,
+    /// Index of the leg's first joint in q_t.
+    pub first_joint: usize,
+    /// The home configuration, which fixes the working mode.
+    pub home: &'m Home,
+    /// The pose that the leg's end has to meet.
+    pub platform: &'m PlatformPose<'a>,
+}
+
+impl<'a> Task<'a, '_> {
+    /// The value at home of an expression in the pose.
+    fn at_home(&self, expr: Expr<'a>) -> f64 {
+        self.home.value(self.arena, expr)
+    }
+
+    /// The value at home of a sum of joint angles and a constant.
+    fn turn_at_home(&self, turn: &Direction) -> f64 {
+        let joint = |symbol: SymbolId| self.home.symbol(&self.arena.symbol_name(symbol));
+        let terms = turn.terms().iter();
+        terms.fold(turn.offset().value(), |sum, (symbol, factor)| {
+            sum + joint(*symbol).unwrap_or(0.0) * factor.value()
+        })
+    }
+}
+
+/// Learns the leg's angles and slides from the pose. `None` if no rule fits the leg.
+pub fn solve_leg<'a>(
+    task: Task<'a, '_>,
+    configuration: &mut Configuration<'a>,
+) -> Option<Vec<Reach<'a>>> {
+    planar::solve(task, configuration).or_else(|| peeling::solve(task, configuration))
+}

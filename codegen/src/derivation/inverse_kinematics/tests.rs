@@ -1,0 +1,104 @@
+//! Every robot of the library closes with the joints that a rule gives, in the home's working mode.
+
+use crate::cas::Arena;
+use crate::derivation::{Family, From, JointsBy, Selection, derive};
+use crate::diagnostic::Source;
+use crate::mechanism::numeric::{closure_error, platform_frame, target};
+use crate::mechanism::{Home, Mechanism, check};
+use std::path::PathBuf;
+
+/// Of positions, m and rad.
+const CLOSED: f64 = 1e-11;
+/// Of the home configuration, which itself is closed to 1e-10.
+const AT_HOME: f64 = 1e-8;
+const POSES: usize = 20;
+
+fn library() -> Vec<(String, Mechanism)> {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../robots");
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder)
+        .expect("the library is there")
+        .map(|entry| entry.expect("a readable entry").path())
+        .filter(|path| path.extension().is_some_and(|e| e == "toml"))
+        .collect();
+    files.sort();
+    let mechanism = |path: PathBuf| {
+        let name = path.display().to_string();
+        let text = std::fs::read_to_string(&path).expect("a readable description");
+        let source = Source::new(name.clone(), text);
+        let description = crate::description::parse(&source).expect("a right description");
+        (name, check(&description).expect("a right mechanism"))
+    };
+    files.into_iter().map(mechanism).collect()
+}
+
+/// The pose of this number near home.
+fn displaced(mechanism: &Mechanism, number: usize) -> Vec<f64> {
+    let platform = mechanism.platform.as_ref().expect("a platform");
+    let mut pose = mechanism.home.pose.clone();
+    let first_angle = pose.len()
+        - if platform.motion.has_quaternion() {
+            4
+        } else {
+            0
+        };
+    let length = 0.05 * mechanism.length_scale();
+    for (i, x) in pose.iter_mut().enumerate() {
+        let reach = if i < first_angle { length } else { 0.05 };
+        // Phases that are no fraction of each other spread the poses.
+        *x += reach * (1.7 * number as f64 + 2.3 * i as f64).sin();
+    }
+    let norm = pose[first_angle..]
+        .iter()
+        .map(|q| q * q)
+        .sum::<f64>()
+        .sqrt();
+    pose[first_angle..].iter_mut().for_each(|q| *q /= norm);
+    pose
+}
+
+#[test]
+fn joints_by_rule_close_every_leg_and_keep_the_mode_of_home() {
+    for (name, mechanism) in library() {
+        let Some(platform) = &mechanism.platform else {
+            continue;
+        };
+        let arena = Arena::new();
+        let (selection, by) = (Selection::default(), JointsBy::Rule);
+        let derived = derive(
+            &arena,
+            &mechanism,
+            &selection,
+            Family::Joints,
+            From::Pose,
+            by,
+        );
+        let derived = derived.unwrap_or_else(|e| panic!("{name}: {e:?}"));
+        let joints = |pose: &[f64]| -> Vec<f64> {
+            let at = Home {
+                pose: pose.to_vec(),
+                joints: Vec::new(),
+            };
+            let entries = derived.entries.iter();
+            entries.map(|&e| at.value(&arena, e)).collect()
+        };
+        let at_home = joints(&mechanism.home.pose);
+        for (found, home) in at_home.iter().zip(&mechanism.home.joints) {
+            assert!(
+                (found - home).abs() < AT_HOME,
+                "{name}: {found} at home, not {home}"
+            );
+        }
+        for number in 0..POSES {
+            let pose = displaced(&mechanism, number);
+            let found = joints(&pose);
+            let frame = platform_frame(platform.motion, &pose);
+            for (index, leg) in mechanism.legs.iter().enumerate() {
+                let (end, oriented) = target(leg.end.as_ref().expect("an end"), &frame);
+                let q = &found[mechanism.leg_range(index)];
+                let error = closure_error(leg, q, &end, oriented);
+                let gap = error.iter().fold(0.0_f64, |m, e| m.max(e.abs()));
+                assert!(gap < CLOSED, "{name}, {}: open by {gap:e}", leg.name);
+            }
+        }
+    }
+}
