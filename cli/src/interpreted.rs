@@ -14,7 +14,7 @@ use overact::{
 };
 use overact_codegen::{
     RobotModel,
-    derivation::{Columns, Family},
+    derivation::{Columns, Family, From},
     evaluation::{Failed, Rows, Workspace},
     lowering::{Condition, Program},
 };
@@ -124,6 +124,61 @@ impl InterpretedRobot {
             index,
             inputs,
             workspaces,
+        })
+    }
+
+    /// The pose by rule, where the robot has one and the spheres meet.
+    fn pose_in_closed_form(&self, actuators: &[f64]) -> Option<Vec<f64>> {
+        let function = self
+            .model
+            .function(Family::PoseInClosedForm, From::Actuators)?;
+        let mut pose = vec![0.0; self.names.sizes.pose];
+        let given = [Rows {
+            values: actuators,
+            shared: false,
+        }];
+        let mut workspace = Workspace::default();
+        let found = function
+            .program
+            .evaluate(1, &given, &mut pose, &mut workspace);
+        found.ok().map(|()| pose)
+    }
+
+    /// The pose of least squares, found from the one in `pose`.
+    fn fit_pose(&self, actuators: &[f64], pose: &mut [f64]) -> Result<(), Error> {
+        let sizes = self.names.sizes;
+        self.scratch.with(|scratch| {
+            scratch.resize(&sizes);
+            let Scratch {
+                actuators: reached,
+                inverse_jacobian,
+                normal,
+                step,
+                pose: at,
+            } = scratch;
+            at.copy_from_slice(pose);
+            let is_revolute = &self.names.actuator_is_revolute;
+            forward::gauss_newton(
+                Measured {
+                    positions: actuators,
+                    is_revolute,
+                },
+                at,
+                forward::Workspace {
+                    actuators: reached,
+                    inverse_jacobian,
+                    normal,
+                    step,
+                },
+                |pose, reached, jacobian| {
+                    self.evaluate(Function::ActuatorPositions, &[pose], reached)
+                        .and_then(|()| self.evaluate(Function::InverseJacobian, &[pose], jacobian))
+                        .map_err(|error| error.error)
+                },
+                |pose, step| self.displace(pose, step),
+            )?;
+            pose.copy_from_slice(at);
+            Ok(())
         })
     }
 
@@ -297,38 +352,15 @@ impl Model for InterpretedRobot {
             pose.copy_from_slice(actuators);
             return Ok(());
         }
-        self.scratch.with(|scratch| {
-            scratch.resize(&sizes);
-            let Scratch {
-                actuators: reached,
-                inverse_jacobian,
-                normal,
-                step,
-                pose: at,
-            } = scratch;
-            at.copy_from_slice(pose);
-            let is_revolute = &self.names.actuator_is_revolute;
-            forward::gauss_newton(
-                Measured {
-                    positions: actuators,
-                    is_revolute,
-                },
-                at,
-                forward::Workspace {
-                    actuators: reached,
-                    inverse_jacobian,
-                    normal,
-                    step,
-                },
-                |pose, reached, jacobian| {
-                    self.evaluate(Function::ActuatorPositions, &[pose], reached)
-                        .and_then(|()| self.evaluate(Function::InverseJacobian, &[pose], jacobian))
-                        .map_err(|error| error.error)
-                },
-                |pose, step| self.displace(pose, step),
-            )?;
-            pose.copy_from_slice(at);
-            Ok(())
+        let closed = self.pose_in_closed_form(actuators);
+        if let (Some(found), true) = (&closed, sizes.actuators == sizes.dof) {
+            pose.copy_from_slice(found);
+            return Ok(());
+        }
+        self.fit_pose(actuators, pose).or_else(|error| {
+            let found = closed.ok_or(error)?;
+            pose.copy_from_slice(&found);
+            self.fit_pose(actuators, pose)
         })
     }
 

@@ -68,6 +68,12 @@ impl RobotModel {
         self.joints == JointsBy::Newton && function.from != From::Joints
     }
 
+    /// Whether forward kinematics finds the function's pose before its program runs.
+    #[must_use]
+    pub fn finds_pose(&self, function: &Function) -> bool {
+        function.from == From::Actuators && function.family != Family::PoseInClosedForm
+    }
+
     /// The parameters that the columns of a function stand for.
     #[must_use]
     pub fn columns_of(&self, family: Family) -> &[BodyParameter] {

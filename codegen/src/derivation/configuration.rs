@@ -4,7 +4,7 @@
 //! angle is ever computed: the closure gives its sine and cosine algebraically, and every other angle
 //! of the leg follows by the addition theorem.
 
-use crate::cas::{Arena, Direction, Expr, Ratio};
+use crate::cas::{Arena, Direction, Expr, Number, Ratio};
 use crate::mechanism::Mechanism;
 use std::cell::RefCell;
 
@@ -271,4 +271,12 @@ impl Unknown {
 #[must_use]
 pub fn add_angles<'a>((ca, sa): Unit<'a>, (cb, sb): Unit<'a>) -> Unit<'a> {
     (ca * cb - sa * sb, sa * cb + ca * sb)
+}
+
+/// The angle of a direction, within half a turn of its value at home.
+#[must_use]
+pub fn angle_near<'a>(arena: &'a Arena, (cosine, sine): Unit<'a>, home: f64) -> Expr<'a> {
+    let [ch, sh] = [home.cos(), home.sin()].map(Number::float);
+    let turned = (sine * ch - cosine * sh).atan2(cosine * ch + sine * sh);
+    turned + arena.number(Number::float(home))
 }

@@ -1,7 +1,9 @@
 //! The functions that a robot has: names, meaning, equations, units.
 
 use super::configuration::From;
+use super::forward_kinematics::closed_form;
 use super::functions::JointsBy;
+use crate::cas::Arena;
 use crate::mechanism::Mechanism;
 
 /// Which columns an identification model has.
@@ -28,6 +30,7 @@ impl Columns {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[expect(missing_docs, reason = "`Family::summary` says what each is")]
 pub enum Family {
+    PoseInClosedForm,
     Joints,
     ActuatorPositions,
     InverseJacobian,
@@ -60,6 +63,7 @@ impl Family {
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
+            Self::PoseInClosedForm => "pose_in_closed_form",
             Self::Joints => "joints",
             Self::ActuatorPositions => "actuator_positions",
             Self::InverseJacobian => "inverse_jacobian",
@@ -92,6 +96,9 @@ impl Family {
     #[must_use]
     pub const fn summary(self) -> &'static str {
         match self {
+            Self::PoseInClosedForm => {
+                "The pose from the actuators in closed form, in the assembly mode of the home configuration; of redundant actuators only some are used."
+            }
             Self::Joints => {
                 "Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration."
             }
@@ -171,7 +178,8 @@ impl Family {
     pub const fn is_vector(self) -> bool {
         matches!(
             self,
-            Self::Joints
+            Self::PoseInClosedForm
+                | Self::Joints
                 | Self::ActuatorPositions
                 | Self::ClosureError
                 | Self::JointVelocities
@@ -190,6 +198,9 @@ impl Family {
     /// The name of the Rust function, unique in the robot.
     #[must_use]
     pub fn function_name(self, from: From, tree: bool) -> String {
+        if self == Self::PoseInClosedForm {
+            return self.name().to_owned();
+        }
         let base = if self.columns() == Some(Columns::Base) {
             "_base"
         } else {
@@ -228,6 +239,10 @@ impl Family {
         } else {
             &[Pose, Joints, Actuators]
         };
+        let arena = Arena::new();
+        if closed_form(&arena, mechanism).is_some() {
+            add(&[Self::PoseInClosedForm], &[Actuators]);
+        }
         add(&[Self::Joints, Self::ActuatorPositions], pose);
         add(&[Self::InverseJacobian], pose_and_joints);
         if !tree {

@@ -1,8 +1,9 @@
 //! The functions that every robot has, as named inputs and output expressions.
 
-use super::configuration::From;
+use super::configuration::{From, angle_near};
 use super::elimination::Rows;
 use super::family::{Columns, Family};
+use super::forward_kinematics::closed_form;
 use super::linear::{Factored, apply, null_space, product, pseudo_inverse, transposed};
 use super::regressor::{BodyParameter, Projection};
 use super::robot::{Guard, GuardKind, Robot, Underivable};
@@ -67,6 +68,9 @@ pub fn derive<'a>(
     from: From,
     joints: JointsBy,
 ) -> Result<Derived<'a>, Underivable> {
+    if family == Family::PoseInClosedForm {
+        return pose_in_closed_form(arena, mechanism);
+    }
     let configuration = match (from, joints) {
         (From::Pose | From::Actuators, JointsBy::Rule) => From::Pose,
         _ => From::Joints,
@@ -89,6 +93,25 @@ pub fn derive<'a>(
         shape,
         entries: rows.concat(),
         guards,
+    })
+}
+
+/// Forward kinematics by rule.
+fn pose_in_closed_form<'a>(
+    arena: &'a Arena,
+    mechanism: &'a Mechanism,
+) -> Result<Derived<'a>, Underivable> {
+    let found = closed_form(arena, mechanism).ok_or(Underivable::ForwardKinematics)?;
+    let guards = found.reach.into_iter().map(|(reach, leg)| Guard {
+        value: reach.radicand,
+        kind: GuardKind::Reach,
+        leg,
+    });
+    Ok(Derived {
+        inputs: vec![("actuators", mechanism.actuated().len())],
+        shape: (found.pose.len(), 1),
+        entries: found.pose,
+        guards: guards.collect(),
     })
 }
 
@@ -153,6 +176,7 @@ impl<'a> Sheet<'a, '_> {
     fn rows(&mut self, family: Family) -> Result<Rows<'a>, Underivable> {
         let n = self.robot.mechanism.actuated().len();
         Ok(match family {
+            Family::PoseInClosedForm => return Err(Underivable::ForwardKinematics),
             Family::Joints => column(self.joint_positions()),
             Family::ActuatorPositions => {
                 let all = self.joint_positions();
@@ -246,16 +270,9 @@ impl<'a> Sheet<'a, '_> {
                     .joint_position(index)
                     .unwrap_or_else(|| arena.zero());
             }
-            let home = crate::cas::Number::float(mechanism.home.joints[index]);
+            let home = mechanism.home.joints[index];
             match configuration.unit(&configuration.joint_angle(index)) {
-                Some((cosine, sine)) => {
-                    let (ch, sh) = (
-                        crate::cas::Number::float(home.value().cos()),
-                        crate::cas::Number::float(home.value().sin()),
-                    );
-                    let turned = (sine * ch - cosine * sh).atan2(cosine * ch + sine * sh);
-                    turned + arena.number(home)
-                }
+                Some(unit) => angle_near(arena, unit, home),
                 None => arena.zero(),
             }
         };

@@ -4,13 +4,17 @@
 //! ([`rates`]), frames, and the wrenches that feel one joint alone ([`elimination`], [`bias`]). [`body`]
 //! runs the recursion of Newton and Euler in the bodies' own frames. [`regressor`] projects what each
 //! standard parameter produces on the platform, eq. (30), or on kept actuators, eq. (36). [`robot`] holds
-//! one derivation together, and [`functions`] names what comes out of it.
+//! one derivation together. [`inverse_kinematics`] finds joints from a pose and [`forward_kinematics`] a
+//! pose from actuators, in closed form where there is one, and [`functions`] names what comes out of it.
 
 pub mod bias;
 pub mod body;
+#[cfg(test)]
+mod closed_forms;
 pub mod configuration;
 pub mod elimination;
 pub mod family;
+pub mod forward_kinematics;
 pub mod functions;
 pub mod inverse_kinematics;
 pub mod leg;

@@ -76,6 +76,8 @@ pub enum Underivable {
         /// Name of the leg.
         leg: String,
     },
+    /// No rule gives the pose from the actuators in closed form.
+    ForwardKinematics,
     /// The leg's Jacobian has no structural inverse.
     SingularLeg {
         /// Name of the leg.
@@ -142,13 +144,8 @@ impl<'a> Robot<'a> {
         if let (Some(platform), From::Pose | From::Actuators) =
             (&self.platform, self.configuration.from())
         {
-            let task = Task {
-                arena,
-                leg,
-                first_joint,
-                home: &self.mechanism.home,
-                platform,
-            };
+            let task = Task::new(arena, self.mechanism, index, platform)
+                .ok_or_else(|| Underivable::InverseKinematics { leg: name() })?;
             let conditions = solve_leg(task, &mut self.configuration)
                 .ok_or_else(|| Underivable::InverseKinematics { leg: name() })?;
             let guards = conditions.into_iter().map(|reach| Guard {

@@ -24,7 +24,7 @@ pub fn item(model: &RobotModel, function: &Function) -> TokenStream {
         }
     };
     let name = format_ident!("{}", function.name);
-    let from_actuators = function.from == From::Actuators;
+    let from_actuators = model.finds_pose(function);
     let finds_joints = needs_joints(model, function);
     let output = array_type(&program.output);
     let arguments = arguments(model, function);
@@ -75,7 +75,7 @@ fn call(function: &Function, fallible: bool) -> TokenStream {
 /// Whether the function returns a `Result`.
 #[must_use]
 pub fn is_fallible(model: &RobotModel, function: &Function) -> bool {
-    function.from == From::Actuators
+    model.finds_pose(function)
         || needs_joints(model, function)
         || !function.program.guards.is_empty()
 }
@@ -131,7 +131,7 @@ fn arguments(model: &RobotModel, function: &Function) -> TokenStream {
         if model.finds_joints(function) && array.name == "joints" {
             continue;
         }
-        let pose_is_found = function.from == From::Actuators && array.name == "pose";
+        let pose_is_found = model.finds_pose(function) && array.name == "pose";
         let (name, array) = if pose_is_found {
             let actuators = model.mechanism.actuated().len();
             (
@@ -150,7 +150,7 @@ fn arguments(model: &RobotModel, function: &Function) -> TokenStream {
         let kind = array_type(&array);
         arguments.push(quote!(#name: &#kind));
     }
-    if function.from == From::Actuators {
+    if model.finds_pose(function) {
         let pose = Literal::usize_unsuffixed(model.mechanism.pose_len());
         let start = format_ident!("{unused}start");
         arguments.push(quote!(#start: &[f64; #pose]));
@@ -179,6 +179,7 @@ fn documentation(model: &RobotModel, function: &Function) -> Vec<String> {
         (From::Joints, _) => {
             " From measured joint positions and the platform's motion; of the pose only the orientation is used."
         }
+        (From::Actuators, _) if !model.finds_pose(function) => " From the actuators' positions.",
         (From::Actuators, _) => {
             " From the actuators' motion: forward kinematics from the pose `start`, then least squares."
         }
@@ -186,14 +187,14 @@ fn documentation(model: &RobotModel, function: &Function) -> Vec<String> {
     lines.push(from.to_owned());
     for array in &function.program.inputs {
         if let Some(text) = input_meaning(model, &array.name) {
-            let pose_is_found = function.from == From::Actuators && array.name == "pose";
+            let pose_is_found = model.finds_pose(function) && array.name == "pose";
             let joints_are_found = model.finds_joints(function) && array.name == "joints";
             if !pose_is_found && !joints_are_found {
                 lines.push(format!(" - `{}`: {text}", array.name));
             }
         }
     }
-    if function.from == From::Actuators {
+    if model.finds_pose(function) {
         lines.push(" - `actuators`: q, positions of the actuated joints (m, rad)".to_owned());
         lines.push(
             " - `start`: a pose near the wanted one, in its assembly mode (m, rad)".to_owned(),
@@ -245,6 +246,7 @@ fn input_meaning(model: &RobotModel, name: &str) -> Option<String> {
     Some(match name {
         "pose" => format!("x = `[{}]` (m, rad), in the base frame", coordinates()),
         "joints" => "q_t, all joint positions, leg by leg (m, rad)".to_owned(),
+        "actuators" => "q, positions of the actuated joints (m, rad)".to_owned(),
         "twist" => format!("v = `[{}]` (m/s, rad/s), in the base frame", rates()),
         "acceleration" => "the derivative of `twist` (m/s², rad/s²)".to_owned(),
         "joint_velocities" => "velocities of the joints (m/s, rad/s)".to_owned(),

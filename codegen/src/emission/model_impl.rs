@@ -1,7 +1,7 @@
 //! The generated `impl overact::Model`, which hands blocks of samples to the generated functions.
 
 use super::function::is_fallible;
-use crate::derivation::{Columns, Family};
+use crate::derivation::{Columns, Family, From};
 use crate::model::RobotModel;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -157,6 +157,59 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
     let unwrap = |fallible: bool| fallible.then(|| quote!(?));
     let position = unwrap(fallible(Family::ActuatorPositions));
     let jacobian = unwrap(fallible(Family::InverseJacobian));
+    let iterate = quote! {
+        ::overact::forward::gauss_newton(
+            ::overact::forward::Measured {
+                positions: actuators,
+                is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
+            },
+            &mut pose,
+            ::overact::forward::Workspace {
+                actuators: &mut [0.0; Self::ACTUATORS],
+                inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
+                normal: &mut [0.0; Self::DOF * Self::DOF],
+                step: &mut [0.0; Self::DOF],
+            },
+            |pose, positions, jacobian| {
+                let pose = ::overact::block::array(pose)?;
+                positions.copy_from_slice(&Self::actuator_positions(pose)#position);
+                jacobian.copy_from_slice(Self::inverse_jacobian(pose)#jacobian.as_flattened());
+                Ok(())
+            },
+            ::overact::forward::#displace,
+        )
+    };
+    let is_redundant = model.mechanism.actuated().len() > model.mechanism.dof();
+    let (way, body) = match model.function(Family::PoseInClosedForm, From::Actuators) {
+        Some(_) if is_redundant => (
+            " Where the iteration fails from there, it starts again from `pose_in_closed_form`.",
+            quote! {
+                let from = |mut pose: [f64; Self::POSE]| #iterate.map(|()| pose);
+                from(*start).or_else(|error| match Self::pose_in_closed_form(actuators) {
+                    Ok(pose) => from(pose),
+                    Err(_) => Err(error),
+                })
+            },
+        ),
+        Some(_) => (
+            " It is `pose_in_closed_form` where that has a value.",
+            quote! {
+                if let Ok(pose) = Self::pose_in_closed_form(actuators) {
+                    return Ok(pose);
+                }
+                let mut pose = *start;
+                #iterate.map(|()| pose)
+            },
+        ),
+        None => (
+            "",
+            quote! {
+                let mut pose = *start;
+                #iterate.map(|()| pose)
+            },
+        ),
+    };
+    let doc = format!("{doc}{way}");
     quote! {
         #[doc = #doc]
         #[doc = ""]
@@ -166,28 +219,7 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
             actuators: &[f64; Self::ACTUATORS],
             start: &[f64; Self::POSE],
         ) -> Result<[f64; Self::POSE], ::overact::Error> {
-            let mut pose = *start;
-            ::overact::forward::gauss_newton(
-                ::overact::forward::Measured {
-                    positions: actuators,
-                    is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
-                },
-                &mut pose,
-                ::overact::forward::Workspace {
-                    actuators: &mut [0.0; Self::ACTUATORS],
-                    inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
-                    normal: &mut [0.0; Self::DOF * Self::DOF],
-                    step: &mut [0.0; Self::DOF],
-                },
-                |pose, positions, jacobian| {
-                    let pose = ::overact::block::array(pose)?;
-                    positions.copy_from_slice(&Self::actuator_positions(pose)#position);
-                    jacobian.copy_from_slice(Self::inverse_jacobian(pose)#jacobian.as_flattened());
-                    Ok(())
-                },
-                ::overact::forward::#displace,
-            )?;
-            Ok(pose)
+            #body
         }
     }
 }

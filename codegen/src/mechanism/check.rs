@@ -137,7 +137,11 @@ fn rough_home(description: &Description) -> Home {
         None => joints.clone(),
         Some(platform) => home_pose(platform),
     };
-    Home { pose, joints }
+    Home {
+        pose,
+        joints,
+        actuators: Vec::new(),
+    }
 }
 
 fn home_pose(platform: &crate::description::Platform) -> Vec<f64> {
@@ -259,9 +263,16 @@ pub fn locate(description: &Description, error: &Underivable) -> Diagnostics {
     let diagnostic = match error {
         Underivable::InverseKinematics { leg } => {
             let span = place(leg).map_or(description.name.span.clone(), |l| l.span.clone());
-            Diagnostic::new(format!("no rule solves the inverse kinematics of leg `{leg}`"), span)
-                .help("supported so far: two revolute joints about parallel axes up to the end, and a third one at the end")
+            Diagnostic::new(
+                format!("no rule solves the inverse kinematics of leg `{leg}`"),
+                span,
+            )
+            .help("the robot's functions then start from Newton's method")
         }
+        Underivable::ForwardKinematics => Diagnostic::new(
+            "no rule gives the robot's pose from its actuators",
+            description.name.span.clone(),
+        ),
         Underivable::SingularLeg { leg } => {
             let span = place(leg).map_or(description.name.span.clone(), |l| l.span.clone());
             Diagnostic::new(format!("leg `{leg}` is singular in every configuration"), span)

@@ -12,18 +12,32 @@ pub struct Home {
     pub pose: Vec<f64>,
     /// Positions of all independent joints.
     pub joints: Vec<f64>,
+    /// Those of the actuated joints.
+    pub actuators: Vec<f64>,
 }
 
 impl Home {
-    /// The value of an input `pose[i]` or `joints[i]`.
+    /// The home configuration of a mechanism.
+    #[must_use]
+    pub fn new(mechanism: &Mechanism, pose: Vec<f64>, joints: Vec<f64>) -> Self {
+        let actuated = mechanism.actuated();
+        Self {
+            actuators: actuated.iter().map(|&i| joints[i]).collect(),
+            pose,
+            joints,
+        }
+    }
+
+    /// The value of an input `pose[i]`, `joints[i]` or `actuators[i]`.
     #[must_use]
     pub fn symbol(&self, name: &str) -> Option<f64> {
         let index = |prefix: &str| -> Option<usize> {
             name.strip_prefix(prefix)?.strip_suffix(']')?.parse().ok()
         };
-        let joint = index("joints[").and_then(|i| self.joints.get(i));
-        let value = joint.or_else(|| index("pose[").and_then(|i| self.pose.get(i)));
-        value.copied()
+        let of = |prefix: &str, values: &[f64]| index(prefix).and_then(|i| values.get(i).copied());
+        of("joints[", &self.joints)
+            .or_else(|| of("pose[", &self.pose))
+            .or_else(|| of("actuators[", &self.actuators))
     }
 
     /// The value of an expression at home, with all rates set to small numbers.
@@ -65,10 +79,8 @@ impl Home {
     /// Every leg that does not close, or is singular where it closes.
     pub fn refine(mechanism: &Mechanism, rough: &Self) -> Result<Self, Vec<HomeError>> {
         let Some(platform) = &mechanism.platform else {
-            return Ok(Self {
-                pose: rough.joints.clone(),
-                joints: rough.joints.clone(),
-            });
+            let joints = || rough.joints.clone();
+            return Ok(Self::new(mechanism, joints(), joints()));
         };
         let frame = platform_frame(platform.motion, &rough.pose);
         let mut joints = rough.joints.clone();
@@ -89,10 +101,7 @@ impl Home {
             }
         }
         if errors.is_empty() {
-            Ok(Self {
-                pose: rough.pose.clone(),
-                joints,
-            })
+            Ok(Self::new(mechanism, rough.pose.clone(), joints))
         } else {
             Err(errors)
         }

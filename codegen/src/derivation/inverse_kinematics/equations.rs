@@ -11,7 +11,6 @@ use super::super::leg::{before_turn, joint_slide, joint_turn, path_to_end};
 use super::super::platform::constant_rotation;
 use super::Task;
 use crate::cas::{Angle, Direction, Expr, Matrix3, Vector3};
-use crate::mechanism::End;
 
 /// Orientation, as prefix and turn about z, and origin of a frame.
 #[derive(Debug, Clone)]
@@ -29,16 +28,11 @@ impl<'a> Frame<'a> {
 }
 
 /// Expressions that vanish where the leg closes.
-pub(super) fn equations<'a>(
+pub(in crate::derivation) fn equations<'a>(
     task: Task<'a, '_>,
     configuration: &Configuration<'a>,
 ) -> Option<Vec<Expr<'a>>> {
     let Task { arena, leg, .. } = task;
-    let (at, axes) = match leg.end.as_ref()? {
-        End::Rigid(placement) => (placement.at, Some(task.platform.orientation(placement))),
-        End::Point(at) => (*at, None),
-    };
-    let target = task.platform.origin + task.platform.arm(at);
     let mut path = path_to_end(leg);
     path.reverse();
     let mut frame = Frame {
@@ -50,16 +44,18 @@ pub(super) fn equations<'a>(
     for at in 0..path.len() {
         let before = step_to(task, configuration, path[at], &frame)?;
         let rotation = before.rotation(configuration)?;
-        let arm = target - before.origin;
-        let (end, end_axes) = chain(task, configuration, &path[at..])?;
+        let arm = task.target - before.origin;
+        let (end, end_axes) = chain(task, configuration, &path[at..], true)?;
+        // What the joint's own turn does not change is written without it.
+        let (still, still_axes) = chain(task, configuration, &path[at..], false)?;
         let seen = rotation.transposed() * arm;
         equations.extend((0..3).map(|i| seen.0[i] - end.0[i]));
-        equations.push(arm.dot(arm) - end.dot(end));
-        if let Some(axes) = axes {
+        equations.push(arm.dot(arm) - still.dot(still));
+        if let Some(axes) = task.axes {
             let seen = rotation.transposed() * axes;
             for i in [2, 0, 1] {
                 equations.extend((0..3).map(|j| seen.0[j][i] - end_axes.0[j][i]));
-                equations.push(arm.dot(axes.column(i)) - end.dot(end_axes.column(i)));
+                equations.push(arm.dot(axes.column(i)) - still.dot(still_axes.column(i)));
             }
         }
         frame = step_over(task, configuration, path[at], before)?;
@@ -68,11 +64,13 @@ pub(super) fn equations<'a>(
     Some(equations)
 }
 
-/// Origin and axes of the last frame, seen from the first joint of `path` before its motion.
+/// Origin and axes of the last frame, seen from the first joint of `path` before its motion, with or
+/// without that joint's turn.
 fn chain<'a>(
     task: Task<'a, '_>,
     configuration: &Configuration<'a>,
     path: &[usize],
+    turns: bool,
 ) -> Option<(Vector3<'a>, Matrix3<'a>)> {
     let mut frame = Frame {
         prefix: Matrix3::identity(task.arena),
@@ -84,6 +82,9 @@ fn chain<'a>(
             frame = step_to(task, configuration, joint, &frame)?;
         }
         frame = step_over(task, configuration, joint, frame)?;
+        if i == 0 && !turns {
+            frame.turn = Direction::constant(Angle::ZERO);
+        }
     }
     Some((frame.origin, frame.rotation(configuration)?))
 }

@@ -12,13 +12,15 @@ mod equations;
 mod peeling;
 mod planar;
 mod polynomial;
-#[cfg(test)]
-mod tests;
 
 use super::configuration::Configuration;
 use super::platform::PlatformPose;
-use crate::cas::{Arena, Direction, Expr, SymbolId};
-use crate::mechanism::{Home, Leg};
+use crate::cas::{Arena, Direction, Expr, Matrix3, SymbolId, Vector3};
+use crate::mechanism::{End, Home, Leg, Mechanism};
+
+pub(super) use equations::equations;
+pub(super) use peeling::advance;
+pub(super) use polynomial::at_zero;
 
 /// A condition for the pose to be within reach: the expression must not be negative.
 #[derive(Debug, Clone, Copy)]
@@ -38,11 +40,36 @@ pub struct Task<'a, 'm> {
     pub first_joint: usize,
     /// The home configuration, which fixes the working mode.
     pub home: &'m Home,
-    /// The pose that the leg's end has to meet.
-    pub platform: &'m PlatformPose<'a>,
+    /// The point that the leg's end has to meet, in the base frame.
+    pub target: Vector3<'a>,
+    /// For a rigid end, the orientation that the last frame has to have.
+    pub axes: Option<Matrix3<'a>>,
 }
 
-impl<'a> Task<'a, '_> {
+impl<'a, 'm> Task<'a, 'm> {
+    /// The leg `index` for a platform's pose; `None` for a leg without an end.
+    #[must_use]
+    pub fn new(
+        arena: &'a Arena,
+        mechanism: &'m Mechanism,
+        index: usize,
+        platform: &PlatformPose<'a>,
+    ) -> Option<Self> {
+        let leg = &mechanism.legs[index];
+        let (at, axes) = match leg.end.as_ref()? {
+            End::Rigid(placement) => (placement.at, Some(platform.orientation(placement))),
+            End::Point(at) => (*at, None),
+        };
+        Some(Self {
+            arena,
+            leg,
+            first_joint: mechanism.leg_range(index).start,
+            home: &mechanism.home,
+            target: platform.origin + platform.arm(at),
+            axes,
+        })
+    }
+
     /// The value at home of an expression in the pose.
     fn at_home(&self, expr: Expr<'a>) -> f64 {
         self.home.value(self.arena, expr)

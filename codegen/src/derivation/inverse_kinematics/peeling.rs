@@ -51,17 +51,25 @@ pub(super) fn solve<'a>(
 ) -> Option<Vec<Reach<'a>>> {
     let mut conditions = Vec::new();
     while !is_solved(task, configuration) {
-        let scratch = configuration.with_unknowns();
-        let equations = equations(task, &scratch)?;
-        let (unknown, step) = scratch
-            .unknowns()
-            .into_iter()
-            .filter_map(|unknown| Some((step(task, &equations, &unknown)?, unknown)))
-            .min_by_key(|(step, _)| step.cost())
-            .map(|(step, unknown)| (unknown, step))?;
-        conditions.extend(take(task, &unknown, step, configuration)?);
+        conditions.extend(advance(task, configuration)?);
     }
     Some(conditions)
+}
+
+/// Learns one turn or slide more, and the condition for its root to be real; `None` if none follows
+/// from what is known.
+pub(in crate::derivation) fn advance<'a>(
+    task: Task<'a, '_>,
+    configuration: &mut Configuration<'a>,
+) -> Option<Option<Reach<'a>>> {
+    let scratch = configuration.with_unknowns();
+    let equations = equations(task, &scratch)?;
+    let (step, unknown) = scratch
+        .unknowns()
+        .into_iter()
+        .filter_map(|unknown| Some((step(task, &equations, &unknown)?, unknown)))
+        .min_by_key(|(step, _)| step.cost())?;
+    take(task, &unknown, step, configuration)
 }
 
 fn is_solved(task: Task<'_, '_>, configuration: &Configuration<'_>) -> bool {

@@ -28,26 +28,20 @@ pub(super) fn solve<'a>(
         arena,
         leg,
         first_joint,
-        platform,
         ..
     } = task;
     let links = planar_links(leg, first_joint, configuration)?;
     let prefix = plane(arena, leg);
-    let end = leg.end.as_ref()?;
-    let at = match end {
-        End::Rigid(placement) => placement.at,
-        End::Point(at) => *at,
-    };
     let base = Vector3::constant(arena, leg.base.at);
     let first = constant_rotation(arena, leg.base.rotation) * first_origin(arena, leg);
-    let distance = platform.origin + platform.arm(at) - base - first;
+    let distance = task.target - base - first;
     let in_plane = prefix.transposed() * distance;
     let reach = two_links(task, &links, in_plane, configuration)?;
     let last = leg.joints.len() - 1;
-    if let (End::Rigid(placement), true) = (end, leg.joints.len() == 3) {
+    if let Some(axes) = task.axes {
         // The last frame's orientation is the platform's: its turn is known.
         let turn = total_turn(leg, last, first_joint, configuration)?;
-        let relative = prefix.transposed() * platform.orientation(placement);
+        let relative = prefix.transposed() * axes;
         configuration.learn(turn, (relative.0[0][0], relative.0[1][0]));
     }
     Some(vec![reach])

@@ -59,7 +59,12 @@ pub(super) fn quadratic<'a>(
     (holds && has_slide).then_some(Quadratic { a, b, e })
 }
 
-fn at_zero<'a>(arena: &'a Arena, expr: Expr<'a>, symbols: &[SymbolId]) -> Expr<'a> {
+/// The expression with these symbols set to zero.
+pub(in crate::derivation) fn at_zero<'a>(
+    arena: &'a Arena,
+    expr: Expr<'a>,
+    symbols: &[SymbolId],
+) -> Expr<'a> {
     let start = Substitution::new(arena);
     let substitution = symbols
         .iter()

@@ -1,7 +1,7 @@
 //! Every robot of the library closes with the joints that a rule gives, in the home's working mode.
 
 use crate::cas::Arena;
-use crate::derivation::{Family, From, JointsBy, Selection, derive};
+use crate::derivation::{Derived, Family, From, JointsBy, Selection, Underivable, derive};
 use crate::diagnostic::Source;
 use crate::mechanism::numeric::{closure_error, platform_frame, target};
 use crate::mechanism::{Home, Mechanism, check};
@@ -56,6 +56,36 @@ fn displaced(mechanism: &Mechanism, number: usize) -> Vec<f64> {
     pose
 }
 
+/// The values of a function without rates for given inputs.
+struct Values<'a, 'd> {
+    arena: &'a Arena,
+    derived: &'d Derived<'a>,
+}
+
+impl Values<'_, '_> {
+    fn at(&self, inputs: &Home) -> Vec<f64> {
+        let entries = self.derived.entries.iter();
+        entries.map(|&e| inputs.value(self.arena, e)).collect()
+    }
+
+    fn of_pose(&self, pose: &[f64]) -> Vec<f64> {
+        self.at(&Home {
+            pose: pose.to_vec(),
+            ..Home::default()
+        })
+    }
+}
+
+fn derived<'a>(
+    arena: &'a Arena,
+    mechanism: &'a Mechanism,
+    family: Family,
+    from: From,
+) -> Result<Derived<'a>, Underivable> {
+    let selection = Selection::default();
+    derive(arena, mechanism, &selection, family, from, JointsBy::Rule)
+}
+
 #[test]
 fn joints_by_rule_close_every_leg_and_keep_the_mode_of_home() {
     for (name, mechanism) in library() {
@@ -63,25 +93,13 @@ fn joints_by_rule_close_every_leg_and_keep_the_mode_of_home() {
             continue;
         };
         let arena = Arena::new();
-        let (selection, by) = (Selection::default(), JointsBy::Rule);
-        let derived = derive(
-            &arena,
-            &mechanism,
-            &selection,
-            Family::Joints,
-            From::Pose,
-            by,
-        );
-        let derived = derived.unwrap_or_else(|e| panic!("{name}: {e:?}"));
-        let joints = |pose: &[f64]| -> Vec<f64> {
-            let at = Home {
-                pose: pose.to_vec(),
-                joints: Vec::new(),
-            };
-            let entries = derived.entries.iter();
-            entries.map(|&e| at.value(&arena, e)).collect()
+        let derived = derived(&arena, &mechanism, Family::Joints, From::Pose)
+            .unwrap_or_else(|e| panic!("{name}: {e:?}"));
+        let joints = Values {
+            arena: &arena,
+            derived: &derived,
         };
-        let at_home = joints(&mechanism.home.pose);
+        let at_home = joints.of_pose(&mechanism.home.pose);
         for (found, home) in at_home.iter().zip(&mechanism.home.joints) {
             assert!(
                 (found - home).abs() < AT_HOME,
@@ -90,7 +108,7 @@ fn joints_by_rule_close_every_leg_and_keep_the_mode_of_home() {
         }
         for number in 0..POSES {
             let pose = displaced(&mechanism, number);
-            let found = joints(&pose);
+            let found = joints.of_pose(&pose);
             let frame = platform_frame(platform.motion, &pose);
             for (index, leg) in mechanism.legs.iter().enumerate() {
                 let (end, oriented) = target(leg.end.as_ref().expect("an end"), &frame);
@@ -101,4 +119,40 @@ fn joints_by_rule_close_every_leg_and_keep_the_mode_of_home() {
             }
         }
     }
+}
+
+#[test]
+fn poses_by_rule_are_those_that_the_actuators_came_from() {
+    let mut with_closed_form = Vec::new();
+    for (name, mechanism) in library() {
+        let arena = Arena::new();
+        let found = derived(
+            &arena,
+            &mechanism,
+            Family::PoseInClosedForm,
+            From::Actuators,
+        );
+        let Ok(found) = found else { continue };
+        let inverse = derived(&arena, &mechanism, Family::ActuatorPositions, From::Pose)
+            .unwrap_or_else(|e| panic!("{name}: {e:?}"));
+        let values = |derived| Values {
+            arena: &arena,
+            derived,
+        };
+        for number in 0..POSES {
+            let pose = displaced(&mechanism, number);
+            let measured = Home {
+                actuators: values(&inverse).of_pose(&pose),
+                ..Home::default()
+            };
+            for (found, wanted) in values(&found).at(&measured).iter().zip(&pose) {
+                let error = (found - wanted).abs();
+                assert!(error < 1e-10, "{name}: {found}, not {wanted}");
+            }
+        }
+        with_closed_form.push(mechanism.name);
+    }
+    // The robots whose legs hold a platform point at a fixed distance from what an actuator moves.
+    let expected = ["Delta", "Delta4", "DualV", "FiveBar", "ThreeLegPoint"];
+    assert_eq!(with_closed_form, expected);
 }
