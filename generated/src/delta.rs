@@ -199,46 +199,169 @@ impl Delta {
             BaseParameter::new("mz_rod_leg3", "mz_rod_leg3", &[]),
         ]
     };
-    /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration; by Newton's method.
+    /// The pose from the actuators in closed form, in the assembly mode of the home configuration; of redundant actuators only some are used.
+    ///
+    /// From the actuators' positions.
+    /// - `actuators`: q, positions of the actuated joints (m, rad)
+    ///
+    /// Output: 3.
+    ///
+    /// 98 operations (40 additions, 57 multiplications, 1 divisions), 1 square roots, 3 trigonometric pairs, 0 signs, 102 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration on the way from home.
-    pub fn joints(
-        pose: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::JOINTS], ::overact::Error> {
-        let mut joints = Self::HOME_JOINTS;
-        ::overact::inverse::solve(
-            ::overact::inverse::Legs {
-                names: &Self::LEGS,
-                joints: &[3, 3, 3],
-                home_pose: &Self::HOME_POSE,
-                home_joints: &Self::HOME_JOINTS,
-                has_quaternion: false,
-            },
-            pose,
-            &mut joints,
-            ::overact::inverse::Workspace {
-                error: &mut [0.0; Self::JOINTS],
-                jacobian: &mut [0.0; Self::JOINTS * Self::JOINTS],
-                pose: &mut [0.0; Self::POSE],
-            },
-            |pose, joints, error, jacobian| {
-                let (pose, joints) = (
-                    ::overact::block::array(pose)?,
-                    ::overact::block::array(joints)?,
-                );
-                ::overact::block::write(
-                    &Self::closure_error_from_joints(pose, joints),
-                    error,
-                );
-                ::overact::block::write(
-                    &Self::legs_jacobian_from_joints(pose, joints),
-                    jacobian,
-                );
-                Ok(())
-            },
-        )?;
-        Ok(joints)
+    /// A pose out of reach, or a singular configuration.
+    pub fn pose_in_closed_form(
+        actuators: &[f64; 3],
+    ) -> Result<[f64; 3], ::overact::Error> {
+        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(actuators[0]);
+        let t4 = 0.05 - (0.2 + 0.24 * c_arm_leg1);
+        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(actuators[2]);
+        let t9 = 0.1 + 0.12 * c_arm_leg3 - 0.025;
+        let t10 = t4 - t9;
+        let t15 = s_arm_leg1 - s_arm_leg3;
+        let t19 = 0.5 * (t10 * t10 + 3.0 * (t9 * t9) + 0.0576 * (t15 * t15));
+        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(actuators[1]);
+        let t22 = s_arm_leg1 - s_arm_leg2;
+        let t23 = 0.24 * t22;
+        let t27 = 0.1 + 0.12 * c_arm_leg2 - 0.025;
+        let t28 = t4 - t27;
+        let t29 = 0.24 * t15;
+        let t31 = t23 * t10 - t28 * t29;
+        let t35 = 0.04330127018922194
+            - (0.17320508075688776 + 0.20784609690826528 * c_arm_leg2);
+        let t39 = 0.17320508075688776 + 0.20784609690826528 * c_arm_leg3
+            - 0.04330127018922194;
+        let t41 = t35 * t10 - t39 * t28;
+        let t52 = 0.5 * (t28 * t28 + 3.0 * (t27 * t27) + 0.0576 * (t22 * t22));
+        let t60 = t39 * t23 - t35 * t29;
+        let t66 = 1.0 / (t60 * t60 + t31 * t31 + t41 * t41);
+        let t67 = (t19 * (t23 * t31 + t35 * t41) - t52 * (t39 * t41 + t29 * t31)) * t66;
+        let t79 = (t52 * (t29 * t60 - t10 * t41) + t19 * (t28 * t41 - t23 * t60)) * t66;
+        let t91 = (t52 * (t10 * t31 + t39 * t60) - t19 * (t35 * t60 + t28 * t31)) * t66;
+        let t95 = t66 * (0.3136 - (t67 * t67 + t79 * t79 + t91 * t91));
+        ::overact::guard::reach(t95, "leg1")?;
+        let t96 = ::overact::math::sqrt(t95);
+        Ok([t67 - t4 - t60 * t96, t79 - t31 * t96, t91 - 0.24 * s_arm_leg1 - t41 * t96])
+    }
+    /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    ///
+    /// Output: 9.
+    ///
+    /// 176 operations (75 additions, 92 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 188 intermediates.
+    ///
+    /// # Errors
+    /// A pose out of reach, or a singular configuration.
+    pub fn joints(pose: &[f64; 3]) -> Result<[f64; 9], ::overact::Error> {
+        let t1 = pose[0] + 0.05 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.2304 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.48 * pose[2];
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.3136 + 0.0576;
+        let t14 = 0.48 * t1;
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        let minus_s_arm_leg1 = t6 * (t7 * t12 + t14 * t17);
+        let c_arm_leg1 = t6 * (t14 * t12 - t7 * t17);
+        let t36 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t36, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t36);
+        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t36) / (0.2688 * c_rod_leg1);
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t63 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t66 = pose[0] - 0.025 + 0.1;
+        let t67 = 0.5 * t66;
+        let t68 = 0.8660254037844387 * t63 - t67;
+        let t71 = 0.2304 * (t68 * t68 + t3);
+        let t72 = 1.0 / t71;
+        let t73 = t66 * t66;
+        let t76 = t73 + t63 * t63 + t3;
+        let t78 = t76 - 0.3136 + 0.0576;
+        let t80 = 0.48 * t68;
+        let t82 = t71 - t78 * t78;
+        ::overact::guard::reach(t82, "leg2")?;
+        let t83 = ::overact::math::sqrt(t82);
+        let minus_s_arm_leg2 = t72 * (t7 * t78 + t80 * t83);
+        let c_arm_leg2 = t72 * (t80 * t78 - t7 * t83);
+        let t101 = 0.8660254037844387 * t66;
+        let t103 = t101 + 0.5 * t63;
+        let t104 = t103 * t103;
+        let t106 = 1.0 - 3.188775510204082 * t104;
+        ::overact::guard::reach(t106, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t106);
+        let s_cross_leg2 = 2.0833333333333335 * t83 / (0.56 * c_rod_leg2);
+        let c_cross_leg2 = (t76 - (0.0576 + t104) - 0.3136 * t106)
+            / (0.2688 * c_rod_leg2);
+        let minus_s_rod_leg2 = 1.7857142857142858 * t103;
+        let t134 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t136 = t67 + 0.8660254037844387 * t134;
+        let t139 = 0.2304 * (t136 * t136 + t3);
+        let t140 = 1.0 / t139;
+        let t141 = 0.48 * t136;
+        let t144 = t73 + t134 * t134 + t3;
+        let t146 = t144 - 0.3136 + 0.0576;
+        let t148 = t139 - t146 * t146;
+        ::overact::guard::reach(t148, "leg3")?;
+        let t149 = ::overact::math::sqrt(t148);
+        let s_arm_leg3 = t140 * (t141 * t149 - t7 * t146);
+        let minus_c_arm_leg3 = t140 * (t141 * t146 + t7 * t149);
+        let t168 = t101 - 0.5 * t134;
+        let t169 = t168 * t168;
+        let t171 = 1.0 - 3.188775510204082 * t169;
+        ::overact::guard::reach(t171, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t171);
+        let s_cross_leg3 = 2.0833333333333335 * t149 / (0.56 * c_rod_leg3);
+        let c_cross_leg3 = (t144 - (0.0576 + t169) - 0.3136 * t171)
+            / (0.2688 * c_rod_leg3);
+        let s_rod_leg3 = 1.7857142857142858 * t168;
+        Ok([
+            ::overact::math::atan2(
+                -(0.9582318304121665 * minus_s_arm_leg1
+                    + 0.28599258589157334 * c_arm_leg1),
+                0.9582318304121665 * c_arm_leg1 - 0.28599258589157334 * minus_s_arm_leg1,
+            ) + 0.29004211980001315,
+            ::overact::math::atan2(
+                -(0.440104166667604 * s_cross_leg1 + 0.89794672585951 * c_cross_leg1),
+                0.89794672585951 * s_cross_leg1 - 0.440104166667604 * c_cross_leg1,
+            ) + 2.026511002291635,
+            ::overact::math::atan2(
+                s_rod_leg1 - 0.0000000000000000004144733049158262 * c_rod_leg1,
+                c_rod_leg1 + 0.000000000000000000740130901635404 * pose[1],
+            ) + 0.0000000000000000004144733049158262,
+            ::overact::math::atan2(
+                -(0.9582318304121668 * minus_s_arm_leg2
+                    + 0.2859925858915725 * c_arm_leg2),
+                0.9582318304121668 * c_arm_leg2 - 0.2859925858915725 * minus_s_arm_leg2,
+            ) + 0.2900421198000123,
+            ::overact::math::atan2(
+                -(0.4401041666676036 * s_cross_leg2 + 0.8979467258595101 * c_cross_leg2),
+                0.8979467258595101 * s_cross_leg2 - 0.4401041666676036 * c_cross_leg2,
+            ) + 2.0265110022916346,
+            ::overact::math::atan2(
+                -(minus_s_rod_leg2 + 0.0000000000000009023759757123874 * c_rod_leg2),
+                c_rod_leg2 - 0.0000000000000016113856709149776 * t103,
+            ) + 0.0000000000000009023759757123874,
+            ::overact::math::atan2(
+                0.9582318304121668 * s_arm_leg3 + 0.2859925858915727 * minus_c_arm_leg3,
+                0.2859925858915727 * s_arm_leg3 - 0.9582318304121668 * minus_c_arm_leg3,
+            ) + 0.29004211980001254,
+            ::overact::math::atan2(
+                -(0.4401041666676044 * s_cross_leg3 + 0.8979467258595097 * c_cross_leg3),
+                0.8979467258595097 * s_cross_leg3 - 0.4401041666676044 * c_cross_leg3,
+            ) + 2.0265110022916355,
+            ::overact::math::atan2(
+                s_rod_leg3 - 0.0000000000000001832623884657901 * c_rod_leg3,
+                c_rod_leg3 + 0.0000000000000003272542651174823 * t168,
+            ) + 0.0000000000000001832623884657901,
+        ])
     }
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
@@ -247,13 +370,65 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 97 operations (43 additions, 51 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 102 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn actuator_positions(pose: &[f64; 3]) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Ok([joints[0], joints[3], joints[6]])
+        let t1 = pose[0] + 0.05 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.2304 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.48 * pose[2];
+        let t12 = t2 + pose[1] * pose[1] + t3 - 0.3136 + 0.0576;
+        let t14 = 0.48 * t1;
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        let minus_s_arm_leg1 = t6 * (t7 * t12 + t14 * t17);
+        let c_arm_leg1 = t6 * (t14 * t12 - t7 * t17);
+        let t35 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t38 = pose[0] - 0.025 + 0.1;
+        let t39 = 0.5 * t38;
+        let t40 = 0.8660254037844387 * t35 - t39;
+        let t43 = 0.2304 * (t40 * t40 + t3);
+        let t44 = 1.0 / t43;
+        let t45 = t38 * t38;
+        let t50 = t45 + t35 * t35 + t3 - 0.3136 + 0.0576;
+        let t52 = 0.48 * t40;
+        let t54 = t43 - t50 * t50;
+        ::overact::guard::reach(t54, "leg2")?;
+        let t55 = ::overact::math::sqrt(t54);
+        let minus_s_arm_leg2 = t44 * (t7 * t50 + t52 * t55);
+        let c_arm_leg2 = t44 * (t52 * t50 - t7 * t55);
+        let t73 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t75 = t39 + 0.8660254037844387 * t73;
+        let t78 = 0.2304 * (t75 * t75 + t3);
+        let t79 = 1.0 / t78;
+        let t80 = 0.48 * t75;
+        let t85 = t45 + t73 * t73 + t3 - 0.3136 + 0.0576;
+        let t87 = t78 - t85 * t85;
+        ::overact::guard::reach(t87, "leg3")?;
+        let t88 = ::overact::math::sqrt(t87);
+        let s_arm_leg3 = t79 * (t80 * t88 - t7 * t85);
+        let minus_c_arm_leg3 = t79 * (t80 * t85 + t7 * t88);
+        Ok([
+            ::overact::math::atan2(
+                -(0.9582318304121665 * minus_s_arm_leg1
+                    + 0.28599258589157334 * c_arm_leg1),
+                0.9582318304121665 * c_arm_leg1 - 0.28599258589157334 * minus_s_arm_leg1,
+            ) + 0.29004211980001315,
+            ::overact::math::atan2(
+                -(0.9582318304121668 * minus_s_arm_leg2
+                    + 0.2859925858915725 * c_arm_leg2),
+                0.9582318304121668 * c_arm_leg2 - 0.2859925858915725 * minus_s_arm_leg2,
+            ) + 0.2900421198000123,
+            ::overact::math::atan2(
+                0.9582318304121668 * s_arm_leg3 + 0.2859925858915727 * minus_c_arm_leg3,
+                0.2859925858915727 * s_arm_leg3 - 0.9582318304121668 * minus_c_arm_leg3,
+            ) + 0.29004211980001254,
+        ])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -262,13 +437,121 @@ impl Delta {
     ///
     /// Output: 3 x 3.
     ///
-    /// 114 operations (26 additions, 85 multiplications, 3 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 123 intermediates.
+    /// 208 operations (69 additions, 129 multiplications, 10 divisions), 5 square roots, 0 trigonometric pairs, 0 signs, 204 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::inverse_jacobian_from_joints(pose, joints)
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.2304 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.48 * t1;
+        let t12 = t2 + pose[1] * pose[1] + t3 - 0.3136 + 0.0576;
+        let t14 = 0.48 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t24 = 2.0 / t17;
+        let garm_vx_leg1 = (t0 - (0.2 + 0.24 * c_arm_leg1)) * t24;
+        let t27 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t30 = pose[0] - 0.025 + 0.1;
+        let t31 = 0.5 * t30;
+        let t32 = 0.8660254037844387 * t27 - t31;
+        let t35 = 0.2304 * (t32 * t32 + t3);
+        let t36 = 1.0 / t35;
+        let t37 = 0.48 * t32;
+        let t38 = t30 * t30;
+        let t41 = t38 + t27 * t27 + t3;
+        let t43 = t41 - 0.3136 + 0.0576;
+        let t46 = t35 - t43 * t43;
+        ::overact::guard::reach(t46, "leg2")?;
+        let t47 = ::overact::math::sqrt(t46);
+        let c_arm_leg2 = t36 * (t37 * t43 - t14 * t47);
+        let t52 = t32 - 0.24 * c_arm_leg2;
+        let t53 = 0.8660254037844387 * t30;
+        let t55 = t53 + 0.5 * t27;
+        let t56 = t55 * t55;
+        let t60 = 1.0 - 3.188775510204082 * t56;
+        ::overact::guard::reach(t60, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t60);
+        let c_cross_leg2 = (t41 - (0.0576 + t56) - 0.3136 * t60) / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t36 * (t14 * t43 + t37 * t47);
+        let s_cross_leg2 = 2.0833333333333335 * t47 / (0.56 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t76 = t55 * c_armcross_leg2;
+        let t79 = 1.5464739353293548 * t76 - 0.5 * c_rod_leg2;
+        let t83 = pose[2] - 0.24 * minus_s_arm_leg2;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t55;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t88 = minus_s_rod_leg2 * s_armcross_leg2;
+        let t89 = t83 * t88;
+        let t95 = 0.8928571428571429 * t76 + 0.8660254037844387 * c_rod_leg2;
+        let t99 = t52 * (0.56 * t95) - 0.28 * t89;
+        let t108 = 0.20784609690826528 * minus_s_arm_leg2 * t99
+            - 0.8660254037844387 * t83
+                * (0.1344 * (c_arm_leg2 * t95) - 0.0672 * (minus_s_arm_leg2 * t88));
+        let t111 = t108 - 0.14 * (t47 * t79);
+        ::overact::guard::leg(t111, 0.06758306237512474, "leg2")?;
+        let t112 = 1.0 / t111;
+        let garm_vx_leg2 = (t52 * (0.56 * t79) - 0.4849742261192857 * t89) * t112;
+        let t115 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t117 = t31 + 0.8660254037844387 * t115;
+        let t120 = 0.2304 * (t117 * t117 + t3);
+        let t121 = 1.0 / t120;
+        let t122 = 0.48 * t117;
+        let t125 = t38 + t115 * t115 + t3;
+        let t127 = t125 - 0.3136 + 0.0576;
+        let t130 = t120 - t127 * t127;
+        ::overact::guard::reach(t130, "leg3")?;
+        let t131 = ::overact::math::sqrt(t130);
+        let minus_c_arm_leg3 = t121 * (t122 * t127 + t14 * t131);
+        let t136 = t117 - 0.24 * minus_c_arm_leg3;
+        let t138 = t53 - 0.5 * t115;
+        let t139 = t138 * t138;
+        let t143 = 1.0 - 3.188775510204082 * t139;
+        ::overact::guard::reach(t143, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t143);
+        let c_cross_leg3 = (t125 - (0.0576 + t139) - 0.3136 * t143)
+            / (0.2688 * c_rod_leg3);
+        let s_arm_leg3 = t121 * (t122 * t131 - t14 * t127);
+        let s_cross_leg3 = 2.0833333333333335 * t131 / (0.56 * c_rod_leg3);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t159 = t138 * minus_c_armcross_leg3;
+        let t162 = 1.5464739353293548 * t159 + 0.5 * c_rod_leg3;
+        let t166 = pose[2] + 0.24 * s_arm_leg3;
+        let s_rod_leg3 = 1.7857142857142858 * t138;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t171 = s_rod_leg3 * s_armcross_leg3;
+        let t172 = t166 * t171;
+        let t178 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t159;
+        let t182 = t136 * (0.56 * t178) + 0.28 * t172;
+        let t191 = 0.20784609690826528 * s_arm_leg3 * t182
+            + 0.8660254037844387 * t166
+                * (0.1344 * (minus_c_arm_leg3 * t178) - 0.0672 * (s_arm_leg3 * t171));
+        let t194 = t191 + 0.14 * (t131 * t162);
+        ::overact::guard::leg(t194, 0.06758306237512474, "leg3")?;
+        let t195 = 1.0 / t194;
+        let garm_vx_leg3 = (t136 * (0.56 * t162) - 0.4849742261192857 * t172) * t195;
+        let garm_vy_leg1 = pose[1] * t24;
+        let garm_vy_leg2 = t99 * t112;
+        let garm_vy_leg3 = t182 * t195;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let garm_vz_leg1 = (pose[2] - 0.24 * minus_s_arm_leg1) * t24;
+        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t83) * t112;
+        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t166) * t195;
+        Ok([
+            [garm_vx_leg1, garm_vy_leg1, garm_vz_leg1], [garm_vx_leg2, garm_vy_leg2, garm_vz_leg2],
+            [garm_vx_leg3, garm_vy_leg3, garm_vz_leg3],
+        ])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -356,107 +639,155 @@ impl Delta {
     ///
     /// Output: 3 x 3.
     ///
-    /// 203 operations (60 additions, 137 multiplications, 6 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 212 intermediates.
+    /// 297 operations (103 additions, 181 multiplications, 13 divisions), 5 square roots, 0 trigonometric pairs, 0 signs, 293 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let t0 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t0);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        let t5 = c_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t8 = s_armcross_leg1 * c_rod_leg1;
-        let t11 = c_arm_leg1 * t8 - s_arm_leg1 * t5;
-        ::overact::guard::leg(t11, 0.89794672585951, "leg1")?;
-        let t12 = 4.166666666666667 / t11;
-        let garm_vx_leg1 = t5 * t12;
-        let t15 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t15);
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t20 = s_armcross_leg2 * c_rod_leg2;
-        let t21 = s_armcross_leg2 * s_rod_leg2;
-        let t22 = t20 * t21;
-        let t24 = 0.5 * c_armcross_leg2;
-        let t25 = t24 * c_rod_leg2;
-        let t29 = 0.8660254037844387 * c_armcross_leg2 * s_rod_leg2 + 0.5 * c_rod_leg2;
-        let t33 = 0.4849742261192857 * t20;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t43 = t24 * s_rod_leg2 - 0.8660254037844387 * c_rod_leg2;
-        let t47 = 0.6272 * (t25 * t43) + 0.1568 * t22;
-        let t55 = (t33 - 0.8660254037844387 * (0.24 * s_arm_leg2 + 0.56 * t20)) * t47
-            + t33 * (0.1344 * (c_arm_leg2 * t43) + 0.0672 * (s_arm_leg2 * t21));
-        let t63 = t55
-            + 0.56 * t29 * (0.1344 * (s_arm_leg2 * t25) - 0.0672 * (c_arm_leg2 * t20));
-        ::overact::guard::leg(t63, 0.06758306237509017, "leg2")?;
-        let t64 = 1.0 / t63;
-        let garm_vx_leg2 = (0.2715855666268 * t22 + 0.6272 * (t25 * t29)) * t64;
-        let t68 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t68);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t73 = s_armcross_leg3 * c_rod_leg3;
-        let t74 = s_armcross_leg3 * s_rod_leg3;
-        let t75 = t73 * t74;
-        let t77 = 0.5 * c_armcross_leg3;
-        let t78 = t77 * c_rod_leg3;
-        let t82 = 0.8660254037844387 * c_armcross_leg3 * s_rod_leg3 - 0.5 * c_rod_leg3;
-        let t86 = 0.4849742261192857 * t73;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t91 = t77 * s_rod_leg3 + 0.8660254037844387 * c_rod_leg3;
-        let t106 = 0.6272 * (t78 * t91) + 0.1568 * t75;
-        let t108 = t86 * (0.1344 * (c_arm_leg3 * t91) + 0.0672 * (s_arm_leg3 * t74))
-            - (0.8660254037844387 * (0.24 * s_arm_leg3 + 0.56 * t73) - t86) * t106;
-        let t116 = t108
-            + 0.56 * t82 * (0.1344 * (s_arm_leg3 * t78) - 0.0672 * (c_arm_leg3 * t73));
-        ::overact::guard::leg(t116, 0.06758306237509014, "leg3")?;
-        let t117 = 1.0 / t116;
-        let garm_vx_leg3 = (0.2715855666268 * t75 + 0.6272 * (t78 * t82)) * t117;
-        let t120 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.2304 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.48 * t1;
+        let t12 = t2 + pose[1] * pose[1] + t3 - 0.3136 + 0.0576;
+        let t14 = 0.48 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t24 = 2.0 / t17;
+        let garm_vx_leg1 = (t0 - (0.2 + 0.24 * c_arm_leg1)) * t24;
+        let t28 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t31 = pose[0] - 0.025 + 0.1;
+        let t32 = 0.5 * t31;
+        let t33 = 0.8660254037844387 * t28 - t32;
+        let t36 = 0.2304 * (t33 * t33 + t3);
+        let t37 = 1.0 / t36;
+        let t38 = 0.48 * t33;
+        let t39 = t31 * t31;
+        let t42 = t39 + t28 * t28 + t3;
+        let t44 = t42 - 0.3136 + 0.0576;
+        let t47 = t36 - t44 * t44;
+        ::overact::guard::reach(t47, "leg2")?;
+        let t48 = ::overact::math::sqrt(t47);
+        let c_arm_leg2 = t37 * (t38 * t44 - t14 * t48);
+        let t53 = t33 - 0.24 * c_arm_leg2;
+        let t54 = 0.8660254037844387 * t31;
+        let t56 = t54 + 0.5 * t28;
+        let t57 = t56 * t56;
+        let t61 = 1.0 - 3.188775510204082 * t57;
+        ::overact::guard::reach(t61, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t61);
+        let c_cross_leg2 = (t42 - (0.0576 + t57) - 0.3136 * t61) / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t37 * (t14 * t44 + t38 * t48);
+        let s_cross_leg2 = 2.0833333333333335 * t48 / (0.56 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t77 = t56 * c_armcross_leg2;
+        let t80 = 1.5464739353293548 * t77 - 0.5 * c_rod_leg2;
+        let t84 = pose[2] - 0.24 * minus_s_arm_leg2;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t56;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t89 = minus_s_rod_leg2 * s_armcross_leg2;
+        let t90 = t84 * t89;
+        let t96 = 0.8928571428571429 * t77 + 0.8660254037844387 * c_rod_leg2;
+        let t100 = t53 * (0.56 * t96) - 0.28 * t90;
+        let t109 = 0.20784609690826528 * minus_s_arm_leg2 * t100
+            - 0.8660254037844387 * t84
+                * (0.1344 * (c_arm_leg2 * t96) - 0.0672 * (minus_s_arm_leg2 * t89));
+        let t112 = t109 - 0.14 * (t48 * t80);
+        ::overact::guard::leg(t112, 0.06758306237512474, "leg2")?;
+        let t113 = 1.0 / t112;
+        let garm_vx_leg2 = (t53 * (0.56 * t80) - 0.4849742261192857 * t90) * t113;
+        let t118 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t120 = t32 + 0.8660254037844387 * t118;
+        let t123 = 0.2304 * (t120 * t120 + t3);
+        let t124 = 1.0 / t123;
+        let t125 = 0.48 * t120;
+        let t128 = t39 + t118 * t118 + t3;
+        let t130 = t128 - 0.3136 + 0.0576;
+        let t133 = t123 - t130 * t130;
+        ::overact::guard::reach(t133, "leg3")?;
+        let t134 = ::overact::math::sqrt(t133);
+        let minus_c_arm_leg3 = t124 * (t125 * t130 + t14 * t134);
+        let t139 = t120 - 0.24 * minus_c_arm_leg3;
+        let t141 = t54 - 0.5 * t118;
+        let t142 = t141 * t141;
+        let t146 = 1.0 - 3.188775510204082 * t142;
+        ::overact::guard::reach(t146, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t146);
+        let c_cross_leg3 = (t128 - (0.0576 + t142) - 0.3136 * t146)
+            / (0.2688 * c_rod_leg3);
+        let s_arm_leg3 = t124 * (t125 * t134 - t14 * t130);
+        let s_cross_leg3 = 2.0833333333333335 * t134 / (0.56 * c_rod_leg3);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t162 = t141 * minus_c_armcross_leg3;
+        let t165 = 1.5464739353293548 * t162 + 0.5 * c_rod_leg3;
+        let t169 = pose[2] + 0.24 * s_arm_leg3;
+        let s_rod_leg3 = 1.7857142857142858 * t141;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t174 = s_rod_leg3 * s_armcross_leg3;
+        let t175 = t169 * t174;
+        let t181 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t162;
+        let t185 = t139 * (0.56 * t181) + 0.28 * t175;
+        let t194 = 0.20784609690826528 * s_arm_leg3 * t185
+            + 0.8660254037844387 * t169
+                * (0.1344 * (minus_c_arm_leg3 * t181) - 0.0672 * (s_arm_leg3 * t174));
+        let t197 = t194 + 0.14 * (t134 * t165);
+        ::overact::guard::leg(t197, 0.06758306237512474, "leg3")?;
+        let t198 = 1.0 / t197;
+        let garm_vx_leg3 = (t139 * (0.56 * t165) - 0.4849742261192857 * t175) * t198;
+        let t201 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t120, 14.8697301728973, "actuators")?;
-        let t121 = 1.0 / t120;
-        let garm_vy_leg1 = s_rod_leg1 * t12;
-        let garm_vy_leg2 = t47 * t64;
-        let minus_garm_vy_leg3 = t106 * t117;
-        let t130 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
-            - garm_vx_leg3 * minus_garm_vy_leg3;
-        let t131 = t130 * t121;
-        let t138 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + minus_garm_vy_leg3 * minus_garm_vy_leg3 - t130 * t131;
-        ::overact::guard::platform(t138, 14.869730172897306, "actuators")?;
-        let t139 = 1.0 / t138;
-        let t141 = garm_vy_leg1 - garm_vx_leg1 * t131;
-        let garm_vz_leg2 = (0.1568 * (t29 * t20) - 0.2715855666268 * (t43 * t20)) * t64;
-        let minus_garm_vz_leg1 = t8 * t12;
-        let minus_garm_vz_leg3 = (0.2715855666268 * (t91 * t73) - 0.1568 * (t82 * t73))
-            * t117;
-        let t165 = garm_vx_leg2 * garm_vz_leg2 - garm_vx_leg1 * minus_garm_vz_leg1
-            - garm_vx_leg3 * minus_garm_vz_leg3;
-        let t166 = t165 * t121;
-        let t168 = garm_vy_leg2 * garm_vz_leg2 - garm_vy_leg1 * minus_garm_vz_leg1
-            + minus_garm_vy_leg3 * minus_garm_vz_leg3 - t130 * t166;
-        let t169 = t168 * t139;
-        let t178 = minus_garm_vz_leg1 * minus_garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t165 * t166 - t168 * t169;
-        ::overact::guard::platform(t178, 34.85535020139291, "actuators")?;
-        let t179 = 1.0 / t178;
-        let t184 = t179 * (minus_garm_vz_leg1 + garm_vx_leg1 * t166 + t169 * t141);
-        let t186 = t139 * t141 + t169 * t184;
-        let t193 = garm_vy_leg2 - garm_vx_leg2 * t131;
-        let t199 = t179 * (garm_vz_leg2 - garm_vx_leg2 * t166 - t169 * t193);
-        let t201 = t139 * t193 - t169 * t199;
-        let t208 = minus_garm_vy_leg3 + garm_vx_leg3 * t131;
-        let t214 = t179 * (t169 * t208 - (minus_garm_vz_leg3 + garm_vx_leg3 * t166));
-        let t216 = t139 * t208 + t169 * t214;
+        ::overact::guard::platform(t201, 14.869730172882845, "actuators")?;
+        let t202 = 1.0 / t201;
+        let garm_vy_leg1 = pose[1] * t24;
+        let garm_vy_leg2 = t100 * t113;
+        let garm_vy_leg3 = t185 * t198;
+        let t211 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3;
+        let t212 = t211 * t202;
+        let t219 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t211 * t212;
+        ::overact::guard::platform(t219, 14.869730172882843, "actuators")?;
+        let t220 = 1.0 / t219;
+        let t222 = garm_vy_leg1 - garm_vx_leg1 * t212;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let garm_vz_leg1 = (pose[2] - 0.24 * minus_s_arm_leg1) * t24;
+        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t84) * t113;
+        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t169) * t198;
+        let t246 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3;
+        let t247 = t246 * t202;
+        let t249 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 - t211 * t247;
+        let t250 = t249 * t220;
+        let t259 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 - t246 * t247 - t249 * t250;
+        ::overact::guard::platform(t259, 34.855350201355726, "actuators")?;
+        let t260 = 1.0 / t259;
+        let t265 = t260 * (garm_vz_leg1 - garm_vx_leg1 * t247 - t250 * t222);
+        let t267 = t220 * t222 - t250 * t265;
+        let t274 = garm_vy_leg2 - garm_vx_leg2 * t212;
+        let t280 = t260 * (garm_vz_leg2 - garm_vx_leg2 * t247 - t250 * t274);
+        let t282 = t220 * t274 - t250 * t280;
+        let t289 = garm_vy_leg3 - garm_vx_leg3 * t212;
+        let t295 = t260 * (garm_vz_leg3 - garm_vx_leg3 * t247 - t250 * t289);
+        let t297 = t220 * t289 - t250 * t295;
         Ok([
             [
-                garm_vx_leg1 * t121 - t131 * t186 + t166 * t184,
-                garm_vx_leg2 * t121 - t131 * t201 - t166 * t199,
-                garm_vx_leg3 * t121 + t131 * t216 - t166 * t214,
+                garm_vx_leg1 * t202 - t212 * t267 - t247 * t265,
+                garm_vx_leg2 * t202 - t212 * t282 - t247 * t280,
+                garm_vx_leg3 * t202 - t212 * t297 - t247 * t295,
             ],
-            [t186, t201, -t216],
-            [-t184, t199, t214],
+            [t267, t282, t297],
+            [t265, t280, t295],
         ])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -692,59 +1023,6 @@ impl Delta {
             ],
         ]
     }
-    /// By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m, rad).
-    ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
-    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    ///
-    /// Output: 9.
-    ///
-    /// 66 operations (33 additions, 33 multiplications, 0 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 75 intermediates.
-    #[must_use]
-    pub fn closure_error_from_joints(pose: &[f64; 3], joints: &[f64; 9]) -> [f64; 9] {
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t5 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t5);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        let t21 = pose[0] - 0.025;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t26 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t26);
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t47 = pose[1] + 0.04330127018922194
-            - (0.17320508075688776 + 0.20784609690826528 * c_arm_leg2
-                + 0.56
-                    * (0.8660254037844387 * c_armcross_leg2 * c_rod_leg2
-                        - 0.5 * s_rod_leg2));
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t56 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t56);
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t78 = pose[1] - 0.04330127018922194 + 0.17320508075688776
-            + 0.20784609690826528 * c_arm_leg3
-            + 0.56
-                * (0.8660254037844387 * c_armcross_leg3 * c_rod_leg3 + 0.5 * s_rod_leg3);
-        [
-            pose[0] + 0.05
-                - (0.2 + 0.24 * c_arm_leg1 + 0.56 * (c_armcross_leg1 * c_rod_leg1)),
-            pose[1] - 0.56 * s_rod_leg1,
-            pose[2] + 0.24 * s_arm_leg1 + 0.56 * (s_armcross_leg1 * c_rod_leg1),
-            t21 + 0.1 + 0.12 * c_arm_leg2
-                + 0.56
-                    * (0.5 * c_armcross_leg2 * c_rod_leg2
-                        + 0.8660254037844387 * s_rod_leg2),
-            t47,
-            pose[2] + 0.24 * s_arm_leg2 + 0.56 * (s_armcross_leg2 * c_rod_leg2),
-            t21
-                - (0.56
-                    * (0.8660254037844387 * s_rod_leg3
-                        - 0.5 * c_armcross_leg3 * c_rod_leg3)
-                    - (0.1 + 0.12 * c_arm_leg3)),
-            t78,
-            pose[2] + 0.24 * s_arm_leg3 + 0.56 * (s_armcross_leg3 * c_rod_leg3),
-        ]
-    }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
     /// From the platform's pose and motion.
@@ -753,7 +1031,7 @@ impl Delta {
     ///
     /// Output: 9.
     ///
-    /// 206 operations (50 additions, 152 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 215 intermediates.
+    /// 318 operations (99 additions, 206 multiplications, 13 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 315 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -761,103 +1039,166 @@ impl Delta {
         pose: &[f64; 3],
         twist: &[f64; 3],
     ) -> Result<[f64; 9], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let t0 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t0);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t5 = c_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t8 = s_armcross_leg1 * c_rod_leg1;
-        let t11 = c_arm_leg1 * t8 - s_arm_leg1 * t5;
-        ::overact::guard::leg(t11, 0.89794672585951, "leg1")?;
-        let t12 = 1.0 / t11;
-        let t13 = 4.166666666666667 * t12;
-        let garm_vx_leg1 = t5 * t13;
-        let garm_vy_leg1 = s_rod_leg1 * t13;
-        let minus_garm_vz_leg1 = t8 * t13;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.2304 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.48 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.3136 + 0.0576;
+        let t14 = 0.48 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = (t0 - (0.2 + 0.24 * c_arm_leg1)) * t25;
+        let garm_vy_leg1 = pose[1] * t25;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let garm_vz_leg1 = (pose[2] - 0.24 * minus_s_arm_leg1) * t25;
         let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
-            - minus_garm_vz_leg1 * twist[2];
-        let t22 = 1.7857142857142858 * t12;
-        let gcross_vz_leg1 = s_arm_leg1 * t22;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t22;
-        let t28 = 1.0 / c_rod_leg1;
-        let minus_gcross_vy_leg1 = t22
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t28)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t28));
-        let rate_cross_leg1 = gcross_vz_leg1 * twist[2]
-            - (minus_gcross_vx_leg1 * twist[0] + minus_gcross_vy_leg1 * twist[1]);
-        let grod_vy_leg1 = 1.7857142857142858 * t28;
+            + garm_vz_leg1 * twist[2];
+        let t40 = 0.48 * t24;
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t44 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t44, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t44);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t44) / (0.2688 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t58 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t40
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t58)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t58));
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t40;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t40;
+        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
+            - minus_gcross_vz_leg1 * twist[2];
+        let grod_vy_leg1 = 1.7857142857142858 * t58;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t42 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t42);
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t47 = s_armcross_leg2 * c_rod_leg2;
-        let t48 = s_armcross_leg2 * s_rod_leg2;
-        let t49 = t47 * t48;
-        let t51 = 0.5 * c_armcross_leg2;
-        let t52 = t51 * c_rod_leg2;
-        let t56 = 0.8660254037844387 * c_armcross_leg2 * s_rod_leg2 + 0.5 * c_rod_leg2;
-        let t60 = 0.4849742261192857 * t47;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t67 = t60 - 0.8660254037844387 * (0.24 * s_arm_leg2 + 0.56 * t47);
-        let t70 = t51 * s_rod_leg2 - 0.8660254037844387 * c_rod_leg2;
-        let t74 = 0.6272 * (t52 * t70) + 0.1568 * t49;
-        let t80 = 0.1344 * (c_arm_leg2 * t70) + 0.0672 * (s_arm_leg2 * t48);
-        let t86 = c_arm_leg2 * t47;
-        let t88 = 0.1344 * (s_arm_leg2 * t52) - 0.0672 * t86;
-        let t90 = t67 * t74 + t60 * t80 + 0.56 * t56 * t88;
-        ::overact::guard::leg(t90, 0.06758306237509017, "leg2")?;
-        let t91 = 1.0 / t90;
-        let garm_vx_leg2 = (0.2715855666268 * t49 + 0.6272 * (t52 * t56)) * t91;
-        let garm_vy_leg2 = t74 * t91;
-        let garm_vz_leg2 = (0.1568 * (t56 * t47) - 0.2715855666268 * (t70 * t47)) * t91;
+        let t80 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t83 = pose[0] - 0.025 + 0.1;
+        let t84 = 0.5 * t83;
+        let t85 = 0.8660254037844387 * t80 - t84;
+        let t88 = 0.2304 * (t85 * t85 + t3);
+        let t89 = 1.0 / t88;
+        let t90 = 0.48 * t85;
+        let t91 = t83 * t83;
+        let t94 = t91 + t80 * t80 + t3;
+        let t96 = t94 - 0.3136 + 0.0576;
+        let t99 = t88 - t96 * t96;
+        ::overact::guard::reach(t99, "leg2")?;
+        let t100 = ::overact::math::sqrt(t99);
+        let c_arm_leg2 = t89 * (t90 * t96 - t14 * t100);
+        let t105 = t85 - 0.24 * c_arm_leg2;
+        let t106 = 0.8660254037844387 * t83;
+        let t108 = t106 + 0.5 * t80;
+        let t109 = t108 * t108;
+        let t113 = 1.0 - 3.188775510204082 * t109;
+        ::overact::guard::reach(t113, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t113);
+        let c_cross_leg2 = (t94 - (0.0576 + t109) - 0.3136 * t113)
+            / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t89 * (t14 * t96 + t90 * t100);
+        let s_cross_leg2 = 2.0833333333333335 * t100 / (0.56 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t129 = t108 * c_armcross_leg2;
+        let t132 = 1.5464739353293548 * t129 - 0.5 * c_rod_leg2;
+        let t136 = pose[2] - 0.24 * minus_s_arm_leg2;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t108;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t141 = minus_s_rod_leg2 * s_armcross_leg2;
+        let t142 = t136 * t141;
+        let t145 = 0.20784609690826528 * minus_s_arm_leg2;
+        let t148 = 0.8928571428571429 * t129 + 0.8660254037844387 * c_rod_leg2;
+        let t152 = t105 * (0.56 * t148) - 0.28 * t142;
+        let t157 = minus_s_arm_leg2 * t141;
+        let t159 = 0.1344 * (c_arm_leg2 * t148) - 0.0672 * t157;
+        let t164 = t145 * t152 - 0.8660254037844387 * t136 * t159 - 0.14 * (t100 * t132);
+        ::overact::guard::leg(t164, 0.06758306237512474, "leg2")?;
+        let t165 = 1.0 / t164;
+        let garm_vx_leg2 = (t105 * (0.56 * t132) - 0.4849742261192857 * t142) * t165;
+        let garm_vy_leg2 = t152 * t165;
+        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t136) * t165;
         let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
             + garm_vz_leg2 * twist[2];
-        let gcross_vx_leg2 = (0.56 * t48 * t67 - 0.1344 * (c_arm_leg2 * t56)) * t91;
-        let minus_gcross_vy_leg2 = t80 * t91;
-        let minus_gcross_vz_leg2 = (0.56 * t70 * t67 + 0.0672 * (s_arm_leg2 * t56))
-            * t91;
-        let rate_cross_leg2 = gcross_vx_leg2 * twist[0] - minus_gcross_vy_leg2 * twist[1]
-            - minus_gcross_vz_leg2 * twist[2];
-        let grod_vx_leg2 = (1.12 * t52 * t67 + 0.11639381426862856 * t86) * t91;
-        let minus_grod_vy_leg2 = t88 * t91;
+        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t132)
+            - 0.11639381426862856 * (minus_s_arm_leg2 * t148)) * t165;
+        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t132)
+            - 0.11639381426862856 * t157) * t165;
+        let minus_gcross_vy_leg2 = t159 * t165;
+        let rate_cross_leg2 = gcross_vz_leg2 * twist[2]
+            - (minus_gcross_vx_leg2 * twist[0] + minus_gcross_vy_leg2 * twist[1]);
+        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t136) - t105 * t145)
+            * t165;
+        let minus_grod_vy_leg2 = 0.25 * t100 * t165;
         let rate_rod_leg2 = grod_vx_leg2 * twist[0] - minus_grod_vy_leg2 * twist[1];
-        let t133 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t133);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t138 = s_armcross_leg3 * c_rod_leg3;
-        let t139 = s_armcross_leg3 * s_rod_leg3;
-        let t140 = t138 * t139;
-        let t142 = 0.5 * c_armcross_leg3;
-        let t143 = t142 * c_rod_leg3;
-        let t147 = 0.8660254037844387 * c_armcross_leg3 * s_rod_leg3 - 0.5 * c_rod_leg3;
-        let t151 = 0.4849742261192857 * t138;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t156 = t142 * s_rod_leg3 + 0.8660254037844387 * c_rod_leg3;
-        let t161 = 0.1344 * (c_arm_leg3 * t156) + 0.0672 * (s_arm_leg3 * t139);
-        let t167 = 0.8660254037844387 * (0.24 * s_arm_leg3 + 0.56 * t138) - t151;
-        let t171 = 0.6272 * (t143 * t156) + 0.1568 * t140;
-        let t177 = c_arm_leg3 * t138;
-        let t179 = 0.1344 * (s_arm_leg3 * t143) - 0.0672 * t177;
-        let t181 = t151 * t161 - t167 * t171 + 0.56 * t147 * t179;
-        ::overact::guard::leg(t181, 0.06758306237509014, "leg3")?;
-        let t182 = 1.0 / t181;
-        let garm_vx_leg3 = (0.2715855666268 * t140 + 0.6272 * (t143 * t147)) * t182;
-        let minus_garm_vy_leg3 = t171 * t182;
-        let minus_garm_vz_leg3 = (0.2715855666268 * (t156 * t138)
-            - 0.1568 * (t147 * t138)) * t182;
-        let rate_arm_leg3 = garm_vx_leg3 * twist[0] - minus_garm_vy_leg3 * twist[1]
-            - minus_garm_vz_leg3 * twist[2];
-        let gcross_vy_leg3 = t161 * t182;
-        let minus_gcross_vx_leg3 = (0.56 * t139 * t167 + 0.1344 * (c_arm_leg3 * t147))
-            * t182;
-        let gcross_vz_leg3 = (0.56 * t156 * t167 - 0.0672 * (s_arm_leg3 * t147)) * t182;
-        let rate_cross_leg3 = gcross_vy_leg3 * twist[1] - minus_gcross_vx_leg3 * twist[0]
-            + gcross_vz_leg3 * twist[2];
-        let grod_vx_leg3 = (0.11639381426862856 * t177 - 1.12 * t143 * t167) * t182;
-        let grod_vy_leg3 = t179 * t182;
-        let rate_rod_leg3 = grod_vx_leg3 * twist[0] + grod_vy_leg3 * twist[1];
+        let t205 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t207 = t84 + 0.8660254037844387 * t205;
+        let t210 = 0.2304 * (t207 * t207 + t3);
+        let t211 = 1.0 / t210;
+        let t212 = 0.48 * t207;
+        let t215 = t91 + t205 * t205 + t3;
+        let t217 = t215 - 0.3136 + 0.0576;
+        let t220 = t210 - t217 * t217;
+        ::overact::guard::reach(t220, "leg3")?;
+        let t221 = ::overact::math::sqrt(t220);
+        let minus_c_arm_leg3 = t211 * (t212 * t217 + t14 * t221);
+        let t226 = t207 - 0.24 * minus_c_arm_leg3;
+        let t228 = t106 - 0.5 * t205;
+        let t229 = t228 * t228;
+        let t233 = 1.0 - 3.188775510204082 * t229;
+        ::overact::guard::reach(t233, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t233);
+        let c_cross_leg3 = (t215 - (0.0576 + t229) - 0.3136 * t233)
+            / (0.2688 * c_rod_leg3);
+        let s_arm_leg3 = t211 * (t212 * t221 - t14 * t217);
+        let s_cross_leg3 = 2.0833333333333335 * t221 / (0.56 * c_rod_leg3);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t249 = t228 * minus_c_armcross_leg3;
+        let t252 = 1.5464739353293548 * t249 + 0.5 * c_rod_leg3;
+        let t256 = pose[2] + 0.24 * s_arm_leg3;
+        let s_rod_leg3 = 1.7857142857142858 * t228;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t261 = s_rod_leg3 * s_armcross_leg3;
+        let t262 = t256 * t261;
+        let t265 = 0.20784609690826528 * s_arm_leg3;
+        let t268 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t249;
+        let t272 = t226 * (0.56 * t268) + 0.28 * t262;
+        let t277 = s_arm_leg3 * t261;
+        let t279 = 0.1344 * (minus_c_arm_leg3 * t268) - 0.0672 * t277;
+        let t284 = t265 * t272 + 0.8660254037844387 * t256 * t279 + 0.14 * (t221 * t252);
+        ::overact::guard::leg(t284, 0.06758306237512474, "leg3")?;
+        let t285 = 1.0 / t284;
+        let garm_vx_leg3 = (t226 * (0.56 * t252) - 0.4849742261192857 * t262) * t285;
+        let garm_vy_leg3 = t272 * t285;
+        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t256) * t285;
+        let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
+            + garm_vz_leg3 * twist[2];
+        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t268)
+            + 0.0672 * (s_arm_leg3 * t252)) * t285;
+        let minus_gcross_vx_leg3 = (0.11639381426862856 * t277
+            + 0.1344 * (minus_c_arm_leg3 * t252)) * t285;
+        let minus_gcross_vy_leg3 = t279 * t285;
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
+        let grod_vx_leg3 = (t226 * t265
+            + 0.20784609690826528 * (minus_c_arm_leg3 * t256)) * t285;
+        let minus_grod_vy_leg3 = 0.25 * t221 * t285;
+        let rate_rod_leg3 = grod_vx_leg3 * twist[0] - minus_grod_vy_leg3 * twist[1];
         Ok([
             rate_arm_leg1, rate_cross_leg1 - rate_arm_leg1, rate_rod_leg1, rate_arm_leg2,
             rate_cross_leg2 - rate_arm_leg2, rate_rod_leg2, rate_arm_leg3,
@@ -873,7 +1214,7 @@ impl Delta {
     ///
     /// Output: 9.
     ///
-    /// 403 operations (122 additions, 277 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 412 intermediates.
+    /// 502 operations (175 additions, 314 multiplications, 13 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 499 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -882,186 +1223,244 @@ impl Delta {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[f64; 9], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let t0 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t0);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.2304 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.48 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.3136 + 0.0576;
+        let t14 = 0.48 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t21 = 0.24 * c_arm_leg1;
+        let t23 = t0 - (0.2 + t21);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = t23 * t25;
+        let t27 = 0.48 * t24;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t35 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t35, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t35);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t5 = c_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t8 = s_armcross_leg1 * c_rod_leg1;
-        let t11 = c_arm_leg1 * t8 - s_arm_leg1 * t5;
-        ::overact::guard::leg(t11, 0.89794672585951, "leg1")?;
-        let t12 = 1.0 / t11;
-        let t13 = 4.166666666666667 * t12;
-        let garm_vx_leg1 = t5 * t13;
-        let t15 = 0.56 * s_rod_leg1;
-        let t16 = 1.7857142857142858 * t12;
-        let gcross_vz_leg1 = s_arm_leg1 * t16;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t16;
-        let t22 = 1.0 / c_rod_leg1;
-        let minus_gcross_vy_leg1 = t16
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t22)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t22));
-        let rate_cross_leg1 = gcross_vz_leg1 * twist[2]
-            - (minus_gcross_vx_leg1 * twist[0] + minus_gcross_vy_leg1 * twist[1]);
-        let grod_vy_leg1 = 1.7857142857142858 * t22;
+        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t35) / (0.2688 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t49 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t27
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t49)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t49));
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t27;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t27;
+        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
+            - minus_gcross_vz_leg1 * twist[2];
+        let grod_vy_leg1 = 1.7857142857142858 * t49;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t35 = s_armcross_leg1 * rate_rod_leg1;
-        let t37 = t15 * (rate_cross_leg1 * t35);
-        let garm_vy_leg1 = s_rod_leg1 * t13;
-        let minus_garm_vz_leg1 = t8 * t13;
+        let t69 = s_armcross_leg1 * rate_rod_leg1;
+        let t71 = pose[1] * (rate_cross_leg1 * t69);
+        let garm_vy_leg1 = pose[1] * t25;
+        let t76 = 0.24 * minus_s_arm_leg1;
+        let t77 = pose[2] - t76;
+        let garm_vz_leg1 = t77 * t25;
         let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
-            - minus_garm_vz_leg1 * twist[2];
-        let t46 = rate_arm_leg1 * rate_arm_leg1;
-        let t52 = c_armcross_leg1 * rate_rod_leg1;
-        let t54 = t35 * t35 + rate_cross_leg1 * rate_cross_leg1 + t52 * t52;
-        let t59 = acceleration[0]
-            - (t37 - (0.24 * c_arm_leg1 * t46 + 0.56 * t5 * t54) + t37);
-        let t65 = acceleration[1]
-            - (rate_cross_leg1 * (t15 * rate_cross_leg1) - t15 * t54);
-        let t74 = t15 * (rate_cross_leg1 * t52);
-        let t77 = acceleration[2]
-            - (0.24 * s_arm_leg1 * t46 + 0.56 * t8 * t54 + t74 + t74);
-        let rate_dot_arm_leg1 = garm_vx_leg1 * t59 + garm_vy_leg1 * t65
-            - minus_garm_vz_leg1 * t77;
-        let rate_dot_cross_leg1 = gcross_vz_leg1 * t77
-            - (minus_gcross_vx_leg1 * t59 + minus_gcross_vy_leg1 * t65);
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t65;
-        let t87 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t87);
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t92 = s_armcross_leg2 * c_rod_leg2;
-        let t93 = s_armcross_leg2 * s_rod_leg2;
-        let t94 = t92 * t93;
-        let t96 = 0.5 * c_armcross_leg2;
-        let t97 = t96 * c_rod_leg2;
-        let t98 = 0.8660254037844387 * c_armcross_leg2;
-        let t101 = t98 * s_rod_leg2 + 0.5 * c_rod_leg2;
-        let t105 = 0.4849742261192857 * t92;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t108 = 0.24 * s_arm_leg2;
-        let t109 = 0.56 * t92;
-        let t112 = t105 - 0.8660254037844387 * (t108 + t109);
-        let t115 = t96 * s_rod_leg2 - 0.8660254037844387 * c_rod_leg2;
-        let t119 = 0.6272 * (t97 * t115) + 0.1568 * t94;
-        let t125 = 0.1344 * (c_arm_leg2 * t115) + 0.0672 * (s_arm_leg2 * t93);
-        let t131 = c_arm_leg2 * t92;
-        let t133 = 0.1344 * (s_arm_leg2 * t97) - 0.0672 * t131;
-        let t135 = t112 * t119 + t105 * t125 + 0.56 * t101 * t133;
-        ::overact::guard::leg(t135, 0.06758306237509017, "leg2")?;
-        let t136 = 1.0 / t135;
-        let garm_vx_leg2 = (0.2715855666268 * t94 + 0.6272 * (t97 * t101)) * t136;
-        let garm_vy_leg2 = t119 * t136;
-        let garm_vz_leg2 = (0.1568 * (t101 * t92) - 0.2715855666268 * (t115 * t92))
-            * t136;
+            + garm_vz_leg1 * twist[2];
+        let t81 = rate_arm_leg1 * rate_arm_leg1;
+        let t86 = c_armcross_leg1 * rate_rod_leg1;
+        let t88 = t69 * t69 + rate_cross_leg1 * rate_cross_leg1 + t86 * t86;
+        let t93 = acceleration[0] - (t71 - (t21 * t81 + t23 * t88) + t71);
+        let t99 = acceleration[1]
+            - (rate_cross_leg1 * (pose[1] * rate_cross_leg1) - pose[1] * t88);
+        let t103 = pose[1] * (rate_cross_leg1 * t86);
+        let t109 = acceleration[2] - (t103 - (t76 * t81 + t77 * t88) + t103);
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t93 + garm_vy_leg1 * t99
+            + garm_vz_leg1 * t109;
+        let rate_dot_cross_leg1 = gcross_vy_leg1 * t99 - minus_gcross_vx_leg1 * t93
+            - minus_gcross_vz_leg1 * t109;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t99;
+        let t119 = pose[1] + 0.04330127018922194;
+        let t120 = t119 - 0.17320508075688776;
+        let t122 = pose[0] - 0.025;
+        let t123 = t122 + 0.1;
+        let t124 = 0.5 * t123;
+        let t125 = 0.8660254037844387 * t120 - t124;
+        let t128 = 0.2304 * (t125 * t125 + t3);
+        let t129 = 1.0 / t128;
+        let t130 = 0.48 * t125;
+        let t131 = t123 * t123;
+        let t134 = t131 + t120 * t120 + t3;
+        let t136 = t134 - 0.3136 + 0.0576;
+        let t139 = t128 - t136 * t136;
+        ::overact::guard::reach(t139, "leg2")?;
+        let t140 = ::overact::math::sqrt(t139);
+        let c_arm_leg2 = t129 * (t130 * t136 - t14 * t140);
+        let t145 = t125 - 0.24 * c_arm_leg2;
+        let t146 = 0.8660254037844387 * t123;
+        let t148 = t146 + 0.5 * t120;
+        let t149 = t148 * t148;
+        let t153 = 1.0 - 3.188775510204082 * t149;
+        ::overact::guard::reach(t153, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t153);
+        let c_cross_leg2 = (t134 - (0.0576 + t149) - 0.3136 * t153)
+            / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t129 * (t14 * t136 + t130 * t140);
+        let s_cross_leg2 = 2.0833333333333335 * t140 / (0.56 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t169 = t148 * c_armcross_leg2;
+        let t172 = 1.5464739353293548 * t169 - 0.5 * c_rod_leg2;
+        let t175 = 0.24 * minus_s_arm_leg2;
+        let t176 = pose[2] - t175;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t148;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t181 = minus_s_rod_leg2 * s_armcross_leg2;
+        let t182 = t176 * t181;
+        let t185 = 0.20784609690826528 * minus_s_arm_leg2;
+        let t188 = 0.8928571428571429 * t169 + 0.8660254037844387 * c_rod_leg2;
+        let t192 = t145 * (0.56 * t188) - 0.28 * t182;
+        let t197 = minus_s_arm_leg2 * t181;
+        let t199 = 0.1344 * (c_arm_leg2 * t188) - 0.0672 * t197;
+        let t204 = t185 * t192 - 0.8660254037844387 * t176 * t199 - 0.14 * (t140 * t172);
+        ::overact::guard::leg(t204, 0.06758306237512474, "leg2")?;
+        let t205 = 1.0 / t204;
+        let garm_vx_leg2 = (t145 * (0.56 * t172) - 0.4849742261192857 * t182) * t205;
+        let t207 = 0.12 * c_arm_leg2;
+        let garm_vy_leg2 = t192 * t205;
+        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t176) * t205;
         let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
             + garm_vz_leg2 * twist[2];
-        let t151 = rate_arm_leg2 * rate_arm_leg2;
-        let t154 = t97 + 0.8660254037844387 * s_rod_leg2;
-        let t155 = 0.56 * t154;
-        let gcross_vx_leg2 = (0.56 * t93 * t112 - 0.1344 * (c_arm_leg2 * t101)) * t136;
-        let minus_gcross_vy_leg2 = t125 * t136;
-        let minus_gcross_vz_leg2 = (0.56 * t115 * t112 + 0.0672 * (s_arm_leg2 * t101))
-            * t136;
-        let rate_cross_leg2 = gcross_vx_leg2 * twist[0] - minus_gcross_vy_leg2 * twist[1]
-            - minus_gcross_vz_leg2 * twist[2];
-        let t174 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (1.12 * t97 * t112 + 0.11639381426862856 * t131) * t136;
-        let minus_grod_vy_leg2 = t133 * t136;
+        let t217 = rate_arm_leg2 * rate_arm_leg2;
+        let t220 = t122 + 0.1 + t207;
+        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t172)
+            - 0.11639381426862856 * (minus_s_arm_leg2 * t188)) * t205;
+        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t172)
+            - 0.11639381426862856 * t197) * t205;
+        let minus_gcross_vy_leg2 = t199 * t205;
+        let rate_cross_leg2 = gcross_vz_leg2 * twist[2]
+            - (minus_gcross_vx_leg2 * twist[0] + minus_gcross_vy_leg2 * twist[1]);
+        let t238 = 0.8660254037844387 * rate_cross_leg2;
+        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t176) - t145 * t185)
+            * t205;
+        let minus_grod_vy_leg2 = 0.25 * t140 * t205;
         let rate_rod_leg2 = grod_vx_leg2 * twist[0] - minus_grod_vy_leg2 * twist[1];
-        let t186 = t174 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t189 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t190 = 0.5 * rate_cross_leg2;
-        let t191 = t189 - t190;
-        let t194 = c_armcross_leg2 * rate_rod_leg2;
-        let t196 = t186 * t186 + t191 * t191 + t194 * t194;
-        let t202 = t98 * c_rod_leg2 - 0.5 * s_rod_leg2;
-        let t203 = 0.56 * t202;
-        let t207 = t155 * t186 + t203 * t191 - t109 * t194;
-        let t210 = t174 * t189;
-        let t213 = t174 * t194;
-        let t216 = 0.12 * c_arm_leg2 * t151 + t155 * t196 - t186 * t207
-            + 0.7466666666666667 * (t202 * t210) - t109 * t213;
-        let t217 = acceleration[0] - t216;
-        let t227 = t190 * t194;
-        let t230 = t191 * t207 - (0.20784609690826528 * c_arm_leg2 * t151 + t203 * t196)
-            + 0.7466666666666667 * (t154 * t210) - t109 * t227;
-        let t231 = acceleration[1] - t230;
-        let t239 = t155 * t213 - t203 * t227;
-        let t242 = acceleration[2] - (t108 * t151 + t109 * t196 + t239 + t239);
-        let rate_dot_arm_leg2 = garm_vx_leg2 * t217 + garm_vy_leg2 * t231
-            + garm_vz_leg2 * t242;
-        let rate_dot_cross_leg2 = gcross_vx_leg2 * t217 - minus_gcross_vy_leg2 * t231
-            - minus_gcross_vz_leg2 * t242;
-        let rate_dot_rod_leg2 = grod_vx_leg2 * t217 - minus_grod_vy_leg2 * t231;
-        let t254 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t254);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t259 = s_armcross_leg3 * c_rod_leg3;
-        let t260 = s_armcross_leg3 * s_rod_leg3;
-        let t261 = t259 * t260;
-        let t263 = 0.5 * c_armcross_leg3;
-        let t264 = t263 * c_rod_leg3;
-        let t265 = 0.8660254037844387 * c_armcross_leg3;
-        let t268 = t265 * s_rod_leg3 - 0.5 * c_rod_leg3;
-        let t272 = 0.4849742261192857 * t259;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t277 = t263 * s_rod_leg3 + 0.8660254037844387 * c_rod_leg3;
-        let t282 = 0.1344 * (c_arm_leg3 * t277) + 0.0672 * (s_arm_leg3 * t260);
-        let t284 = 0.24 * s_arm_leg3;
-        let t285 = 0.56 * t259;
-        let t288 = 0.8660254037844387 * (t284 + t285) - t272;
-        let t292 = 0.6272 * (t264 * t277) + 0.1568 * t261;
-        let t298 = c_arm_leg3 * t259;
-        let t300 = 0.1344 * (s_arm_leg3 * t264) - 0.0672 * t298;
-        let t302 = t272 * t282 - t288 * t292 + 0.56 * t268 * t300;
-        ::overact::guard::leg(t302, 0.06758306237509014, "leg3")?;
-        let t303 = 1.0 / t302;
-        let garm_vx_leg3 = (0.2715855666268 * t261 + 0.6272 * (t264 * t268)) * t303;
-        let minus_garm_vy_leg3 = t292 * t303;
-        let minus_garm_vz_leg3 = (0.2715855666268 * (t277 * t259)
-            - 0.1568 * (t268 * t259)) * t303;
-        let rate_arm_leg3 = garm_vx_leg3 * twist[0] - minus_garm_vy_leg3 * twist[1]
-            - minus_garm_vz_leg3 * twist[2];
-        let t318 = rate_arm_leg3 * rate_arm_leg3;
-        let t321 = 0.8660254037844387 * s_rod_leg3 - t264;
-        let t322 = 0.56 * t321;
-        let gcross_vy_leg3 = t282 * t303;
-        let minus_gcross_vx_leg3 = (0.56 * t260 * t288 + 0.1344 * (c_arm_leg3 * t268))
-            * t303;
-        let gcross_vz_leg3 = (0.56 * t277 * t288 - 0.0672 * (s_arm_leg3 * t268)) * t303;
-        let rate_cross_leg3 = gcross_vy_leg3 * twist[1] - minus_gcross_vx_leg3 * twist[0]
-            + gcross_vz_leg3 * twist[2];
-        let t341 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (0.11639381426862856 * t298 - 1.12 * t264 * t288) * t303;
-        let grod_vy_leg3 = t300 * t303;
-        let rate_rod_leg3 = grod_vx_leg3 * twist[0] + grod_vy_leg3 * twist[1];
-        let t353 = t341 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t355 = 0.5 * rate_cross_leg3;
-        let t357 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t358 = t355 + t357;
-        let t361 = c_armcross_leg3 * rate_rod_leg3;
-        let t363 = t353 * t353 + t358 * t358 + t361 * t361;
-        let t369 = t265 * c_rod_leg3 + 0.5 * s_rod_leg3;
-        let t370 = 0.56 * t369;
-        let t374 = t322 * t353 + t370 * t358 - t285 * t361;
-        let t377 = t341 * t361;
-        let t379 = t341 * t357;
-        let t383 = 0.12 * c_arm_leg3 * t318 - t322 * t363 + t353 * t374 + t285 * t377
-            - 0.7466666666666667 * (t369 * t379);
-        let t384 = acceleration[0] - t383;
-        let t394 = t355 * t361;
-        let t397 = 0.20784609690826528 * c_arm_leg3 * t318 + t370 * t363 - t358 * t374
-            - (0.7466666666666667 * (t321 * t379) + t285 * t394);
-        let t398 = acceleration[1] - t397;
-        let t406 = t370 * t394 + t322 * t377;
-        let t409 = acceleration[2] - (t284 * t318 + t285 * t363 + t406 + t406);
-        let rate_dot_arm_leg3 = garm_vx_leg3 * t384 - minus_garm_vy_leg3 * t398
-            - minus_garm_vz_leg3 * t409;
-        let rate_dot_cross_leg3 = gcross_vy_leg3 * t398 - minus_gcross_vx_leg3 * t384
-            + gcross_vz_leg3 * t409;
-        let rate_dot_rod_leg3 = grod_vx_leg3 * t384 + grod_vy_leg3 * t398;
+        let t251 = t238 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
+        let t254 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
+        let t255 = 0.5 * rate_cross_leg2;
+        let t256 = t254 - t255;
+        let t259 = c_armcross_leg2 * rate_rod_leg2;
+        let t261 = t251 * t251 + t256 * t256 + t259 * t259;
+        let t264 = 0.20784609690826528 * c_arm_leg2;
+        let t266 = t119 - (0.17320508075688776 + t264);
+        let t271 = t266 * t256 - t220 * t251 + t176 * t259;
+        let t274 = t238 * t259;
+        let t277 = 1.3333333333333333 * (t238 * t254);
+        let t281 = acceleration[0]
+            - (t207 * t217 - t220 * t261 - t251 * t271 + t176 * t274 + t266 * t277);
+        let t288 = t255 * t259;
+        let t293 = acceleration[1]
+            - (t256 * t271 - (t264 * t217 + t266 * t261) + t176 * t288 - t220 * t277);
+        let t301 = t266 * t288 + t220 * t274;
+        let t304 = acceleration[2] + t175 * t217 + t176 * t261 + t301 + t301;
+        let rate_dot_arm_leg2 = garm_vx_leg2 * t281 + garm_vy_leg2 * t293
+            + garm_vz_leg2 * t304;
+        let rate_dot_cross_leg2 = gcross_vz_leg2 * t304
+            - (minus_gcross_vx_leg2 * t281 + minus_gcross_vy_leg2 * t293);
+        let rate_dot_rod_leg2 = grod_vx_leg2 * t281 - minus_grod_vy_leg2 * t293;
+        let t316 = pose[1] - 0.04330127018922194;
+        let t317 = t316 + 0.17320508075688776;
+        let t319 = t124 + 0.8660254037844387 * t317;
+        let t322 = 0.2304 * (t319 * t319 + t3);
+        let t323 = 1.0 / t322;
+        let t324 = 0.48 * t319;
+        let t327 = t131 + t317 * t317 + t3;
+        let t329 = t327 - 0.3136 + 0.0576;
+        let t332 = t322 - t329 * t329;
+        ::overact::guard::reach(t332, "leg3")?;
+        let t333 = ::overact::math::sqrt(t332);
+        let minus_c_arm_leg3 = t323 * (t324 * t329 + t14 * t333);
+        let t338 = t319 - 0.24 * minus_c_arm_leg3;
+        let t340 = t146 - 0.5 * t317;
+        let t341 = t340 * t340;
+        let t345 = 1.0 - 3.188775510204082 * t341;
+        ::overact::guard::reach(t345, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t345);
+        let c_cross_leg3 = (t327 - (0.0576 + t341) - 0.3136 * t345)
+            / (0.2688 * c_rod_leg3);
+        let s_arm_leg3 = t323 * (t324 * t333 - t14 * t329);
+        let s_cross_leg3 = 2.0833333333333335 * t333 / (0.56 * c_rod_leg3);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t361 = t340 * minus_c_armcross_leg3;
+        let t364 = 1.5464739353293548 * t361 + 0.5 * c_rod_leg3;
+        let t367 = 0.24 * s_arm_leg3;
+        let t368 = pose[2] + t367;
+        let s_rod_leg3 = 1.7857142857142858 * t340;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t373 = s_rod_leg3 * s_armcross_leg3;
+        let t374 = t368 * t373;
+        let t377 = 0.20784609690826528 * s_arm_leg3;
+        let t380 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t361;
+        let t384 = t338 * (0.56 * t380) + 0.28 * t374;
+        let t389 = s_arm_leg3 * t373;
+        let t391 = 0.1344 * (minus_c_arm_leg3 * t380) - 0.0672 * t389;
+        let t396 = t377 * t384 + 0.8660254037844387 * t368 * t391 + 0.14 * (t333 * t364);
+        ::overact::guard::leg(t396, 0.06758306237512474, "leg3")?;
+        let t397 = 1.0 / t396;
+        let garm_vx_leg3 = (t338 * (0.56 * t364) - 0.4849742261192857 * t374) * t397;
+        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t380)
+            + 0.0672 * (s_arm_leg3 * t364)) * t397;
+        let minus_gcross_vx_leg3 = (0.11639381426862856 * t389
+            + 0.1344 * (minus_c_arm_leg3 * t364)) * t397;
+        let minus_gcross_vy_leg3 = t391 * t397;
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
+        let t416 = 0.8660254037844387 * rate_cross_leg3;
+        let grod_vx_leg3 = (t338 * t377
+            + 0.20784609690826528 * (minus_c_arm_leg3 * t368)) * t397;
+        let minus_grod_vy_leg3 = 0.25 * t333 * t397;
+        let rate_rod_leg3 = grod_vx_leg3 * twist[0] - minus_grod_vy_leg3 * twist[1];
+        let t429 = t416 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
+        let t430 = 0.12 * minus_c_arm_leg3;
+        let t432 = t122 - (t430 - 0.1);
+        let t434 = 0.20784609690826528 * minus_c_arm_leg3;
+        let t436 = t316 - (t434 - 0.17320508075688776);
+        let t437 = 0.5 * rate_cross_leg3;
+        let t439 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
+        let t440 = t437 + t439;
+        let t443 = minus_c_armcross_leg3 * rate_rod_leg3;
+        let t445 = t432 * t429 - t436 * t440 - t368 * t443;
+        let garm_vy_leg3 = t384 * t397;
+        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t368) * t397;
+        let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
+            + garm_vz_leg3 * twist[2];
+        let t456 = rate_arm_leg3 * rate_arm_leg3;
+        let t462 = t429 * t429 + t440 * t440 + t443 * t443;
+        let t466 = t416 * t443;
+        let t469 = 1.3333333333333333 * (t416 * t439);
+        let t473 = acceleration[0]
+            - (t429 * t445 - (t430 * t456 + t432 * t462) + t368 * t466 + t436 * t469);
+        let t481 = t437 * t443;
+        let t485 = acceleration[1] + t434 * t456 + t436 * t462 + t440 * t445
+            + t432 * t469 + t368 * t481;
+        let t493 = t436 * t481 - t432 * t466;
+        let t496 = acceleration[2] - (t367 * t456 - t368 * t462 + t493 + t493);
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t473 + garm_vy_leg3 * t485
+            + garm_vz_leg3 * t496;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * t496
+            - (minus_gcross_vx_leg3 * t473 + minus_gcross_vy_leg3 * t485);
+        let rate_dot_rod_leg3 = grod_vx_leg3 * t473 - minus_grod_vy_leg3 * t485;
         Ok([
             rate_dot_arm_leg1, rate_dot_cross_leg1 - rate_dot_arm_leg1, rate_dot_rod_leg1,
             rate_dot_arm_leg2, rate_dot_cross_leg2 - rate_dot_arm_leg2, rate_dot_rod_leg2,
@@ -1076,7 +1475,7 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 187 operations (54 additions, 127 multiplications, 6 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 202 intermediates.
+    /// 281 operations (97 additions, 171 multiplications, 13 divisions), 5 square roots, 0 trigonometric pairs, 0 signs, 283 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1084,96 +1483,143 @@ impl Delta {
         pose: &[f64; 3],
         actuator_velocities: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let t0 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t0);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        let t5 = c_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t8 = s_armcross_leg1 * c_rod_leg1;
-        let t11 = c_arm_leg1 * t8 - s_arm_leg1 * t5;
-        ::overact::guard::leg(t11, 0.89794672585951, "leg1")?;
-        let t12 = 4.166666666666667 / t11;
-        let garm_vx_leg1 = t5 * t12;
-        let t15 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t15);
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t20 = s_armcross_leg2 * c_rod_leg2;
-        let t21 = s_armcross_leg2 * s_rod_leg2;
-        let t22 = t20 * t21;
-        let t24 = 0.5 * c_armcross_leg2;
-        let t25 = t24 * c_rod_leg2;
-        let t29 = 0.8660254037844387 * c_armcross_leg2 * s_rod_leg2 + 0.5 * c_rod_leg2;
-        let t33 = 0.4849742261192857 * t20;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t43 = t24 * s_rod_leg2 - 0.8660254037844387 * c_rod_leg2;
-        let t47 = 0.6272 * (t25 * t43) + 0.1568 * t22;
-        let t55 = (t33 - 0.8660254037844387 * (0.24 * s_arm_leg2 + 0.56 * t20)) * t47
-            + t33 * (0.1344 * (c_arm_leg2 * t43) + 0.0672 * (s_arm_leg2 * t21));
-        let t63 = t55
-            + 0.56 * t29 * (0.1344 * (s_arm_leg2 * t25) - 0.0672 * (c_arm_leg2 * t20));
-        ::overact::guard::leg(t63, 0.06758306237509017, "leg2")?;
-        let t64 = 1.0 / t63;
-        let garm_vx_leg2 = (0.2715855666268 * t22 + 0.6272 * (t25 * t29)) * t64;
-        let t68 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t68);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t73 = s_armcross_leg3 * c_rod_leg3;
-        let t74 = s_armcross_leg3 * s_rod_leg3;
-        let t75 = t73 * t74;
-        let t77 = 0.5 * c_armcross_leg3;
-        let t78 = t77 * c_rod_leg3;
-        let t82 = 0.8660254037844387 * c_armcross_leg3 * s_rod_leg3 - 0.5 * c_rod_leg3;
-        let t86 = 0.4849742261192857 * t73;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t91 = t77 * s_rod_leg3 + 0.8660254037844387 * c_rod_leg3;
-        let t106 = 0.6272 * (t78 * t91) + 0.1568 * t75;
-        let t108 = t86 * (0.1344 * (c_arm_leg3 * t91) + 0.0672 * (s_arm_leg3 * t74))
-            - (0.8660254037844387 * (0.24 * s_arm_leg3 + 0.56 * t73) - t86) * t106;
-        let t116 = t108
-            + 0.56 * t82 * (0.1344 * (s_arm_leg3 * t78) - 0.0672 * (c_arm_leg3 * t73));
-        ::overact::guard::leg(t116, 0.06758306237509014, "leg3")?;
-        let t117 = 1.0 / t116;
-        let garm_vx_leg3 = (0.2715855666268 * t75 + 0.6272 * (t78 * t82)) * t117;
-        let t120 = garm_vx_leg1 * actuator_velocities[0]
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.2304 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.48 * t1;
+        let t12 = t2 + pose[1] * pose[1] + t3 - 0.3136 + 0.0576;
+        let t14 = 0.48 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t24 = 2.0 / t17;
+        let garm_vx_leg1 = (t0 - (0.2 + 0.24 * c_arm_leg1)) * t24;
+        let t28 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t31 = pose[0] - 0.025 + 0.1;
+        let t32 = 0.5 * t31;
+        let t33 = 0.8660254037844387 * t28 - t32;
+        let t36 = 0.2304 * (t33 * t33 + t3);
+        let t37 = 1.0 / t36;
+        let t38 = 0.48 * t33;
+        let t39 = t31 * t31;
+        let t42 = t39 + t28 * t28 + t3;
+        let t44 = t42 - 0.3136 + 0.0576;
+        let t47 = t36 - t44 * t44;
+        ::overact::guard::reach(t47, "leg2")?;
+        let t48 = ::overact::math::sqrt(t47);
+        let c_arm_leg2 = t37 * (t38 * t44 - t14 * t48);
+        let t53 = t33 - 0.24 * c_arm_leg2;
+        let t54 = 0.8660254037844387 * t31;
+        let t56 = t54 + 0.5 * t28;
+        let t57 = t56 * t56;
+        let t61 = 1.0 - 3.188775510204082 * t57;
+        ::overact::guard::reach(t61, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t61);
+        let c_cross_leg2 = (t42 - (0.0576 + t57) - 0.3136 * t61) / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t37 * (t14 * t44 + t38 * t48);
+        let s_cross_leg2 = 2.0833333333333335 * t48 / (0.56 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t77 = t56 * c_armcross_leg2;
+        let t80 = 1.5464739353293548 * t77 - 0.5 * c_rod_leg2;
+        let t84 = pose[2] - 0.24 * minus_s_arm_leg2;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t56;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t89 = minus_s_rod_leg2 * s_armcross_leg2;
+        let t90 = t84 * t89;
+        let t96 = 0.8928571428571429 * t77 + 0.8660254037844387 * c_rod_leg2;
+        let t100 = t53 * (0.56 * t96) - 0.28 * t90;
+        let t109 = 0.20784609690826528 * minus_s_arm_leg2 * t100
+            - 0.8660254037844387 * t84
+                * (0.1344 * (c_arm_leg2 * t96) - 0.0672 * (minus_s_arm_leg2 * t89));
+        let t112 = t109 - 0.14 * (t48 * t80);
+        ::overact::guard::leg(t112, 0.06758306237512474, "leg2")?;
+        let t113 = 1.0 / t112;
+        let garm_vx_leg2 = (t53 * (0.56 * t80) - 0.4849742261192857 * t90) * t113;
+        let t118 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t120 = t32 + 0.8660254037844387 * t118;
+        let t123 = 0.2304 * (t120 * t120 + t3);
+        let t124 = 1.0 / t123;
+        let t125 = 0.48 * t120;
+        let t128 = t39 + t118 * t118 + t3;
+        let t130 = t128 - 0.3136 + 0.0576;
+        let t133 = t123 - t130 * t130;
+        ::overact::guard::reach(t133, "leg3")?;
+        let t134 = ::overact::math::sqrt(t133);
+        let minus_c_arm_leg3 = t124 * (t125 * t130 + t14 * t134);
+        let t139 = t120 - 0.24 * minus_c_arm_leg3;
+        let t141 = t54 - 0.5 * t118;
+        let t142 = t141 * t141;
+        let t146 = 1.0 - 3.188775510204082 * t142;
+        ::overact::guard::reach(t146, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t146);
+        let c_cross_leg3 = (t128 - (0.0576 + t142) - 0.3136 * t146)
+            / (0.2688 * c_rod_leg3);
+        let s_arm_leg3 = t124 * (t125 * t134 - t14 * t130);
+        let s_cross_leg3 = 2.0833333333333335 * t134 / (0.56 * c_rod_leg3);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t162 = t141 * minus_c_armcross_leg3;
+        let t165 = 1.5464739353293548 * t162 + 0.5 * c_rod_leg3;
+        let t169 = pose[2] + 0.24 * s_arm_leg3;
+        let s_rod_leg3 = 1.7857142857142858 * t141;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t174 = s_rod_leg3 * s_armcross_leg3;
+        let t175 = t169 * t174;
+        let t181 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t162;
+        let t185 = t139 * (0.56 * t181) + 0.28 * t175;
+        let t194 = 0.20784609690826528 * s_arm_leg3 * t185
+            + 0.8660254037844387 * t169
+                * (0.1344 * (minus_c_arm_leg3 * t181) - 0.0672 * (s_arm_leg3 * t174));
+        let t197 = t194 + 0.14 * (t134 * t165);
+        ::overact::guard::leg(t197, 0.06758306237512474, "leg3")?;
+        let t198 = 1.0 / t197;
+        let garm_vx_leg3 = (t139 * (0.56 * t165) - 0.4849742261192857 * t175) * t198;
+        let t201 = garm_vx_leg1 * actuator_velocities[0]
             + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2];
-        let t125 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t206 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t125, 14.8697301728973, "actuators")?;
-        let t126 = 1.0 / t125;
-        let garm_vy_leg1 = s_rod_leg1 * t12;
-        let garm_vy_leg2 = t47 * t64;
-        let minus_garm_vy_leg3 = t106 * t117;
-        let t135 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
-            - garm_vx_leg3 * minus_garm_vy_leg3;
-        let t136 = t135 * t126;
-        let t143 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + minus_garm_vy_leg3 * minus_garm_vy_leg3 - t135 * t136;
-        ::overact::guard::platform(t143, 14.869730172897306, "actuators")?;
-        let t144 = 1.0 / t143;
-        let t151 = garm_vy_leg1 * actuator_velocities[0]
+        ::overact::guard::platform(t206, 14.869730172882845, "actuators")?;
+        let t207 = 1.0 / t206;
+        let garm_vy_leg1 = pose[1] * t24;
+        let garm_vy_leg2 = t100 * t113;
+        let garm_vy_leg3 = t185 * t198;
+        let t216 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3;
+        let t217 = t216 * t207;
+        let t224 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t216 * t217;
+        ::overact::guard::platform(t224, 14.869730172882843, "actuators")?;
+        let t225 = 1.0 / t224;
+        let t232 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
-            - minus_garm_vy_leg3 * actuator_velocities[2] - t120 * t136;
-        let garm_vz_leg2 = (0.1568 * (t29 * t20) - 0.2715855666268 * (t43 * t20)) * t64;
-        let minus_garm_vz_leg1 = t8 * t12;
-        let minus_garm_vz_leg3 = (0.2715855666268 * (t91 * t73) - 0.1568 * (t82 * t73))
-            * t117;
-        let t175 = garm_vx_leg2 * garm_vz_leg2 - garm_vx_leg1 * minus_garm_vz_leg1
-            - garm_vx_leg3 * minus_garm_vz_leg3;
-        let t176 = t175 * t126;
-        let t178 = garm_vy_leg2 * garm_vz_leg2 - garm_vy_leg1 * minus_garm_vz_leg1
-            + minus_garm_vy_leg3 * minus_garm_vz_leg3 - t135 * t176;
-        let t179 = t178 * t144;
-        let t188 = minus_garm_vz_leg1 * minus_garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t175 * t176 - t178 * t179;
-        ::overact::guard::platform(t188, 34.85535020139291, "actuators")?;
-        let t198 = (garm_vz_leg2 * actuator_velocities[1]
-            - minus_garm_vz_leg1 * actuator_velocities[0]
-            - minus_garm_vz_leg3 * actuator_velocities[2] - t120 * t176 - t179 * t151)
-            / t188;
-        let t200 = t144 * t151 - t179 * t198;
-        Ok([t120 * t126 - t136 * t200 - t176 * t198, t200, t198])
+            + garm_vy_leg3 * actuator_velocities[2] - t201 * t217;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let garm_vz_leg1 = (pose[2] - 0.24 * minus_s_arm_leg1) * t24;
+        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t84) * t113;
+        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t169) * t198;
+        let t256 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3;
+        let t257 = t256 * t207;
+        let t259 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 - t216 * t257;
+        let t260 = t259 * t225;
+        let t269 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 - t256 * t257 - t259 * t260;
+        ::overact::guard::platform(t269, 34.855350201355726, "actuators")?;
+        let t279 = (garm_vz_leg1 * actuator_velocities[0]
+            + garm_vz_leg2 * actuator_velocities[1]
+            + garm_vz_leg3 * actuator_velocities[2] - t201 * t257 - t260 * t232) / t269;
+        let t281 = t225 * t232 - t260 * t279;
+        Ok([t201 * t207 - t217 * t281 - t257 * t279, t281, t279])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1184,7 +1630,7 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 445 operations (133 additions, 305 multiplications, 7 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 460 intermediates.
+    /// 544 operations (186 additions, 342 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 547 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1193,198 +1639,262 @@ impl Delta {
         twist: &[f64; 3],
         actuator_accelerations: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let t0 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t0);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.2304 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.48 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.3136 + 0.0576;
+        let t14 = 0.48 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t21 = 0.24 * c_arm_leg1;
+        let t23 = t0 - (0.2 + t21);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = t23 * t25;
+        let t27 = 0.48 * t24;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t35 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t35, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t35);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t5 = c_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t8 = s_armcross_leg1 * c_rod_leg1;
-        let t11 = c_arm_leg1 * t8 - s_arm_leg1 * t5;
-        ::overact::guard::leg(t11, 0.89794672585951, "leg1")?;
-        let t12 = 1.0 / t11;
-        let t13 = 4.166666666666667 * t12;
-        let garm_vx_leg1 = t5 * t13;
-        let minus_garm_vz_leg1 = t8 * t13;
-        let garm_vy_leg1 = s_rod_leg1 * t13;
-        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
-            - minus_garm_vz_leg1 * twist[2];
-        let t23 = rate_arm_leg1 * rate_arm_leg1;
-        let t26 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.7857142857142858 * t26;
+        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t35) / (0.2688 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t49 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t27
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t49)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t49));
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t27;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t27;
+        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
+            - minus_gcross_vz_leg1 * twist[2];
+        let grod_vy_leg1 = 1.7857142857142858 * t49;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t29 = s_armcross_leg1 * rate_rod_leg1;
-        let t31 = 1.7857142857142858 * t12;
-        let gcross_vz_leg1 = s_arm_leg1 * t31;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t31;
-        let minus_gcross_vy_leg1 = t31
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t26)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t26));
-        let rate_cross_leg1 = gcross_vz_leg1 * twist[2]
-            - (minus_gcross_vx_leg1 * twist[0] + minus_gcross_vy_leg1 * twist[1]);
-        let t49 = c_armcross_leg1 * rate_rod_leg1;
-        let t51 = t29 * t29 + rate_cross_leg1 * rate_cross_leg1 + t49 * t49;
-        let t54 = 0.56 * s_rod_leg1;
-        let t56 = t54 * (rate_cross_leg1 * t49);
-        let t61 = t54 * (rate_cross_leg1 * t29);
-        let t75 = garm_vx_leg1
-            * (t61 - (0.24 * c_arm_leg1 * t23 + 0.56 * t5 * t51) + t61)
-            + garm_vy_leg1 * (rate_cross_leg1 * (t54 * rate_cross_leg1) - t54 * t51);
-        let rate_dot_arm_leg1 = minus_garm_vz_leg1
-            * (0.24 * s_arm_leg1 * t23 + 0.56 * t8 * t51 + t56 + t56) - t75;
-        let t77 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t79 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t79);
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t84 = s_armcross_leg2 * c_rod_leg2;
-        let t85 = s_armcross_leg2 * s_rod_leg2;
-        let t86 = t84 * t85;
-        let t88 = 0.5 * c_armcross_leg2;
-        let t89 = t88 * c_rod_leg2;
-        let t90 = 0.8660254037844387 * c_armcross_leg2;
-        let t93 = t90 * s_rod_leg2 + 0.5 * c_rod_leg2;
-        let t97 = 0.4849742261192857 * t84;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t100 = 0.24 * s_arm_leg2;
-        let t101 = 0.56 * t84;
-        let t104 = t97 - 0.8660254037844387 * (t100 + t101);
-        let t107 = t88 * s_rod_leg2 - 0.8660254037844387 * c_rod_leg2;
-        let t111 = 0.6272 * (t89 * t107) + 0.1568 * t86;
-        let t117 = 0.1344 * (c_arm_leg2 * t107) + 0.0672 * (s_arm_leg2 * t85);
-        let t123 = c_arm_leg2 * t84;
-        let t125 = 0.1344 * (s_arm_leg2 * t89) - 0.0672 * t123;
-        let t127 = t104 * t111 + t97 * t117 + 0.56 * t93 * t125;
-        ::overact::guard::leg(t127, 0.06758306237509017, "leg2")?;
-        let t128 = 1.0 / t127;
-        let garm_vx_leg2 = (0.2715855666268 * t86 + 0.6272 * (t89 * t93)) * t128;
-        let garm_vy_leg2 = t111 * t128;
-        let garm_vz_leg2 = (0.1568 * (t93 * t84) - 0.2715855666268 * (t107 * t84))
-            * t128;
+        let t69 = s_armcross_leg1 * rate_rod_leg1;
+        let t71 = pose[1] * (rate_cross_leg1 * t69);
+        let garm_vy_leg1 = pose[1] * t25;
+        let t76 = 0.24 * minus_s_arm_leg1;
+        let t77 = pose[2] - t76;
+        let garm_vz_leg1 = t77 * t25;
+        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
+            + garm_vz_leg1 * twist[2];
+        let t81 = rate_arm_leg1 * rate_arm_leg1;
+        let t86 = c_armcross_leg1 * rate_rod_leg1;
+        let t88 = t69 * t69 + rate_cross_leg1 * rate_cross_leg1 + t86 * t86;
+        let t99 = garm_vx_leg1 * (t71 - (t21 * t81 + t23 * t88) + t71)
+            + garm_vy_leg1
+                * (rate_cross_leg1 * (pose[1] * rate_cross_leg1) - pose[1] * t88);
+        let t101 = pose[1] * (rate_cross_leg1 * t86);
+        let minus_rate_dot_arm_leg1 = t99
+            + garm_vz_leg1 * (t101 - (t76 * t81 + t77 * t88) + t101);
+        let t109 = actuator_accelerations[0] + minus_rate_dot_arm_leg1;
+        let t111 = pose[1] + 0.04330127018922194;
+        let t112 = t111 - 0.17320508075688776;
+        let t114 = pose[0] - 0.025;
+        let t115 = t114 + 0.1;
+        let t116 = 0.5 * t115;
+        let t117 = 0.8660254037844387 * t112 - t116;
+        let t120 = 0.2304 * (t117 * t117 + t3);
+        let t121 = 1.0 / t120;
+        let t122 = 0.48 * t117;
+        let t123 = t115 * t115;
+        let t126 = t123 + t112 * t112 + t3;
+        let t128 = t126 - 0.3136 + 0.0576;
+        let t131 = t120 - t128 * t128;
+        ::overact::guard::reach(t131, "leg2")?;
+        let t132 = ::overact::math::sqrt(t131);
+        let c_arm_leg2 = t121 * (t122 * t128 - t14 * t132);
+        let t137 = t117 - 0.24 * c_arm_leg2;
+        let t138 = 0.8660254037844387 * t115;
+        let t140 = t138 + 0.5 * t112;
+        let t141 = t140 * t140;
+        let t145 = 1.0 - 3.188775510204082 * t141;
+        ::overact::guard::reach(t145, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t145);
+        let c_cross_leg2 = (t126 - (0.0576 + t141) - 0.3136 * t145)
+            / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t121 * (t14 * t128 + t122 * t132);
+        let s_cross_leg2 = 2.0833333333333335 * t132 / (0.56 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t161 = t140 * c_armcross_leg2;
+        let t164 = 1.5464739353293548 * t161 - 0.5 * c_rod_leg2;
+        let t167 = 0.24 * minus_s_arm_leg2;
+        let t168 = pose[2] - t167;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t140;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t173 = minus_s_rod_leg2 * s_armcross_leg2;
+        let t174 = t168 * t173;
+        let t177 = 0.20784609690826528 * minus_s_arm_leg2;
+        let t180 = 0.8928571428571429 * t161 + 0.8660254037844387 * c_rod_leg2;
+        let t184 = t137 * (0.56 * t180) - 0.28 * t174;
+        let t189 = minus_s_arm_leg2 * t173;
+        let t191 = 0.1344 * (c_arm_leg2 * t180) - 0.0672 * t189;
+        let t196 = t177 * t184 - 0.8660254037844387 * t168 * t191 - 0.14 * (t132 * t164);
+        ::overact::guard::leg(t196, 0.06758306237512474, "leg2")?;
+        let t197 = 1.0 / t196;
+        let garm_vx_leg2 = (t137 * (0.56 * t164) - 0.4849742261192857 * t174) * t197;
+        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t168) * t197;
+        let garm_vy_leg2 = t184 * t197;
         let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
             + garm_vz_leg2 * twist[2];
-        let t143 = rate_arm_leg2 * rate_arm_leg2;
-        let t146 = t89 + 0.8660254037844387 * s_rod_leg2;
-        let t147 = 0.56 * t146;
-        let gcross_vx_leg2 = (0.56 * t85 * t104 - 0.1344 * (c_arm_leg2 * t93)) * t128;
-        let minus_gcross_vy_leg2 = t117 * t128;
-        let minus_gcross_vz_leg2 = (0.56 * t107 * t104 + 0.0672 * (s_arm_leg2 * t93))
-            * t128;
-        let rate_cross_leg2 = gcross_vx_leg2 * twist[0] - minus_gcross_vy_leg2 * twist[1]
-            - minus_gcross_vz_leg2 * twist[2];
-        let t166 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (1.12 * t89 * t104 + 0.11639381426862856 * t123) * t128;
-        let minus_grod_vy_leg2 = t125 * t128;
+        let t208 = rate_arm_leg2 * rate_arm_leg2;
+        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t164)
+            - 0.11639381426862856 * (minus_s_arm_leg2 * t180)) * t197;
+        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t164)
+            - 0.11639381426862856 * t189) * t197;
+        let minus_gcross_vy_leg2 = t191 * t197;
+        let rate_cross_leg2 = gcross_vz_leg2 * twist[2]
+            - (minus_gcross_vx_leg2 * twist[0] + minus_gcross_vy_leg2 * twist[1]);
+        let t227 = 0.8660254037844387 * rate_cross_leg2;
+        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t168) - t137 * t177)
+            * t197;
+        let minus_grod_vy_leg2 = 0.25 * t132 * t197;
         let rate_rod_leg2 = grod_vx_leg2 * twist[0] - minus_grod_vy_leg2 * twist[1];
-        let t178 = t166 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t181 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t182 = 0.5 * rate_cross_leg2;
-        let t183 = t181 - t182;
-        let t186 = c_armcross_leg2 * rate_rod_leg2;
-        let t188 = t178 * t178 + t183 * t183 + t186 * t186;
-        let t194 = t90 * c_rod_leg2 - 0.5 * s_rod_leg2;
-        let t195 = 0.56 * t194;
-        let t199 = t147 * t178 + t195 * t183 - t101 * t186;
-        let t202 = t166 * t181;
-        let t205 = t166 * t186;
-        let t208 = 0.12 * c_arm_leg2 * t143 + t147 * t188 - t178 * t199
-            + 0.7466666666666667 * (t194 * t202) - t101 * t205;
-        let t218 = t182 * t186;
-        let t221 = t183 * t199 - (0.20784609690826528 * c_arm_leg2 * t143 + t195 * t188)
-            + 0.7466666666666667 * (t146 * t202) - t101 * t218;
-        let t229 = t147 * t205 - t195 * t218;
-        let minus_rate_dot_arm_leg2 = garm_vx_leg2 * t208 + garm_vy_leg2 * t221
-            + garm_vz_leg2 * (t100 * t143 + t101 * t188 + t229 + t229);
-        let t234 = actuator_accelerations[1] + minus_rate_dot_arm_leg2;
-        let t237 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t237);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t242 = s_armcross_leg3 * c_rod_leg3;
-        let t243 = s_armcross_leg3 * s_rod_leg3;
-        let t244 = t242 * t243;
-        let t246 = 0.5 * c_armcross_leg3;
-        let t247 = t246 * c_rod_leg3;
-        let t248 = 0.8660254037844387 * c_armcross_leg3;
-        let t251 = t248 * s_rod_leg3 - 0.5 * c_rod_leg3;
-        let t255 = 0.4849742261192857 * t242;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t260 = t246 * s_rod_leg3 + 0.8660254037844387 * c_rod_leg3;
-        let t265 = 0.1344 * (c_arm_leg3 * t260) + 0.0672 * (s_arm_leg3 * t243);
-        let t267 = 0.24 * s_arm_leg3;
-        let t268 = 0.56 * t242;
-        let t271 = 0.8660254037844387 * (t267 + t268) - t255;
-        let t275 = 0.6272 * (t247 * t260) + 0.1568 * t244;
-        let t281 = c_arm_leg3 * t242;
-        let t283 = 0.1344 * (s_arm_leg3 * t247) - 0.0672 * t281;
-        let t285 = t255 * t265 - t271 * t275 + 0.56 * t251 * t283;
-        ::overact::guard::leg(t285, 0.06758306237509014, "leg3")?;
-        let t286 = 1.0 / t285;
-        let garm_vx_leg3 = (0.2715855666268 * t244 + 0.6272 * (t247 * t251)) * t286;
-        let minus_garm_vy_leg3 = t275 * t286;
-        let minus_garm_vz_leg3 = (0.2715855666268 * (t260 * t242)
-            - 0.1568 * (t251 * t242)) * t286;
-        let rate_arm_leg3 = garm_vx_leg3 * twist[0] - minus_garm_vy_leg3 * twist[1]
-            - minus_garm_vz_leg3 * twist[2];
-        let t301 = rate_arm_leg3 * rate_arm_leg3;
-        let t305 = t248 * c_rod_leg3 + 0.5 * s_rod_leg3;
-        let t306 = 0.56 * t305;
-        let gcross_vy_leg3 = t265 * t286;
-        let minus_gcross_vx_leg3 = (0.56 * t243 * t271 + 0.1344 * (c_arm_leg3 * t251))
-            * t286;
-        let gcross_vz_leg3 = (0.56 * t260 * t271 - 0.0672 * (s_arm_leg3 * t251)) * t286;
-        let rate_cross_leg3 = gcross_vy_leg3 * twist[1] - minus_gcross_vx_leg3 * twist[0]
-            + gcross_vz_leg3 * twist[2];
-        let t325 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (0.11639381426862856 * t281 - 1.12 * t247 * t271) * t286;
-        let grod_vy_leg3 = t283 * t286;
-        let rate_rod_leg3 = grod_vx_leg3 * twist[0] + grod_vy_leg3 * twist[1];
-        let t337 = t325 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t339 = 0.5 * rate_cross_leg3;
-        let t341 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t342 = t339 + t341;
-        let t345 = c_armcross_leg3 * rate_rod_leg3;
-        let t347 = t337 * t337 + t342 * t342 + t345 * t345;
-        let t351 = 0.8660254037844387 * s_rod_leg3 - t247;
-        let t352 = 0.56 * t351;
-        let t357 = t352 * t337 + t306 * t342 - t268 * t345;
-        let t360 = t325 * t341;
-        let t363 = t339 * t345;
-        let t366 = 0.20784609690826528 * c_arm_leg3 * t301 + t306 * t347 - t342 * t357
-            - (0.7466666666666667 * (t351 * t360) + t268 * t363);
-        let t374 = t325 * t345;
-        let t379 = 0.12 * c_arm_leg3 * t301 - t352 * t347 + t337 * t357 + t268 * t374
-            - 0.7466666666666667 * (t305 * t360);
-        let t387 = t306 * t363 + t352 * t374;
-        let rate_dot_arm_leg3 = minus_garm_vy_leg3 * t366 - garm_vx_leg3 * t379
-            + minus_garm_vz_leg3 * (t267 * t301 + t268 * t347 + t387 + t387);
-        let t392 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t394 = garm_vx_leg1 * t77 + garm_vx_leg2 * t234 + garm_vx_leg3 * t392;
-        let t399 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t240 = t227 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
+        let t243 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
+        let t244 = 0.5 * rate_cross_leg2;
+        let t245 = t243 - t244;
+        let t248 = c_armcross_leg2 * rate_rod_leg2;
+        let t250 = t240 * t240 + t245 * t245 + t248 * t248;
+        let t253 = 0.20784609690826528 * c_arm_leg2;
+        let t255 = t111 - (0.17320508075688776 + t253);
+        let t256 = t244 * t248;
+        let t258 = 0.12 * c_arm_leg2;
+        let t260 = t114 + 0.1 + t258;
+        let t261 = t227 * t248;
+        let t263 = t255 * t256 + t260 * t261;
+        let t274 = t255 * t245 - t260 * t240 + t168 * t248;
+        let t279 = 1.3333333333333333 * (t227 * t243);
+        let t283 = garm_vx_leg2
+            * (t258 * t208 - t260 * t250 - t240 * t274 + t168 * t261 + t255 * t279);
+        let t293 = garm_vy_leg2
+            * (t245 * t274 - (t253 * t208 + t255 * t250) + t168 * t256 - t260 * t279);
+        let rate_dot_arm_leg2 = garm_vz_leg2 * (t167 * t208 + t168 * t250 + t263 + t263)
+            - (t283 + t293);
+        let t296 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t299 = pose[1] - 0.04330127018922194;
+        let t300 = t299 + 0.17320508075688776;
+        let t302 = t116 + 0.8660254037844387 * t300;
+        let t305 = 0.2304 * (t302 * t302 + t3);
+        let t306 = 1.0 / t305;
+        let t307 = 0.48 * t302;
+        let t310 = t123 + t300 * t300 + t3;
+        let t312 = t310 - 0.3136 + 0.0576;
+        let t315 = t305 - t312 * t312;
+        ::overact::guard::reach(t315, "leg3")?;
+        let t316 = ::overact::math::sqrt(t315);
+        let minus_c_arm_leg3 = t306 * (t307 * t312 + t14 * t316);
+        let t321 = t302 - 0.24 * minus_c_arm_leg3;
+        let t323 = t138 - 0.5 * t300;
+        let t324 = t323 * t323;
+        let t328 = 1.0 - 3.188775510204082 * t324;
+        ::overact::guard::reach(t328, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t328);
+        let c_cross_leg3 = (t310 - (0.0576 + t324) - 0.3136 * t328)
+            / (0.2688 * c_rod_leg3);
+        let s_arm_leg3 = t306 * (t307 * t316 - t14 * t312);
+        let s_cross_leg3 = 2.0833333333333335 * t316 / (0.56 * c_rod_leg3);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t344 = t323 * minus_c_armcross_leg3;
+        let t347 = 1.5464739353293548 * t344 + 0.5 * c_rod_leg3;
+        let t350 = 0.24 * s_arm_leg3;
+        let t351 = pose[2] + t350;
+        let s_rod_leg3 = 1.7857142857142858 * t323;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t356 = s_rod_leg3 * s_armcross_leg3;
+        let t357 = t351 * t356;
+        let t360 = 0.20784609690826528 * s_arm_leg3;
+        let t363 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t344;
+        let t367 = t321 * (0.56 * t363) + 0.28 * t357;
+        let t372 = s_arm_leg3 * t356;
+        let t374 = 0.1344 * (minus_c_arm_leg3 * t363) - 0.0672 * t372;
+        let t379 = t360 * t367 + 0.8660254037844387 * t351 * t374 + 0.14 * (t316 * t347);
+        ::overact::guard::leg(t379, 0.06758306237512474, "leg3")?;
+        let t380 = 1.0 / t379;
+        let garm_vx_leg3 = (t321 * (0.56 * t347) - 0.4849742261192857 * t357) * t380;
+        let garm_vy_leg3 = t367 * t380;
+        let t383 = 0.20784609690826528 * minus_c_arm_leg3;
+        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t351) * t380;
+        let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
+            + garm_vz_leg3 * twist[2];
+        let t392 = rate_arm_leg3 * rate_arm_leg3;
+        let t395 = t299 - (t383 - 0.17320508075688776);
+        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t363)
+            + 0.0672 * (s_arm_leg3 * t347)) * t380;
+        let minus_gcross_vx_leg3 = (0.11639381426862856 * t372
+            + 0.1344 * (minus_c_arm_leg3 * t347)) * t380;
+        let minus_gcross_vy_leg3 = t374 * t380;
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
+        let t413 = 0.8660254037844387 * rate_cross_leg3;
+        let grod_vx_leg3 = (t321 * t360
+            + 0.20784609690826528 * (minus_c_arm_leg3 * t351)) * t380;
+        let minus_grod_vy_leg3 = 0.25 * t316 * t380;
+        let rate_rod_leg3 = grod_vx_leg3 * twist[0] - minus_grod_vy_leg3 * twist[1];
+        let t426 = t413 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
+        let t428 = 0.5 * rate_cross_leg3;
+        let t430 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
+        let t431 = t428 + t430;
+        let t434 = minus_c_armcross_leg3 * rate_rod_leg3;
+        let t436 = t426 * t426 + t431 * t431 + t434 * t434;
+        let t439 = 0.12 * minus_c_arm_leg3;
+        let t441 = t114 - (t439 - 0.1);
+        let t446 = t441 * t426 - t395 * t431 - t351 * t434;
+        let t450 = 1.3333333333333333 * (t413 * t430);
+        let t452 = t428 * t434;
+        let t456 = garm_vy_leg3
+            * (t383 * t392 + t395 * t436 + t431 * t446 + t441 * t450 + t351 * t452);
+        let t462 = t413 * t434;
+        let t467 = garm_vx_leg3
+            * (t426 * t446 - (t439 * t392 + t441 * t436) + t351 * t462 + t395 * t450);
+        let t474 = t395 * t452 - t441 * t462;
+        let rate_dot_arm_leg3 = t456 - t467
+            - garm_vz_leg3 * (t350 * t392 - t351 * t436 + t474 + t474);
+        let t479 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t481 = garm_vx_leg1 * t109 + garm_vx_leg2 * t296 + garm_vx_leg3 * t479;
+        let t486 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t399, 14.8697301728973, "actuators")?;
-        let t400 = 1.0 / t399;
-        let t406 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
-            - garm_vx_leg3 * minus_garm_vy_leg3;
-        let t407 = t406 * t400;
-        let t414 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + minus_garm_vy_leg3 * minus_garm_vy_leg3 - t406 * t407;
-        ::overact::guard::platform(t414, 14.869730172897306, "actuators")?;
-        let t415 = 1.0 / t414;
-        let t422 = garm_vy_leg1 * t77 + garm_vy_leg2 * t234 - minus_garm_vy_leg3 * t392
-            - t394 * t407;
-        let t433 = garm_vx_leg2 * garm_vz_leg2 - garm_vx_leg1 * minus_garm_vz_leg1
-            - garm_vx_leg3 * minus_garm_vz_leg3;
-        let t434 = t433 * t400;
-        let t436 = garm_vy_leg2 * garm_vz_leg2 - garm_vy_leg1 * minus_garm_vz_leg1
-            + minus_garm_vy_leg3 * minus_garm_vz_leg3 - t406 * t434;
-        let t437 = t436 * t415;
-        let t446 = minus_garm_vz_leg1 * minus_garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t433 * t434 - t436 * t437;
-        ::overact::guard::platform(t446, 34.85535020139291, "actuators")?;
-        let t456 = (garm_vz_leg2 * t234 - minus_garm_vz_leg1 * t77
-            - minus_garm_vz_leg3 * t392 - t394 * t434 - t437 * t422) / t446;
-        let t458 = t415 * t422 - t437 * t456;
-        Ok([t394 * t400 - t407 * t458 - t434 * t456, t458, t456])
+        ::overact::guard::platform(t486, 14.869730172882845, "actuators")?;
+        let t487 = 1.0 / t486;
+        let t493 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3;
+        let t494 = t493 * t487;
+        let t501 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t493 * t494;
+        ::overact::guard::platform(t501, 14.869730172882843, "actuators")?;
+        let t502 = 1.0 / t501;
+        let t509 = garm_vy_leg1 * t109 + garm_vy_leg2 * t296 + garm_vy_leg3 * t479
+            - t481 * t494;
+        let t520 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3;
+        let t521 = t520 * t487;
+        let t523 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 - t493 * t521;
+        let t524 = t523 * t502;
+        let t533 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 - t520 * t521 - t523 * t524;
+        ::overact::guard::platform(t533, 34.855350201355726, "actuators")?;
+        let t543 = (garm_vz_leg1 * t109 + garm_vz_leg2 * t296 + garm_vz_leg3 * t479
+            - t481 * t521 - t524 * t509) / t533;
+        let t545 = t502 * t509 - t524 * t543;
+        Ok([t481 * t487 - t494 * t545 - t521 * t543, t545, t543])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1396,7 +1906,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 867 operations (261 additions, 602 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 9 signs, 753 intermediates.
+    /// 951 operations (311 additions, 627 multiplications, 13 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 825 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1405,8 +1915,551 @@ impl Delta {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 52]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_platform_from_joints(pose, joints, twist, acceleration)
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.2304 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.48 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.3136 + 0.0576;
+        let t14 = 0.48 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t21 = 0.24 * c_arm_leg1;
+        let t23 = t0 - (0.2 + t21);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = t23 * t25;
+        let t27 = 0.48 * t24;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t35 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t35, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t35);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t35) / (0.2688 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t49 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t27
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t49)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t49));
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t27;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t27;
+        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
+            - minus_gcross_vz_leg1 * twist[2];
+        let grod_vy_leg1 = 1.7857142857142858 * t49;
+        let rate_rod_leg1 = grod_vy_leg1 * twist[1];
+        let t69 = s_armcross_leg1 * rate_rod_leg1;
+        let t71 = pose[1] * (rate_cross_leg1 * t69);
+        let garm_vy_leg1 = pose[1] * t25;
+        let t76 = 0.24 * minus_s_arm_leg1;
+        let t77 = pose[2] - t76;
+        let garm_vz_leg1 = t77 * t25;
+        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
+            + garm_vz_leg1 * twist[2];
+        let t81 = rate_arm_leg1 * rate_arm_leg1;
+        let t84 = rate_cross_leg1 * rate_cross_leg1;
+        let t86 = c_armcross_leg1 * rate_rod_leg1;
+        let t88 = t69 * t69 + t84 + t86 * t86;
+        let t93 = acceleration[0] - (t71 - (t21 * t81 + t23 * t88) + t71);
+        let t95 = pose[1] * rate_cross_leg1;
+        let t96 = rate_cross_leg1 * t95;
+        let t99 = acceleration[1] - (t96 - pose[1] * t88);
+        let t103 = pose[1] * (rate_cross_leg1 * t86);
+        let t109 = acceleration[2] - (t103 - (t76 * t81 + t77 * t88) + t103);
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t93 + garm_vy_leg1 * t99
+            + garm_vz_leg1 * t109;
+        let t112 = garm_vx_leg1 * rate_dot_arm_leg1;
+        let t113 = garm_vy_leg1 * rate_dot_arm_leg1;
+        let t114 = garm_vz_leg1 * rate_dot_arm_leg1;
+        let t115 = 9.81 * c_arm_leg1;
+        let t119 = 9.81 * minus_s_arm_leg1;
+        let rate_dot_cross_leg1 = gcross_vy_leg1 * t99 - minus_gcross_vx_leg1 * t93
+            - minus_gcross_vz_leg1 * t109;
+        let t134 = s_rod_leg1 * rate_dot_cross_leg1;
+        let t135 = c_rod_leg1 * rate_cross_leg1;
+        let t136 = rate_rod_leg1 * t135;
+        let t137 = t134 + t136;
+        let t139 = 1.7857142857142858 * t95;
+        let t140 = rate_rod_leg1 * t139;
+        let t141 = c_rod_leg1 * t140;
+        let t142 = s_rod_leg1 * t137 + t141;
+        let t145 = 3.188775510204082 * t96;
+        let t148 = t136 + t137;
+        let t150 = c_rod_leg1 * rate_dot_cross_leg1;
+        let t151 = t150 - t140;
+        let t154 = c_rod_leg1 * t148 - s_rod_leg1 * (t140 - t151);
+        let t158 = 3.188775510204082 * (t95 * t95);
+        let t164 = t139 * t135;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t99;
+        let t168 = rate_rod_leg1 * rate_rod_leg1;
+        let t171 = s_rod_leg1 * (t164 + rate_dot_rod_leg1) + c_rod_leg1 * (t168 - t158);
+        let t178 = c_rod_leg1 * t151 - t141;
+        let t179 = minus_gcross_vx_leg1 * t178;
+        let t181 = gcross_vy_leg1 * t178 + t145;
+        let t182 = minus_gcross_vz_leg1 * t178;
+        let t183 = 1.7857142857142858 * acceleration[1];
+        let t189 = grod_vy_leg1 * rate_dot_rod_leg1;
+        let t190 = 1.7857142857142858 * acceleration[0];
+        let t192 = 0.24 * rate_dot_arm_leg1 - t115;
+        let t193 = 0.24 * t192;
+        let t194 = garm_vx_leg1 * t193;
+        let t200 = garm_vy_leg1 * t193;
+        let t208 = acceleration[2] + 9.81;
+        let t209 = 1.7857142857142858 * t208;
+        let t210 = garm_vz_leg1 * t193;
+        let t216 = 0.8928571428571429 * t17;
+        let t220 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
+        let t224 = 0.24 * c_cross_leg1;
+        let t226 = t216 * (t164 - rate_dot_rod_leg1) + t220 * (t158 + t168)
+            - t224 * t148;
+        let t230 = t119 - 0.24 * t81;
+        let t233 = s_rod_leg1 * (c_cross_leg1 * t192 - s_cross_leg1 * t230);
+        let t241 = c_cross_leg1 * t230 + s_cross_leg1 * t192;
+        let t251 = t150 * t216 + t134 * t220 + t84 * t224;
+        let t261 = pose[1] + 0.04330127018922194;
+        let t262 = t261 - 0.17320508075688776;
+        let t264 = pose[0] - 0.025;
+        let t265 = t264 + 0.1;
+        let t266 = 0.5 * t265;
+        let t267 = 0.8660254037844387 * t262 - t266;
+        let t270 = 0.2304 * (t267 * t267 + t3);
+        let t271 = 1.0 / t270;
+        let t272 = 0.48 * t267;
+        let t273 = t265 * t265;
+        let t276 = t273 + t262 * t262 + t3;
+        let t278 = t276 - 0.3136 + 0.0576;
+        let t281 = t270 - t278 * t278;
+        ::overact::guard::reach(t281, "leg2")?;
+        let t282 = ::overact::math::sqrt(t281);
+        let c_arm_leg2 = t271 * (t272 * t278 - t14 * t282);
+        let t287 = t267 - 0.24 * c_arm_leg2;
+        let t288 = 0.8660254037844387 * t265;
+        let t290 = t288 + 0.5 * t262;
+        let t291 = t290 * t290;
+        let t295 = 1.0 - 3.188775510204082 * t291;
+        ::overact::guard::reach(t295, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t295);
+        let c_cross_leg2 = (t276 - (0.0576 + t291) - 0.3136 * t295)
+            / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t271 * (t14 * t278 + t272 * t282);
+        let s_cross_leg2 = 2.0833333333333335 * t282 / (0.56 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t311 = t290 * c_armcross_leg2;
+        let t314 = 1.5464739353293548 * t311 - 0.5 * c_rod_leg2;
+        let t317 = 0.24 * minus_s_arm_leg2;
+        let t318 = pose[2] - t317;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t290;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t323 = minus_s_rod_leg2 * s_armcross_leg2;
+        let t324 = t318 * t323;
+        let t327 = 0.20784609690826528 * minus_s_arm_leg2;
+        let t330 = 0.8928571428571429 * t311 + 0.8660254037844387 * c_rod_leg2;
+        let t334 = t287 * (0.56 * t330) - 0.28 * t324;
+        let t339 = minus_s_arm_leg2 * t323;
+        let t341 = 0.1344 * (c_arm_leg2 * t330) - 0.0672 * t339;
+        let t346 = t327 * t334 - 0.8660254037844387 * t318 * t341 - 0.14 * (t282 * t314);
+        ::overact::guard::leg(t346, 0.06758306237512474, "leg2")?;
+        let t347 = 1.0 / t346;
+        let garm_vx_leg2 = (t287 * (0.56 * t314) - 0.4849742261192857 * t324) * t347;
+        let t349 = 0.12 * c_arm_leg2;
+        let garm_vy_leg2 = t334 * t347;
+        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t318) * t347;
+        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
+            + garm_vz_leg2 * twist[2];
+        let t359 = rate_arm_leg2 * rate_arm_leg2;
+        let t362 = t264 + 0.1 + t349;
+        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t314)
+            - 0.11639381426862856 * (minus_s_arm_leg2 * t330)) * t347;
+        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t314)
+            - 0.11639381426862856 * t339) * t347;
+        let minus_gcross_vy_leg2 = t341 * t347;
+        let rate_cross_leg2 = gcross_vz_leg2 * twist[2]
+            - (minus_gcross_vx_leg2 * twist[0] + minus_gcross_vy_leg2 * twist[1]);
+        let t380 = 0.8660254037844387 * rate_cross_leg2;
+        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t318) - t287 * t327)
+            * t347;
+        let minus_grod_vy_leg2 = 0.25 * t282 * t347;
+        let rate_rod_leg2 = grod_vx_leg2 * twist[0] - minus_grod_vy_leg2 * twist[1];
+        let t393 = t380 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
+        let t396 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
+        let t397 = 0.5 * rate_cross_leg2;
+        let t398 = t396 - t397;
+        let t401 = c_armcross_leg2 * rate_rod_leg2;
+        let t403 = t393 * t393 + t398 * t398 + t401 * t401;
+        let t406 = 0.20784609690826528 * c_arm_leg2;
+        let t408 = t261 - (0.17320508075688776 + t406);
+        let t413 = t408 * t398 - t362 * t393 + t318 * t401;
+        let t416 = t380 * t401;
+        let t419 = 1.3333333333333333 * (t380 * t396);
+        let t423 = acceleration[0]
+            - (t349 * t359 - t362 * t403 - t393 * t413 + t318 * t416 + t408 * t419);
+        let t430 = t397 * t401;
+        let t435 = acceleration[1]
+            - (t398 * t413 - (t406 * t359 + t408 * t403) + t318 * t430 - t362 * t419);
+        let t443 = t408 * t430 + t362 * t416;
+        let t446 = acceleration[2] + t317 * t359 + t318 * t403 + t443 + t443;
+        let rate_dot_arm_leg2 = garm_vx_leg2 * t423 + garm_vy_leg2 * t435
+            + garm_vz_leg2 * t446;
+        let t449 = garm_vx_leg2 * rate_dot_arm_leg2;
+        let t450 = garm_vy_leg2 * rate_dot_arm_leg2;
+        let t451 = garm_vz_leg2 * rate_dot_arm_leg2;
+        let t452 = 9.81 * c_arm_leg2;
+        let t456 = 9.81 * minus_s_arm_leg2;
+        let t466 = 1.7857142857142858 * t413;
+        let t467 = rate_rod_leg2 * t466;
+        let t468 = c_rod_leg2 * t467;
+        let t469 = c_rod_leg2 * rate_cross_leg2;
+        let t470 = rate_rod_leg2 * t469;
+        let rate_dot_cross_leg2 = gcross_vz_leg2 * t446
+            - (minus_gcross_vx_leg2 * t423 + minus_gcross_vy_leg2 * t435);
+        let t476 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t477 = t470 - t476;
+        let t479 = t468 - minus_s_rod_leg2 * t477;
+        let t481 = t466 * t469;
+        let t482 = grod_vx_leg2 * t481;
+        let t484 = minus_grod_vy_leg2 * t481;
+        let t489 = 3.188775510204082 * (t413 * t413);
+        let t490 = t469 * t469;
+        let t491 = t489 - t490;
+        let t493 = c_rod_leg2 * rate_dot_cross_leg2;
+        let t494 = t493 - t467;
+        let t497 = t470 + t477;
+        let t499 = minus_s_rod_leg2 * (t467 - t494) + c_rod_leg2 * t497;
+        let t506 = rate_rod_leg2 * rate_rod_leg2;
+        let rate_dot_rod_leg2 = grod_vx_leg2 * t423 - minus_grod_vy_leg2 * t435;
+        let t514 = c_rod_leg2 * (t506 - t489)
+            - minus_s_rod_leg2 * (t481 + rate_dot_rod_leg2);
+        let t523 = c_rod_leg2 * t494 - t468;
+        let t525 = t482 - minus_gcross_vx_leg2 * t523;
+        let t527 = minus_gcross_vy_leg2 * t523 + t484;
+        let t528 = gcross_vz_leg2 * t523;
+        let t531 = t481 - rate_dot_rod_leg2;
+        let t533 = minus_s_rod_leg2 * (t490 - t506) + c_rod_leg2 * t531;
+        let t541 = grod_vx_leg2 * rate_dot_rod_leg2;
+        let t542 = minus_grod_vy_leg2 * rate_dot_rod_leg2;
+        let t544 = 0.24 * rate_dot_arm_leg2 - t452;
+        let t545 = 0.24 * t544;
+        let t546 = garm_vx_leg2 * t545;
+        let t554 = garm_vy_leg2 * t545;
+        let t562 = garm_vz_leg2 * t545;
+        let t568 = 0.8928571428571429 * t282;
+        let t571 = 0.42857142857142855 * (t290 * s_cross_leg2);
+        let t575 = 0.24 * c_cross_leg2;
+        let t577 = t568 * t531 - t571 * (t489 + t506) - t575 * t497;
+        let t581 = t456 - 0.24 * t359;
+        let t584 = minus_s_rod_leg2 * (c_cross_leg2 * t544 - s_cross_leg2 * t581);
+        let t589 = c_cross_leg2 * t581 + s_cross_leg2 * t544;
+        let t606 = t493 * t568 + t476 * t571 + rate_cross_leg2 * rate_cross_leg2 * t575;
+        let t616 = pose[1] - 0.04330127018922194;
+        let t617 = t616 + 0.17320508075688776;
+        let t619 = t266 + 0.8660254037844387 * t617;
+        let t622 = 0.2304 * (t619 * t619 + t3);
+        let t623 = 1.0 / t622;
+        let t624 = 0.48 * t619;
+        let t627 = t273 + t617 * t617 + t3;
+        let t629 = t627 - 0.3136 + 0.0576;
+        let t632 = t622 - t629 * t629;
+        ::overact::guard::reach(t632, "leg3")?;
+        let t633 = ::overact::math::sqrt(t632);
+        let minus_c_arm_leg3 = t623 * (t624 * t629 + t14 * t633);
+        let t638 = t619 - 0.24 * minus_c_arm_leg3;
+        let t640 = t288 - 0.5 * t617;
+        let t641 = t640 * t640;
+        let t645 = 1.0 - 3.188775510204082 * t641;
+        ::overact::guard::reach(t645, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t645);
+        let c_cross_leg3 = (t627 - (0.0576 + t641) - 0.3136 * t645)
+            / (0.2688 * c_rod_leg3);
+        let s_arm_leg3 = t623 * (t624 * t633 - t14 * t629);
+        let s_cross_leg3 = 2.0833333333333335 * t633 / (0.56 * c_rod_leg3);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t661 = t640 * minus_c_armcross_leg3;
+        let t664 = 1.5464739353293548 * t661 + 0.5 * c_rod_leg3;
+        let t667 = 0.24 * s_arm_leg3;
+        let t668 = pose[2] + t667;
+        let s_rod_leg3 = 1.7857142857142858 * t640;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t673 = s_rod_leg3 * s_armcross_leg3;
+        let t674 = t668 * t673;
+        let t677 = 0.20784609690826528 * s_arm_leg3;
+        let t680 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t661;
+        let t684 = t638 * (0.56 * t680) + 0.28 * t674;
+        let t689 = s_arm_leg3 * t673;
+        let t691 = 0.1344 * (minus_c_arm_leg3 * t680) - 0.0672 * t689;
+        let t696 = t677 * t684 + 0.8660254037844387 * t668 * t691 + 0.14 * (t633 * t664);
+        ::overact::guard::leg(t696, 0.06758306237512474, "leg3")?;
+        let t697 = 1.0 / t696;
+        let garm_vx_leg3 = (t638 * (0.56 * t664) - 0.4849742261192857 * t674) * t697;
+        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t680)
+            + 0.0672 * (s_arm_leg3 * t664)) * t697;
+        let minus_gcross_vx_leg3 = (0.11639381426862856 * t689
+            + 0.1344 * (minus_c_arm_leg3 * t664)) * t697;
+        let minus_gcross_vy_leg3 = t691 * t697;
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
+        let t716 = 0.8660254037844387 * rate_cross_leg3;
+        let grod_vx_leg3 = (t638 * t677
+            + 0.20784609690826528 * (minus_c_arm_leg3 * t668)) * t697;
+        let minus_grod_vy_leg3 = 0.25 * t633 * t697;
+        let rate_rod_leg3 = grod_vx_leg3 * twist[0] - minus_grod_vy_leg3 * twist[1];
+        let t729 = t716 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
+        let t730 = 0.12 * minus_c_arm_leg3;
+        let t732 = t264 - (t730 - 0.1);
+        let t734 = 0.20784609690826528 * minus_c_arm_leg3;
+        let t736 = t616 - (t734 - 0.17320508075688776);
+        let t737 = 0.5 * rate_cross_leg3;
+        let t739 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
+        let t740 = t737 + t739;
+        let t743 = minus_c_armcross_leg3 * rate_rod_leg3;
+        let t745 = t732 * t729 - t736 * t740 - t668 * t743;
+        let garm_vy_leg3 = t684 * t697;
+        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t668) * t697;
+        let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
+            + garm_vz_leg3 * twist[2];
+        let t756 = rate_arm_leg3 * rate_arm_leg3;
+        let t762 = t729 * t729 + t740 * t740 + t743 * t743;
+        let t766 = t716 * t743;
+        let t769 = 1.3333333333333333 * (t716 * t739);
+        let t773 = acceleration[0]
+            - (t729 * t745 - (t730 * t756 + t732 * t762) + t668 * t766 + t736 * t769);
+        let t781 = t737 * t743;
+        let t785 = acceleration[1] + t734 * t756 + t736 * t762 + t740 * t745
+            + t732 * t769 + t668 * t781;
+        let t793 = t736 * t781 - t732 * t766;
+        let t796 = acceleration[2] - (t667 * t756 - t668 * t762 + t793 + t793);
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t773 + garm_vy_leg3 * t785
+            + garm_vz_leg3 * t796;
+        let t799 = garm_vx_leg3 * rate_dot_arm_leg3;
+        let t800 = garm_vy_leg3 * rate_dot_arm_leg3;
+        let t801 = garm_vz_leg3 * rate_dot_arm_leg3;
+        let t802 = 9.81 * minus_c_arm_leg3;
+        let t806 = 9.81 * s_arm_leg3;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * t796
+            - (minus_gcross_vx_leg3 * t773 + minus_gcross_vy_leg3 * t785);
+        let t821 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t822 = c_rod_leg3 * rate_cross_leg3;
+        let t823 = rate_rod_leg3 * t822;
+        let t824 = t821 + t823;
+        let t826 = 1.7857142857142858 * t745;
+        let t827 = rate_rod_leg3 * t826;
+        let t828 = c_rod_leg3 * t827;
+        let t829 = s_rod_leg3 * t824 + t828;
+        let t831 = t826 * t822;
+        let t832 = grod_vx_leg3 * t831;
+        let t834 = minus_grod_vy_leg3 * t831;
+        let t839 = 3.188775510204082 * (t745 * t745);
+        let t840 = t822 * t822;
+        let t841 = t839 - t840;
+        let t843 = t823 + t824;
+        let t845 = c_rod_leg3 * rate_dot_cross_leg3;
+        let t846 = t845 - t827;
+        let t849 = c_rod_leg3 * t843 - s_rod_leg3 * (t827 - t846);
+        let rate_dot_rod_leg3 = grod_vx_leg3 * t773 - minus_grod_vy_leg3 * t785;
+        let t862 = rate_rod_leg3 * rate_rod_leg3;
+        let t865 = s_rod_leg3 * (t831 + rate_dot_rod_leg3) + c_rod_leg3 * (t862 - t839);
+        let t873 = c_rod_leg3 * t846 - t828;
+        let t875 = t832 - minus_gcross_vx_leg3 * t873;
+        let t877 = minus_gcross_vy_leg3 * t873 + t834;
+        let t878 = gcross_vz_leg3 * t873;
+        let t882 = t831 - rate_dot_rod_leg3;
+        let t884 = s_rod_leg3 * (t840 - t862) - c_rod_leg3 * t882;
+        let t891 = grod_vx_leg3 * rate_dot_rod_leg3;
+        let t892 = minus_grod_vy_leg3 * rate_dot_rod_leg3;
+        let t894 = t802 + 0.24 * rate_dot_arm_leg3;
+        let t895 = 0.24 * t894;
+        let t896 = garm_vx_leg3 * t895;
+        let t904 = garm_vy_leg3 * t895;
+        let t912 = garm_vz_leg3 * t895;
+        let t918 = 0.8928571428571429 * t633;
+        let t921 = 0.42857142857142855 * (t640 * s_cross_leg3);
+        let t925 = 0.24 * c_cross_leg3;
+        let t927 = t918 * t882 + t921 * (t839 + t862) - t925 * t843;
+        let t930 = t806 + 0.24 * t756;
+        let t934 = s_rod_leg3 * (s_cross_leg3 * t930 + c_cross_leg3 * t894);
+        let t939 = s_cross_leg3 * t894 - c_cross_leg3 * t930;
+        let t956 = t845 * t918 + t821 * t921 + rate_cross_leg3 * rate_cross_leg3 * t925;
+        Ok([
+            [
+                t112, -(garm_vx_leg1 * t115), -(garm_vx_leg1 * t119), t112,
+                garm_vx_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
+                garm_vx_leg1, -(minus_gcross_vx_leg1 * t142), -(minus_gcross_vx_leg1 * t154),
+                -(minus_gcross_vx_leg1 * t171), -t179, -(minus_gcross_vx_leg1 * t183), 0.0,
+                t190
+                    - 0.10285714285714286
+                        * (17.36111111111111 * t194 - 5.444444444444445 * t179),
+                garm_vx_leg1 * t226 + minus_gcross_vx_leg1 * t233,
+                garm_vx_leg1 * t251 - minus_gcross_vx_leg1 * t241,
+                t194,
+                t449,
+                -(garm_vx_leg2 * t452),
+                -(garm_vx_leg2 * t456),
+                t449,
+                garm_vx_leg2 * rate_arm_leg2,
+                ::overact::math::signed(garm_vx_leg2, rate_arm_leg2),
+                garm_vx_leg2,
+                -(minus_gcross_vx_leg2 * t479 + t482),
+                grod_vx_leg2 * t491 - minus_gcross_vx_leg2 * t499,
+                -(minus_gcross_vx_leg2 * t514 + grod_vx_leg2 * t476),
+                t525,
+                minus_gcross_vx_leg2 * t533 + grod_vx_leg2 * t493,
+                t541,
+                t190
+                    - 0.10285714285714286
+                        * (17.36111111111111 * t546 + 5.444444444444445 * t525
+                            + 5.444444444444445 * t541),
+                garm_vx_leg2 * t577 - minus_gcross_vx_leg2 * t584
+                    - grod_vx_leg2 * (c_rod_leg2 * t589),
+                garm_vx_leg2 * t606 - minus_gcross_vx_leg2 * t589,
+                t546,
+                t799,
+                garm_vx_leg3 * t802,
+                garm_vx_leg3 * t806,
+                t799,
+                garm_vx_leg3 * rate_arm_leg3,
+                ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
+                garm_vx_leg3,
+                -(minus_gcross_vx_leg3 * t829 + t832),
+                grod_vx_leg3 * t841 - minus_gcross_vx_leg3 * t849,
+                grod_vx_leg3 * t821 - minus_gcross_vx_leg3 * t865,
+                t875,
+                grod_vx_leg3 * t845 - minus_gcross_vx_leg3 * t884,
+                t891,
+                t190
+                    - 0.10285714285714286
+                        * (17.36111111111111 * t896 + 5.444444444444445 * t875
+                            + 5.444444444444445 * t891),
+                garm_vx_leg3 * t927 + minus_gcross_vx_leg3 * t934
+                    - grod_vx_leg3 * (c_rod_leg3 * t939),
+                garm_vx_leg3 * t956 - minus_gcross_vx_leg3 * t939,
+                t896,
+                acceleration[0],
+            ],
+            [
+                t113, -(garm_vy_leg1 * t115), -(garm_vy_leg1 * t119), t113,
+                garm_vy_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
+                garm_vy_leg1, gcross_vy_leg1 * t142 - t145,
+                gcross_vy_leg1 * t154 + grod_vy_leg1 * (t158 - t135 * t135),
+                gcross_vy_leg1 * t171 + grod_vy_leg1 * t134, t181,
+                gcross_vy_leg1 * t183 + 1.7857142857142858 * rate_dot_cross_leg1, t189,
+                t183
+                    - 0.10285714285714286
+                        * (17.36111111111111 * t200 + 5.444444444444445 * t181
+                            + 5.444444444444445 * t189),
+                garm_vy_leg1 * t226 - gcross_vy_leg1 * t233 - 1.7857142857142858 * t241,
+                garm_vy_leg1 * t251 + gcross_vy_leg1 * t241,
+                t200,
+                t450,
+                -(garm_vy_leg2 * t452),
+                -(garm_vy_leg2 * t456),
+                t450,
+                garm_vy_leg2 * rate_arm_leg2,
+                ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
+                garm_vy_leg2,
+                t484 - minus_gcross_vy_leg2 * t479,
+                -(minus_gcross_vy_leg2 * t499 + minus_grod_vy_leg2 * t491),
+                minus_grod_vy_leg2 * t476 - minus_gcross_vy_leg2 * t514,
+                -t527,
+                minus_gcross_vy_leg2 * t533 - 0.8928571428571429 * rate_dot_cross_leg2,
+                -t542,
+                t183
+                    - 0.10285714285714286
+                        * (17.36111111111111 * t554 - 5.444444444444445 * t527
+                            - 5.444444444444445 * t542),
+                garm_vy_leg2 * t577 - minus_gcross_vy_leg2 * t584
+                    + 0.8928571428571429 * t589,
+                garm_vy_leg2 * t606 - minus_gcross_vy_leg2 * t589,
+                t554,
+                t800,
+                garm_vy_leg3 * t802,
+                garm_vy_leg3 * t806,
+                t800,
+                garm_vy_leg3 * rate_arm_leg3,
+                ::overact::math::signed(garm_vy_leg3, rate_arm_leg3),
+                garm_vy_leg3,
+                t834 - minus_gcross_vy_leg3 * t829,
+                -(minus_gcross_vy_leg3 * t849 + minus_grod_vy_leg3 * t841),
+                -(minus_gcross_vy_leg3 * t865 + minus_grod_vy_leg3 * t821),
+                -t877,
+                -(minus_gcross_vy_leg3 * t884
+                    + 0.8928571428571429 * rate_dot_cross_leg3),
+                -t892,
+                t183
+                    - 0.10285714285714286
+                        * (17.36111111111111 * t904 - 5.444444444444445 * t877
+                            - 5.444444444444445 * t892),
+                garm_vy_leg3 * t927 + minus_gcross_vy_leg3 * t934
+                    + 0.8928571428571429 * t939,
+                garm_vy_leg3 * t956 - minus_gcross_vy_leg3 * t939,
+                t904,
+                acceleration[1],
+            ],
+            [
+                t114, -(garm_vz_leg1 * t115), -(garm_vz_leg1 * t119), t114,
+                garm_vz_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vz_leg1, rate_arm_leg1),
+                garm_vz_leg1, -(minus_gcross_vz_leg1 * t142), -(minus_gcross_vz_leg1 * t154),
+                -(minus_gcross_vz_leg1 * t171), -t182, -(minus_gcross_vz_leg1 * t183), 0.0,
+                t209
+                    - 0.10285714285714286
+                        * (17.36111111111111 * t210 - 5.444444444444445 * t182),
+                garm_vz_leg1 * t226 + minus_gcross_vz_leg1 * t233,
+                garm_vz_leg1 * t251 - minus_gcross_vz_leg1 * t241,
+                t210,
+                t451,
+                -(garm_vz_leg2 * t452),
+                -(garm_vz_leg2 * t456),
+                t451,
+                garm_vz_leg2 * rate_arm_leg2,
+                ::overact::math::signed(garm_vz_leg2, rate_arm_leg2),
+                garm_vz_leg2,
+                gcross_vz_leg2 * t479,
+                gcross_vz_leg2 * t499,
+                gcross_vz_leg2 * t514,
+                t528,
+                -(gcross_vz_leg2 * t533),
+                0.0,
+                t209
+                    - 0.10285714285714286
+                        * (17.36111111111111 * t562 + 5.444444444444445 * t528),
+                garm_vz_leg2 * t577 + gcross_vz_leg2 * t584,
+                garm_vz_leg2 * t606 + gcross_vz_leg2 * t589,
+                t562,
+                t801,
+                garm_vz_leg3 * t802,
+                garm_vz_leg3 * t806,
+                t801,
+                garm_vz_leg3 * rate_arm_leg3,
+                ::overact::math::signed(garm_vz_leg3, rate_arm_leg3),
+                garm_vz_leg3,
+                gcross_vz_leg3 * t829,
+                gcross_vz_leg3 * t849,
+                gcross_vz_leg3 * t865,
+                t878,
+                gcross_vz_leg3 * t884,
+                0.0,
+                t209
+                    - 0.10285714285714286
+                        * (17.36111111111111 * t912 + 5.444444444444445 * t878),
+                garm_vz_leg3 * t927 - gcross_vz_leg3 * t934,
+                garm_vz_leg3 * t956 + gcross_vz_leg3 * t939,
+                t912,
+                t208,
+            ],
+        ])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1931,7 +2984,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 950 operations (298 additions, 645 multiplications, 7 divisions), 0 square roots, 9 trigonometric pairs, 9 signs, 834 intermediates.
+    /// 1034 operations (348 additions, 670 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 906 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1942,535 +2995,595 @@ impl Delta {
         start: &[f64; 3],
     ) -> Result<[[f64; 52]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
-        let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.2304 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.48 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.3136 + 0.0576;
+        let t14 = 0.48 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t21 = 0.24 * c_arm_leg1;
+        let t23 = t0 - (0.2 + t21);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = t23 * t25;
+        let t27 = garm_vx_leg1 * actuator_accelerations[0];
+        let garm_vy_leg1 = pose[1] * t25;
+        let t29 = garm_vy_leg1 * actuator_accelerations[0];
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let t34 = 0.24 * minus_s_arm_leg1;
+        let t35 = pose[2] - t34;
+        let garm_vz_leg1 = t35 * t25;
+        let t37 = garm_vz_leg1 * actuator_accelerations[0];
+        let t38 = 9.81 * c_arm_leg1;
+        let t42 = 9.81 * minus_s_arm_leg1;
+        let t46 = garm_vx_leg1 * actuator_velocities[0];
+        let t47 = garm_vy_leg1 * actuator_velocities[0];
+        let t48 = garm_vz_leg1 * actuator_velocities[0];
+        let t52 = 0.48 * t24;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t52;
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t57 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t57, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t57);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t12 = c_armcross_leg1 * c_rod_leg1;
-        let t13 = s_armcross_leg1 * c_rod_leg1;
-        let t16 = c_arm_leg1 * t13 - s_arm_leg1 * t12;
-        ::overact::guard::leg(t16, 0.89794672585951, "leg1")?;
-        let t17 = 1.0 / t16;
-        let t18 = 4.166666666666667 * t17;
-        let garm_vx_leg1 = t12 * t18;
-        let t20 = garm_vx_leg1 * actuator_accelerations[0];
-        let garm_vy_leg1 = s_rod_leg1 * t18;
-        let t22 = garm_vy_leg1 * actuator_accelerations[0];
-        let minus_garm_vz_leg1 = t13 * t18;
-        let t24 = minus_garm_vz_leg1 * actuator_accelerations[0];
-        let t25 = 9.81 * c_arm_leg1;
-        let t29 = 9.81 * s_arm_leg1;
-        let t33 = garm_vx_leg1 * actuator_velocities[0];
-        let t34 = garm_vy_leg1 * actuator_velocities[0];
-        let t35 = minus_garm_vz_leg1 * actuator_velocities[0];
-        let t39 = 1.7857142857142858 * t17;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t39;
-        let gcross_vz_leg1 = s_arm_leg1 * t39;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
-        let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t53 = 0.8660254037844387 * c_armcross_leg2;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t58 = t53 * s_rod_leg2 + 0.5 * c_rod_leg2;
-        let t59 = s_armcross_leg2 * c_rod_leg2;
-        let t62 = 0.5 * c_armcross_leg2;
-        let t65 = t62 * s_rod_leg2 - 0.8660254037844387 * c_rod_leg2;
-        let t69 = 0.4849742261192857 * t59;
-        let t70 = 0.24 * s_arm_leg2;
-        let t71 = 0.56 * t59;
-        let t74 = t69 - 0.8660254037844387 * (t70 + t71);
-        let t75 = t62 * c_rod_leg2;
-        let t78 = s_armcross_leg2 * s_rod_leg2;
-        let t79 = t59 * t78;
-        let t81 = 0.6272 * (t75 * t65) + 0.1568 * t79;
-        let t87 = 0.1344 * (c_arm_leg2 * t65) + 0.0672 * (s_arm_leg2 * t78);
-        let t93 = c_arm_leg2 * t59;
-        let t95 = 0.1344 * (s_arm_leg2 * t75) - 0.0672 * t93;
-        let t97 = t74 * t81 + t69 * t87 + 0.56 * t58 * t95;
-        ::overact::guard::leg(t97, 0.06758306237509017, "leg2")?;
-        let t98 = 1.0 / t97;
-        let garm_vz_leg2 = (0.1568 * (t58 * t59) - 0.2715855666268 * (t65 * t59)) * t98;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
-        let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let t112 = 0.5 * c_armcross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t117 = t112 * s_rod_leg3 + 0.8660254037844387 * c_rod_leg3;
-        let t118 = s_armcross_leg3 * c_rod_leg3;
-        let t121 = 0.8660254037844387 * c_armcross_leg3;
-        let t124 = t121 * s_rod_leg3 - 0.5 * c_rod_leg3;
-        let t128 = 0.4849742261192857 * t118;
-        let t131 = s_armcross_leg3 * s_rod_leg3;
-        let t134 = 0.1344 * (c_arm_leg3 * t117) + 0.0672 * (s_arm_leg3 * t131);
-        let t136 = 0.24 * s_arm_leg3;
-        let t137 = 0.56 * t118;
-        let t140 = 0.8660254037844387 * (t136 + t137) - t128;
-        let t141 = t112 * c_rod_leg3;
-        let t144 = t118 * t131;
-        let t146 = 0.6272 * (t141 * t117) + 0.1568 * t144;
-        let t152 = c_arm_leg3 * t118;
-        let t154 = 0.1344 * (s_arm_leg3 * t141) - 0.0672 * t152;
-        let t156 = t128 * t134 - t140 * t146 + 0.56 * t124 * t154;
-        ::overact::guard::leg(t156, 0.06758306237509014, "leg3")?;
-        let t157 = 1.0 / t156;
-        let minus_garm_vz_leg3 = (0.2715855666268 * (t117 * t118)
-            - 0.1568 * (t124 * t118)) * t157;
-        let garm_vx_leg2 = (0.2715855666268 * t79 + 0.6272 * (t75 * t58)) * t98;
-        let garm_vx_leg3 = (0.2715855666268 * t144 + 0.6272 * (t141 * t124)) * t157;
-        let t175 = garm_vx_leg2 * garm_vz_leg2 - garm_vx_leg1 * minus_garm_vz_leg1
-            - garm_vx_leg3 * minus_garm_vz_leg3;
-        let t180 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t57) / (0.2688 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t71 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t52
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t71)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t71));
+        let t83 = pose[1] + 0.04330127018922194;
+        let t84 = t83 - 0.17320508075688776;
+        let t86 = pose[0] - 0.025;
+        let t87 = t86 + 0.1;
+        let t88 = 0.5 * t87;
+        let t89 = 0.8660254037844387 * t84 - t88;
+        let t92 = 0.2304 * (t89 * t89 + t3);
+        let t93 = 1.0 / t92;
+        let t94 = 0.48 * t89;
+        let t95 = t87 * t87;
+        let t98 = t95 + t84 * t84 + t3;
+        let t100 = t98 - 0.3136 + 0.0576;
+        let t103 = t92 - t100 * t100;
+        ::overact::guard::reach(t103, "leg2")?;
+        let t104 = ::overact::math::sqrt(t103);
+        let c_arm_leg2 = t93 * (t94 * t100 - t14 * t104);
+        let t109 = t89 - 0.24 * c_arm_leg2;
+        let t110 = 0.8660254037844387 * t87;
+        let t112 = t110 + 0.5 * t84;
+        let t113 = t112 * t112;
+        let t117 = 1.0 - 3.188775510204082 * t113;
+        ::overact::guard::reach(t117, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t117);
+        let c_cross_leg2 = (t98 - (0.0576 + t113) - 0.3136 * t117)
+            / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t93 * (t14 * t100 + t94 * t104);
+        let s_cross_leg2 = 2.0833333333333335 * t104 / (0.56 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t133 = t112 * c_armcross_leg2;
+        let t136 = 0.8928571428571429 * t133 + 0.8660254037844387 * c_rod_leg2;
+        let t139 = 0.24 * minus_s_arm_leg2;
+        let t140 = pose[2] - t139;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t112;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t145 = minus_s_rod_leg2 * s_armcross_leg2;
+        let t146 = t140 * t145;
+        let t148 = t109 * (0.56 * t136) - 0.28 * t146;
+        let t149 = 0.20784609690826528 * minus_s_arm_leg2;
+        let t154 = minus_s_arm_leg2 * t145;
+        let t156 = 0.1344 * (c_arm_leg2 * t136) - 0.0672 * t154;
+        let t161 = 1.5464739353293548 * t133 - 0.5 * c_rod_leg2;
+        let t164 = t149 * t148 - 0.8660254037844387 * t140 * t156 - 0.14 * (t104 * t161);
+        ::overact::guard::leg(t164, 0.06758306237512474, "leg2")?;
+        let t165 = 1.0 / t164;
+        let garm_vy_leg2 = t148 * t165;
+        let t169 = pose[1] - 0.04330127018922194;
+        let t170 = t169 + 0.17320508075688776;
+        let t172 = t88 + 0.8660254037844387 * t170;
+        let t175 = 0.2304 * (t172 * t172 + t3);
+        let t176 = 1.0 / t175;
+        let t177 = 0.48 * t172;
+        let t180 = t95 + t170 * t170 + t3;
+        let t182 = t180 - 0.3136 + 0.0576;
+        let t185 = t175 - t182 * t182;
+        ::overact::guard::reach(t185, "leg3")?;
+        let t186 = ::overact::math::sqrt(t185);
+        let minus_c_arm_leg3 = t176 * (t177 * t182 + t14 * t186);
+        let t191 = t172 - 0.24 * minus_c_arm_leg3;
+        let t193 = t110 - 0.5 * t170;
+        let t194 = t193 * t193;
+        let t196 = 1.0 - 3.188775510204082 * t194;
+        ::overact::guard::reach(t196, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t196);
+        let c_cross_leg3 = (t180 - (0.0576 + t194) - 0.3136 * t196)
+            / (0.2688 * c_rod_leg3);
+        let s_arm_leg3 = t176 * (t177 * t186 - t14 * t182);
+        let s_cross_leg3 = 2.0833333333333335 * t186 / (0.56 * c_rod_leg3);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t215 = t193 * minus_c_armcross_leg3;
+        let t217 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t215;
+        let t220 = 0.24 * s_arm_leg3;
+        let t221 = pose[2] + t220;
+        let s_rod_leg3 = 1.7857142857142858 * t193;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t226 = s_rod_leg3 * s_armcross_leg3;
+        let t227 = t221 * t226;
+        let t229 = t191 * (0.56 * t217) + 0.28 * t227;
+        let t230 = 0.20784609690826528 * s_arm_leg3;
+        let t235 = s_arm_leg3 * t226;
+        let t237 = 0.1344 * (minus_c_arm_leg3 * t217) - 0.0672 * t235;
+        let t242 = 1.5464739353293548 * t215 + 0.5 * c_rod_leg3;
+        let t245 = t230 * t229 + 0.8660254037844387 * t221 * t237 + 0.14 * (t186 * t242);
+        ::overact::guard::leg(t245, 0.06758306237512474, "leg3")?;
+        let t246 = 1.0 / t245;
+        let garm_vy_leg3 = t229 * t246;
+        let garm_vx_leg2 = (t109 * (0.56 * t161) - 0.4849742261192857 * t146) * t165;
+        let garm_vx_leg3 = (t191 * (0.56 * t242) - 0.4849742261192857 * t227) * t246;
+        let t264 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3;
+        let t269 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t180, 14.8697301728973, "actuators")?;
-        ::overact::guard::platform(t180, 14.8697301728973, "actuators")?;
-        let t181 = 1.0 / t180;
-        let t182 = t175 * t181;
-        let garm_vy_leg2 = t81 * t98;
-        let minus_garm_vy_leg3 = t146 * t157;
-        let t196 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
-            - garm_vx_leg3 * minus_garm_vy_leg3;
-        let t198 = garm_vy_leg2 * garm_vz_leg2 - garm_vy_leg1 * minus_garm_vz_leg1
-            + minus_garm_vy_leg3 * minus_garm_vz_leg3 - t196 * t182;
-        let t204 = t196 * t181;
-        let t206 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + minus_garm_vy_leg3 * minus_garm_vy_leg3 - t196 * t204;
-        ::overact::guard::platform(t206, 14.869730172897306, "actuators")?;
-        ::overact::guard::platform(t206, 14.869730172897306, "actuators")?;
-        let t207 = 1.0 / t206;
-        let t208 = t198 * t207;
-        let t210 = minus_garm_vz_leg1 * minus_garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t175 * t182 - t198 * t208;
-        ::overact::guard::platform(t210, 34.85535020139291, "actuators")?;
-        ::overact::guard::platform(t210, 34.85535020139291, "actuators")?;
-        let t211 = 1.0 / t210;
-        let t213 = actuator_velocities[1] * actuator_velocities[1];
-        let t216 = t75 + 0.8660254037844387 * s_rod_leg2;
-        let t217 = 0.56 * t216;
-        let gcross_vx_leg2 = (0.56 * t78 * t74 - 0.1344 * (c_arm_leg2 * t58)) * t98;
-        let t224 = garm_vx_leg2 * actuator_velocities[1];
-        let t226 = garm_vx_leg3 * actuator_velocities[2];
-        let t227 = t33 + t224 + t226;
-        let t229 = garm_vy_leg2 * actuator_velocities[1];
-        let t231 = minus_garm_vy_leg3 * actuator_velocities[2];
-        let t234 = t34 + t229 - t231 - t227 * t204;
-        let t236 = garm_vz_leg2 * actuator_velocities[1];
-        let t238 = minus_garm_vz_leg3 * actuator_velocities[2];
-        let t244 = t211 * (t236 - t35 - t238 - t227 * t182 - t208 * t234);
-        let t246 = t207 * t234 - t208 * t244;
-        let t250 = t227 * t181 - t204 * t246 - t182 * t244;
-        let minus_gcross_vy_leg2 = t87 * t98;
-        let minus_gcross_vz_leg2 = (0.56 * t65 * t74 + 0.0672 * (s_arm_leg2 * t58))
-            * t98;
-        let rate_cross_leg2 = gcross_vx_leg2 * t250 - minus_gcross_vy_leg2 * t246
-            - minus_gcross_vz_leg2 * t244;
-        let t263 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (1.12 * t75 * t74 + 0.11639381426862856 * t93) * t98;
-        let minus_grod_vy_leg2 = t95 * t98;
-        let rate_rod_leg2 = grod_vx_leg2 * t250 - minus_grod_vy_leg2 * t246;
-        let t275 = t263 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t278 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t279 = 0.5 * rate_cross_leg2;
-        let t280 = t278 - t279;
-        let t283 = c_armcross_leg2 * rate_rod_leg2;
-        let t285 = t275 * t275 + t280 * t280 + t283 * t283;
-        let t291 = t53 * c_rod_leg2 - 0.5 * s_rod_leg2;
-        let t292 = 0.56 * t291;
-        let t296 = t217 * t275 + t292 * t280 - t71 * t283;
-        let t299 = t263 * t278;
-        let t302 = t263 * t283;
-        let t305 = 0.12 * c_arm_leg2 * t213 + t217 * t285 - t275 * t296
-            + 0.7466666666666667 * (t291 * t299) - t71 * t302;
-        let t315 = t279 * t283;
-        let t318 = t280 * t296 - (0.20784609690826528 * c_arm_leg2 * t213 + t292 * t285)
-            + 0.7466666666666667 * (t216 * t299) - t71 * t315;
-        let t326 = t217 * t302 - t292 * t315;
-        let t328 = t70 * t213 + t71 * t285 + t326 + t326;
-        let minus_rate_dot_arm_leg2 = garm_vx_leg2 * t305 + garm_vy_leg2 * t318
-            + garm_vz_leg2 * t328;
-        let t331 = actuator_accelerations[1] + minus_rate_dot_arm_leg2;
-        let t334 = actuator_velocities[0] * actuator_velocities[0];
-        let t337 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.7857142857142858 * t337;
-        let rate_rod_leg1 = grod_vy_leg1 * t246;
+        ::overact::guard::platform(t269, 14.869730172882845, "actuators")?;
+        ::overact::guard::platform(t269, 14.869730172882845, "actuators")?;
+        let t270 = 1.0 / t269;
+        let t271 = t264 * t270;
+        let t273 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t264 * t271;
+        ::overact::guard::platform(t273, 14.869730172882843, "actuators")?;
+        ::overact::guard::platform(t273, 14.869730172882843, "actuators")?;
+        let t274 = 1.0 / t273;
+        let t275 = garm_vy_leg2 * actuator_velocities[1];
+        let t277 = garm_vy_leg3 * actuator_velocities[2];
+        let t279 = garm_vx_leg2 * actuator_velocities[1];
+        let t281 = garm_vx_leg3 * actuator_velocities[2];
+        let t282 = t46 + t279 + t281;
+        let t284 = t47 + t275 + t277 - t282 * t271;
+        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t140) * t165;
+        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t221) * t246;
+        let t301 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3;
+        let t302 = t301 * t270;
+        let t304 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 - t264 * t302;
+        let t305 = t304 * t274;
+        let t314 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 - t301 * t302 - t304 * t305;
+        ::overact::guard::platform(t314, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t314, 34.855350201355726, "actuators")?;
+        let t315 = 1.0 / t314;
+        let t316 = garm_vz_leg2 * actuator_velocities[1];
+        let t318 = garm_vz_leg3 * actuator_velocities[2];
+        let t324 = t315 * (t48 + t316 + t318 - t282 * t302 - t305 * t284);
+        let t326 = t274 * t284 - t305 * t324;
+        let t332 = t282 * t270 - t271 * t326 - t302 * t324;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t52;
+        let rate_cross_leg1 = gcross_vy_leg1 * t326 - minus_gcross_vx_leg1 * t332
+            - minus_gcross_vz_leg1 * t324;
+        let grod_vy_leg1 = 1.7857142857142858 * t71;
+        let rate_rod_leg1 = grod_vy_leg1 * t326;
         let t340 = s_armcross_leg1 * rate_rod_leg1;
-        let minus_gcross_vy_leg1 = t39
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t337)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t337));
-        let rate_cross_leg1 = gcross_vz_leg1 * t244
-            - (minus_gcross_vx_leg1 * t250 + minus_gcross_vy_leg1 * t246);
-        let t355 = rate_cross_leg1 * rate_cross_leg1;
-        let t357 = c_armcross_leg1 * rate_rod_leg1;
-        let t359 = t340 * t340 + t355 + t357 * t357;
-        let t362 = 0.56 * s_rod_leg1;
-        let t364 = t362 * (rate_cross_leg1 * t357);
-        let t366 = 0.24 * s_arm_leg1 * t334 + 0.56 * t13 * t359 + t364 + t364;
-        let t369 = t362 * (rate_cross_leg1 * t340);
-        let t376 = t369 - (0.24 * c_arm_leg1 * t334 + 0.56 * t12 * t359) + t369;
-        let t378 = t362 * rate_cross_leg1;
-        let t379 = rate_cross_leg1 * t378;
-        let t381 = t379 - t362 * t359;
-        let rate_dot_arm_leg1 = minus_garm_vz_leg1 * t366
-            - (garm_vx_leg1 * t376 + garm_vy_leg1 * t381);
-        let t385 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t389 = actuator_velocities[2] * actuator_velocities[2];
-        let t393 = t121 * c_rod_leg3 + 0.5 * s_rod_leg3;
-        let t394 = 0.56 * t393;
-        let gcross_vy_leg3 = t134 * t157;
-        let minus_gcross_vx_leg3 = (0.56 * t131 * t140 + 0.1344 * (c_arm_leg3 * t124))
-            * t157;
-        let gcross_vz_leg3 = (0.56 * t117 * t140 - 0.0672 * (s_arm_leg3 * t124)) * t157;
-        let rate_cross_leg3 = gcross_vy_leg3 * t246 - minus_gcross_vx_leg3 * t250
-            + gcross_vz_leg3 * t244;
-        let t413 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (0.11639381426862856 * t152 - 1.12 * t141 * t140) * t157;
-        let grod_vy_leg3 = t154 * t157;
-        let rate_rod_leg3 = grod_vx_leg3 * t250 + grod_vy_leg3 * t246;
-        let t425 = t413 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t427 = 0.5 * rate_cross_leg3;
-        let t429 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t430 = t427 + t429;
-        let t433 = c_armcross_leg3 * rate_rod_leg3;
-        let t435 = t425 * t425 + t430 * t430 + t433 * t433;
-        let t439 = 0.8660254037844387 * s_rod_leg3 - t141;
-        let t440 = 0.56 * t439;
-        let t445 = t440 * t425 + t394 * t430 - t137 * t433;
-        let t448 = t413 * t429;
-        let t451 = t427 * t433;
-        let t454 = 0.20784609690826528 * c_arm_leg3 * t389 + t394 * t435 - t430 * t445
-            - (0.7466666666666667 * (t439 * t448) + t137 * t451);
-        let t462 = t413 * t433;
-        let t467 = 0.12 * c_arm_leg3 * t389 - t440 * t435 + t425 * t445 + t137 * t462
-            - 0.7466666666666667 * (t393 * t448);
-        let t475 = t394 * t451 + t440 * t462;
-        let t477 = t136 * t389 + t137 * t435 + t475 + t475;
-        let rate_dot_arm_leg3 = minus_garm_vy_leg3 * t454 - garm_vx_leg3 * t467
-            + minus_garm_vz_leg3 * t477;
-        let t480 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t487 = garm_vx_leg1 * t385 + garm_vx_leg2 * t331 + garm_vx_leg3 * t480;
-        let t496 = garm_vy_leg1 * t385 + garm_vy_leg2 * t331 - minus_garm_vy_leg3 * t480
-            - t204 * t487;
-        let t499 = t211
-            * (garm_vz_leg2 * t331 - minus_garm_vz_leg1 * t385
-                - minus_garm_vz_leg3 * t480 - t182 * t487 - t208 * t496);
-        let t505 = t207 * t496 - t208 * t499;
-        let t509 = t181 * t487 - t204 * t505 - t182 * t499;
-        let t512 = t505 - t381;
-        let rate_dot_cross_leg1 = gcross_vz_leg1 * (t499 - t366)
-            - (minus_gcross_vx_leg1 * (t509 - t376) + minus_gcross_vy_leg1 * t512);
-        let t516 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t517 = c_rod_leg1 * rate_cross_leg1;
-        let t518 = rate_rod_leg1 * t517;
-        let t519 = t516 + t518;
-        let t521 = 1.7857142857142858 * t378;
-        let t522 = rate_rod_leg1 * t521;
-        let t523 = c_rod_leg1 * t522;
-        let t524 = s_rod_leg1 * t519 + t523;
-        let t527 = 3.188775510204082 * t379;
-        let t530 = t518 + t519;
-        let t532 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t533 = t532 - t522;
-        let t536 = c_rod_leg1 * t530 - s_rod_leg1 * (t522 - t533);
-        let t539 = 3.188775510204082 * (t378 * t378);
-        let t546 = t521 * t517;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t512;
-        let t550 = rate_rod_leg1 * rate_rod_leg1;
-        let t553 = s_rod_leg1 * (t546 + rate_dot_rod_leg1) + c_rod_leg1 * (t550 - t539);
-        let t560 = c_rod_leg1 * t533 - t523;
-        let t561 = minus_gcross_vx_leg1 * t560;
-        let t563 = t527 - minus_gcross_vy_leg1 * t560;
-        let t564 = gcross_vz_leg1 * t560;
-        let t565 = 1.7857142857142858 * t505;
-        let t571 = grod_vy_leg1 * rate_dot_rod_leg1;
-        let t572 = 1.7857142857142858 * t509;
-        let t574 = 0.24 * actuator_accelerations[0] - t25;
-        let t575 = 0.24 * t574;
-        let t576 = garm_vx_leg1 * t575;
-        let t582 = garm_vy_leg1 * t575;
-        let t590 = t499 + 9.81;
-        let t591 = 1.7857142857142858 * t590;
-        let t593 = minus_garm_vz_leg1 * t575;
-        let t598 = 0.24 * t16;
-        let t602 = s_rod_leg1 * (0.24 * s_cross_leg1);
-        let t606 = 0.24 * c_cross_leg1;
-        let t608 = t598 * (t546 - rate_dot_rod_leg1) + t602 * (t539 + t550)
-            - t606 * t530;
-        let t611 = t29 + 0.24 * t334;
-        let t615 = s_rod_leg1 * (s_cross_leg1 * t611 + c_cross_leg1 * t574);
-        let t623 = s_cross_leg1 * t574 - c_cross_leg1 * t611;
-        let t633 = t598 * t532 + t602 * t516 + t355 * t606;
-        let t643 = garm_vx_leg2 * actuator_accelerations[1];
-        let t644 = garm_vy_leg2 * actuator_accelerations[1];
-        let t645 = garm_vz_leg2 * actuator_accelerations[1];
-        let t646 = 9.81 * c_arm_leg2;
-        let t650 = 9.81 * s_arm_leg2;
-        let t657 = t509 - t305;
-        let t659 = t505 - t318;
-        let rate_dot_cross_leg2 = gcross_vx_leg2 * t657 - minus_gcross_vy_leg2 * t659
-            - minus_gcross_vz_leg2 * (t499 - t328);
-        let t665 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t666 = c_rod_leg2 * rate_cross_leg2;
-        let t667 = rate_rod_leg2 * t666;
-        let t668 = t665 + t667;
-        let t670 = 1.7857142857142858 * t296;
-        let t671 = rate_rod_leg2 * t670;
-        let t672 = c_rod_leg2 * t671;
-        let t673 = s_rod_leg2 * t668 + t672;
-        let t675 = t670 * t666;
-        let t676 = grod_vx_leg2 * t675;
-        let t678 = minus_grod_vy_leg2 * t675;
-        let t682 = t667 + t668;
-        let t684 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t685 = t684 - t671;
-        let t688 = c_rod_leg2 * t682 - s_rod_leg2 * (t671 - t685);
-        let t691 = 3.188775510204082 * (t296 * t296);
-        let t692 = t666 * t666;
-        let t693 = t691 - t692;
-        let rate_dot_rod_leg2 = grod_vx_leg2 * t657 - minus_grod_vy_leg2 * t659;
-        let t705 = rate_rod_leg2 * rate_rod_leg2;
-        let t708 = s_rod_leg2 * (t675 + rate_dot_rod_leg2) + c_rod_leg2 * (t705 - t691);
-        let t717 = c_rod_leg2 * t685 - t672;
-        let t719 = gcross_vx_leg2 * t717 + t676;
-        let t721 = minus_gcross_vy_leg2 * t717 + t678;
-        let t722 = minus_gcross_vz_leg2 * t717;
-        let t725 = t675 - rate_dot_rod_leg2;
-        let t727 = s_rod_leg2 * (t692 - t705) - c_rod_leg2 * t725;
-        let t735 = grod_vx_leg2 * rate_dot_rod_leg2;
-        let t736 = minus_grod_vy_leg2 * rate_dot_rod_leg2;
-        let t738 = 0.24 * actuator_accelerations[1] - t646;
-        let t739 = 0.24 * t738;
-        let t740 = garm_vx_leg2 * t739;
-        let t748 = garm_vy_leg2 * t739;
-        let t756 = garm_vz_leg2 * t739;
-        let t763 = s_rod_leg2 * (0.24 * s_cross_leg2);
-        let t766 = 3.5714285714285716 * t95;
-        let t769 = 0.24 * c_cross_leg2;
-        let t771 = t763 * (t691 + t705) - t766 * t725 - t769 * t682;
-        let t774 = t650 + 0.24 * t213;
-        let t778 = s_rod_leg2 * (s_cross_leg2 * t774 + c_cross_leg2 * t738);
-        let t783 = s_cross_leg2 * t738 - c_cross_leg2 * t774;
-        let t800 = t763 * t665 - t766 * t684 + rate_cross_leg2 * rate_cross_leg2 * t769;
-        let t810 = garm_vx_leg3 * actuator_accelerations[2];
-        let t811 = minus_garm_vy_leg3 * actuator_accelerations[2];
-        let t812 = minus_garm_vz_leg3 * actuator_accelerations[2];
-        let t813 = 9.81 * c_arm_leg3;
-        let t817 = 9.81 * s_arm_leg3;
-        let t824 = t505 - t454;
-        let t826 = t509 - t467;
-        let rate_dot_cross_leg3 = gcross_vy_leg3 * t824 - minus_gcross_vx_leg3 * t826
-            + gcross_vz_leg3 * (t499 - t477);
-        let t832 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t833 = c_rod_leg3 * rate_cross_leg3;
-        let t834 = rate_rod_leg3 * t833;
-        let t835 = t832 + t834;
-        let t837 = 1.7857142857142858 * t445;
-        let t838 = rate_rod_leg3 * t837;
-        let t839 = c_rod_leg3 * t838;
-        let t840 = s_rod_leg3 * t835 + t839;
-        let t842 = t837 * t833;
-        let t843 = grod_vx_leg3 * t842;
-        let t846 = grod_vy_leg3 * t842;
-        let t850 = 3.188775510204082 * (t445 * t445);
-        let t851 = t833 * t833;
-        let t852 = t850 - t851;
-        let t854 = t834 + t835;
-        let t856 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t857 = t856 - t838;
-        let t860 = c_rod_leg3 * t854 - s_rod_leg3 * (t838 - t857);
-        let rate_dot_rod_leg3 = grod_vx_leg3 * t826 + grod_vy_leg3 * t824;
-        let t873 = rate_rod_leg3 * rate_rod_leg3;
-        let t876 = s_rod_leg3 * (t842 + rate_dot_rod_leg3) + c_rod_leg3 * (t873 - t850);
-        let t884 = c_rod_leg3 * t857 - t839;
-        let t886 = t843 - minus_gcross_vx_leg3 * t884;
-        let t888 = gcross_vy_leg3 * t884 + t846;
-        let t889 = gcross_vz_leg3 * t884;
-        let t893 = t842 - rate_dot_rod_leg3;
-        let t895 = s_rod_leg3 * (t851 - t873) - c_rod_leg3 * t893;
-        let t902 = grod_vx_leg3 * rate_dot_rod_leg3;
-        let t903 = grod_vy_leg3 * rate_dot_rod_leg3;
-        let t905 = 0.24 * actuator_accelerations[2] - t813;
-        let t906 = 0.24 * t905;
-        let t907 = garm_vx_leg3 * t906;
-        let t916 = minus_garm_vy_leg3 * t906;
-        let t924 = minus_garm_vz_leg3 * t906;
-        let t930 = s_rod_leg3 * (0.24 * s_cross_leg3);
-        let t933 = 3.5714285714285716 * t154;
-        let t936 = 0.24 * c_cross_leg3;
-        let t938 = t930 * (t850 + t873) - t933 * t893 - t936 * t854;
-        let t941 = t817 + 0.24 * t389;
-        let t945 = s_rod_leg3 * (s_cross_leg3 * t941 + c_cross_leg3 * t905);
-        let t950 = s_cross_leg3 * t905 - c_cross_leg3 * t941;
-        let t967 = t930 * t832 - t933 * t856 + rate_cross_leg3 * rate_cross_leg3 * t936;
+        let t342 = pose[1] * (rate_cross_leg1 * t340);
+        let t343 = actuator_velocities[0] * actuator_velocities[0];
+        let t346 = rate_cross_leg1 * rate_cross_leg1;
+        let t348 = c_armcross_leg1 * rate_rod_leg1;
+        let t350 = t340 * t340 + t346 + t348 * t348;
+        let t354 = t342 - (t21 * t343 + t23 * t350) + t342;
+        let t356 = pose[1] * rate_cross_leg1;
+        let t357 = rate_cross_leg1 * t356;
+        let t359 = t357 - pose[1] * t350;
+        let t363 = pose[1] * (rate_cross_leg1 * t348);
+        let t368 = t363 - (t34 * t343 + t35 * t350) + t363;
+        let minus_rate_dot_arm_leg1 = garm_vx_leg1 * t354 + garm_vy_leg1 * t359
+            + garm_vz_leg1 * t368;
+        let t371 = actuator_accelerations[0] + minus_rate_dot_arm_leg1;
+        let t373 = actuator_velocities[1] * actuator_velocities[1];
+        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t161)
+            - 0.11639381426862856 * (minus_s_arm_leg2 * t136)) * t165;
+        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t161)
+            - 0.11639381426862856 * t154) * t165;
+        let minus_gcross_vy_leg2 = t156 * t165;
+        let rate_cross_leg2 = gcross_vz_leg2 * t324
+            - (minus_gcross_vx_leg2 * t332 + minus_gcross_vy_leg2 * t326);
+        let t392 = 0.8660254037844387 * rate_cross_leg2;
+        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t140) - t109 * t149)
+            * t165;
+        let minus_grod_vy_leg2 = 0.25 * t104 * t165;
+        let rate_rod_leg2 = grod_vx_leg2 * t332 - minus_grod_vy_leg2 * t326;
+        let t405 = t392 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
+        let t408 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
+        let t409 = 0.5 * rate_cross_leg2;
+        let t410 = t408 - t409;
+        let t413 = c_armcross_leg2 * rate_rod_leg2;
+        let t415 = t405 * t405 + t410 * t410 + t413 * t413;
+        let t418 = 0.20784609690826528 * c_arm_leg2;
+        let t420 = t83 - (0.17320508075688776 + t418);
+        let t421 = t409 * t413;
+        let t423 = 0.12 * c_arm_leg2;
+        let t425 = t86 + 0.1 + t423;
+        let t426 = t392 * t413;
+        let t428 = t420 * t421 + t425 * t426;
+        let t430 = t139 * t373 + t140 * t415 + t428 + t428;
+        let t439 = t420 * t410 - t425 * t405 + t140 * t413;
+        let t444 = 1.3333333333333333 * (t392 * t408);
+        let t447 = t423 * t373 - t425 * t415 - t405 * t439 + t140 * t426 + t420 * t444;
+        let t457 = t410 * t439 - (t418 * t373 + t420 * t415) + t140 * t421 - t425 * t444;
+        let rate_dot_arm_leg2 = garm_vz_leg2 * t430
+            - (garm_vx_leg2 * t447 + garm_vy_leg2 * t457);
+        let t461 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t464 = 0.20784609690826528 * minus_c_arm_leg3;
+        let t465 = actuator_velocities[2] * actuator_velocities[2];
+        let t468 = t169 - (t464 - 0.17320508075688776);
+        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t217)
+            + 0.0672 * (s_arm_leg3 * t242)) * t246;
+        let minus_gcross_vx_leg3 = (0.11639381426862856 * t235
+            + 0.1344 * (minus_c_arm_leg3 * t242)) * t246;
+        let minus_gcross_vy_leg3 = t237 * t246;
+        let rate_cross_leg3 = gcross_vz_leg3 * t324
+            - (minus_gcross_vx_leg3 * t332 + minus_gcross_vy_leg3 * t326);
+        let t486 = 0.8660254037844387 * rate_cross_leg3;
+        let grod_vx_leg3 = (t191 * t230
+            + 0.20784609690826528 * (minus_c_arm_leg3 * t221)) * t246;
+        let minus_grod_vy_leg3 = 0.25 * t186 * t246;
+        let rate_rod_leg3 = grod_vx_leg3 * t332 - minus_grod_vy_leg3 * t326;
+        let t499 = t486 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
+        let t501 = 0.5 * rate_cross_leg3;
+        let t503 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
+        let t504 = t501 + t503;
+        let t507 = minus_c_armcross_leg3 * rate_rod_leg3;
+        let t509 = t499 * t499 + t504 * t504 + t507 * t507;
+        let t512 = 0.12 * minus_c_arm_leg3;
+        let t514 = t86 - (t512 - 0.1);
+        let t519 = t514 * t499 - t468 * t504 - t221 * t507;
+        let t523 = 1.3333333333333333 * (t486 * t503);
+        let t525 = t501 * t507;
+        let t528 = t464 * t465 + t468 * t509 + t504 * t519 + t514 * t523 + t221 * t525;
+        let t535 = t486 * t507;
+        let t539 = t499 * t519 - (t512 * t465 + t514 * t509) + t221 * t535 + t468 * t523;
+        let t547 = t468 * t525 - t514 * t535;
+        let t549 = t220 * t465 - t221 * t509 + t547 + t547;
+        let rate_dot_arm_leg3 = garm_vy_leg3 * t528 - garm_vx_leg3 * t539
+            - garm_vz_leg3 * t549;
+        let t552 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t559 = garm_vx_leg1 * t371 + garm_vx_leg2 * t461 + garm_vx_leg3 * t552;
+        let t561 = garm_vy_leg1 * t371 + garm_vy_leg2 * t461 + garm_vy_leg3 * t552
+            - t271 * t559;
+        let t572 = t315
+            * (garm_vz_leg1 * t371 + garm_vz_leg2 * t461 + garm_vz_leg3 * t552
+                - t302 * t559 - t305 * t561);
+        let t574 = t274 * t561 - t305 * t572;
+        let t575 = t574 - t359;
+        let t581 = t270 * t559 - t271 * t574 - t302 * t572;
+        let rate_dot_cross_leg1 = gcross_vy_leg1 * t575
+            - minus_gcross_vx_leg1 * (t581 - t354)
+            - minus_gcross_vz_leg1 * (t572 - t368);
+        let t588 = s_rod_leg1 * rate_dot_cross_leg1;
+        let t589 = c_rod_leg1 * rate_cross_leg1;
+        let t590 = rate_rod_leg1 * t589;
+        let t591 = t588 + t590;
+        let t593 = 1.7857142857142858 * t356;
+        let t594 = rate_rod_leg1 * t593;
+        let t595 = c_rod_leg1 * t594;
+        let t596 = s_rod_leg1 * t591 + t595;
+        let t599 = 3.188775510204082 * t357;
+        let t602 = t590 + t591;
+        let t604 = c_rod_leg1 * rate_dot_cross_leg1;
+        let t605 = t604 - t594;
+        let t608 = c_rod_leg1 * t602 - s_rod_leg1 * (t594 - t605);
+        let t612 = 3.188775510204082 * (t356 * t356);
+        let t618 = t593 * t589;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t575;
+        let t622 = rate_rod_leg1 * rate_rod_leg1;
+        let t625 = s_rod_leg1 * (t618 + rate_dot_rod_leg1) + c_rod_leg1 * (t622 - t612);
+        let t632 = c_rod_leg1 * t605 - t595;
+        let t633 = minus_gcross_vx_leg1 * t632;
+        let t635 = gcross_vy_leg1 * t632 + t599;
+        let t636 = minus_gcross_vz_leg1 * t632;
+        let t637 = 1.7857142857142858 * t574;
+        let t643 = grod_vy_leg1 * rate_dot_rod_leg1;
+        let t644 = 1.7857142857142858 * t581;
+        let t646 = 0.24 * actuator_accelerations[0] - t38;
+        let t647 = 0.24 * t646;
+        let t648 = garm_vx_leg1 * t647;
+        let t654 = garm_vy_leg1 * t647;
+        let t662 = t572 + 9.81;
+        let t663 = 1.7857142857142858 * t662;
+        let t664 = garm_vz_leg1 * t647;
+        let t670 = 0.8928571428571429 * t17;
+        let t674 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
+        let t678 = 0.24 * c_cross_leg1;
+        let t680 = t670 * (t618 - rate_dot_rod_leg1) + t674 * (t612 + t622)
+            - t678 * t602;
+        let t684 = t42 - 0.24 * t343;
+        let t687 = s_rod_leg1 * (c_cross_leg1 * t646 - s_cross_leg1 * t684);
+        let t695 = c_cross_leg1 * t684 + s_cross_leg1 * t646;
+        let t705 = t670 * t604 + t674 * t588 + t346 * t678;
+        let t715 = garm_vx_leg2 * actuator_accelerations[1];
+        let t716 = garm_vy_leg2 * actuator_accelerations[1];
+        let t717 = garm_vz_leg2 * actuator_accelerations[1];
+        let t718 = 9.81 * c_arm_leg2;
+        let t722 = 9.81 * minus_s_arm_leg2;
+        let t729 = 1.7857142857142858 * t439;
+        let t730 = rate_rod_leg2 * t729;
+        let t731 = c_rod_leg2 * t730;
+        let t732 = c_rod_leg2 * rate_cross_leg2;
+        let t733 = rate_rod_leg2 * t732;
+        let t736 = t581 - t447;
+        let t738 = t574 - t457;
+        let rate_dot_cross_leg2 = gcross_vz_leg2 * (t572 + t430)
+            - (minus_gcross_vx_leg2 * t736 + minus_gcross_vy_leg2 * t738);
+        let t742 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t743 = t733 - t742;
+        let t745 = t731 - minus_s_rod_leg2 * t743;
+        let t747 = t729 * t732;
+        let t748 = grod_vx_leg2 * t747;
+        let t750 = minus_grod_vy_leg2 * t747;
+        let t755 = 3.188775510204082 * (t439 * t439);
+        let t756 = t732 * t732;
+        let t757 = t755 - t756;
+        let t759 = c_rod_leg2 * rate_dot_cross_leg2;
+        let t760 = t759 - t730;
+        let t763 = t733 + t743;
+        let t765 = minus_s_rod_leg2 * (t730 - t760) + c_rod_leg2 * t763;
+        let t772 = rate_rod_leg2 * rate_rod_leg2;
+        let rate_dot_rod_leg2 = grod_vx_leg2 * t736 - minus_grod_vy_leg2 * t738;
+        let t780 = c_rod_leg2 * (t772 - t755)
+            - minus_s_rod_leg2 * (t747 + rate_dot_rod_leg2);
+        let t789 = c_rod_leg2 * t760 - t731;
+        let t791 = t748 - minus_gcross_vx_leg2 * t789;
+        let t793 = minus_gcross_vy_leg2 * t789 + t750;
+        let t794 = gcross_vz_leg2 * t789;
+        let t797 = t747 - rate_dot_rod_leg2;
+        let t799 = minus_s_rod_leg2 * (t756 - t772) + c_rod_leg2 * t797;
+        let t807 = grod_vx_leg2 * rate_dot_rod_leg2;
+        let t808 = minus_grod_vy_leg2 * rate_dot_rod_leg2;
+        let t810 = 0.24 * actuator_accelerations[1] - t718;
+        let t811 = 0.24 * t810;
+        let t812 = garm_vx_leg2 * t811;
+        let t820 = garm_vy_leg2 * t811;
+        let t828 = garm_vz_leg2 * t811;
+        let t834 = 0.8928571428571429 * t104;
+        let t837 = 0.42857142857142855 * (t112 * s_cross_leg2);
+        let t841 = 0.24 * c_cross_leg2;
+        let t843 = t834 * t797 - t837 * (t755 + t772) - t841 * t763;
+        let t847 = t722 - 0.24 * t373;
+        let t850 = minus_s_rod_leg2 * (c_cross_leg2 * t810 - s_cross_leg2 * t847);
+        let t855 = c_cross_leg2 * t847 + s_cross_leg2 * t810;
+        let t872 = t834 * t759 + t837 * t742 + rate_cross_leg2 * rate_cross_leg2 * t841;
+        let t882 = garm_vx_leg3 * actuator_accelerations[2];
+        let t883 = garm_vy_leg3 * actuator_accelerations[2];
+        let t884 = garm_vz_leg3 * actuator_accelerations[2];
+        let t885 = 9.81 * minus_c_arm_leg3;
+        let t889 = 9.81 * s_arm_leg3;
+        let t898 = t581 - t539;
+        let t900 = t574 + t528;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * (t572 - t549)
+            - (minus_gcross_vx_leg3 * t898 + minus_gcross_vy_leg3 * t900);
+        let t904 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t905 = c_rod_leg3 * rate_cross_leg3;
+        let t906 = rate_rod_leg3 * t905;
+        let t907 = t904 + t906;
+        let t909 = 1.7857142857142858 * t519;
+        let t910 = rate_rod_leg3 * t909;
+        let t911 = c_rod_leg3 * t910;
+        let t912 = s_rod_leg3 * t907 + t911;
+        let t914 = t909 * t905;
+        let t915 = grod_vx_leg3 * t914;
+        let t917 = minus_grod_vy_leg3 * t914;
+        let t922 = 3.188775510204082 * (t519 * t519);
+        let t923 = t905 * t905;
+        let t924 = t922 - t923;
+        let t926 = t906 + t907;
+        let t928 = c_rod_leg3 * rate_dot_cross_leg3;
+        let t929 = t928 - t910;
+        let t932 = c_rod_leg3 * t926 - s_rod_leg3 * (t910 - t929);
+        let rate_dot_rod_leg3 = grod_vx_leg3 * t898 - minus_grod_vy_leg3 * t900;
+        let t945 = rate_rod_leg3 * rate_rod_leg3;
+        let t948 = s_rod_leg3 * (t914 + rate_dot_rod_leg3) + c_rod_leg3 * (t945 - t922);
+        let t956 = c_rod_leg3 * t929 - t911;
+        let t958 = t915 - minus_gcross_vx_leg3 * t956;
+        let t960 = minus_gcross_vy_leg3 * t956 + t917;
+        let t961 = gcross_vz_leg3 * t956;
+        let t965 = t914 - rate_dot_rod_leg3;
+        let t967 = s_rod_leg3 * (t923 - t945) - c_rod_leg3 * t965;
+        let t974 = grod_vx_leg3 * rate_dot_rod_leg3;
+        let t975 = minus_grod_vy_leg3 * rate_dot_rod_leg3;
+        let t977 = t885 + 0.24 * actuator_accelerations[2];
+        let t978 = 0.24 * t977;
+        let t979 = garm_vx_leg3 * t978;
+        let t987 = garm_vy_leg3 * t978;
+        let t995 = garm_vz_leg3 * t978;
+        let t1001 = 0.8928571428571429 * t186;
+        let t1004 = 0.42857142857142855 * (t193 * s_cross_leg3);
+        let t1008 = 0.24 * c_cross_leg3;
+        let t1010 = t1001 * t965 + t1004 * (t922 + t945) - t1008 * t926;
+        let t1013 = t889 + 0.24 * t465;
+        let t1017 = s_rod_leg3 * (s_cross_leg3 * t1013 + c_cross_leg3 * t977);
+        let t1022 = s_cross_leg3 * t977 - c_cross_leg3 * t1013;
+        let t1039 = t1001 * t928 + t1004 * t904
+            + rate_cross_leg3 * rate_cross_leg3 * t1008;
         Ok([
             [
-                t20, -(garm_vx_leg1 * t25), garm_vx_leg1 * t29, t20, t33,
+                t27, -(garm_vx_leg1 * t38), -(garm_vx_leg1 * t42), t27, t46,
                 ::overact::math::signed(garm_vx_leg1, actuator_velocities[0]), garm_vx_leg1,
-                -(minus_gcross_vx_leg1 * t524), -(minus_gcross_vx_leg1 * t536),
-                -(minus_gcross_vx_leg1 * t553), -t561, -(minus_gcross_vx_leg1 * t565), 0.0,
-                t572
+                -(minus_gcross_vx_leg1 * t596), -(minus_gcross_vx_leg1 * t608),
+                -(minus_gcross_vx_leg1 * t625), -t633, -(minus_gcross_vx_leg1 * t637), 0.0,
+                t644
                     - 0.10285714285714286
-                        * (17.36111111111111 * t576 - 5.444444444444445 * t561),
-                garm_vx_leg1 * t608 + minus_gcross_vx_leg1 * t615,
-                garm_vx_leg1 * t633 - minus_gcross_vx_leg1 * t623,
-                t576,
-                t643,
-                -(garm_vx_leg2 * t646),
-                garm_vx_leg2 * t650,
-                t643,
-                t224,
+                        * (17.36111111111111 * t648 - 5.444444444444445 * t633),
+                garm_vx_leg1 * t680 + minus_gcross_vx_leg1 * t687,
+                garm_vx_leg1 * t705 - minus_gcross_vx_leg1 * t695,
+                t648,
+                t715,
+                -(garm_vx_leg2 * t718),
+                -(garm_vx_leg2 * t722),
+                t715,
+                t279,
                 ::overact::math::signed(garm_vx_leg2, actuator_velocities[1]),
                 garm_vx_leg2,
-                gcross_vx_leg2 * t673 - t676,
-                gcross_vx_leg2 * t688 + grod_vx_leg2 * t693,
-                gcross_vx_leg2 * t708 + grod_vx_leg2 * t665,
-                t719,
-                gcross_vx_leg2 * t727 + grod_vx_leg2 * t684,
-                t735,
-                t572
+                -(minus_gcross_vx_leg2 * t745 + t748),
+                grod_vx_leg2 * t757 - minus_gcross_vx_leg2 * t765,
+                -(minus_gcross_vx_leg2 * t780 + grod_vx_leg2 * t742),
+                t791,
+                minus_gcross_vx_leg2 * t799 + grod_vx_leg2 * t759,
+                t807,
+                t644
                     - 0.10285714285714286
-                        * (17.36111111111111 * t740 + 5.444444444444445 * t719
-                            + 5.444444444444445 * t735),
-                garm_vx_leg2 * t771 - gcross_vx_leg2 * t778
-                    - grod_vx_leg2 * (c_rod_leg2 * t783),
-                garm_vx_leg2 * t800 + gcross_vx_leg2 * t783,
-                t740,
-                t810,
-                -(garm_vx_leg3 * t813),
-                garm_vx_leg3 * t817,
-                t810,
-                t226,
+                        * (17.36111111111111 * t812 + 5.444444444444445 * t791
+                            + 5.444444444444445 * t807),
+                garm_vx_leg2 * t843 - minus_gcross_vx_leg2 * t850
+                    - grod_vx_leg2 * (c_rod_leg2 * t855),
+                garm_vx_leg2 * t872 - minus_gcross_vx_leg2 * t855,
+                t812,
+                t882,
+                garm_vx_leg3 * t885,
+                garm_vx_leg3 * t889,
+                t882,
+                t281,
                 ::overact::math::signed(garm_vx_leg3, actuator_velocities[2]),
                 garm_vx_leg3,
-                -(minus_gcross_vx_leg3 * t840 + t843),
-                grod_vx_leg3 * t852 - minus_gcross_vx_leg3 * t860,
-                grod_vx_leg3 * t832 - minus_gcross_vx_leg3 * t876,
-                t886,
-                grod_vx_leg3 * t856 - minus_gcross_vx_leg3 * t895,
-                t902,
-                t572
+                -(minus_gcross_vx_leg3 * t912 + t915),
+                grod_vx_leg3 * t924 - minus_gcross_vx_leg3 * t932,
+                grod_vx_leg3 * t904 - minus_gcross_vx_leg3 * t948,
+                t958,
+                grod_vx_leg3 * t928 - minus_gcross_vx_leg3 * t967,
+                t974,
+                t644
                     - 0.10285714285714286
-                        * (17.36111111111111 * t907 + 5.444444444444445 * t886
-                            + 5.444444444444445 * t902),
-                garm_vx_leg3 * t938 + minus_gcross_vx_leg3 * t945
-                    - grod_vx_leg3 * (c_rod_leg3 * t950),
-                garm_vx_leg3 * t967 - minus_gcross_vx_leg3 * t950,
-                t907,
-                t509,
+                        * (17.36111111111111 * t979 + 5.444444444444445 * t958
+                            + 5.444444444444445 * t974),
+                garm_vx_leg3 * t1010 + minus_gcross_vx_leg3 * t1017
+                    - grod_vx_leg3 * (c_rod_leg3 * t1022),
+                garm_vx_leg3 * t1039 - minus_gcross_vx_leg3 * t1022,
+                t979,
+                t581,
             ],
             [
-                t22, -(garm_vy_leg1 * t25), garm_vy_leg1 * t29, t22, t34,
+                t29, -(garm_vy_leg1 * t38), -(garm_vy_leg1 * t42), t29, t47,
                 ::overact::math::signed(garm_vy_leg1, actuator_velocities[0]), garm_vy_leg1,
-                -(minus_gcross_vy_leg1 * t524 + t527),
-                grod_vy_leg1 * (t539 - t517 * t517) - minus_gcross_vy_leg1 * t536,
-                grod_vy_leg1 * t516 - minus_gcross_vy_leg1 * t553, t563,
-                1.7857142857142858 * rate_dot_cross_leg1 - minus_gcross_vy_leg1 * t565, t571,
-                t565
+                gcross_vy_leg1 * t596 - t599,
+                gcross_vy_leg1 * t608 + grod_vy_leg1 * (t612 - t589 * t589),
+                gcross_vy_leg1 * t625 + grod_vy_leg1 * t588, t635,
+                gcross_vy_leg1 * t637 + 1.7857142857142858 * rate_dot_cross_leg1, t643,
+                t637
                     - 0.10285714285714286
-                        * (17.36111111111111 * t582 + 5.444444444444445 * t563
-                            + 5.444444444444445 * t571),
-                garm_vy_leg1 * t608 + minus_gcross_vy_leg1 * t615
-                    - 1.7857142857142858 * t623,
-                garm_vy_leg1 * t633 - minus_gcross_vy_leg1 * t623,
-                t582,
-                t644,
-                -(garm_vy_leg2 * t646),
-                garm_vy_leg2 * t650,
-                t644,
-                t229,
+                        * (17.36111111111111 * t654 + 5.444444444444445 * t635
+                            + 5.444444444444445 * t643),
+                garm_vy_leg1 * t680 - gcross_vy_leg1 * t687 - 1.7857142857142858 * t695,
+                garm_vy_leg1 * t705 + gcross_vy_leg1 * t695,
+                t654,
+                t716,
+                -(garm_vy_leg2 * t718),
+                -(garm_vy_leg2 * t722),
+                t716,
+                t275,
                 ::overact::math::signed(garm_vy_leg2, actuator_velocities[1]),
                 garm_vy_leg2,
-                t678 - minus_gcross_vy_leg2 * t673,
-                -(minus_gcross_vy_leg2 * t688 + minus_grod_vy_leg2 * t693),
-                -(minus_gcross_vy_leg2 * t708 + minus_grod_vy_leg2 * t665),
-                -t721,
-                -(minus_gcross_vy_leg2 * t727
-                    + 0.8928571428571429 * rate_dot_cross_leg2),
-                -t736,
-                t565
+                t750 - minus_gcross_vy_leg2 * t745,
+                -(minus_gcross_vy_leg2 * t765 + minus_grod_vy_leg2 * t757),
+                minus_grod_vy_leg2 * t742 - minus_gcross_vy_leg2 * t780,
+                -t793,
+                minus_gcross_vy_leg2 * t799 - 0.8928571428571429 * rate_dot_cross_leg2,
+                -t808,
+                t637
                     - 0.10285714285714286
-                        * (17.36111111111111 * t748 - 5.444444444444445 * t721
-                            - 5.444444444444445 * t736),
-                garm_vy_leg2 * t771 + minus_gcross_vy_leg2 * t778
-                    + 0.8928571428571429 * t783,
-                garm_vy_leg2 * t800 - minus_gcross_vy_leg2 * t783,
-                t748,
-                -t811,
-                minus_garm_vy_leg3 * t813,
-                -(minus_garm_vy_leg3 * t817),
-                -t811,
-                -t231,
-                -::overact::math::signed(minus_garm_vy_leg3, actuator_velocities[2]),
-                -minus_garm_vy_leg3,
-                gcross_vy_leg3 * t840 - t846,
-                gcross_vy_leg3 * t860 + grod_vy_leg3 * t852,
-                gcross_vy_leg3 * t876 + grod_vy_leg3 * t832,
-                t888,
-                gcross_vy_leg3 * t895 - 0.8928571428571429 * rate_dot_cross_leg3,
-                t903,
-                t565
+                        * (17.36111111111111 * t820 - 5.444444444444445 * t793
+                            - 5.444444444444445 * t808),
+                garm_vy_leg2 * t843 - minus_gcross_vy_leg2 * t850
+                    + 0.8928571428571429 * t855,
+                garm_vy_leg2 * t872 - minus_gcross_vy_leg2 * t855,
+                t820,
+                t883,
+                garm_vy_leg3 * t885,
+                garm_vy_leg3 * t889,
+                t883,
+                t277,
+                ::overact::math::signed(garm_vy_leg3, actuator_velocities[2]),
+                garm_vy_leg3,
+                t917 - minus_gcross_vy_leg3 * t912,
+                -(minus_gcross_vy_leg3 * t932 + minus_grod_vy_leg3 * t924),
+                -(minus_gcross_vy_leg3 * t948 + minus_grod_vy_leg3 * t904),
+                -t960,
+                -(minus_gcross_vy_leg3 * t967
+                    + 0.8928571428571429 * rate_dot_cross_leg3),
+                -t975,
+                t637
                     - 0.10285714285714286
-                        * (5.444444444444445 * t888 - 17.36111111111111 * t916
-                            + 5.444444444444445 * t903),
-                0.8928571428571429 * t950
-                    - (minus_garm_vy_leg3 * t938 + gcross_vy_leg3 * t945),
-                gcross_vy_leg3 * t950 - minus_garm_vy_leg3 * t967,
-                -t916,
-                t505,
+                        * (17.36111111111111 * t987 - 5.444444444444445 * t960
+                            - 5.444444444444445 * t975),
+                garm_vy_leg3 * t1010 + minus_gcross_vy_leg3 * t1017
+                    + 0.8928571428571429 * t1022,
+                garm_vy_leg3 * t1039 - minus_gcross_vy_leg3 * t1022,
+                t987,
+                t574,
             ],
             [
-                -t24, minus_garm_vz_leg1 * t25, -(minus_garm_vz_leg1 * t29), -t24, -t35,
-                -::overact::math::signed(minus_garm_vz_leg1, actuator_velocities[0]),
-                -minus_garm_vz_leg1, gcross_vz_leg1 * t524, gcross_vz_leg1 * t536,
-                gcross_vz_leg1 * t553, t564, gcross_vz_leg1 * t565, 0.0,
-                t591
+                t37, -(garm_vz_leg1 * t38), -(garm_vz_leg1 * t42), t37, t48,
+                ::overact::math::signed(garm_vz_leg1, actuator_velocities[0]), garm_vz_leg1,
+                -(minus_gcross_vz_leg1 * t596), -(minus_gcross_vz_leg1 * t608),
+                -(minus_gcross_vz_leg1 * t625), -t636, -(minus_gcross_vz_leg1 * t637), 0.0,
+                t663
                     - 0.10285714285714286
-                        * (5.444444444444445 * t564 - 17.36111111111111 * t593),
-                -(minus_garm_vz_leg1 * t608 + gcross_vz_leg1 * t615),
-                gcross_vz_leg1 * t623 - minus_garm_vz_leg1 * t633,
-                -t593,
-                t645,
-                -(garm_vz_leg2 * t646),
-                garm_vz_leg2 * t650,
-                t645,
-                t236,
+                        * (17.36111111111111 * t664 - 5.444444444444445 * t636),
+                garm_vz_leg1 * t680 + minus_gcross_vz_leg1 * t687,
+                garm_vz_leg1 * t705 - minus_gcross_vz_leg1 * t695,
+                t664,
+                t717,
+                -(garm_vz_leg2 * t718),
+                -(garm_vz_leg2 * t722),
+                t717,
+                t316,
                 ::overact::math::signed(garm_vz_leg2, actuator_velocities[1]),
                 garm_vz_leg2,
-                -(minus_gcross_vz_leg2 * t673),
-                -(minus_gcross_vz_leg2 * t688),
-                -(minus_gcross_vz_leg2 * t708),
-                -t722,
-                -(minus_gcross_vz_leg2 * t727),
+                gcross_vz_leg2 * t745,
+                gcross_vz_leg2 * t765,
+                gcross_vz_leg2 * t780,
+                t794,
+                -(gcross_vz_leg2 * t799),
                 0.0,
-                t591
+                t663
                     - 0.10285714285714286
-                        * (17.36111111111111 * t756 - 5.444444444444445 * t722),
-                garm_vz_leg2 * t771 + minus_gcross_vz_leg2 * t778,
-                garm_vz_leg2 * t800 - minus_gcross_vz_leg2 * t783,
-                t756,
-                -t812,
-                minus_garm_vz_leg3 * t813,
-                -(minus_garm_vz_leg3 * t817),
-                -t812,
-                -t238,
-                -::overact::math::signed(minus_garm_vz_leg3, actuator_velocities[2]),
-                -minus_garm_vz_leg3,
-                gcross_vz_leg3 * t840,
-                gcross_vz_leg3 * t860,
-                gcross_vz_leg3 * t876,
-                t889,
-                gcross_vz_leg3 * t895,
+                        * (17.36111111111111 * t828 + 5.444444444444445 * t794),
+                garm_vz_leg2 * t843 + gcross_vz_leg2 * t850,
+                garm_vz_leg2 * t872 + gcross_vz_leg2 * t855,
+                t828,
+                t884,
+                garm_vz_leg3 * t885,
+                garm_vz_leg3 * t889,
+                t884,
+                t318,
+                ::overact::math::signed(garm_vz_leg3, actuator_velocities[2]),
+                garm_vz_leg3,
+                gcross_vz_leg3 * t912,
+                gcross_vz_leg3 * t932,
+                gcross_vz_leg3 * t948,
+                t961,
+                gcross_vz_leg3 * t967,
                 0.0,
-                t591
+                t663
                     - 0.10285714285714286
-                        * (5.444444444444445 * t889 - 17.36111111111111 * t924),
-                -(minus_garm_vz_leg3 * t938 + gcross_vz_leg3 * t945),
-                gcross_vz_leg3 * t950 - minus_garm_vz_leg3 * t967,
-                -t924,
-                t590,
+                        * (17.36111111111111 * t995 + 5.444444444444445 * t961),
+                garm_vz_leg3 * t1010 - gcross_vz_leg3 * t1017,
+                garm_vz_leg3 * t1039 + gcross_vz_leg3 * t1022,
+                t995,
+                t662,
             ],
         ])
     }
@@ -2484,7 +3597,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 949 operations (312 additions, 632 multiplications, 5 divisions), 0 square roots, 9 trigonometric pairs, 3 signs, 868 intermediates.
+    /// 1033 operations (362 additions, 657 multiplications, 14 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 940 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2493,8 +3606,527 @@ impl Delta {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 52]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_actuators_from_joints(pose, joints, twist, acceleration)
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.2304 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.48 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.3136 + 0.0576;
+        let t14 = 0.48 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t21 = 0.24 * c_arm_leg1;
+        let t23 = t0 - (0.2 + t21);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = t23 * t25;
+        let t27 = 0.48 * t24;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t35 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t35, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t35);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t35) / (0.2688 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t49 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t27
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t49)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t49));
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t27;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t27;
+        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
+            - minus_gcross_vz_leg1 * twist[2];
+        let grod_vy_leg1 = 1.7857142857142858 * t49;
+        let rate_rod_leg1 = grod_vy_leg1 * twist[1];
+        let t69 = s_armcross_leg1 * rate_rod_leg1;
+        let t71 = pose[1] * (rate_cross_leg1 * t69);
+        let garm_vy_leg1 = pose[1] * t25;
+        let t76 = 0.24 * minus_s_arm_leg1;
+        let t77 = pose[2] - t76;
+        let garm_vz_leg1 = t77 * t25;
+        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
+            + garm_vz_leg1 * twist[2];
+        let t81 = rate_arm_leg1 * rate_arm_leg1;
+        let t84 = rate_cross_leg1 * rate_cross_leg1;
+        let t86 = c_armcross_leg1 * rate_rod_leg1;
+        let t88 = t69 * t69 + t84 + t86 * t86;
+        let t93 = acceleration[0] - (t71 - (t21 * t81 + t23 * t88) + t71);
+        let t95 = pose[1] * rate_cross_leg1;
+        let t99 = acceleration[1] - (rate_cross_leg1 * t95 - pose[1] * t88);
+        let t103 = pose[1] * (rate_cross_leg1 * t86);
+        let t109 = acceleration[2] - (t103 - (t76 * t81 + t77 * t88) + t103);
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t93 + garm_vy_leg1 * t99
+            + garm_vz_leg1 * t109;
+        let t112 = 9.81 * c_arm_leg1;
+        let t113 = 9.81 * minus_s_arm_leg1;
+        let t115 = pose[1] + 0.04330127018922194;
+        let t116 = t115 - 0.17320508075688776;
+        let t118 = pose[0] - 0.025;
+        let t119 = t118 + 0.1;
+        let t120 = 0.5 * t119;
+        let t121 = 0.8660254037844387 * t116 - t120;
+        let t124 = 0.2304 * (t121 * t121 + t3);
+        let t125 = 1.0 / t124;
+        let t126 = 0.48 * t121;
+        let t127 = t119 * t119;
+        let t130 = t127 + t116 * t116 + t3;
+        let t132 = t130 - 0.3136 + 0.0576;
+        let t135 = t124 - t132 * t132;
+        ::overact::guard::reach(t135, "leg2")?;
+        let t136 = ::overact::math::sqrt(t135);
+        let c_arm_leg2 = t125 * (t126 * t132 - t14 * t136);
+        let t141 = t121 - 0.24 * c_arm_leg2;
+        let t142 = 0.8660254037844387 * t119;
+        let t144 = t142 + 0.5 * t116;
+        let t145 = t144 * t144;
+        let t149 = 1.0 - 3.188775510204082 * t145;
+        ::overact::guard::reach(t149, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t149);
+        let c_cross_leg2 = (t130 - (0.0576 + t145) - 0.3136 * t149)
+            / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t125 * (t14 * t132 + t126 * t136);
+        let s_cross_leg2 = 2.0833333333333335 * t136 / (0.56 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t165 = t144 * c_armcross_leg2;
+        let t168 = 1.5464739353293548 * t165 - 0.5 * c_rod_leg2;
+        let t171 = 0.24 * minus_s_arm_leg2;
+        let t172 = pose[2] - t171;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t144;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t177 = minus_s_rod_leg2 * s_armcross_leg2;
+        let t178 = t172 * t177;
+        let t181 = 0.20784609690826528 * minus_s_arm_leg2;
+        let t184 = 0.8928571428571429 * t165 + 0.8660254037844387 * c_rod_leg2;
+        let t188 = t141 * (0.56 * t184) - 0.28 * t178;
+        let t193 = minus_s_arm_leg2 * t177;
+        let t195 = 0.1344 * (c_arm_leg2 * t184) - 0.0672 * t193;
+        let t200 = t181 * t188 - 0.8660254037844387 * t172 * t195 - 0.14 * (t136 * t168);
+        ::overact::guard::leg(t200, 0.06758306237512474, "leg2")?;
+        let t201 = 1.0 / t200;
+        let garm_vx_leg2 = (t141 * (0.56 * t168) - 0.4849742261192857 * t178) * t201;
+        let t203 = pose[1] - 0.04330127018922194;
+        let t204 = t203 + 0.17320508075688776;
+        let t206 = t142 - 0.5 * t204;
+        let t207 = t206 * t206;
+        let t209 = 1.0 - 3.188775510204082 * t207;
+        ::overact::guard::reach(t209, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t209);
+        let t212 = t120 + 0.8660254037844387 * t204;
+        let t215 = 0.2304 * (t212 * t212 + t3);
+        let t216 = 1.0 / t215;
+        let t217 = 0.48 * t212;
+        let t220 = t127 + t204 * t204 + t3;
+        let t222 = t220 - 0.3136 + 0.0576;
+        let t224 = t215 - t222 * t222;
+        ::overact::guard::reach(t224, "leg3")?;
+        let t225 = ::overact::math::sqrt(t224);
+        let s_arm_leg3 = t216 * (t217 * t225 - t14 * t222);
+        let t230 = 0.24 * s_arm_leg3;
+        let t231 = pose[2] + t230;
+        let t234 = 0.20784609690826528 * s_arm_leg3;
+        let minus_c_arm_leg3 = t216 * (t217 * t222 + t14 * t225);
+        let t240 = t212 - 0.24 * minus_c_arm_leg3;
+        let c_cross_leg3 = (t220 - (0.0576 + t207) - 0.3136 * t209)
+            / (0.2688 * c_rod_leg3);
+        let s_cross_leg3 = 2.0833333333333335 * t225 / (0.56 * c_rod_leg3);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t254 = t206 * minus_c_armcross_leg3;
+        let t256 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t254;
+        let s_rod_leg3 = 1.7857142857142858 * t206;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t263 = s_rod_leg3 * s_armcross_leg3;
+        let t264 = t231 * t263;
+        let t266 = t240 * (0.56 * t256) + 0.28 * t264;
+        let t271 = s_arm_leg3 * t263;
+        let t273 = 0.1344 * (minus_c_arm_leg3 * t256) - 0.0672 * t271;
+        let t278 = 1.5464739353293548 * t254 + 0.5 * c_rod_leg3;
+        let t281 = t234 * t266 + 0.8660254037844387 * t231 * t273 + 0.14 * (t225 * t278);
+        ::overact::guard::leg(t281, 0.06758306237512474, "leg3")?;
+        let t282 = 1.0 / t281;
+        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t231) * t282;
+        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t172) * t201;
+        let garm_vx_leg3 = (t240 * (0.56 * t278) - 0.4849742261192857 * t264) * t282;
+        let garm_vy_leg3 = t266 * t282;
+        let t298 = garm_vz_leg1 * garm_vy_leg3 - garm_vy_leg1 * garm_vz_leg3;
+        let garm_vy_leg2 = t188 * t201;
+        let t303 = garm_vz_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vz_leg3;
+        let t308 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
+        let t310 = garm_vx_leg2 * t298 - garm_vy_leg2 * t303 + garm_vz_leg2 * t308;
+        ::overact::guard::platform(t310, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t310, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t310, 87.78853732233405, "kept actuators")?;
+        let t311 = 1.0 / t310;
+        let t312 = (garm_vx_leg2 * garm_vz_leg3 - garm_vz_leg2 * garm_vx_leg3) * t311;
+        let t313 = grod_vy_leg1 * t312;
+        let t314 = 1.7857142857142858 * t95;
+        let t315 = c_rod_leg1 * rate_cross_leg1;
+        let t316 = t314 * t315;
+        let t317 = t313 * t316;
+        let t321 = (garm_vy_leg2 * garm_vz_leg3 - garm_vz_leg2 * garm_vy_leg3) * t311;
+        let t328 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t311;
+        let t330 = minus_gcross_vx_leg1 * t321 + gcross_vy_leg1 * t312
+            + minus_gcross_vz_leg1 * t328;
+        let rate_dot_cross_leg1 = gcross_vy_leg1 * t99 - minus_gcross_vx_leg1 * t93
+            - minus_gcross_vz_leg1 * t109;
+        let t336 = s_rod_leg1 * rate_dot_cross_leg1;
+        let t337 = rate_rod_leg1 * t315;
+        let t338 = t336 + t337;
+        let t340 = rate_rod_leg1 * t314;
+        let t341 = c_rod_leg1 * t340;
+        let t342 = s_rod_leg1 * t338 + t341;
+        let t345 = t303 * t311;
+        let t346 = grod_vy_leg1 * t345;
+        let t347 = t346 * t316;
+        let t348 = t298 * t311;
+        let t352 = t308 * t311;
+        let t354 = minus_gcross_vx_leg1 * t348 + gcross_vy_leg1 * t345
+            + minus_gcross_vz_leg1 * t352;
+        let t360 = (garm_vz_leg1 * garm_vy_leg2 - garm_vy_leg1 * garm_vz_leg2) * t311;
+        let t365 = (garm_vz_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vz_leg2) * t311;
+        let t371 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t311;
+        let t373 = minus_gcross_vx_leg1 * t360 + gcross_vy_leg1 * t365
+            + minus_gcross_vz_leg1 * t371;
+        let t375 = grod_vy_leg1 * t365;
+        let t376 = t375 * t316;
+        let t378 = t337 + t338;
+        let t380 = c_rod_leg1 * rate_dot_cross_leg1;
+        let t381 = t380 - t340;
+        let t384 = c_rod_leg1 * t378 - s_rod_leg1 * (t340 - t381);
+        let t387 = 3.188775510204082 * (t95 * t95);
+        let t389 = t387 - t315 * t315;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t99;
+        let t401 = rate_rod_leg1 * rate_rod_leg1;
+        let t404 = s_rod_leg1 * (t316 + rate_dot_rod_leg1) + c_rod_leg1 * (t401 - t387);
+        let t415 = c_rod_leg1 * t381 - t341;
+        let t417 = t330 * t415 + t317;
+        let t419 = t354 * t415 + t347;
+        let t421 = t373 * t415 + t376;
+        let t422 = 1.7857142857142858 * acceleration[1];
+        let t432 = t313 * rate_dot_rod_leg1;
+        let t433 = t346 * rate_dot_rod_leg1;
+        let t434 = t375 * rate_dot_rod_leg1;
+        let t438 = acceleration[2] + 9.81;
+        let t440 = t321 * acceleration[0] - t312 * acceleration[1] + t328 * t438;
+        let t441 = 1.7857142857142858 * t440;
+        let t443 = 0.24 * rate_dot_arm_leg1 - t112;
+        let t455 = t348 * acceleration[0] - t345 * acceleration[1] + t352 * t438;
+        let t456 = 1.7857142857142858 * t455;
+        let t464 = t365 * acceleration[1] - t360 * acceleration[0] - t371 * t438;
+        let t465 = 1.7857142857142858 * t464;
+        let t469 = 0.8928571428571429 * t17;
+        let t473 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
+        let t477 = 0.24 * c_cross_leg1;
+        let t482 = t113 - 0.24 * t81;
+        let t485 = s_rod_leg1 * (c_cross_leg1 * t443 - s_cross_leg1 * t482);
+        let t490 = c_cross_leg1 * t482 + s_cross_leg1 * t443;
+        let t491 = c_rod_leg1 * t490;
+        let t493 = t469 * (t316 - rate_dot_rod_leg1) + t473 * (t387 + t401) - t477 * t378
+            + t330 * t485 + t313 * t491;
+        let t510 = 0.12 * c_arm_leg2;
+        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
+            + garm_vz_leg2 * twist[2];
+        let t516 = rate_arm_leg2 * rate_arm_leg2;
+        let t519 = t118 + 0.1 + t510;
+        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t168)
+            - 0.11639381426862856 * (minus_s_arm_leg2 * t184)) * t201;
+        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t168)
+            - 0.11639381426862856 * t193) * t201;
+        let minus_gcross_vy_leg2 = t195 * t201;
+        let rate_cross_leg2 = gcross_vz_leg2 * twist[2]
+            - (minus_gcross_vx_leg2 * twist[0] + minus_gcross_vy_leg2 * twist[1]);
+        let t537 = 0.8660254037844387 * rate_cross_leg2;
+        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t172) - t141 * t181)
+            * t201;
+        let minus_grod_vy_leg2 = 0.25 * t136 * t201;
+        let rate_rod_leg2 = grod_vx_leg2 * twist[0] - minus_grod_vy_leg2 * twist[1];
+        let t550 = t537 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
+        let t553 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
+        let t554 = 0.5 * rate_cross_leg2;
+        let t555 = t553 - t554;
+        let t558 = c_armcross_leg2 * rate_rod_leg2;
+        let t560 = t550 * t550 + t555 * t555 + t558 * t558;
+        let t563 = 0.20784609690826528 * c_arm_leg2;
+        let t565 = t115 - (0.17320508075688776 + t563);
+        let t570 = t565 * t555 - t519 * t550 + t172 * t558;
+        let t573 = t537 * t558;
+        let t576 = 1.3333333333333333 * (t537 * t553);
+        let t580 = acceleration[0]
+            - (t510 * t516 - t519 * t560 - t550 * t570 + t172 * t573 + t565 * t576);
+        let t587 = t554 * t558;
+        let t592 = acceleration[1]
+            - (t555 * t570 - (t563 * t516 + t565 * t560) + t172 * t587 - t519 * t576);
+        let t600 = t565 * t587 + t519 * t573;
+        let t603 = acceleration[2] + t171 * t516 + t172 * t560 + t600 + t600;
+        let rate_dot_arm_leg2 = garm_vx_leg2 * t580 + garm_vy_leg2 * t592
+            + garm_vz_leg2 * t603;
+        let t606 = 9.81 * c_arm_leg2;
+        let t607 = 9.81 * minus_s_arm_leg2;
+        let t613 = minus_gcross_vy_leg2 * t312 - minus_gcross_vx_leg2 * t321
+            + gcross_vz_leg2 * t328;
+        let t614 = 1.7857142857142858 * t570;
+        let t615 = rate_rod_leg2 * t614;
+        let t616 = c_rod_leg2 * t615;
+        let t617 = c_rod_leg2 * rate_cross_leg2;
+        let t618 = rate_rod_leg2 * t617;
+        let rate_dot_cross_leg2 = gcross_vz_leg2 * t603
+            - (minus_gcross_vx_leg2 * t580 + minus_gcross_vy_leg2 * t592);
+        let t624 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t625 = t618 - t624;
+        let t627 = t616 - minus_s_rod_leg2 * t625;
+        let t631 = grod_vx_leg2 * t321 + minus_grod_vy_leg2 * t312;
+        let t632 = t614 * t617;
+        let t633 = t631 * t632;
+        let t639 = minus_gcross_vy_leg2 * t345 - minus_gcross_vx_leg2 * t348
+            + gcross_vz_leg2 * t352;
+        let t643 = grod_vx_leg2 * t348 + minus_grod_vy_leg2 * t345;
+        let t644 = t643 * t632;
+        let t650 = minus_gcross_vx_leg2 * t360 - minus_gcross_vy_leg2 * t365
+            - gcross_vz_leg2 * t371;
+        let t654 = grod_vx_leg2 * t360 + minus_grod_vy_leg2 * t365;
+        let t655 = t654 * t632;
+        let t657 = c_rod_leg2 * rate_dot_cross_leg2;
+        let t658 = t657 - t615;
+        let t661 = t618 + t625;
+        let t663 = minus_s_rod_leg2 * (t615 - t658) + c_rod_leg2 * t661;
+        let t666 = 3.188775510204082 * (t570 * t570);
+        let t667 = t617 * t617;
+        let t668 = t666 - t667;
+        let t677 = rate_rod_leg2 * rate_rod_leg2;
+        let rate_dot_rod_leg2 = grod_vx_leg2 * t580 - minus_grod_vy_leg2 * t592;
+        let t685 = c_rod_leg2 * (t677 - t666)
+            - minus_s_rod_leg2 * (t632 + rate_dot_rod_leg2);
+        let t696 = c_rod_leg2 * t658 - t616;
+        let t698 = t613 * t696 + t633;
+        let t700 = t639 * t696 + t644;
+        let t702 = t650 * t696 - t655;
+        let t706 = t632 - rate_dot_rod_leg2;
+        let t708 = minus_s_rod_leg2 * (t667 - t677) + c_rod_leg2 * t706;
+        let t717 = t631 * rate_dot_rod_leg2;
+        let t718 = t643 * rate_dot_rod_leg2;
+        let t719 = t654 * rate_dot_rod_leg2;
+        let t724 = 0.24 * rate_dot_arm_leg2 - t606;
+        let t737 = t607 - 0.24 * t516;
+        let t740 = minus_s_rod_leg2 * (c_cross_leg2 * t724 - s_cross_leg2 * t737);
+        let t744 = c_cross_leg2 * t737 + s_cross_leg2 * t724;
+        let t745 = c_rod_leg2 * t744;
+        let t748 = 0.8928571428571429 * t136;
+        let t751 = 0.42857142857142855 * (t144 * s_cross_leg2);
+        let t755 = 0.24 * c_cross_leg2;
+        let t761 = t748 * t706 - t751 * (t666 + t677) - t755 * t661 + t639 * t740
+            - t643 * t745;
+        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t256)
+            + 0.0672 * (s_arm_leg3 * t278)) * t282;
+        let minus_gcross_vx_leg3 = (0.11639381426862856 * t271
+            + 0.1344 * (minus_c_arm_leg3 * t278)) * t282;
+        let minus_gcross_vy_leg3 = t273 * t282;
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
+        let t793 = 0.8660254037844387 * rate_cross_leg3;
+        let grod_vx_leg3 = (t240 * t234
+            + 0.20784609690826528 * (minus_c_arm_leg3 * t231)) * t282;
+        let minus_grod_vy_leg3 = 0.25 * t225 * t282;
+        let rate_rod_leg3 = grod_vx_leg3 * twist[0] - minus_grod_vy_leg3 * twist[1];
+        let t806 = t793 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
+        let t807 = 0.12 * minus_c_arm_leg3;
+        let t809 = t118 - (t807 - 0.1);
+        let t811 = 0.20784609690826528 * minus_c_arm_leg3;
+        let t813 = t203 - (t811 - 0.17320508075688776);
+        let t814 = 0.5 * rate_cross_leg3;
+        let t816 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
+        let t817 = t814 + t816;
+        let t820 = minus_c_armcross_leg3 * rate_rod_leg3;
+        let t822 = t809 * t806 - t813 * t817 - t231 * t820;
+        let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
+            + garm_vz_leg3 * twist[2];
+        let t829 = rate_arm_leg3 * rate_arm_leg3;
+        let t835 = t806 * t806 + t817 * t817 + t820 * t820;
+        let t839 = t793 * t820;
+        let t842 = 1.3333333333333333 * (t793 * t816);
+        let t846 = acceleration[0]
+            - (t806 * t822 - (t807 * t829 + t809 * t835) + t231 * t839 + t813 * t842);
+        let t854 = t814 * t820;
+        let t858 = acceleration[1] + t811 * t829 + t813 * t835 + t817 * t822
+            + t809 * t842 + t231 * t854;
+        let t866 = t813 * t854 - t809 * t839;
+        let t869 = acceleration[2] - (t230 * t829 - t231 * t835 + t866 + t866);
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t846 + garm_vy_leg3 * t858
+            + garm_vz_leg3 * t869;
+        let t872 = 9.81 * minus_c_arm_leg3;
+        let t873 = 9.81 * s_arm_leg3;
+        let t879 = minus_gcross_vy_leg3 * t312 - minus_gcross_vx_leg3 * t321
+            + gcross_vz_leg3 * t328;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * t869
+            - (minus_gcross_vx_leg3 * t846 + minus_gcross_vy_leg3 * t858);
+        let t885 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t886 = c_rod_leg3 * rate_cross_leg3;
+        let t887 = rate_rod_leg3 * t886;
+        let t888 = t885 + t887;
+        let t890 = 1.7857142857142858 * t822;
+        let t891 = rate_rod_leg3 * t890;
+        let t892 = c_rod_leg3 * t891;
+        let t893 = s_rod_leg3 * t888 + t892;
+        let t897 = grod_vx_leg3 * t321 + minus_grod_vy_leg3 * t312;
+        let t898 = t890 * t886;
+        let t899 = t897 * t898;
+        let t905 = minus_gcross_vy_leg3 * t345 - minus_gcross_vx_leg3 * t348
+            + gcross_vz_leg3 * t352;
+        let t909 = grod_vx_leg3 * t348 + minus_grod_vy_leg3 * t345;
+        let t910 = t909 * t898;
+        let t916 = minus_gcross_vx_leg3 * t360 - minus_gcross_vy_leg3 * t365
+            - gcross_vz_leg3 * t371;
+        let t920 = grod_vx_leg3 * t360 + minus_grod_vy_leg3 * t365;
+        let t921 = t920 * t898;
+        let t923 = t887 + t888;
+        let t925 = c_rod_leg3 * rate_dot_cross_leg3;
+        let t926 = t925 - t891;
+        let t929 = c_rod_leg3 * t923 - s_rod_leg3 * (t891 - t926);
+        let t932 = 3.188775510204082 * (t822 * t822);
+        let t933 = t886 * t886;
+        let t934 = t932 - t933;
+        let rate_dot_rod_leg3 = grod_vx_leg3 * t846 - minus_grod_vy_leg3 * t858;
+        let t948 = rate_rod_leg3 * rate_rod_leg3;
+        let t951 = s_rod_leg3 * (t898 + rate_dot_rod_leg3) + c_rod_leg3 * (t948 - t932);
+        let t962 = c_rod_leg3 * t926 - t892;
+        let t964 = t879 * t962 + t899;
+        let t966 = t905 * t962 + t910;
+        let t968 = t916 * t962 - t921;
+        let t971 = t898 - rate_dot_rod_leg3;
+        let t973 = s_rod_leg3 * (t933 - t948) - c_rod_leg3 * t971;
+        let t983 = t897 * rate_dot_rod_leg3;
+        let t984 = t909 * rate_dot_rod_leg3;
+        let t985 = t920 * rate_dot_rod_leg3;
+        let t993 = t872 + 0.24 * rate_dot_arm_leg3;
+        let t1002 = t873 + 0.24 * t829;
+        let t1006 = s_rod_leg3 * (s_cross_leg3 * t1002 + c_cross_leg3 * t993);
+        let t1010 = s_cross_leg3 * t993 - c_cross_leg3 * t1002;
+        let t1011 = c_rod_leg3 * t1010;
+        let t1017 = 0.8928571428571429 * t225;
+        let t1020 = 0.42857142857142855 * (t206 * s_cross_leg3);
+        let t1024 = 0.24 * c_cross_leg3;
+        let t1030 = t1017 * t971 + t1020 * (t932 + t948) - t1024 * t923 - t916 * t1006
+            + t920 * t1011;
+        Ok([
+            [
+                rate_dot_arm_leg1, -t112, -t113, rate_dot_arm_leg1, rate_arm_leg1,
+                ::overact::math::sign(rate_arm_leg1), 1.0, t317 - t330 * t342,
+                -(t330 * t384 + t313 * t389), -(t330 * t404 + t313 * t336), -t417,
+                -(t330 * t422 + t313 * t380), -t432,
+                t441
+                    - 0.10285714285714286
+                        * (4.166666666666667 * t443 - 5.444444444444445 * t417
+                            - 5.444444444444445 * t432),
+                t493,
+                t380 * t469 + t336 * t473 + t84 * t477 - t330 * t490,
+                0.24 * t443,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                t613 * t627 - t633,
+                t613 * t663 + t631 * t668,
+                t613 * t685 - t631 * t624,
+                t698,
+                t631 * t657 - t613 * t708,
+                t717,
+                t441 - 0.56 * (t698 + t717),
+                t613 * t740 - t631 * t745,
+                t613 * t744,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                t879 * t893 - t899,
+                t879 * t929 + t897 * t934,
+                t879 * t951 + t897 * t885,
+                t964,
+                t879 * t973 + t897 * t925,
+                t983,
+                t441 - 0.56 * (t964 + t983),
+                -(t879 * t1006 + t897 * t1011),
+                t879 * t1010,
+                0.0,
+                t440,
+            ],
+            [
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t347 - t354 * t342, -(t354 * t384 + t346 * t389),
+                -(t354 * t404 + t346 * t336), -t419, -(t354 * t422 + t346 * t380), -t433,
+                t456 + 0.56 * (t419 + t433), t354 * t485 + t346 * t491, -(t354 * t490), 0.0,
+                rate_dot_arm_leg2, -t606, -t607, rate_dot_arm_leg2, rate_arm_leg2,
+                ::overact::math::sign(rate_arm_leg2), 1.0, t639 * t627 - t644,
+                t639 * t663 + t643 * t668, t639 * t685 - t643 * t624, t700,
+                t643 * t657 - t639 * t708, t718,
+                t456
+                    - 0.10285714285714286
+                        * (4.166666666666667 * t724 + 5.444444444444445 * t700
+                            + 5.444444444444445 * t718),
+                t761,
+                t657 * t748 + t624 * t751 + rate_cross_leg2 * rate_cross_leg2 * t755
+                    + t639 * t744,
+                0.24 * t724,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                t905 * t893 - t910,
+                t905 * t929 + t909 * t934,
+                t905 * t951 + t909 * t885,
+                t966,
+                t905 * t973 + t909 * t925,
+                t984,
+                t456 - 0.56 * (t966 + t984),
+                -(t905 * t1006 + t909 * t1011),
+                t905 * t1010,
+                0.0,
+                t455,
+            ],
+            [
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t373 * t342 - t376, t373 * t384 + t375 * t389,
+                t373 * t404 + t375 * t336, t421, t373 * t422 + t375 * t380, t434,
+                t465 - 0.56 * (t421 + t434), -(t373 * t485 + t375 * t491), t373 * t490, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t650 * t627 + t655, t650 * t663 - t654 * t668,
+                t650 * t685 + t654 * t624, t702, -(t650 * t708 + t654 * t657), -t719,
+                t465 - 0.56 * (t702 - t719), t650 * t740 + t654 * t745, t650 * t744, 0.0,
+                rate_dot_arm_leg3, t872, t873, rate_dot_arm_leg3, rate_arm_leg3,
+                ::overact::math::sign(rate_arm_leg3), 1.0, t916 * t893 + t921,
+                t916 * t929 - t920 * t934, t916 * t951 - t920 * t885, t968,
+                t916 * t973 - t920 * t925, -t985,
+                t465
+                    - 0.10285714285714286
+                        * (4.166666666666667 * t993 + 5.444444444444445 * t968
+                            - 5.444444444444445 * t985),
+                t1030,
+                t925 * t1017 + t885 * t1020 + rate_cross_leg3 * rate_cross_leg3 * t1024
+                    + t916 * t1010,
+                0.24 * t993,
+                t464,
+            ],
+        ])
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -2998,7 +4630,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 1041 operations (349 additions, 684 multiplications, 8 divisions), 0 square roots, 9 trigonometric pairs, 3 signs, 966 intermediates.
+    /// 1125 operations (399 additions, 709 multiplications, 17 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 1038 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3009,423 +4641,476 @@ impl Delta {
         start: &[f64; 3],
     ) -> Result<[[f64; 52]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t2 = 9.81 * c_arm_leg1;
-        let t3 = 9.81 * s_arm_leg1;
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
-        let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.2304 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.48 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.3136 + 0.0576;
+        let t14 = 0.48 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t21 = 9.81 * c_arm_leg1;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let t26 = 9.81 * minus_s_arm_leg1;
+        let t29 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t29, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t29);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t15 = s_armcross_leg1 * c_rod_leg1;
-        let t17 = c_armcross_leg1 * c_rod_leg1;
-        let t19 = c_arm_leg1 * t15 - s_arm_leg1 * t17;
-        ::overact::guard::leg(t19, 0.89794672585951, "leg1")?;
-        let t20 = 1.0 / t19;
-        let t21 = 1.7857142857142858 * t20;
-        let t23 = 1.0 / c_rod_leg1;
-        let minus_gcross_vy_leg1 = t21
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t23)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t23));
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
-        let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t41 = 0.8660254037844387 * c_armcross_leg2;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t46 = t41 * s_rod_leg2 + 0.5 * c_rod_leg2;
-        let t47 = s_armcross_leg2 * c_rod_leg2;
-        let t50 = 0.5 * c_armcross_leg2;
-        let t53 = t50 * s_rod_leg2 - 0.8660254037844387 * c_rod_leg2;
-        let t57 = 0.4849742261192857 * t47;
-        let t58 = 0.24 * s_arm_leg2;
-        let t59 = 0.56 * t47;
-        let t62 = t57 - 0.8660254037844387 * (t58 + t59);
-        let t63 = t50 * c_rod_leg2;
-        let t66 = s_armcross_leg2 * s_rod_leg2;
-        let t67 = t47 * t66;
-        let t69 = 0.6272 * (t63 * t53) + 0.1568 * t67;
-        let t75 = 0.1344 * (c_arm_leg2 * t53) + 0.0672 * (s_arm_leg2 * t66);
-        let t81 = c_arm_leg2 * t47;
-        let t83 = 0.1344 * (s_arm_leg2 * t63) - 0.0672 * t81;
-        let t85 = t62 * t69 + t57 * t75 + 0.56 * t46 * t83;
-        ::overact::guard::leg(t85, 0.06758306237509017, "leg2")?;
-        let t86 = 1.0 / t85;
-        let garm_vz_leg2 = (0.1568 * (t46 * t47) - 0.2715855666268 * (t53 * t47)) * t86;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
-        let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t100 = s_armcross_leg3 * c_rod_leg3;
-        let t101 = s_armcross_leg3 * s_rod_leg3;
-        let t102 = t100 * t101;
-        let t104 = 0.5 * c_armcross_leg3;
-        let t105 = t104 * c_rod_leg3;
-        let t106 = 0.8660254037844387 * c_armcross_leg3;
-        let t109 = t106 * s_rod_leg3 - 0.5 * c_rod_leg3;
-        let t113 = 0.4849742261192857 * t100;
-        let t116 = t104 * s_rod_leg3 + 0.8660254037844387 * c_rod_leg3;
-        let t121 = 0.1344 * (c_arm_leg3 * t116) + 0.0672 * (s_arm_leg3 * t101);
-        let t123 = 0.24 * s_arm_leg3;
-        let t124 = 0.56 * t100;
-        let t127 = 0.8660254037844387 * (t123 + t124) - t113;
-        let t131 = 0.6272 * (t105 * t116) + 0.1568 * t102;
-        let t137 = c_arm_leg3 * t100;
-        let t139 = 0.1344 * (s_arm_leg3 * t105) - 0.0672 * t137;
-        let t141 = t113 * t121 - t127 * t131 + 0.56 * t109 * t139;
-        ::overact::guard::leg(t141, 0.06758306237509014, "leg3")?;
-        let t142 = 1.0 / t141;
-        let garm_vx_leg3 = (0.2715855666268 * t102 + 0.6272 * (t105 * t109)) * t142;
-        let garm_vx_leg2 = (0.2715855666268 * t67 + 0.6272 * (t63 * t46)) * t86;
-        let minus_garm_vz_leg3 = (0.2715855666268 * (t116 * t100)
-            - 0.1568 * (t109 * t100)) * t142;
-        let t157 = garm_vz_leg2 * garm_vx_leg3 + garm_vx_leg2 * minus_garm_vz_leg3;
-        let t158 = 4.166666666666667 * t20;
-        let garm_vx_leg1 = t17 * t158;
-        let garm_vy_leg2 = t69 * t86;
-        let minus_garm_vy_leg3 = t131 * t142;
-        let t164 = garm_vy_leg2 * minus_garm_vz_leg3 - garm_vz_leg2 * minus_garm_vy_leg3;
-        let garm_vy_leg1 = s_rod_leg1 * t158;
-        let minus_garm_vz_leg1 = t15 * t158;
-        let t172 = garm_vy_leg2 * garm_vx_leg3 + garm_vx_leg2 * minus_garm_vy_leg3;
-        let t174 = garm_vx_leg1 * t164 - garm_vy_leg1 * t157 - minus_garm_vz_leg1 * t172;
-        ::overact::guard::platform(t174, 87.78853732246624, "kept actuators")?;
-        ::overact::guard::platform(t174, 87.78853732246624, "kept actuators")?;
-        ::overact::guard::platform(t174, 87.78853732246624, "kept actuators")?;
-        let t175 = 1.0 / t174;
-        let t176 = t157 * t175;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t21;
-        let t179 = t164 * t175;
-        let gcross_vz_leg1 = s_arm_leg1 * t21;
-        let t183 = t172 * t175;
-        let t185 = minus_gcross_vy_leg1 * t176 - minus_gcross_vx_leg1 * t179
-            + gcross_vz_leg1 * t183;
-        let t195 = garm_vx_leg2 * garm_vz_leg2 - garm_vx_leg1 * minus_garm_vz_leg1
-            - garm_vx_leg3 * minus_garm_vz_leg3;
-        let t200 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t31 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7857142857142858 * t31;
+        let t33 = pose[1] + 0.04330127018922194;
+        let t34 = t33 - 0.17320508075688776;
+        let t36 = pose[0] - 0.025;
+        let t37 = t36 + 0.1;
+        let t38 = 0.5 * t37;
+        let t39 = 0.8660254037844387 * t34 - t38;
+        let t42 = 0.2304 * (t39 * t39 + t3);
+        let t43 = 1.0 / t42;
+        let t44 = 0.48 * t39;
+        let t45 = t37 * t37;
+        let t48 = t45 + t34 * t34 + t3;
+        let t50 = t48 - 0.3136 + 0.0576;
+        let t53 = t42 - t50 * t50;
+        ::overact::guard::reach(t53, "leg2")?;
+        let t54 = ::overact::math::sqrt(t53);
+        let c_arm_leg2 = t43 * (t44 * t50 - t14 * t54);
+        let t59 = t39 - 0.24 * c_arm_leg2;
+        let t60 = 0.8660254037844387 * t37;
+        let t62 = t60 + 0.5 * t34;
+        let t63 = t62 * t62;
+        let t67 = 1.0 - 3.188775510204082 * t63;
+        ::overact::guard::reach(t67, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t67);
+        let c_cross_leg2 = (t48 - (0.0576 + t63) - 0.3136 * t67) / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t43 * (t14 * t50 + t44 * t54);
+        let s_cross_leg2 = 2.0833333333333335 * t54 / (0.56 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t83 = t62 * c_armcross_leg2;
+        let t86 = 1.5464739353293548 * t83 - 0.5 * c_rod_leg2;
+        let t89 = 0.24 * minus_s_arm_leg2;
+        let t90 = pose[2] - t89;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t62;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t95 = minus_s_rod_leg2 * s_armcross_leg2;
+        let t96 = t90 * t95;
+        let t99 = 0.20784609690826528 * minus_s_arm_leg2;
+        let t102 = 0.8928571428571429 * t83 + 0.8660254037844387 * c_rod_leg2;
+        let t106 = t59 * (0.56 * t102) - 0.28 * t96;
+        let t111 = minus_s_arm_leg2 * t95;
+        let t113 = 0.1344 * (c_arm_leg2 * t102) - 0.0672 * t111;
+        let t118 = t99 * t106 - 0.8660254037844387 * t90 * t113 - 0.14 * (t54 * t86);
+        ::overact::guard::leg(t118, 0.06758306237512474, "leg2")?;
+        let t119 = 1.0 / t118;
+        let garm_vx_leg2 = (t59 * (0.56 * t86) - 0.4849742261192857 * t96) * t119;
+        let t121 = pose[1] - 0.04330127018922194;
+        let t122 = t121 + 0.17320508075688776;
+        let t124 = t60 - 0.5 * t122;
+        let t125 = t124 * t124;
+        let t127 = 1.0 - 3.188775510204082 * t125;
+        ::overact::guard::reach(t127, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t127);
+        let t130 = t38 + 0.8660254037844387 * t122;
+        let t133 = 0.2304 * (t130 * t130 + t3);
+        let t134 = 1.0 / t133;
+        let t135 = 0.48 * t130;
+        let t138 = t45 + t122 * t122 + t3;
+        let t140 = t138 - 0.3136 + 0.0576;
+        let t142 = t133 - t140 * t140;
+        ::overact::guard::reach(t142, "leg3")?;
+        let t143 = ::overact::math::sqrt(t142);
+        let s_arm_leg3 = t134 * (t135 * t143 - t14 * t140);
+        let t148 = 0.24 * s_arm_leg3;
+        let t149 = pose[2] + t148;
+        let t152 = 0.20784609690826528 * s_arm_leg3;
+        let minus_c_arm_leg3 = t134 * (t135 * t140 + t14 * t143);
+        let t158 = t130 - 0.24 * minus_c_arm_leg3;
+        let c_cross_leg3 = (t138 - (0.0576 + t125) - 0.3136 * t127)
+            / (0.2688 * c_rod_leg3);
+        let s_cross_leg3 = 2.0833333333333335 * t143 / (0.56 * c_rod_leg3);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t172 = t124 * minus_c_armcross_leg3;
+        let t174 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t172;
+        let s_rod_leg3 = 1.7857142857142858 * t124;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t181 = s_rod_leg3 * s_armcross_leg3;
+        let t182 = t149 * t181;
+        let t184 = t158 * (0.56 * t174) + 0.28 * t182;
+        let t189 = s_arm_leg3 * t181;
+        let t191 = 0.1344 * (minus_c_arm_leg3 * t174) - 0.0672 * t189;
+        let t196 = 1.5464739353293548 * t172 + 0.5 * c_rod_leg3;
+        let t199 = t152 * t184 + 0.8660254037844387 * t149 * t191 + 0.14 * (t143 * t196);
+        ::overact::guard::leg(t199, 0.06758306237512474, "leg3")?;
+        let t200 = 1.0 / t199;
+        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t149) * t200;
+        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t90) * t119;
+        let garm_vx_leg3 = (t158 * (0.56 * t196) - 0.4849742261192857 * t182) * t200;
+        let t213 = 0.24 * minus_s_arm_leg1;
+        let t214 = pose[2] - t213;
+        let t215 = 1.0 / t17;
+        let t216 = 2.0 * t215;
+        let garm_vz_leg1 = t214 * t216;
+        let garm_vy_leg3 = t184 * t200;
+        let garm_vy_leg1 = pose[1] * t216;
+        let t222 = garm_vz_leg1 * garm_vy_leg3 - garm_vy_leg1 * garm_vz_leg3;
+        let garm_vy_leg2 = t106 * t119;
+        let t226 = 0.24 * c_arm_leg1;
+        let t228 = t0 - (0.2 + t226);
+        let garm_vx_leg1 = t228 * t216;
+        let t231 = garm_vz_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vz_leg3;
+        let t236 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
+        let t238 = garm_vx_leg2 * t222 - garm_vy_leg2 * t231 + garm_vz_leg2 * t236;
+        ::overact::guard::platform(t238, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t238, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t238, 87.78853732233405, "kept actuators")?;
+        let t239 = 1.0 / t238;
+        let t240 = (garm_vx_leg2 * garm_vz_leg3 - garm_vz_leg2 * garm_vx_leg3) * t239;
+        let t241 = grod_vy_leg1 * t240;
+        let t242 = 0.48 * t215;
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t29) / (0.2688 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t242
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t31)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t31));
+        let t276 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3;
+        let t281 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t200, 14.8697301728973, "actuators")?;
-        ::overact::guard::platform(t200, 14.8697301728973, "actuators")?;
-        let t201 = 1.0 / t200;
-        let t202 = t195 * t201;
-        let t214 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
-            - garm_vx_leg3 * minus_garm_vy_leg3;
-        let t216 = garm_vy_leg2 * garm_vz_leg2 - garm_vy_leg1 * minus_garm_vz_leg1
-            + minus_garm_vy_leg3 * minus_garm_vz_leg3 - t214 * t202;
-        let t222 = t214 * t201;
-        let t224 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + minus_garm_vy_leg3 * minus_garm_vy_leg3 - t214 * t222;
-        ::overact::guard::platform(t224, 14.869730172897306, "actuators")?;
-        ::overact::guard::platform(t224, 14.869730172897306, "actuators")?;
-        let t225 = 1.0 / t224;
-        let t226 = t216 * t225;
-        let t228 = minus_garm_vz_leg1 * minus_garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t195 * t202 - t216 * t226;
-        ::overact::guard::platform(t228, 34.85535020139291, "actuators")?;
-        ::overact::guard::platform(t228, 34.85535020139291, "actuators")?;
-        let t229 = 1.0 / t228;
-        let t231 = actuator_velocities[1] * actuator_velocities[1];
-        let t234 = t63 + 0.8660254037844387 * s_rod_leg2;
-        let t235 = 0.56 * t234;
-        let gcross_vx_leg2 = (0.56 * t66 * t62 - 0.1344 * (c_arm_leg2 * t46)) * t86;
-        let t246 = garm_vx_leg1 * actuator_velocities[0]
+        ::overact::guard::platform(t281, 14.869730172882845, "actuators")?;
+        ::overact::guard::platform(t281, 14.869730172882845, "actuators")?;
+        let t282 = 1.0 / t281;
+        let t283 = t276 * t282;
+        let t285 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t276 * t283;
+        ::overact::guard::platform(t285, 14.869730172882843, "actuators")?;
+        ::overact::guard::platform(t285, 14.869730172882843, "actuators")?;
+        let t286 = 1.0 / t285;
+        let t296 = garm_vx_leg1 * actuator_velocities[0]
             + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2];
-        let t254 = garm_vy_leg1 * actuator_velocities[0]
+        let t298 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
-            - minus_garm_vy_leg3 * actuator_velocities[2] - t246 * t222;
-        let t265 = t229
-            * (garm_vz_leg2 * actuator_velocities[1]
-                - minus_garm_vz_leg1 * actuator_velocities[0]
-                - minus_garm_vz_leg3 * actuator_velocities[2] - t246 * t202
-                - t226 * t254);
-        let t267 = t225 * t254 - t226 * t265;
-        let t271 = t246 * t201 - t222 * t267 - t202 * t265;
-        let minus_gcross_vy_leg2 = t75 * t86;
-        let minus_gcross_vz_leg2 = (0.56 * t53 * t62 + 0.0672 * (s_arm_leg2 * t46))
-            * t86;
-        let rate_cross_leg2 = gcross_vx_leg2 * t271 - minus_gcross_vy_leg2 * t267
-            - minus_gcross_vz_leg2 * t265;
-        let t284 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (1.12 * t63 * t62 + 0.11639381426862856 * t81) * t86;
-        let minus_grod_vy_leg2 = t83 * t86;
-        let rate_rod_leg2 = grod_vx_leg2 * t271 - minus_grod_vy_leg2 * t267;
-        let t296 = t284 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t299 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t300 = 0.5 * rate_cross_leg2;
-        let t301 = t299 - t300;
-        let t304 = c_armcross_leg2 * rate_rod_leg2;
-        let t306 = t296 * t296 + t301 * t301 + t304 * t304;
-        let t312 = t41 * c_rod_leg2 - 0.5 * s_rod_leg2;
-        let t313 = 0.56 * t312;
-        let t317 = t235 * t296 + t313 * t301 - t59 * t304;
-        let t320 = t284 * t299;
-        let t323 = t284 * t304;
-        let t326 = 0.12 * c_arm_leg2 * t231 + t235 * t306 - t296 * t317
-            + 0.7466666666666667 * (t312 * t320) - t59 * t323;
-        let t336 = t300 * t304;
-        let t339 = t301 * t317 - (0.20784609690826528 * c_arm_leg2 * t231 + t313 * t306)
-            + 0.7466666666666667 * (t234 * t320) - t59 * t336;
-        let t347 = t235 * t323 - t313 * t336;
-        let t349 = t58 * t231 + t59 * t306 + t347 + t347;
-        let minus_rate_dot_arm_leg2 = garm_vx_leg2 * t326 + garm_vy_leg2 * t339
-            + garm_vz_leg2 * t349;
-        let t352 = actuator_accelerations[1] + minus_rate_dot_arm_leg2;
-        let t355 = actuator_velocities[0] * actuator_velocities[0];
-        let grod_vy_leg1 = 1.7857142857142858 * t23;
-        let rate_rod_leg1 = grod_vy_leg1 * t267;
-        let t360 = s_armcross_leg1 * rate_rod_leg1;
-        let rate_cross_leg1 = gcross_vz_leg1 * t265
-            - (minus_gcross_vx_leg1 * t271 + minus_gcross_vy_leg1 * t267);
-        let t367 = rate_cross_leg1 * rate_cross_leg1;
-        let t369 = c_armcross_leg1 * rate_rod_leg1;
-        let t371 = t360 * t360 + t367 + t369 * t369;
-        let t374 = 0.56 * s_rod_leg1;
-        let t376 = t374 * (rate_cross_leg1 * t369);
-        let t378 = 0.24 * s_arm_leg1 * t355 + 0.56 * t15 * t371 + t376 + t376;
-        let t381 = t374 * (rate_cross_leg1 * t360);
-        let t388 = t381 - (0.24 * c_arm_leg1 * t355 + 0.56 * t17 * t371) + t381;
-        let t390 = t374 * rate_cross_leg1;
-        let t393 = rate_cross_leg1 * t390 - t374 * t371;
-        let rate_dot_arm_leg1 = minus_garm_vz_leg1 * t378
-            - (garm_vx_leg1 * t388 + garm_vy_leg1 * t393);
-        let t397 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t401 = actuator_velocities[2] * actuator_velocities[2];
-        let t405 = t106 * c_rod_leg3 + 0.5 * s_rod_leg3;
-        let t406 = 0.56 * t405;
-        let gcross_vy_leg3 = t121 * t142;
-        let minus_gcross_vx_leg3 = (0.56 * t101 * t127 + 0.1344 * (c_arm_leg3 * t109))
-            * t142;
-        let gcross_vz_leg3 = (0.56 * t116 * t127 - 0.0672 * (s_arm_leg3 * t109)) * t142;
-        let rate_cross_leg3 = gcross_vy_leg3 * t267 - minus_gcross_vx_leg3 * t271
-            + gcross_vz_leg3 * t265;
-        let t425 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (0.11639381426862856 * t137 - 1.12 * t105 * t127) * t142;
-        let grod_vy_leg3 = t139 * t142;
-        let rate_rod_leg3 = grod_vx_leg3 * t271 + grod_vy_leg3 * t267;
-        let t437 = t425 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t439 = 0.5 * rate_cross_leg3;
-        let t441 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t442 = t439 + t441;
-        let t445 = c_armcross_leg3 * rate_rod_leg3;
-        let t447 = t437 * t437 + t442 * t442 + t445 * t445;
-        let t451 = 0.8660254037844387 * s_rod_leg3 - t105;
-        let t452 = 0.56 * t451;
-        let t457 = t452 * t437 + t406 * t442 - t124 * t445;
-        let t460 = t425 * t441;
-        let t463 = t439 * t445;
-        let t466 = 0.20784609690826528 * c_arm_leg3 * t401 + t406 * t447 - t442 * t457
-            - (0.7466666666666667 * (t451 * t460) + t124 * t463);
-        let t474 = t425 * t445;
-        let t479 = 0.12 * c_arm_leg3 * t401 - t452 * t447 + t437 * t457 + t124 * t474
-            - 0.7466666666666667 * (t405 * t460);
-        let t487 = t406 * t463 + t452 * t474;
-        let t489 = t123 * t401 + t124 * t447 + t487 + t487;
-        let rate_dot_arm_leg3 = minus_garm_vy_leg3 * t466 - garm_vx_leg3 * t479
-            + minus_garm_vz_leg3 * t489;
-        let t492 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t499 = garm_vx_leg1 * t397 + garm_vx_leg2 * t352 + garm_vx_leg3 * t492;
-        let t508 = garm_vy_leg1 * t397 + garm_vy_leg2 * t352 - minus_garm_vy_leg3 * t492
-            - t222 * t499;
-        let t511 = t229
-            * (garm_vz_leg2 * t352 - minus_garm_vz_leg1 * t397
-                - minus_garm_vz_leg3 * t492 - t202 * t499 - t226 * t508);
-        let t517 = t225 * t508 - t226 * t511;
-        let t521 = t201 * t499 - t222 * t517 - t202 * t511;
-        let t524 = t517 - t393;
-        let rate_dot_cross_leg1 = gcross_vz_leg1 * (t511 - t378)
-            - (minus_gcross_vx_leg1 * (t521 - t388) + minus_gcross_vy_leg1 * t524);
-        let t528 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t529 = c_rod_leg1 * rate_cross_leg1;
-        let t530 = rate_rod_leg1 * t529;
-        let t531 = t528 + t530;
-        let t533 = 1.7857142857142858 * t390;
-        let t534 = rate_rod_leg1 * t533;
-        let t535 = c_rod_leg1 * t534;
-        let t536 = s_rod_leg1 * t531 + t535;
-        let t538 = grod_vy_leg1 * t176;
-        let t539 = t533 * t529;
-        let t540 = t538 * t539;
-        let t545 = (garm_vy_leg1 * minus_garm_vz_leg3
-            + minus_garm_vz_leg1 * minus_garm_vy_leg3) * t175;
-        let t550 = (minus_garm_vz_leg1 * garm_vx_leg3
-            - garm_vx_leg1 * minus_garm_vz_leg3) * t175;
-        let t556 = (garm_vx_leg1 * minus_garm_vy_leg3 + garm_vy_leg1 * garm_vx_leg3)
-            * t175;
-        let t558 = minus_gcross_vx_leg1 * t545 + minus_gcross_vy_leg1 * t550
-            - gcross_vz_leg1 * t556;
-        let t560 = grod_vy_leg1 * t550;
-        let t561 = t560 * t539;
-        let t566 = (garm_vy_leg1 * garm_vz_leg2 + minus_garm_vz_leg1 * garm_vy_leg2)
-            * t175;
-        let t571 = (garm_vx_leg1 * garm_vz_leg2 + minus_garm_vz_leg1 * garm_vx_leg2)
-            * t175;
-        let t577 = (garm_vx_leg1 * garm_vy_leg2 - garm_vy_leg1 * garm_vx_leg2) * t175;
-        let t579 = minus_gcross_vx_leg1 * t566 - minus_gcross_vy_leg1 * t571
-            - gcross_vz_leg1 * t577;
-        let t581 = grod_vy_leg1 * t571;
-        let t582 = t581 * t539;
-        let t584 = t530 + t531;
-        let t586 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t587 = t586 - t534;
-        let t590 = c_rod_leg1 * t584 - s_rod_leg1 * (t534 - t587);
-        let t593 = 3.188775510204082 * (t390 * t390);
-        let t595 = t593 - t529 * t529;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t524;
-        let t607 = rate_rod_leg1 * rate_rod_leg1;
-        let t610 = s_rod_leg1 * (t539 + rate_dot_rod_leg1) + c_rod_leg1 * (t607 - t593);
-        let t621 = c_rod_leg1 * t587 - t535;
-        let t623 = t185 * t621 - t540;
-        let t625 = t558 * t621 - t561;
-        let t627 = t579 * t621 + t582;
-        let t628 = 1.7857142857142858 * t517;
-        let t638 = t538 * rate_dot_rod_leg1;
-        let t639 = t560 * rate_dot_rod_leg1;
-        let t640 = t581 * rate_dot_rod_leg1;
-        let t644 = t511 + 9.81;
-        let t646 = t179 * t521 - t176 * t517 + t183 * t644;
-        let t647 = 1.7857142857142858 * t646;
-        let t649 = 0.24 * actuator_accelerations[0] - t2;
-        let t661 = t545 * t521 + t550 * t517 + t556 * t644;
-        let t662 = 1.7857142857142858 * t661;
-        let t670 = t571 * t517 - t566 * t521 - t577 * t644;
-        let t671 = 1.7857142857142858 * t670;
-        let t675 = 0.24 * t19;
-        let t679 = s_rod_leg1 * (0.24 * s_cross_leg1);
-        let t683 = 0.24 * c_cross_leg1;
-        let t687 = t3 + 0.24 * t355;
-        let t691 = s_rod_leg1 * (s_cross_leg1 * t687 + c_cross_leg1 * t649);
-        let t696 = s_cross_leg1 * t649 - c_cross_leg1 * t687;
-        let t697 = c_rod_leg1 * t696;
-        let t699 = t675 * (t539 - rate_dot_rod_leg1) + t679 * (t593 + t607) - t683 * t584
-            - t185 * t691 + t538 * t697;
-        let t716 = 9.81 * c_arm_leg2;
-        let t717 = 9.81 * s_arm_leg2;
-        let t723 = gcross_vx_leg2 * t179 + minus_gcross_vy_leg2 * t176
-            - minus_gcross_vz_leg2 * t183;
-        let t724 = t521 - t326;
-        let t726 = t517 - t339;
-        let rate_dot_cross_leg2 = gcross_vx_leg2 * t724 - minus_gcross_vy_leg2 * t726
-            - minus_gcross_vz_leg2 * (t511 - t349);
-        let t732 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t733 = c_rod_leg2 * rate_cross_leg2;
-        let t734 = rate_rod_leg2 * t733;
-        let t735 = t732 + t734;
-        let t737 = 1.7857142857142858 * t317;
-        let t738 = rate_rod_leg2 * t737;
-        let t739 = c_rod_leg2 * t738;
-        let t740 = s_rod_leg2 * t735 + t739;
-        let t744 = grod_vx_leg2 * t179 + minus_grod_vy_leg2 * t176;
-        let t745 = t737 * t733;
-        let t746 = t744 * t745;
-        let t752 = minus_gcross_vy_leg2 * t550 - gcross_vx_leg2 * t545
-            + minus_gcross_vz_leg2 * t556;
-        let t756 = minus_grod_vy_leg2 * t550 - grod_vx_leg2 * t545;
-        let t757 = t756 * t745;
-        let t763 = minus_gcross_vz_leg2 * t577
-            - (gcross_vx_leg2 * t566 + minus_gcross_vy_leg2 * t571);
-        let t767 = grod_vx_leg2 * t566 + minus_grod_vy_leg2 * t571;
-        let t768 = t767 * t745;
-        let t770 = t734 + t735;
-        let t772 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t773 = t772 - t738;
-        let t776 = c_rod_leg2 * t770 - s_rod_leg2 * (t738 - t773);
-        let t779 = 3.188775510204082 * (t317 * t317);
-        let t780 = t733 * t733;
-        let t781 = t779 - t780;
-        let rate_dot_rod_leg2 = grod_vx_leg2 * t724 - minus_grod_vy_leg2 * t726;
-        let t795 = rate_rod_leg2 * rate_rod_leg2;
-        let t798 = s_rod_leg2 * (t745 + rate_dot_rod_leg2) + c_rod_leg2 * (t795 - t779);
-        let t809 = c_rod_leg2 * t773 - t739;
-        let t811 = t723 * t809 + t746;
-        let t813 = t752 * t809 + t757;
-        let t815 = t763 * t809 - t768;
-        let t818 = t745 - rate_dot_rod_leg2;
-        let t820 = s_rod_leg2 * (t780 - t795) - c_rod_leg2 * t818;
-        let t830 = t744 * rate_dot_rod_leg2;
-        let t831 = t756 * rate_dot_rod_leg2;
-        let t832 = t767 * rate_dot_rod_leg2;
-        let t837 = 0.24 * actuator_accelerations[1] - t716;
-        let t849 = t717 + 0.24 * t231;
-        let t853 = s_rod_leg2 * (s_cross_leg2 * t849 + c_cross_leg2 * t837);
-        let t857 = s_cross_leg2 * t837 - c_cross_leg2 * t849;
-        let t858 = c_rod_leg2 * t857;
-        let t862 = s_rod_leg2 * (0.24 * s_cross_leg2);
-        let t865 = 3.5714285714285716 * t83;
-        let t868 = 0.24 * c_cross_leg2;
-        let t874 = t862 * (t779 + t795) - t865 * t818 - t868 * t770 - t752 * t853
-            - t756 * t858;
-        let t889 = 9.81 * c_arm_leg3;
-        let t890 = 9.81 * s_arm_leg3;
-        let t896 = gcross_vz_leg3 * t183
-            - (minus_gcross_vx_leg3 * t179 + gcross_vy_leg3 * t176);
-        let t897 = t517 - t466;
-        let t899 = t521 - t479;
-        let rate_dot_cross_leg3 = gcross_vy_leg3 * t897 - minus_gcross_vx_leg3 * t899
-            + gcross_vz_leg3 * (t511 - t489);
-        let t905 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t906 = c_rod_leg3 * rate_cross_leg3;
-        let t907 = rate_rod_leg3 * t906;
-        let t908 = t905 + t907;
-        let t910 = 1.7857142857142858 * t457;
-        let t911 = rate_rod_leg3 * t910;
-        let t912 = c_rod_leg3 * t911;
-        let t913 = s_rod_leg3 * t908 + t912;
-        let t917 = grod_vx_leg3 * t179 - grod_vy_leg3 * t176;
-        let t918 = t910 * t906;
-        let t919 = t917 * t918;
-        let t925 = minus_gcross_vx_leg3 * t545 - gcross_vy_leg3 * t550
-            - gcross_vz_leg3 * t556;
-        let t929 = grod_vx_leg3 * t545 + grod_vy_leg3 * t550;
-        let t930 = t929 * t918;
-        let t936 = minus_gcross_vx_leg3 * t566 + gcross_vy_leg3 * t571
-            - gcross_vz_leg3 * t577;
-        let t940 = grod_vy_leg3 * t571 - grod_vx_leg3 * t566;
-        let t941 = t940 * t918;
-        let t943 = t907 + t908;
-        let t945 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t946 = t945 - t911;
-        let t949 = c_rod_leg3 * t943 - s_rod_leg3 * (t911 - t946);
-        let t952 = 3.188775510204082 * (t457 * t457);
-        let t953 = t906 * t906;
-        let t954 = t952 - t953;
-        let rate_dot_rod_leg3 = grod_vx_leg3 * t899 + grod_vy_leg3 * t897;
-        let t968 = rate_rod_leg3 * rate_rod_leg3;
-        let t971 = s_rod_leg3 * (t918 + rate_dot_rod_leg3) + c_rod_leg3 * (t968 - t952);
-        let t982 = c_rod_leg3 * t946 - t912;
-        let t984 = t896 * t982 + t919;
-        let t986 = t925 * t982 - t930;
-        let t988 = t936 * t982 + t941;
-        let t991 = t918 - rate_dot_rod_leg3;
-        let t993 = s_rod_leg3 * (t953 - t968) - c_rod_leg3 * t991;
-        let t1003 = t917 * rate_dot_rod_leg3;
-        let t1004 = t929 * rate_dot_rod_leg3;
-        let t1005 = t940 * rate_dot_rod_leg3;
-        let t1013 = 0.24 * actuator_accelerations[2] - t889;
-        let t1022 = t890 + 0.24 * t401;
-        let t1026 = s_rod_leg3 * (s_cross_leg3 * t1022 + c_cross_leg3 * t1013);
-        let t1030 = s_cross_leg3 * t1013 - c_cross_leg3 * t1022;
-        let t1031 = c_rod_leg3 * t1030;
-        let t1038 = s_rod_leg3 * (0.24 * s_cross_leg3);
-        let t1041 = 3.5714285714285716 * t139;
-        let t1044 = 0.24 * c_cross_leg3;
-        let t1050 = t1038 * (t952 + t968) - t1041 * t991 - t1044 * t943 - t936 * t1026
-            - t940 * t1031;
+            + garm_vy_leg3 * actuator_velocities[2] - t296 * t283;
+        let t309 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3;
+        let t310 = t309 * t282;
+        let t312 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 - t276 * t310;
+        let t313 = t312 * t286;
+        let t322 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 - t309 * t310 - t312 * t313;
+        ::overact::guard::platform(t322, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t322, 34.855350201355726, "actuators")?;
+        let t323 = 1.0 / t322;
+        let t333 = t323
+            * (garm_vz_leg1 * actuator_velocities[0]
+                + garm_vz_leg2 * actuator_velocities[1]
+                + garm_vz_leg3 * actuator_velocities[2] - t296 * t310 - t313 * t298);
+        let t335 = t286 * t298 - t313 * t333;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t242;
+        let t342 = t296 * t282 - t283 * t335 - t310 * t333;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t242;
+        let rate_cross_leg1 = gcross_vy_leg1 * t335 - minus_gcross_vx_leg1 * t342
+            - minus_gcross_vz_leg1 * t333;
+        let t348 = pose[1] * rate_cross_leg1;
+        let t349 = 1.7857142857142858 * t348;
+        let t350 = c_rod_leg1 * rate_cross_leg1;
+        let t351 = t349 * t350;
+        let t352 = t241 * t351;
+        let t356 = (garm_vy_leg2 * garm_vz_leg3 - garm_vz_leg2 * garm_vy_leg3) * t239;
+        let t363 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t239;
+        let t365 = minus_gcross_vx_leg1 * t356 + gcross_vy_leg1 * t240
+            + minus_gcross_vz_leg1 * t363;
+        let rate_rod_leg1 = grod_vy_leg1 * t335;
+        let t367 = s_armcross_leg1 * rate_rod_leg1;
+        let t369 = pose[1] * (rate_cross_leg1 * t367);
+        let t370 = actuator_velocities[0] * actuator_velocities[0];
+        let t373 = rate_cross_leg1 * rate_cross_leg1;
+        let t375 = c_armcross_leg1 * rate_rod_leg1;
+        let t377 = t367 * t367 + t373 + t375 * t375;
+        let t381 = t369 - (t226 * t370 + t228 * t377) + t369;
+        let t385 = rate_cross_leg1 * t348 - pose[1] * t377;
+        let t389 = pose[1] * (rate_cross_leg1 * t375);
+        let t394 = t389 - (t213 * t370 + t214 * t377) + t389;
+        let minus_rate_dot_arm_leg1 = garm_vx_leg1 * t381 + garm_vy_leg1 * t385
+            + garm_vz_leg1 * t394;
+        let t397 = actuator_accelerations[0] + minus_rate_dot_arm_leg1;
+        let t399 = actuator_velocities[1] * actuator_velocities[1];
+        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t86)
+            - 0.11639381426862856 * (minus_s_arm_leg2 * t102)) * t119;
+        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t86)
+            - 0.11639381426862856 * t111) * t119;
+        let minus_gcross_vy_leg2 = t113 * t119;
+        let rate_cross_leg2 = gcross_vz_leg2 * t333
+            - (minus_gcross_vx_leg2 * t342 + minus_gcross_vy_leg2 * t335);
+        let t418 = 0.8660254037844387 * rate_cross_leg2;
+        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t90) - t59 * t99) * t119;
+        let minus_grod_vy_leg2 = 0.25 * t54 * t119;
+        let rate_rod_leg2 = grod_vx_leg2 * t342 - minus_grod_vy_leg2 * t335;
+        let t431 = t418 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
+        let t434 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
+        let t435 = 0.5 * rate_cross_leg2;
+        let t436 = t434 - t435;
+        let t439 = c_armcross_leg2 * rate_rod_leg2;
+        let t441 = t431 * t431 + t436 * t436 + t439 * t439;
+        let t444 = 0.20784609690826528 * c_arm_leg2;
+        let t446 = t33 - (0.17320508075688776 + t444);
+        let t447 = t435 * t439;
+        let t449 = 0.12 * c_arm_leg2;
+        let t451 = t36 + 0.1 + t449;
+        let t452 = t418 * t439;
+        let t454 = t446 * t447 + t451 * t452;
+        let t456 = t89 * t399 + t90 * t441 + t454 + t454;
+        let t465 = t446 * t436 - t451 * t431 + t90 * t439;
+        let t470 = 1.3333333333333333 * (t418 * t434);
+        let t473 = t449 * t399 - t451 * t441 - t431 * t465 + t90 * t452 + t446 * t470;
+        let t483 = t436 * t465 - (t444 * t399 + t446 * t441) + t90 * t447 - t451 * t470;
+        let rate_dot_arm_leg2 = garm_vz_leg2 * t456
+            - (garm_vx_leg2 * t473 + garm_vy_leg2 * t483);
+        let t487 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t490 = 0.20784609690826528 * minus_c_arm_leg3;
+        let t491 = actuator_velocities[2] * actuator_velocities[2];
+        let t494 = t121 - (t490 - 0.17320508075688776);
+        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t174)
+            + 0.0672 * (s_arm_leg3 * t196)) * t200;
+        let minus_gcross_vx_leg3 = (0.11639381426862856 * t189
+            + 0.1344 * (minus_c_arm_leg3 * t196)) * t200;
+        let minus_gcross_vy_leg3 = t191 * t200;
+        let rate_cross_leg3 = gcross_vz_leg3 * t333
+            - (minus_gcross_vx_leg3 * t342 + minus_gcross_vy_leg3 * t335);
+        let t512 = 0.8660254037844387 * rate_cross_leg3;
+        let grod_vx_leg3 = (t158 * t152
+            + 0.20784609690826528 * (minus_c_arm_leg3 * t149)) * t200;
+        let minus_grod_vy_leg3 = 0.25 * t143 * t200;
+        let rate_rod_leg3 = grod_vx_leg3 * t342 - minus_grod_vy_leg3 * t335;
+        let t525 = t512 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
+        let t527 = 0.5 * rate_cross_leg3;
+        let t529 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
+        let t530 = t527 + t529;
+        let t533 = minus_c_armcross_leg3 * rate_rod_leg3;
+        let t535 = t525 * t525 + t530 * t530 + t533 * t533;
+        let t538 = 0.12 * minus_c_arm_leg3;
+        let t540 = t36 - (t538 - 0.1);
+        let t545 = t540 * t525 - t494 * t530 - t149 * t533;
+        let t549 = 1.3333333333333333 * (t512 * t529);
+        let t551 = t527 * t533;
+        let t554 = t490 * t491 + t494 * t535 + t530 * t545 + t540 * t549 + t149 * t551;
+        let t561 = t512 * t533;
+        let t565 = t525 * t545 - (t538 * t491 + t540 * t535) + t149 * t561 + t494 * t549;
+        let t573 = t494 * t551 - t540 * t561;
+        let t575 = t148 * t491 - t149 * t535 + t573 + t573;
+        let rate_dot_arm_leg3 = garm_vy_leg3 * t554 - garm_vx_leg3 * t565
+            - garm_vz_leg3 * t575;
+        let t578 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t585 = garm_vx_leg1 * t397 + garm_vx_leg2 * t487 + garm_vx_leg3 * t578;
+        let t587 = garm_vy_leg1 * t397 + garm_vy_leg2 * t487 + garm_vy_leg3 * t578
+            - t283 * t585;
+        let t598 = t323
+            * (garm_vz_leg1 * t397 + garm_vz_leg2 * t487 + garm_vz_leg3 * t578
+                - t310 * t585 - t313 * t587);
+        let t600 = t286 * t587 - t313 * t598;
+        let t601 = t600 - t385;
+        let t607 = t282 * t585 - t283 * t600 - t310 * t598;
+        let rate_dot_cross_leg1 = gcross_vy_leg1 * t601
+            - minus_gcross_vx_leg1 * (t607 - t381)
+            - minus_gcross_vz_leg1 * (t598 - t394);
+        let t614 = s_rod_leg1 * rate_dot_cross_leg1;
+        let t615 = rate_rod_leg1 * t350;
+        let t616 = t614 + t615;
+        let t618 = rate_rod_leg1 * t349;
+        let t619 = c_rod_leg1 * t618;
+        let t620 = s_rod_leg1 * t616 + t619;
+        let t623 = t231 * t239;
+        let t624 = grod_vy_leg1 * t623;
+        let t625 = t624 * t351;
+        let t626 = t222 * t239;
+        let t630 = t236 * t239;
+        let t632 = minus_gcross_vx_leg1 * t626 + gcross_vy_leg1 * t623
+            + minus_gcross_vz_leg1 * t630;
+        let t638 = (garm_vz_leg1 * garm_vy_leg2 - garm_vy_leg1 * garm_vz_leg2) * t239;
+        let t643 = (garm_vz_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vz_leg2) * t239;
+        let t649 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t239;
+        let t651 = minus_gcross_vx_leg1 * t638 + gcross_vy_leg1 * t643
+            + minus_gcross_vz_leg1 * t649;
+        let t653 = grod_vy_leg1 * t643;
+        let t654 = t653 * t351;
+        let t656 = t615 + t616;
+        let t658 = c_rod_leg1 * rate_dot_cross_leg1;
+        let t659 = t658 - t618;
+        let t662 = c_rod_leg1 * t656 - s_rod_leg1 * (t618 - t659);
+        let t665 = 3.188775510204082 * (t348 * t348);
+        let t667 = t665 - t350 * t350;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t601;
+        let t679 = rate_rod_leg1 * rate_rod_leg1;
+        let t682 = s_rod_leg1 * (t351 + rate_dot_rod_leg1) + c_rod_leg1 * (t679 - t665);
+        let t693 = c_rod_leg1 * t659 - t619;
+        let t695 = t365 * t693 + t352;
+        let t697 = t632 * t693 + t625;
+        let t699 = t651 * t693 + t654;
+        let t700 = 1.7857142857142858 * t600;
+        let t710 = t241 * rate_dot_rod_leg1;
+        let t711 = t624 * rate_dot_rod_leg1;
+        let t712 = t653 * rate_dot_rod_leg1;
+        let t716 = t598 + 9.81;
+        let t718 = t356 * t607 - t240 * t600 + t363 * t716;
+        let t719 = 1.7857142857142858 * t718;
+        let t721 = 0.24 * actuator_accelerations[0] - t21;
+        let t733 = t626 * t607 - t623 * t600 + t630 * t716;
+        let t734 = 1.7857142857142858 * t733;
+        let t742 = t643 * t600 - t638 * t607 - t649 * t716;
+        let t743 = 1.7857142857142858 * t742;
+        let t747 = 0.8928571428571429 * t17;
+        let t751 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
+        let t755 = 0.24 * c_cross_leg1;
+        let t760 = t26 - 0.24 * t370;
+        let t763 = s_rod_leg1 * (c_cross_leg1 * t721 - s_cross_leg1 * t760);
+        let t768 = c_cross_leg1 * t760 + s_cross_leg1 * t721;
+        let t769 = c_rod_leg1 * t768;
+        let t771 = t747 * (t351 - rate_dot_rod_leg1) + t751 * (t665 + t679) - t755 * t656
+            + t365 * t763 + t241 * t769;
+        let t788 = 9.81 * c_arm_leg2;
+        let t789 = 9.81 * minus_s_arm_leg2;
+        let t795 = minus_gcross_vy_leg2 * t240 - minus_gcross_vx_leg2 * t356
+            + gcross_vz_leg2 * t363;
+        let t796 = 1.7857142857142858 * t465;
+        let t797 = rate_rod_leg2 * t796;
+        let t798 = c_rod_leg2 * t797;
+        let t799 = c_rod_leg2 * rate_cross_leg2;
+        let t800 = rate_rod_leg2 * t799;
+        let t803 = t607 - t473;
+        let t805 = t600 - t483;
+        let rate_dot_cross_leg2 = gcross_vz_leg2 * (t598 + t456)
+            - (minus_gcross_vx_leg2 * t803 + minus_gcross_vy_leg2 * t805);
+        let t809 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t810 = t800 - t809;
+        let t812 = t798 - minus_s_rod_leg2 * t810;
+        let t816 = grod_vx_leg2 * t356 + minus_grod_vy_leg2 * t240;
+        let t817 = t796 * t799;
+        let t818 = t816 * t817;
+        let t824 = minus_gcross_vy_leg2 * t623 - minus_gcross_vx_leg2 * t626
+            + gcross_vz_leg2 * t630;
+        let t828 = grod_vx_leg2 * t626 + minus_grod_vy_leg2 * t623;
+        let t829 = t828 * t817;
+        let t835 = minus_gcross_vx_leg2 * t638 - minus_gcross_vy_leg2 * t643
+            - gcross_vz_leg2 * t649;
+        let t839 = grod_vx_leg2 * t638 + minus_grod_vy_leg2 * t643;
+        let t840 = t839 * t817;
+        let t842 = c_rod_leg2 * rate_dot_cross_leg2;
+        let t843 = t842 - t797;
+        let t846 = t800 + t810;
+        let t848 = minus_s_rod_leg2 * (t797 - t843) + c_rod_leg2 * t846;
+        let t851 = 3.188775510204082 * (t465 * t465);
+        let t852 = t799 * t799;
+        let t853 = t851 - t852;
+        let t862 = rate_rod_leg2 * rate_rod_leg2;
+        let rate_dot_rod_leg2 = grod_vx_leg2 * t803 - minus_grod_vy_leg2 * t805;
+        let t870 = c_rod_leg2 * (t862 - t851)
+            - minus_s_rod_leg2 * (t817 + rate_dot_rod_leg2);
+        let t881 = c_rod_leg2 * t843 - t798;
+        let t883 = t795 * t881 + t818;
+        let t885 = t824 * t881 + t829;
+        let t887 = t835 * t881 - t840;
+        let t891 = t817 - rate_dot_rod_leg2;
+        let t893 = minus_s_rod_leg2 * (t852 - t862) + c_rod_leg2 * t891;
+        let t902 = t816 * rate_dot_rod_leg2;
+        let t903 = t828 * rate_dot_rod_leg2;
+        let t904 = t839 * rate_dot_rod_leg2;
+        let t909 = 0.24 * actuator_accelerations[1] - t788;
+        let t922 = t789 - 0.24 * t399;
+        let t925 = minus_s_rod_leg2 * (c_cross_leg2 * t909 - s_cross_leg2 * t922);
+        let t929 = c_cross_leg2 * t922 + s_cross_leg2 * t909;
+        let t930 = c_rod_leg2 * t929;
+        let t933 = 0.8928571428571429 * t54;
+        let t936 = 0.42857142857142855 * (t62 * s_cross_leg2);
+        let t940 = 0.24 * c_cross_leg2;
+        let t946 = t933 * t891 - t936 * (t851 + t862) - t940 * t846 + t824 * t925
+            - t828 * t930;
+        let t961 = 9.81 * minus_c_arm_leg3;
+        let t962 = 9.81 * s_arm_leg3;
+        let t968 = minus_gcross_vy_leg3 * t240 - minus_gcross_vx_leg3 * t356
+            + gcross_vz_leg3 * t363;
+        let t971 = t607 - t565;
+        let t973 = t600 + t554;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * (t598 - t575)
+            - (minus_gcross_vx_leg3 * t971 + minus_gcross_vy_leg3 * t973);
+        let t977 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t978 = c_rod_leg3 * rate_cross_leg3;
+        let t979 = rate_rod_leg3 * t978;
+        let t980 = t977 + t979;
+        let t982 = 1.7857142857142858 * t545;
+        let t983 = rate_rod_leg3 * t982;
+        let t984 = c_rod_leg3 * t983;
+        let t985 = s_rod_leg3 * t980 + t984;
+        let t989 = grod_vx_leg3 * t356 + minus_grod_vy_leg3 * t240;
+        let t990 = t982 * t978;
+        let t991 = t989 * t990;
+        let t997 = minus_gcross_vy_leg3 * t623 - minus_gcross_vx_leg3 * t626
+            + gcross_vz_leg3 * t630;
+        let t1001 = grod_vx_leg3 * t626 + minus_grod_vy_leg3 * t623;
+        let t1002 = t1001 * t990;
+        let t1008 = minus_gcross_vx_leg3 * t638 - minus_gcross_vy_leg3 * t643
+            - gcross_vz_leg3 * t649;
+        let t1012 = grod_vx_leg3 * t638 + minus_grod_vy_leg3 * t643;
+        let t1013 = t1012 * t990;
+        let t1015 = t979 + t980;
+        let t1017 = c_rod_leg3 * rate_dot_cross_leg3;
+        let t1018 = t1017 - t983;
+        let t1021 = c_rod_leg3 * t1015 - s_rod_leg3 * (t983 - t1018);
+        let t1024 = 3.188775510204082 * (t545 * t545);
+        let t1025 = t978 * t978;
+        let t1026 = t1024 - t1025;
+        let rate_dot_rod_leg3 = grod_vx_leg3 * t971 - minus_grod_vy_leg3 * t973;
+        let t1040 = rate_rod_leg3 * rate_rod_leg3;
+        let t1043 = s_rod_leg3 * (t990 + rate_dot_rod_leg3)
+            + c_rod_leg3 * (t1040 - t1024);
+        let t1054 = c_rod_leg3 * t1018 - t984;
+        let t1056 = t968 * t1054 + t991;
+        let t1058 = t997 * t1054 + t1002;
+        let t1060 = t1008 * t1054 - t1013;
+        let t1063 = t990 - rate_dot_rod_leg3;
+        let t1065 = s_rod_leg3 * (t1025 - t1040) - c_rod_leg3 * t1063;
+        let t1075 = t989 * rate_dot_rod_leg3;
+        let t1076 = t1001 * rate_dot_rod_leg3;
+        let t1077 = t1012 * rate_dot_rod_leg3;
+        let t1085 = t961 + 0.24 * actuator_accelerations[2];
+        let t1094 = t962 + 0.24 * t491;
+        let t1098 = s_rod_leg3 * (s_cross_leg3 * t1094 + c_cross_leg3 * t1085);
+        let t1102 = s_cross_leg3 * t1085 - c_cross_leg3 * t1094;
+        let t1103 = c_rod_leg3 * t1102;
+        let t1109 = 0.8928571428571429 * t143;
+        let t1112 = 0.42857142857142855 * (t124 * s_cross_leg3);
+        let t1116 = 0.24 * c_cross_leg3;
+        let t1122 = t1109 * t1063 + t1112 * (t1024 + t1040) - t1116 * t1015
+            - t1008 * t1098 + t1012 * t1103;
         Ok([
             [
-                actuator_accelerations[0], -t2, t3, actuator_accelerations[0],
+                actuator_accelerations[0], -t21, -t26, actuator_accelerations[0],
                 actuator_velocities[0], ::overact::math::sign(actuator_velocities[0]), 1.0,
-                t185 * t536 + t540, t185 * t590 - t538 * t595, t185 * t610 - t538 * t528, t623,
-                t185 * t628 - t538 * t586, -t638,
-                t647
+                t352 - t365 * t620, -(t365 * t662 + t241 * t667), -(t365 * t682 + t241 * t614),
+                -t695, -(t365 * t700 + t241 * t658), -t710,
+                t719
                     - 0.10285714285714286
-                        * (4.166666666666667 * t649 + 5.444444444444445 * t623
-                            - 5.444444444444445 * t638),
-                t699,
-                t675 * t586 + t679 * t528 + t367 * t683 + t185 * t696,
-                0.24 * t649,
+                        * (4.166666666666667 * t721 - 5.444444444444445 * t695
+                            - 5.444444444444445 * t710),
+                t771,
+                t747 * t658 + t751 * t614 + t373 * t755 - t365 * t768,
+                0.24 * t721,
                 0.0,
                 0.0,
                 0.0,
@@ -3433,15 +5118,15 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t723 * t740 - t746,
-                t723 * t776 + t744 * t781,
-                t723 * t798 + t744 * t732,
-                t811,
-                t723 * t820 + t744 * t772,
-                t830,
-                t647 - 0.56 * (t811 + t830),
-                -(t723 * t853 + t744 * t858),
-                t723 * t857,
+                t795 * t812 - t818,
+                t795 * t848 + t816 * t853,
+                t795 * t870 - t816 * t809,
+                t883,
+                t816 * t842 - t795 * t893,
+                t902,
+                t719 - 0.56 * (t883 + t902),
+                t795 * t925 - t816 * t930,
+                t795 * t929,
                 0.0,
                 0.0,
                 0.0,
@@ -3450,34 +5135,34 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t896 * t913 - t919,
-                t896 * t949 + t917 * t954,
-                t896 * t971 + t917 * t905,
-                t984,
-                t896 * t993 + t917 * t945,
-                t1003,
-                t647 - 0.56 * (t984 + t1003),
-                -(t896 * t1026 + t917 * t1031),
-                t896 * t1030,
+                t968 * t985 - t991,
+                t968 * t1021 + t989 * t1026,
+                t968 * t1043 + t989 * t977,
+                t1056,
+                t968 * t1065 + t989 * t1017,
+                t1075,
+                t719 - 0.56 * (t1056 + t1075),
+                -(t968 * t1098 + t989 * t1103),
+                t968 * t1102,
                 0.0,
-                t646,
+                t718,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t558 * t536 + t561, t558 * t590 - t560 * t595,
-                t558 * t610 - t560 * t528, t625, t558 * t628 - t560 * t586, -t639,
-                -(t662 + 0.56 * (t625 - t639)), t560 * t697 - t558 * t691, t558 * t696, 0.0,
-                actuator_accelerations[1], -t716, t717, actuator_accelerations[1],
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t625 - t632 * t620, -(t632 * t662 + t624 * t667),
+                -(t632 * t682 + t624 * t614), -t697, -(t632 * t700 + t624 * t658), -t711,
+                t734 + 0.56 * (t697 + t711), t632 * t763 + t624 * t769, -(t632 * t768), 0.0,
+                actuator_accelerations[1], -t788, -t789, actuator_accelerations[1],
                 actuator_velocities[1], ::overact::math::sign(actuator_velocities[1]), 1.0,
-                t752 * t740 - t757, t752 * t776 + t756 * t781, t752 * t798 + t756 * t732, t813,
-                t752 * t820 + t756 * t772, t831,
-                -(t662
-                    + 0.10285714285714286
-                        * (4.166666666666667 * t837 + 5.444444444444445 * t813
-                            + 5.444444444444445 * t831)),
-                t874,
-                t862 * t732 - t865 * t772 + rate_cross_leg2 * rate_cross_leg2 * t868
-                    + t752 * t857,
-                0.24 * t837,
+                t824 * t812 - t829, t824 * t848 + t828 * t853, t824 * t870 - t828 * t809, t885,
+                t828 * t842 - t824 * t893, t903,
+                t734
+                    - 0.10285714285714286
+                        * (4.166666666666667 * t909 + 5.444444444444445 * t885
+                            + 5.444444444444445 * t903),
+                t946,
+                t933 * t842 + t936 * t809 + rate_cross_leg2 * rate_cross_leg2 * t940
+                    + t824 * t929,
+                0.24 * t909,
                 0.0,
                 0.0,
                 0.0,
@@ -3485,38 +5170,38 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t925 * t913 + t930,
-                t925 * t949 - t929 * t954,
-                t925 * t971 - t929 * t905,
-                t986,
-                t925 * t993 - t929 * t945,
-                -t1004,
-                -(t662 + 0.56 * (t986 - t1004)),
-                t929 * t1031 - t925 * t1026,
-                t925 * t1030,
+                t997 * t985 - t1002,
+                t997 * t1021 + t1001 * t1026,
+                t997 * t1043 + t1001 * t977,
+                t1058,
+                t997 * t1065 + t1001 * t1017,
+                t1076,
+                t734 - 0.56 * (t1058 + t1076),
+                -(t997 * t1098 + t1001 * t1103),
+                t997 * t1102,
                 0.0,
-                -t661,
+                t733,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t579 * t536 - t582, t579 * t590 + t581 * t595,
-                t579 * t610 + t581 * t528, t627, t579 * t628 + t581 * t586, t640,
-                t671 - 0.56 * (t627 + t640), -(t579 * t691 + t581 * t697), t579 * t696, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t763 * t740 + t768, t763 * t776 - t767 * t781,
-                t763 * t798 - t767 * t732, t815, t763 * t820 - t767 * t772, -t832,
-                t671 - 0.56 * (t815 - t832), t767 * t858 - t763 * t853, t763 * t857, 0.0,
-                actuator_accelerations[2], -t889, t890, actuator_accelerations[2],
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t651 * t620 - t654, t651 * t662 + t653 * t667,
+                t651 * t682 + t653 * t614, t699, t651 * t700 + t653 * t658, t712,
+                t743 - 0.56 * (t699 + t712), -(t651 * t763 + t653 * t769), t651 * t768, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t835 * t812 + t840, t835 * t848 - t839 * t853,
+                t835 * t870 + t839 * t809, t887, -(t835 * t893 + t839 * t842), -t904,
+                t743 - 0.56 * (t887 - t904), t835 * t925 + t839 * t930, t835 * t929, 0.0,
+                actuator_accelerations[2], t961, t962, actuator_accelerations[2],
                 actuator_velocities[2], ::overact::math::sign(actuator_velocities[2]), 1.0,
-                t936 * t913 - t941, t936 * t949 + t940 * t954, t936 * t971 + t940 * t905, t988,
-                t936 * t993 + t940 * t945, t1005,
-                t671
+                t1008 * t985 + t1013, t1008 * t1021 - t1012 * t1026, t1008 * t1043 - t1012 * t977,
+                t1060, t1008 * t1065 - t1012 * t1017, -t1077,
+                t743
                     - 0.10285714285714286
-                        * (4.166666666666667 * t1013 + 5.444444444444445 * t988
-                            + 5.444444444444445 * t1005),
-                t1050,
-                t1038 * t905 - t1041 * t945 + rate_cross_leg3 * rate_cross_leg3 * t1044
-                    + t936 * t1030,
-                0.24 * t1013,
-                t670,
+                        * (4.166666666666667 * t1085 + 5.444444444444445 * t1060
+                            - 5.444444444444445 * t1077),
+                t1122,
+                t1109 * t1017 + t1112 * t977 + rate_cross_leg3 * rate_cross_leg3 * t1116
+                    + t1008 * t1102,
+                0.24 * t1085,
+                t742,
             ],
         ])
     }
@@ -3530,7 +5215,7 @@ impl Delta {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 798 operations (238 additions, 556 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 9 signs, 702 intermediates.
+    /// 882 operations (288 additions, 581 multiplications, 13 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 774 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3539,8 +5224,431 @@ impl Delta {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_platform_base_from_joints(pose, joints, twist, acceleration)
+        let t1 = pose[0] + 0.05;
+        let t2 = t1 - 0.2;
+        let t3 = t2 * t2;
+        let t4 = pose[2] * pose[2];
+        let t6 = 0.2304 * (t3 + t4);
+        let t7 = 1.0 / t6;
+        let t8 = 0.48 * t2;
+        let t9 = pose[1] * pose[1];
+        let t11 = t3 + t9 + t4;
+        let t13 = t11 - 0.3136 + 0.0576;
+        let t15 = 0.48 * pose[2];
+        let t17 = t6 - t13 * t13;
+        ::overact::guard::reach(t17, "leg1")?;
+        let t18 = ::overact::math::sqrt(t17);
+        ::overact::guard::leg(t18, 0.24136807991115974, "leg1")?;
+        let c_arm_leg1 = t7 * (t8 * t13 - t15 * t18);
+        let t22 = 0.24 * c_arm_leg1;
+        let t24 = t1 - (0.2 + t22);
+        let t25 = 1.0 / t18;
+        let t26 = 2.0 * t25;
+        let garm_vx_leg1 = t24 * t26;
+        let t28 = 0.48 * t25;
+        let minus_s_arm_leg1 = t7 * (t15 * t13 + t8 * t18);
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t36 = 1.0 - 3.188775510204082 * t9;
+        ::overact::guard::reach(t36, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t36);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let s_cross_leg1 = 2.0833333333333335 * t18 / (0.56 * c_rod_leg1);
+        let c_cross_leg1 = (t11 - (0.0576 + t9) - 0.3136 * t36) / (0.2688 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t50 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t28
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t50)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t50));
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t28;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t28;
+        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
+            - minus_gcross_vz_leg1 * twist[2];
+        let grod_vy_leg1 = 1.7857142857142858 * t50;
+        let rate_rod_leg1 = grod_vy_leg1 * twist[1];
+        let t70 = s_armcross_leg1 * rate_rod_leg1;
+        let t72 = pose[1] * (rate_cross_leg1 * t70);
+        let garm_vy_leg1 = pose[1] * t26;
+        let t77 = 0.24 * minus_s_arm_leg1;
+        let t78 = pose[2] - t77;
+        let garm_vz_leg1 = t78 * t26;
+        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
+            + garm_vz_leg1 * twist[2];
+        let t82 = rate_arm_leg1 * rate_arm_leg1;
+        let t85 = rate_cross_leg1 * rate_cross_leg1;
+        let t87 = c_armcross_leg1 * rate_rod_leg1;
+        let t89 = t70 * t70 + t85 + t87 * t87;
+        let t94 = acceleration[0] - (t72 - (t22 * t82 + t24 * t89) + t72);
+        let t96 = pose[1] * rate_cross_leg1;
+        let t97 = rate_cross_leg1 * t96;
+        let t100 = acceleration[1] - (t97 - pose[1] * t89);
+        let t104 = pose[1] * (rate_cross_leg1 * t87);
+        let t110 = acceleration[2] - (t104 - (t77 * t82 + t78 * t89) + t104);
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t94 + garm_vy_leg1 * t100
+            + garm_vz_leg1 * t110;
+        let t116 = pose[1] + 0.04330127018922194;
+        let t117 = t116 - 0.17320508075688776;
+        let t119 = pose[0] - 0.025;
+        let t120 = t119 + 0.1;
+        let t121 = 0.5 * t120;
+        let t122 = 0.8660254037844387 * t117 - t121;
+        let t125 = 0.2304 * (t122 * t122 + t4);
+        let t126 = 1.0 / t125;
+        let t127 = 0.48 * t122;
+        let t128 = t120 * t120;
+        let t131 = t128 + t117 * t117 + t4;
+        let t133 = t131 - 0.3136 + 0.0576;
+        let t136 = t125 - t133 * t133;
+        ::overact::guard::reach(t136, "leg2")?;
+        let t137 = ::overact::math::sqrt(t136);
+        let c_arm_leg2 = t126 * (t127 * t133 - t15 * t137);
+        let t142 = t122 - 0.24 * c_arm_leg2;
+        let t143 = 0.8660254037844387 * t120;
+        let t145 = t143 + 0.5 * t117;
+        let t146 = t145 * t145;
+        let t150 = 1.0 - 3.188775510204082 * t146;
+        ::overact::guard::reach(t150, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t150);
+        let c_cross_leg2 = (t131 - (0.0576 + t146) - 0.3136 * t150)
+            / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t126 * (t15 * t133 + t127 * t137);
+        let s_cross_leg2 = 2.0833333333333335 * t137 / (0.56 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t166 = t145 * c_armcross_leg2;
+        let t169 = 1.5464739353293548 * t166 - 0.5 * c_rod_leg2;
+        let t172 = 0.24 * minus_s_arm_leg2;
+        let t173 = pose[2] - t172;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t145;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t178 = minus_s_rod_leg2 * s_armcross_leg2;
+        let t179 = t173 * t178;
+        let t182 = 0.20784609690826528 * minus_s_arm_leg2;
+        let t185 = 0.8928571428571429 * t166 + 0.8660254037844387 * c_rod_leg2;
+        let t189 = t142 * (0.56 * t185) - 0.28 * t179;
+        let t194 = minus_s_arm_leg2 * t178;
+        let t196 = 0.1344 * (c_arm_leg2 * t185) - 0.0672 * t194;
+        let t201 = t182 * t189 - 0.8660254037844387 * t173 * t196 - 0.14 * (t137 * t169);
+        ::overact::guard::leg(t201, 0.06758306237512474, "leg2")?;
+        let t202 = 1.0 / t201;
+        let garm_vx_leg2 = (t142 * (0.56 * t169) - 0.4849742261192857 * t179) * t202;
+        let t204 = 0.12 * c_arm_leg2;
+        let garm_vy_leg2 = t189 * t202;
+        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t173) * t202;
+        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
+            + garm_vz_leg2 * twist[2];
+        let t214 = rate_arm_leg2 * rate_arm_leg2;
+        let t217 = t119 + 0.1 + t204;
+        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t169)
+            - 0.11639381426862856 * (minus_s_arm_leg2 * t185)) * t202;
+        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t169)
+            - 0.11639381426862856 * t194) * t202;
+        let minus_gcross_vy_leg2 = t196 * t202;
+        let rate_cross_leg2 = gcross_vz_leg2 * twist[2]
+            - (minus_gcross_vx_leg2 * twist[0] + minus_gcross_vy_leg2 * twist[1]);
+        let t235 = 0.8660254037844387 * rate_cross_leg2;
+        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t173) - t142 * t182)
+            * t202;
+        let minus_grod_vy_leg2 = 0.25 * t137 * t202;
+        let rate_rod_leg2 = grod_vx_leg2 * twist[0] - minus_grod_vy_leg2 * twist[1];
+        let t248 = t235 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
+        let t251 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
+        let t252 = 0.5 * rate_cross_leg2;
+        let t253 = t251 - t252;
+        let t256 = c_armcross_leg2 * rate_rod_leg2;
+        let t258 = t248 * t248 + t253 * t253 + t256 * t256;
+        let t261 = 0.20784609690826528 * c_arm_leg2;
+        let t263 = t116 - (0.17320508075688776 + t261);
+        let t268 = t263 * t253 - t217 * t248 + t173 * t256;
+        let t271 = t235 * t256;
+        let t274 = 1.3333333333333333 * (t235 * t251);
+        let t278 = acceleration[0]
+            - (t204 * t214 - t217 * t258 - t248 * t268 + t173 * t271 + t263 * t274);
+        let t285 = t252 * t256;
+        let t290 = acceleration[1]
+            - (t253 * t268 - (t261 * t214 + t263 * t258) + t173 * t285 - t217 * t274);
+        let t298 = t263 * t285 + t217 * t271;
+        let t301 = acceleration[2] + t172 * t214 + t173 * t258 + t298 + t298;
+        let rate_dot_arm_leg2 = garm_vx_leg2 * t278 + garm_vy_leg2 * t290
+            + garm_vz_leg2 * t301;
+        let t307 = pose[1] - 0.04330127018922194;
+        let t308 = t307 + 0.17320508075688776;
+        let t310 = t121 + 0.8660254037844387 * t308;
+        let t313 = 0.2304 * (t310 * t310 + t4);
+        let t314 = 1.0 / t313;
+        let t315 = 0.48 * t310;
+        let t318 = t128 + t308 * t308 + t4;
+        let t320 = t318 - 0.3136 + 0.0576;
+        let t323 = t313 - t320 * t320;
+        ::overact::guard::reach(t323, "leg3")?;
+        let t324 = ::overact::math::sqrt(t323);
+        let minus_c_arm_leg3 = t314 * (t315 * t320 + t15 * t324);
+        let t329 = t310 - 0.24 * minus_c_arm_leg3;
+        let t331 = t143 - 0.5 * t308;
+        let t332 = t331 * t331;
+        let t336 = 1.0 - 3.188775510204082 * t332;
+        ::overact::guard::reach(t336, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t336);
+        let c_cross_leg3 = (t318 - (0.0576 + t332) - 0.3136 * t336)
+            / (0.2688 * c_rod_leg3);
+        let s_arm_leg3 = t314 * (t315 * t324 - t15 * t320);
+        let s_cross_leg3 = 2.0833333333333335 * t324 / (0.56 * c_rod_leg3);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t352 = t331 * minus_c_armcross_leg3;
+        let t355 = 1.5464739353293548 * t352 + 0.5 * c_rod_leg3;
+        let t358 = 0.24 * s_arm_leg3;
+        let t359 = pose[2] + t358;
+        let s_rod_leg3 = 1.7857142857142858 * t331;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t364 = s_rod_leg3 * s_armcross_leg3;
+        let t365 = t359 * t364;
+        let t368 = 0.20784609690826528 * s_arm_leg3;
+        let t371 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t352;
+        let t375 = t329 * (0.56 * t371) + 0.28 * t365;
+        let t380 = s_arm_leg3 * t364;
+        let t382 = 0.1344 * (minus_c_arm_leg3 * t371) - 0.0672 * t380;
+        let t387 = t368 * t375 + 0.8660254037844387 * t359 * t382 + 0.14 * (t324 * t355);
+        ::overact::guard::leg(t387, 0.06758306237512474, "leg3")?;
+        let t388 = 1.0 / t387;
+        let garm_vx_leg3 = (t329 * (0.56 * t355) - 0.4849742261192857 * t365) * t388;
+        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t371)
+            + 0.0672 * (s_arm_leg3 * t355)) * t388;
+        let minus_gcross_vx_leg3 = (0.11639381426862856 * t380
+            + 0.1344 * (minus_c_arm_leg3 * t355)) * t388;
+        let minus_gcross_vy_leg3 = t382 * t388;
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
+        let t407 = 0.8660254037844387 * rate_cross_leg3;
+        let grod_vx_leg3 = (t329 * t368
+            + 0.20784609690826528 * (minus_c_arm_leg3 * t359)) * t388;
+        let minus_grod_vy_leg3 = 0.25 * t324 * t388;
+        let rate_rod_leg3 = grod_vx_leg3 * twist[0] - minus_grod_vy_leg3 * twist[1];
+        let t420 = t407 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
+        let t421 = 0.12 * minus_c_arm_leg3;
+        let t423 = t119 - (t421 - 0.1);
+        let t425 = 0.20784609690826528 * minus_c_arm_leg3;
+        let t427 = t307 - (t425 - 0.17320508075688776);
+        let t428 = 0.5 * rate_cross_leg3;
+        let t430 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
+        let t431 = t428 + t430;
+        let t434 = minus_c_armcross_leg3 * rate_rod_leg3;
+        let t436 = t423 * t420 - t427 * t431 - t359 * t434;
+        let garm_vy_leg3 = t375 * t388;
+        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t359) * t388;
+        let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
+            + garm_vz_leg3 * twist[2];
+        let t447 = rate_arm_leg3 * rate_arm_leg3;
+        let t453 = t420 * t420 + t431 * t431 + t434 * t434;
+        let t457 = t407 * t434;
+        let t460 = 1.3333333333333333 * (t407 * t430);
+        let t464 = acceleration[0]
+            - (t420 * t436 - (t421 * t447 + t423 * t453) + t359 * t457 + t427 * t460);
+        let t472 = t428 * t434;
+        let t476 = acceleration[1] + t425 * t447 + t427 * t453 + t431 * t436
+            + t423 * t460 + t359 * t472;
+        let t484 = t427 * t472 - t423 * t457;
+        let t487 = acceleration[2] - (t358 * t447 - t359 * t453 + t484 + t484);
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t464 + garm_vy_leg3 * t476
+            + garm_vz_leg3 * t487;
+        let t493 = 9.81 * c_arm_leg1;
+        let t497 = 9.81 * c_arm_leg2;
+        let t501 = 9.81 * minus_c_arm_leg3;
+        let t505 = 9.81 * minus_s_arm_leg1;
+        let t509 = 9.81 * minus_s_arm_leg2;
+        let t513 = 9.81 * s_arm_leg3;
+        let rate_dot_cross_leg1 = gcross_vy_leg1 * t100 - minus_gcross_vx_leg1 * t94
+            - minus_gcross_vz_leg1 * t110;
+        let t540 = s_rod_leg1 * rate_dot_cross_leg1;
+        let t541 = c_rod_leg1 * rate_cross_leg1;
+        let t542 = rate_rod_leg1 * t541;
+        let t543 = t540 + t542;
+        let t545 = 1.7857142857142858 * t96;
+        let t546 = rate_rod_leg1 * t545;
+        let t547 = c_rod_leg1 * t546;
+        let t548 = s_rod_leg1 * t543 + t547;
+        let t551 = 3.188775510204082 * t97;
+        let t554 = 1.7857142857142858 * t268;
+        let t555 = rate_rod_leg2 * t554;
+        let t556 = c_rod_leg2 * t555;
+        let t557 = c_rod_leg2 * rate_cross_leg2;
+        let t558 = rate_rod_leg2 * t557;
+        let rate_dot_cross_leg2 = gcross_vz_leg2 * t301
+            - (minus_gcross_vx_leg2 * t278 + minus_gcross_vy_leg2 * t290);
+        let t564 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t565 = t558 - t564;
+        let t567 = t556 - minus_s_rod_leg2 * t565;
+        let t569 = t554 * t557;
+        let t570 = grod_vx_leg2 * t569;
+        let t572 = minus_grod_vy_leg2 * t569;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * t487
+            - (minus_gcross_vx_leg3 * t464 + minus_gcross_vy_leg3 * t476);
+        let t581 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t582 = c_rod_leg3 * rate_cross_leg3;
+        let t583 = rate_rod_leg3 * t582;
+        let t584 = t581 + t583;
+        let t586 = 1.7857142857142858 * t436;
+        let t587 = rate_rod_leg3 * t586;
+        let t588 = c_rod_leg3 * t587;
+        let t589 = s_rod_leg3 * t584 + t588;
+        let t591 = t586 * t582;
+        let t592 = grod_vx_leg3 * t591;
+        let t594 = minus_grod_vy_leg3 * t591;
+        let t598 = t542 + t543;
+        let t600 = c_rod_leg1 * rate_dot_cross_leg1;
+        let t601 = t600 - t546;
+        let t604 = c_rod_leg1 * t598 - s_rod_leg1 * (t546 - t601);
+        let t608 = 3.188775510204082 * (t96 * t96);
+        let t615 = 3.188775510204082 * (t268 * t268);
+        let t616 = t557 * t557;
+        let t617 = t615 - t616;
+        let t619 = c_rod_leg2 * rate_dot_cross_leg2;
+        let t620 = t619 - t555;
+        let t623 = t558 + t565;
+        let t625 = minus_s_rod_leg2 * (t555 - t620) + c_rod_leg2 * t623;
+        let t633 = 3.188775510204082 * (t436 * t436);
+        let t634 = t582 * t582;
+        let t635 = t633 - t634;
+        let t637 = t583 + t584;
+        let t639 = c_rod_leg3 * rate_dot_cross_leg3;
+        let t640 = t639 - t587;
+        let t643 = c_rod_leg3 * t637 - s_rod_leg3 * (t587 - t640);
+        let t650 = t545 * t541;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t100;
+        let t654 = rate_rod_leg1 * rate_rod_leg1;
+        let t657 = s_rod_leg1 * (t650 + rate_dot_rod_leg1) + c_rod_leg1 * (t654 - t608);
+        let t663 = rate_rod_leg2 * rate_rod_leg2;
+        let rate_dot_rod_leg2 = grod_vx_leg2 * t278 - minus_grod_vy_leg2 * t290;
+        let t671 = c_rod_leg2 * (t663 - t615)
+            - minus_s_rod_leg2 * (t569 + rate_dot_rod_leg2);
+        let rate_dot_rod_leg3 = grod_vx_leg3 * t464 - minus_grod_vy_leg3 * t476;
+        let t685 = rate_rod_leg3 * rate_rod_leg3;
+        let t688 = s_rod_leg3 * (t591 + rate_dot_rod_leg3) + c_rod_leg3 * (t685 - t633);
+        let t696 = c_rod_leg1 * t601 - t547;
+        let t702 = c_rod_leg2 * t620 - t556;
+        let t709 = c_rod_leg3 * t640 - t588;
+        let t715 = 1.7857142857142858 * acceleration[1];
+        let t723 = t569 - rate_dot_rod_leg2;
+        let t725 = minus_s_rod_leg2 * (t616 - t663) + c_rod_leg2 * t723;
+        let t736 = t591 - rate_dot_rod_leg3;
+        let t738 = s_rod_leg3 * (t634 - t685) - c_rod_leg3 * t736;
+        let t750 = 0.8928571428571429 * t18;
+        let t754 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
+        let t758 = 0.24 * c_cross_leg1;
+        let t760 = t750 * (t650 - rate_dot_rod_leg1) + t754 * (t608 + t654)
+            - t758 * t598;
+        let t763 = 0.24 * rate_dot_arm_leg1 - t493;
+        let t766 = t505 - 0.24 * t82;
+        let t769 = s_rod_leg1 * (c_cross_leg1 * t763 - s_cross_leg1 * t766);
+        let t777 = c_cross_leg1 * t766 + s_cross_leg1 * t763;
+        let t783 = 0.8928571428571429 * t137;
+        let t786 = 0.42857142857142855 * (t145 * s_cross_leg2);
+        let t790 = 0.24 * c_cross_leg2;
+        let t792 = t783 * t723 - t786 * (t615 + t663) - t790 * t623;
+        let t795 = 0.24 * rate_dot_arm_leg2 - t497;
+        let t798 = t509 - 0.24 * t214;
+        let t801 = minus_s_rod_leg2 * (c_cross_leg2 * t795 - s_cross_leg2 * t798);
+        let t806 = c_cross_leg2 * t798 + s_cross_leg2 * t795;
+        let t818 = 0.8928571428571429 * t324;
+        let t821 = 0.42857142857142855 * (t331 * s_cross_leg3);
+        let t825 = 0.24 * c_cross_leg3;
+        let t827 = t818 * t736 + t821 * (t633 + t685) - t825 * t637;
+        let t830 = t513 + 0.24 * t447;
+        let t833 = t501 + 0.24 * rate_dot_arm_leg3;
+        let t836 = s_rod_leg3 * (s_cross_leg3 * t830 + c_cross_leg3 * t833);
+        let t841 = s_cross_leg3 * t833 - c_cross_leg3 * t830;
+        let t857 = t600 * t750 + t540 * t754 + t85 * t758;
+        let t872 = t619 * t783 + t564 * t786 + rate_cross_leg2 * rate_cross_leg2 * t790;
+        let t887 = t639 * t818 + t581 * t821 + rate_cross_leg3 * rate_cross_leg3 * t825;
+        Ok([
+            [
+                acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1, garm_vx_leg2 * rate_dot_arm_leg2,
+                garm_vx_leg3 * rate_dot_arm_leg3, -(garm_vx_leg1 * t493), -(garm_vx_leg2 * t497),
+                garm_vx_leg3 * t501, -(garm_vx_leg1 * t505), -(garm_vx_leg2 * t509),
+                garm_vx_leg3 * t513, garm_vx_leg1 * rate_arm_leg1, garm_vx_leg2 * rate_arm_leg2,
+                garm_vx_leg3 * rate_arm_leg3, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
+                ::overact::math::signed(garm_vx_leg2, rate_arm_leg2),
+                ::overact::math::signed(garm_vx_leg3, rate_arm_leg3), garm_vx_leg1, garm_vx_leg2,
+                garm_vx_leg3, -(minus_gcross_vx_leg1 * t548), -(minus_gcross_vx_leg2 * t567 + t570),
+                -(minus_gcross_vx_leg3 * t589 + t592), -(minus_gcross_vx_leg1 * t604),
+                grod_vx_leg2 * t617 - minus_gcross_vx_leg2 * t625,
+                grod_vx_leg3 * t635 - minus_gcross_vx_leg3 * t643, -(minus_gcross_vx_leg1 * t657),
+                -(minus_gcross_vx_leg2 * t671 + grod_vx_leg2 * t564),
+                grod_vx_leg3 * t581 - minus_gcross_vx_leg3 * t688, -(minus_gcross_vx_leg1 * t696),
+                t570 - minus_gcross_vx_leg2 * t702, t592 - minus_gcross_vx_leg3 * t709,
+                -(minus_gcross_vx_leg1 * t715), minus_gcross_vx_leg2 * t725 + grod_vx_leg2 * t619,
+                grod_vx_leg3 * t639 - minus_gcross_vx_leg3 * t738, 0.0,
+                grod_vx_leg2 * rate_dot_rod_leg2, grod_vx_leg3 * rate_dot_rod_leg3,
+                garm_vx_leg1 * t760 + minus_gcross_vx_leg1 * t769,
+                garm_vx_leg2 * t792 - minus_gcross_vx_leg2 * t801
+                    - grod_vx_leg2 * (c_rod_leg2 * t806),
+                garm_vx_leg3 * t827 + minus_gcross_vx_leg3 * t836
+                    - grod_vx_leg3 * (c_rod_leg3 * t841),
+                garm_vx_leg1 * t857 - minus_gcross_vx_leg1 * t777,
+                garm_vx_leg2 * t872 - minus_gcross_vx_leg2 * t806,
+                garm_vx_leg3 * t887 - minus_gcross_vx_leg3 * t841,
+            ],
+            [
+                acceleration[1], garm_vy_leg1 * rate_dot_arm_leg1, garm_vy_leg2 * rate_dot_arm_leg2,
+                garm_vy_leg3 * rate_dot_arm_leg3, -(garm_vy_leg1 * t493), -(garm_vy_leg2 * t497),
+                garm_vy_leg3 * t501, -(garm_vy_leg1 * t505), -(garm_vy_leg2 * t509),
+                garm_vy_leg3 * t513, garm_vy_leg1 * rate_arm_leg1, garm_vy_leg2 * rate_arm_leg2,
+                garm_vy_leg3 * rate_arm_leg3, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
+                ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
+                ::overact::math::signed(garm_vy_leg3, rate_arm_leg3), garm_vy_leg1, garm_vy_leg2,
+                garm_vy_leg3, gcross_vy_leg1 * t548 - t551, t572 - minus_gcross_vy_leg2 * t567,
+                t594 - minus_gcross_vy_leg3 * t589,
+                gcross_vy_leg1 * t604 + grod_vy_leg1 * (t608 - t541 * t541),
+                -(minus_gcross_vy_leg2 * t625 + minus_grod_vy_leg2 * t617),
+                -(minus_gcross_vy_leg3 * t643 + minus_grod_vy_leg3 * t635),
+                gcross_vy_leg1 * t657 + grod_vy_leg1 * t540,
+                minus_grod_vy_leg2 * t564 - minus_gcross_vy_leg2 * t671,
+                -(minus_gcross_vy_leg3 * t688 + minus_grod_vy_leg3 * t581),
+                gcross_vy_leg1 * t696 + t551, -(minus_gcross_vy_leg2 * t702 + t572),
+                -(minus_gcross_vy_leg3 * t709 + t594),
+                gcross_vy_leg1 * t715 + 1.7857142857142858 * rate_dot_cross_leg1,
+                minus_gcross_vy_leg2 * t725 - 0.8928571428571429 * rate_dot_cross_leg2,
+                -(minus_gcross_vy_leg3 * t738
+                    + 0.8928571428571429 * rate_dot_cross_leg3),
+                grod_vy_leg1 * rate_dot_rod_leg1,
+                -(minus_grod_vy_leg2 * rate_dot_rod_leg2),
+                -(minus_grod_vy_leg3 * rate_dot_rod_leg3),
+                garm_vy_leg1 * t760 - gcross_vy_leg1 * t769 - 1.7857142857142858 * t777,
+                garm_vy_leg2 * t792 - minus_gcross_vy_leg2 * t801
+                    + 0.8928571428571429 * t806,
+                garm_vy_leg3 * t827 + minus_gcross_vy_leg3 * t836
+                    + 0.8928571428571429 * t841,
+                garm_vy_leg1 * t857 + gcross_vy_leg1 * t777,
+                garm_vy_leg2 * t872 - minus_gcross_vy_leg2 * t806,
+                garm_vy_leg3 * t887 - minus_gcross_vy_leg3 * t841,
+            ],
+            [
+                acceleration[2] + 9.81, garm_vz_leg1 * rate_dot_arm_leg1,
+                garm_vz_leg2 * rate_dot_arm_leg2, garm_vz_leg3 * rate_dot_arm_leg3,
+                -(garm_vz_leg1 * t493), -(garm_vz_leg2 * t497), garm_vz_leg3 * t501,
+                -(garm_vz_leg1 * t505), -(garm_vz_leg2 * t509), garm_vz_leg3 * t513,
+                garm_vz_leg1 * rate_arm_leg1, garm_vz_leg2 * rate_arm_leg2,
+                garm_vz_leg3 * rate_arm_leg3, ::overact::math::signed(garm_vz_leg1, rate_arm_leg1),
+                ::overact::math::signed(garm_vz_leg2, rate_arm_leg2),
+                ::overact::math::signed(garm_vz_leg3, rate_arm_leg3), garm_vz_leg1, garm_vz_leg2,
+                garm_vz_leg3, -(minus_gcross_vz_leg1 * t548), gcross_vz_leg2 * t567,
+                gcross_vz_leg3 * t589, -(minus_gcross_vz_leg1 * t604), gcross_vz_leg2 * t625,
+                gcross_vz_leg3 * t643, -(minus_gcross_vz_leg1 * t657), gcross_vz_leg2 * t671,
+                gcross_vz_leg3 * t688, -(minus_gcross_vz_leg1 * t696), gcross_vz_leg2 * t702,
+                gcross_vz_leg3 * t709, -(minus_gcross_vz_leg1 * t715), -(gcross_vz_leg2 * t725),
+                gcross_vz_leg3 * t738, 0.0, 0.0, 0.0,
+                garm_vz_leg1 * t760 + minus_gcross_vz_leg1 * t769,
+                garm_vz_leg2 * t792 + gcross_vz_leg2 * t801,
+                garm_vz_leg3 * t827 - gcross_vz_leg3 * t836,
+                garm_vz_leg1 * t857 - minus_gcross_vz_leg1 * t777,
+                garm_vz_leg2 * t872 + gcross_vz_leg2 * t806,
+                garm_vz_leg3 * t887 + gcross_vz_leg3 * t841,
+            ],
+        ])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -3945,7 +6053,7 @@ impl Delta {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 881 operations (275 additions, 599 multiplications, 7 divisions), 0 square roots, 9 trigonometric pairs, 9 signs, 783 intermediates.
+    /// 965 operations (325 additions, 624 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 855 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3956,415 +6064,471 @@ impl Delta {
         start: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
-        let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t12 = c_armcross_leg1 * c_rod_leg1;
-        let t13 = s_armcross_leg1 * c_rod_leg1;
-        let t16 = c_arm_leg1 * t13 - s_arm_leg1 * t12;
-        ::overact::guard::leg(t16, 0.89794672585951, "leg1")?;
-        let t17 = 1.0 / t16;
-        let t18 = 4.166666666666667 * t17;
-        let garm_vx_leg1 = t12 * t18;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
-        let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t33 = s_armcross_leg2 * c_rod_leg2;
-        let t34 = s_armcross_leg2 * s_rod_leg2;
-        let t35 = t33 * t34;
-        let t37 = 0.5 * c_armcross_leg2;
-        let t38 = t37 * c_rod_leg2;
-        let t39 = 0.8660254037844387 * c_armcross_leg2;
-        let t42 = t39 * s_rod_leg2 + 0.5 * c_rod_leg2;
-        let t46 = 0.4849742261192857 * t33;
-        let t47 = 0.24 * s_arm_leg2;
-        let t48 = 0.56 * t33;
-        let t51 = t46 - 0.8660254037844387 * (t47 + t48);
-        let t54 = t37 * s_rod_leg2 - 0.8660254037844387 * c_rod_leg2;
-        let t58 = 0.6272 * (t38 * t54) + 0.1568 * t35;
-        let t64 = 0.1344 * (c_arm_leg2 * t54) + 0.0672 * (s_arm_leg2 * t34);
-        let t70 = c_arm_leg2 * t33;
-        let t72 = 0.1344 * (s_arm_leg2 * t38) - 0.0672 * t70;
-        let t74 = t51 * t58 + t46 * t64 + 0.56 * t42 * t72;
-        ::overact::guard::leg(t74, 0.06758306237509017, "leg2")?;
-        let t75 = 1.0 / t74;
-        let garm_vx_leg2 = (0.2715855666268 * t35 + 0.6272 * (t38 * t42)) * t75;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
-        let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t91 = s_armcross_leg3 * c_rod_leg3;
-        let t92 = s_armcross_leg3 * s_rod_leg3;
-        let t93 = t91 * t92;
-        let t95 = 0.5 * c_armcross_leg3;
-        let t96 = t95 * c_rod_leg3;
-        let t97 = 0.8660254037844387 * c_armcross_leg3;
-        let t100 = t97 * s_rod_leg3 - 0.5 * c_rod_leg3;
-        let t104 = 0.4849742261192857 * t91;
-        let t107 = t95 * s_rod_leg3 + 0.8660254037844387 * c_rod_leg3;
-        let t112 = 0.1344 * (c_arm_leg3 * t107) + 0.0672 * (s_arm_leg3 * t92);
-        let t114 = 0.24 * s_arm_leg3;
-        let t115 = 0.56 * t91;
-        let t118 = 0.8660254037844387 * (t114 + t115) - t104;
-        let t122 = 0.6272 * (t96 * t107) + 0.1568 * t93;
-        let t128 = c_arm_leg3 * t91;
-        let t130 = 0.1344 * (s_arm_leg3 * t96) - 0.0672 * t128;
-        let t132 = t104 * t112 - t118 * t122 + 0.56 * t100 * t130;
-        ::overact::guard::leg(t132, 0.06758306237509014, "leg3")?;
-        let t133 = 1.0 / t132;
-        let garm_vx_leg3 = (0.2715855666268 * t93 + 0.6272 * (t96 * t100)) * t133;
-        let t136 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.2304 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.48 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.3136 + 0.0576;
+        let t14 = 0.48 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t21 = 0.24 * c_arm_leg1;
+        let t23 = t0 - (0.2 + t21);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = t23 * t25;
+        let t28 = pose[1] + 0.04330127018922194;
+        let t29 = t28 - 0.17320508075688776;
+        let t31 = pose[0] - 0.025;
+        let t32 = t31 + 0.1;
+        let t33 = 0.5 * t32;
+        let t34 = 0.8660254037844387 * t29 - t33;
+        let t37 = 0.2304 * (t34 * t34 + t3);
+        let t38 = 1.0 / t37;
+        let t39 = 0.48 * t34;
+        let t40 = t32 * t32;
+        let t43 = t40 + t29 * t29 + t3;
+        let t45 = t43 - 0.3136 + 0.0576;
+        let t48 = t37 - t45 * t45;
+        ::overact::guard::reach(t48, "leg2")?;
+        let t49 = ::overact::math::sqrt(t48);
+        let c_arm_leg2 = t38 * (t39 * t45 - t14 * t49);
+        let t54 = t34 - 0.24 * c_arm_leg2;
+        let t55 = 0.8660254037844387 * t32;
+        let t57 = t55 + 0.5 * t29;
+        let t58 = t57 * t57;
+        let t62 = 1.0 - 3.188775510204082 * t58;
+        ::overact::guard::reach(t62, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t62);
+        let c_cross_leg2 = (t43 - (0.0576 + t58) - 0.3136 * t62) / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t38 * (t14 * t45 + t39 * t49);
+        let s_cross_leg2 = 2.0833333333333335 * t49 / (0.56 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t78 = t57 * c_armcross_leg2;
+        let t81 = 1.5464739353293548 * t78 - 0.5 * c_rod_leg2;
+        let t84 = 0.24 * minus_s_arm_leg2;
+        let t85 = pose[2] - t84;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t57;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t90 = minus_s_rod_leg2 * s_armcross_leg2;
+        let t91 = t85 * t90;
+        let t94 = 0.20784609690826528 * minus_s_arm_leg2;
+        let t97 = 0.8928571428571429 * t78 + 0.8660254037844387 * c_rod_leg2;
+        let t101 = t54 * (0.56 * t97) - 0.28 * t91;
+        let t106 = minus_s_arm_leg2 * t90;
+        let t108 = 0.1344 * (c_arm_leg2 * t97) - 0.0672 * t106;
+        let t113 = t94 * t101 - 0.8660254037844387 * t85 * t108 - 0.14 * (t49 * t81);
+        ::overact::guard::leg(t113, 0.06758306237512474, "leg2")?;
+        let t114 = 1.0 / t113;
+        let garm_vx_leg2 = (t54 * (0.56 * t81) - 0.4849742261192857 * t91) * t114;
+        let t118 = pose[1] - 0.04330127018922194;
+        let t119 = t118 + 0.17320508075688776;
+        let t121 = t33 + 0.8660254037844387 * t119;
+        let t124 = 0.2304 * (t121 * t121 + t3);
+        let t125 = 1.0 / t124;
+        let t126 = 0.48 * t121;
+        let t129 = t40 + t119 * t119 + t3;
+        let t131 = t129 - 0.3136 + 0.0576;
+        let t134 = t124 - t131 * t131;
+        ::overact::guard::reach(t134, "leg3")?;
+        let t135 = ::overact::math::sqrt(t134);
+        let minus_c_arm_leg3 = t125 * (t126 * t131 + t14 * t135);
+        let t140 = t121 - 0.24 * minus_c_arm_leg3;
+        let t142 = t55 - 0.5 * t119;
+        let t143 = t142 * t142;
+        let t147 = 1.0 - 3.188775510204082 * t143;
+        ::overact::guard::reach(t147, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t147);
+        let c_cross_leg3 = (t129 - (0.0576 + t143) - 0.3136 * t147)
+            / (0.2688 * c_rod_leg3);
+        let s_arm_leg3 = t125 * (t126 * t135 - t14 * t131);
+        let s_cross_leg3 = 2.0833333333333335 * t135 / (0.56 * c_rod_leg3);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t163 = t142 * minus_c_armcross_leg3;
+        let t166 = 1.5464739353293548 * t163 + 0.5 * c_rod_leg3;
+        let t169 = 0.24 * s_arm_leg3;
+        let t170 = pose[2] + t169;
+        let s_rod_leg3 = 1.7857142857142858 * t142;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t175 = s_rod_leg3 * s_armcross_leg3;
+        let t176 = t170 * t175;
+        let t179 = 0.20784609690826528 * s_arm_leg3;
+        let t182 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t163;
+        let t186 = t140 * (0.56 * t182) + 0.28 * t176;
+        let t191 = s_arm_leg3 * t175;
+        let t193 = 0.1344 * (minus_c_arm_leg3 * t182) - 0.0672 * t191;
+        let t198 = t179 * t186 + 0.8660254037844387 * t170 * t193 + 0.14 * (t135 * t166);
+        ::overact::guard::leg(t198, 0.06758306237512474, "leg3")?;
+        let t199 = 1.0 / t198;
+        let garm_vx_leg3 = (t140 * (0.56 * t166) - 0.4849742261192857 * t176) * t199;
+        let t202 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t136, 14.8697301728973, "actuators")?;
-        ::overact::guard::platform(t136, 14.8697301728973, "actuators")?;
-        let t137 = 1.0 / t136;
-        let minus_garm_vz_leg1 = t13 * t18;
-        let t140 = actuator_velocities[0] * actuator_velocities[0];
-        let t143 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.7857142857142858 * t143;
-        let garm_vy_leg1 = s_rod_leg1 * t18;
-        let garm_vy_leg2 = t58 * t75;
-        let minus_garm_vy_leg3 = t122 * t133;
-        let t157 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
-            - garm_vx_leg3 * minus_garm_vy_leg3;
-        let t158 = t157 * t137;
-        let t160 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + minus_garm_vy_leg3 * minus_garm_vy_leg3 - t157 * t158;
-        ::overact::guard::platform(t160, 14.869730172897306, "actuators")?;
-        ::overact::guard::platform(t160, 14.869730172897306, "actuators")?;
-        let t161 = 1.0 / t160;
-        let t162 = garm_vy_leg1 * actuator_velocities[0];
-        let t163 = garm_vy_leg2 * actuator_velocities[1];
-        let t165 = minus_garm_vy_leg3 * actuator_velocities[2];
-        let t167 = garm_vx_leg1 * actuator_velocities[0];
-        let t168 = garm_vx_leg2 * actuator_velocities[1];
-        let t170 = garm_vx_leg3 * actuator_velocities[2];
-        let t171 = t167 + t168 + t170;
-        let t173 = t162 + t163 - t165 - t171 * t158;
-        let garm_vz_leg2 = (0.1568 * (t42 * t33) - 0.2715855666268 * (t54 * t33)) * t75;
-        let minus_garm_vz_leg3 = (0.2715855666268 * (t107 * t91) - 0.1568 * (t100 * t91))
-            * t133;
-        let t196 = garm_vx_leg2 * garm_vz_leg2 - garm_vx_leg1 * minus_garm_vz_leg1
-            - garm_vx_leg3 * minus_garm_vz_leg3;
-        let t197 = t196 * t137;
-        let t199 = garm_vy_leg2 * garm_vz_leg2 - garm_vy_leg1 * minus_garm_vz_leg1
-            + minus_garm_vy_leg3 * minus_garm_vz_leg3 - t157 * t197;
-        let t200 = t199 * t161;
-        let t209 = minus_garm_vz_leg1 * minus_garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t196 * t197 - t199 * t200;
-        ::overact::guard::platform(t209, 34.85535020139291, "actuators")?;
-        ::overact::guard::platform(t209, 34.85535020139291, "actuators")?;
-        let t210 = 1.0 / t209;
-        let t211 = garm_vz_leg2 * actuator_velocities[1];
-        let t212 = minus_garm_vz_leg1 * actuator_velocities[0];
-        let t214 = minus_garm_vz_leg3 * actuator_velocities[2];
-        let t220 = t210 * (t211 - t212 - t214 - t171 * t197 - t200 * t173);
-        let t222 = t161 * t173 - t200 * t220;
-        let rate_rod_leg1 = grod_vy_leg1 * t222;
-        let t224 = s_armcross_leg1 * rate_rod_leg1;
-        let t226 = 1.7857142857142858 * t17;
-        let gcross_vz_leg1 = s_arm_leg1 * t226;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t226;
-        let t234 = t171 * t137 - t158 * t222 - t197 * t220;
-        let minus_gcross_vy_leg1 = t226
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t143)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t143));
-        let rate_cross_leg1 = gcross_vz_leg1 * t220
-            - (minus_gcross_vx_leg1 * t234 + minus_gcross_vy_leg1 * t222);
-        let t247 = rate_cross_leg1 * rate_cross_leg1;
-        let t249 = c_armcross_leg1 * rate_rod_leg1;
-        let t251 = t224 * t224 + t247 + t249 * t249;
-        let t254 = 0.56 * s_rod_leg1;
-        let t256 = t254 * (rate_cross_leg1 * t249);
-        let t258 = 0.24 * s_arm_leg1 * t140 + 0.56 * t13 * t251 + t256 + t256;
-        let t261 = t254 * (rate_cross_leg1 * t224);
-        let t268 = t261 - (0.24 * c_arm_leg1 * t140 + 0.56 * t12 * t251) + t261;
-        let t270 = t254 * rate_cross_leg1;
-        let t271 = rate_cross_leg1 * t270;
-        let t273 = t271 - t254 * t251;
-        let rate_dot_arm_leg1 = minus_garm_vz_leg1 * t258
-            - (garm_vx_leg1 * t268 + garm_vy_leg1 * t273);
-        let t277 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t280 = actuator_velocities[1] * actuator_velocities[1];
-        let t283 = t38 + 0.8660254037844387 * s_rod_leg2;
-        let t284 = 0.56 * t283;
-        let gcross_vx_leg2 = (0.56 * t34 * t51 - 0.1344 * (c_arm_leg2 * t42)) * t75;
-        let minus_gcross_vy_leg2 = t64 * t75;
-        let minus_gcross_vz_leg2 = (0.56 * t54 * t51 + 0.0672 * (s_arm_leg2 * t42))
-            * t75;
-        let rate_cross_leg2 = gcross_vx_leg2 * t234 - minus_gcross_vy_leg2 * t222
-            - minus_gcross_vz_leg2 * t220;
-        let t303 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (1.12 * t38 * t51 + 0.11639381426862856 * t70) * t75;
-        let minus_grod_vy_leg2 = t72 * t75;
-        let rate_rod_leg2 = grod_vx_leg2 * t234 - minus_grod_vy_leg2 * t222;
-        let t315 = t303 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t318 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t319 = 0.5 * rate_cross_leg2;
-        let t320 = t318 - t319;
-        let t323 = c_armcross_leg2 * rate_rod_leg2;
-        let t325 = t315 * t315 + t320 * t320 + t323 * t323;
-        let t331 = t39 * c_rod_leg2 - 0.5 * s_rod_leg2;
-        let t332 = 0.56 * t331;
-        let t336 = t284 * t315 + t332 * t320 - t48 * t323;
-        let t339 = t303 * t318;
-        let t342 = t303 * t323;
-        let t345 = 0.12 * c_arm_leg2 * t280 + t284 * t325 - t315 * t336
-            + 0.7466666666666667 * (t331 * t339) - t48 * t342;
-        let t355 = t319 * t323;
-        let t358 = t320 * t336 - (0.20784609690826528 * c_arm_leg2 * t280 + t332 * t325)
-            + 0.7466666666666667 * (t283 * t339) - t48 * t355;
-        let t366 = t284 * t342 - t332 * t355;
-        let t368 = t47 * t280 + t48 * t325 + t366 + t366;
-        let minus_rate_dot_arm_leg2 = garm_vx_leg2 * t345 + garm_vy_leg2 * t358
-            + garm_vz_leg2 * t368;
-        let t371 = actuator_accelerations[1] + minus_rate_dot_arm_leg2;
-        let t375 = actuator_velocities[2] * actuator_velocities[2];
-        let t379 = t97 * c_rod_leg3 + 0.5 * s_rod_leg3;
-        let t380 = 0.56 * t379;
-        let gcross_vy_leg3 = t112 * t133;
-        let minus_gcross_vx_leg3 = (0.56 * t92 * t118 + 0.1344 * (c_arm_leg3 * t100))
-            * t133;
-        let gcross_vz_leg3 = (0.56 * t107 * t118 - 0.0672 * (s_arm_leg3 * t100)) * t133;
-        let rate_cross_leg3 = gcross_vy_leg3 * t222 - minus_gcross_vx_leg3 * t234
-            + gcross_vz_leg3 * t220;
-        let t399 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (0.11639381426862856 * t128 - 1.12 * t96 * t118) * t133;
-        let grod_vy_leg3 = t130 * t133;
-        let rate_rod_leg3 = grod_vx_leg3 * t234 + grod_vy_leg3 * t222;
-        let t411 = t399 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t413 = 0.5 * rate_cross_leg3;
-        let t415 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t416 = t413 + t415;
-        let t419 = c_armcross_leg3 * rate_rod_leg3;
-        let t421 = t411 * t411 + t416 * t416 + t419 * t419;
-        let t425 = 0.8660254037844387 * s_rod_leg3 - t96;
-        let t426 = 0.56 * t425;
-        let t431 = t426 * t411 + t380 * t416 - t115 * t419;
-        let t434 = t399 * t415;
-        let t437 = t413 * t419;
-        let t440 = 0.20784609690826528 * c_arm_leg3 * t375 + t380 * t421 - t416 * t431
-            - (0.7466666666666667 * (t425 * t434) + t115 * t437);
-        let t448 = t399 * t419;
-        let t453 = 0.12 * c_arm_leg3 * t375 - t426 * t421 + t411 * t431 + t115 * t448
-            - 0.7466666666666667 * (t379 * t434);
-        let t461 = t380 * t437 + t426 * t448;
-        let t463 = t114 * t375 + t115 * t421 + t461 + t461;
-        let rate_dot_arm_leg3 = minus_garm_vy_leg3 * t440 - garm_vx_leg3 * t453
-            + minus_garm_vz_leg3 * t463;
-        let t466 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t468 = garm_vx_leg1 * t277 + garm_vx_leg2 * t371 + garm_vx_leg3 * t466;
-        let t476 = garm_vy_leg1 * t277 + garm_vy_leg2 * t371 - minus_garm_vy_leg3 * t466
-            - t158 * t468;
-        let t487 = t210
-            * (garm_vz_leg2 * t371 - minus_garm_vz_leg1 * t277
-                - minus_garm_vz_leg3 * t466 - t197 * t468 - t200 * t476);
-        let t489 = t161 * t476 - t200 * t487;
-        let t493 = t137 * t468 - t158 * t489 - t197 * t487;
-        let t504 = 9.81 * c_arm_leg1;
-        let t508 = 9.81 * c_arm_leg2;
-        let t512 = 9.81 * c_arm_leg3;
-        let t516 = 9.81 * s_arm_leg1;
-        let t520 = 9.81 * s_arm_leg2;
-        let t524 = 9.81 * s_arm_leg3;
-        let t541 = t489 - t273;
-        let rate_dot_cross_leg1 = gcross_vz_leg1 * (t487 - t258)
-            - (minus_gcross_vx_leg1 * (t493 - t268) + minus_gcross_vy_leg1 * t541);
-        let t545 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t546 = c_rod_leg1 * rate_cross_leg1;
-        let t547 = rate_rod_leg1 * t546;
-        let t548 = t545 + t547;
-        let t550 = 1.7857142857142858 * t270;
-        let t551 = rate_rod_leg1 * t550;
-        let t552 = c_rod_leg1 * t551;
-        let t553 = s_rod_leg1 * t548 + t552;
-        let t556 = 3.188775510204082 * t271;
-        let t559 = t493 - t345;
-        let t561 = t489 - t358;
-        let rate_dot_cross_leg2 = gcross_vx_leg2 * t559 - minus_gcross_vy_leg2 * t561
-            - minus_gcross_vz_leg2 * (t487 - t368);
-        let t567 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t568 = c_rod_leg2 * rate_cross_leg2;
-        let t569 = rate_rod_leg2 * t568;
-        let t570 = t567 + t569;
-        let t572 = 1.7857142857142858 * t336;
-        let t573 = rate_rod_leg2 * t572;
-        let t574 = c_rod_leg2 * t573;
-        let t575 = s_rod_leg2 * t570 + t574;
-        let t577 = t572 * t568;
-        let t578 = grod_vx_leg2 * t577;
-        let t580 = minus_grod_vy_leg2 * t577;
-        let t584 = t489 - t440;
-        let t586 = t493 - t453;
-        let rate_dot_cross_leg3 = gcross_vy_leg3 * t584 - minus_gcross_vx_leg3 * t586
-            + gcross_vz_leg3 * (t487 - t463);
-        let t592 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t593 = c_rod_leg3 * rate_cross_leg3;
-        let t594 = rate_rod_leg3 * t593;
-        let t595 = t592 + t594;
-        let t597 = 1.7857142857142858 * t431;
-        let t598 = rate_rod_leg3 * t597;
-        let t599 = c_rod_leg3 * t598;
-        let t600 = s_rod_leg3 * t595 + t599;
-        let t602 = t597 * t593;
-        let t603 = grod_vx_leg3 * t602;
-        let t606 = grod_vy_leg3 * t602;
-        let t609 = t547 + t548;
-        let t611 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t612 = t611 - t551;
-        let t615 = c_rod_leg1 * t609 - s_rod_leg1 * (t551 - t612);
-        let t618 = 3.188775510204082 * (t270 * t270);
-        let t625 = t569 + t570;
-        let t627 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t628 = t627 - t573;
-        let t631 = c_rod_leg2 * t625 - s_rod_leg2 * (t573 - t628);
-        let t634 = 3.188775510204082 * (t336 * t336);
-        let t635 = t568 * t568;
-        let t636 = t634 - t635;
-        let t644 = 3.188775510204082 * (t431 * t431);
-        let t645 = t593 * t593;
-        let t646 = t644 - t645;
-        let t648 = t594 + t595;
-        let t650 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t651 = t650 - t598;
-        let t654 = c_rod_leg3 * t648 - s_rod_leg3 * (t598 - t651);
-        let t661 = t550 * t546;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t541;
-        let t665 = rate_rod_leg1 * rate_rod_leg1;
-        let t668 = s_rod_leg1 * (t661 + rate_dot_rod_leg1) + c_rod_leg1 * (t665 - t618);
-        let rate_dot_rod_leg2 = grod_vx_leg2 * t559 - minus_grod_vy_leg2 * t561;
-        let t679 = rate_rod_leg2 * rate_rod_leg2;
-        let t682 = s_rod_leg2 * (t577 + rate_dot_rod_leg2) + c_rod_leg2 * (t679 - t634);
-        let rate_dot_rod_leg3 = grod_vx_leg3 * t586 + grod_vy_leg3 * t584;
-        let t696 = rate_rod_leg3 * rate_rod_leg3;
-        let t699 = s_rod_leg3 * (t602 + rate_dot_rod_leg3) + c_rod_leg3 * (t696 - t644);
-        let t707 = c_rod_leg1 * t612 - t552;
-        let t713 = c_rod_leg2 * t628 - t574;
-        let t720 = c_rod_leg3 * t651 - t599;
-        let t726 = 1.7857142857142858 * t489;
-        let t734 = t577 - rate_dot_rod_leg2;
-        let t736 = s_rod_leg2 * (t635 - t679) - c_rod_leg2 * t734;
-        let t747 = t602 - rate_dot_rod_leg3;
-        let t749 = s_rod_leg3 * (t645 - t696) - c_rod_leg3 * t747;
-        let t761 = 0.24 * t16;
-        let t765 = s_rod_leg1 * (0.24 * s_cross_leg1);
-        let t769 = 0.24 * c_cross_leg1;
-        let t771 = t761 * (t661 - rate_dot_rod_leg1) + t765 * (t618 + t665)
-            - t769 * t609;
-        let t774 = t516 + 0.24 * t140;
-        let t777 = 0.24 * actuator_accelerations[0] - t504;
-        let t780 = s_rod_leg1 * (s_cross_leg1 * t774 + c_cross_leg1 * t777);
-        let t788 = s_cross_leg1 * t777 - c_cross_leg1 * t774;
-        let t795 = s_rod_leg2 * (0.24 * s_cross_leg2);
-        let t798 = 3.5714285714285716 * t72;
-        let t801 = 0.24 * c_cross_leg2;
-        let t803 = t795 * (t634 + t679) - t798 * t734 - t801 * t625;
-        let t806 = t520 + 0.24 * t280;
-        let t809 = 0.24 * actuator_accelerations[1] - t508;
-        let t812 = s_rod_leg2 * (s_cross_leg2 * t806 + c_cross_leg2 * t809);
-        let t817 = s_cross_leg2 * t809 - c_cross_leg2 * t806;
-        let t830 = s_rod_leg3 * (0.24 * s_cross_leg3);
-        let t833 = 3.5714285714285716 * t130;
-        let t836 = 0.24 * c_cross_leg3;
-        let t838 = t830 * (t644 + t696) - t833 * t747 - t836 * t648;
-        let t841 = t524 + 0.24 * t375;
-        let t844 = 0.24 * actuator_accelerations[2] - t512;
-        let t847 = s_rod_leg3 * (s_cross_leg3 * t841 + c_cross_leg3 * t844);
-        let t852 = s_cross_leg3 * t844 - c_cross_leg3 * t841;
-        let t868 = t761 * t611 + t765 * t545 + t247 * t769;
-        let t883 = t795 * t567 - t798 * t627 + rate_cross_leg2 * rate_cross_leg2 * t801;
-        let t898 = t830 * t592 - t833 * t650 + rate_cross_leg3 * rate_cross_leg3 * t836;
+        ::overact::guard::platform(t202, 14.869730172882845, "actuators")?;
+        ::overact::guard::platform(t202, 14.869730172882845, "actuators")?;
+        let t203 = 1.0 / t202;
+        let t204 = 0.48 * t24;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t212 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t212, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t212);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t212) / (0.2688 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t226 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t204
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t226)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t226));
+        let garm_vy_leg1 = pose[1] * t25;
+        let garm_vy_leg2 = t101 * t114;
+        let garm_vy_leg3 = t186 * t199;
+        let t249 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3;
+        let t250 = t249 * t203;
+        let t252 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t249 * t250;
+        ::overact::guard::platform(t252, 14.869730172882843, "actuators")?;
+        ::overact::guard::platform(t252, 14.869730172882843, "actuators")?;
+        let t253 = 1.0 / t252;
+        let t254 = garm_vy_leg1 * actuator_velocities[0];
+        let t255 = garm_vy_leg2 * actuator_velocities[1];
+        let t257 = garm_vy_leg3 * actuator_velocities[2];
+        let t259 = garm_vx_leg1 * actuator_velocities[0];
+        let t260 = garm_vx_leg2 * actuator_velocities[1];
+        let t262 = garm_vx_leg3 * actuator_velocities[2];
+        let t263 = t259 + t260 + t262;
+        let t265 = t254 + t255 + t257 - t263 * t250;
+        let t267 = 0.24 * minus_s_arm_leg1;
+        let t268 = pose[2] - t267;
+        let garm_vz_leg1 = t268 * t25;
+        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t85) * t114;
+        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t170) * t199;
+        let t285 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3;
+        let t286 = t285 * t203;
+        let t288 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 - t249 * t286;
+        let t289 = t288 * t253;
+        let t298 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 - t285 * t286 - t288 * t289;
+        ::overact::guard::platform(t298, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t298, 34.855350201355726, "actuators")?;
+        let t299 = 1.0 / t298;
+        let t300 = garm_vz_leg1 * actuator_velocities[0];
+        let t301 = garm_vz_leg2 * actuator_velocities[1];
+        let t303 = garm_vz_leg3 * actuator_velocities[2];
+        let t309 = t299 * (t300 + t301 + t303 - t263 * t286 - t289 * t265);
+        let t311 = t253 * t265 - t289 * t309;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t204;
+        let t318 = t263 * t203 - t250 * t311 - t286 * t309;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t204;
+        let rate_cross_leg1 = gcross_vy_leg1 * t311 - minus_gcross_vx_leg1 * t318
+            - minus_gcross_vz_leg1 * t309;
+        let grod_vy_leg1 = 1.7857142857142858 * t226;
+        let rate_rod_leg1 = grod_vy_leg1 * t311;
+        let t326 = s_armcross_leg1 * rate_rod_leg1;
+        let t328 = pose[1] * (rate_cross_leg1 * t326);
+        let t329 = actuator_velocities[0] * actuator_velocities[0];
+        let t332 = rate_cross_leg1 * rate_cross_leg1;
+        let t334 = c_armcross_leg1 * rate_rod_leg1;
+        let t336 = t326 * t326 + t332 + t334 * t334;
+        let t340 = t328 - (t21 * t329 + t23 * t336) + t328;
+        let t342 = pose[1] * rate_cross_leg1;
+        let t343 = rate_cross_leg1 * t342;
+        let t345 = t343 - pose[1] * t336;
+        let t349 = pose[1] * (rate_cross_leg1 * t334);
+        let t354 = t349 - (t267 * t329 + t268 * t336) + t349;
+        let minus_rate_dot_arm_leg1 = garm_vx_leg1 * t340 + garm_vy_leg1 * t345
+            + garm_vz_leg1 * t354;
+        let t357 = actuator_accelerations[0] + minus_rate_dot_arm_leg1;
+        let t359 = actuator_velocities[1] * actuator_velocities[1];
+        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t81)
+            - 0.11639381426862856 * (minus_s_arm_leg2 * t97)) * t114;
+        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t81)
+            - 0.11639381426862856 * t106) * t114;
+        let minus_gcross_vy_leg2 = t108 * t114;
+        let rate_cross_leg2 = gcross_vz_leg2 * t309
+            - (minus_gcross_vx_leg2 * t318 + minus_gcross_vy_leg2 * t311);
+        let t378 = 0.8660254037844387 * rate_cross_leg2;
+        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t85) - t54 * t94) * t114;
+        let minus_grod_vy_leg2 = 0.25 * t49 * t114;
+        let rate_rod_leg2 = grod_vx_leg2 * t318 - minus_grod_vy_leg2 * t311;
+        let t391 = t378 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
+        let t394 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
+        let t395 = 0.5 * rate_cross_leg2;
+        let t396 = t394 - t395;
+        let t399 = c_armcross_leg2 * rate_rod_leg2;
+        let t401 = t391 * t391 + t396 * t396 + t399 * t399;
+        let t404 = 0.20784609690826528 * c_arm_leg2;
+        let t406 = t28 - (0.17320508075688776 + t404);
+        let t407 = t395 * t399;
+        let t409 = 0.12 * c_arm_leg2;
+        let t411 = t31 + 0.1 + t409;
+        let t412 = t378 * t399;
+        let t414 = t406 * t407 + t411 * t412;
+        let t416 = t84 * t359 + t85 * t401 + t414 + t414;
+        let t425 = t406 * t396 - t411 * t391 + t85 * t399;
+        let t430 = 1.3333333333333333 * (t378 * t394);
+        let t433 = t409 * t359 - t411 * t401 - t391 * t425 + t85 * t412 + t406 * t430;
+        let t443 = t396 * t425 - (t404 * t359 + t406 * t401) + t85 * t407 - t411 * t430;
+        let rate_dot_arm_leg2 = garm_vz_leg2 * t416
+            - (garm_vx_leg2 * t433 + garm_vy_leg2 * t443);
+        let t447 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t450 = 0.20784609690826528 * minus_c_arm_leg3;
+        let t451 = actuator_velocities[2] * actuator_velocities[2];
+        let t454 = t118 - (t450 - 0.17320508075688776);
+        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t182)
+            + 0.0672 * (s_arm_leg3 * t166)) * t199;
+        let minus_gcross_vx_leg3 = (0.11639381426862856 * t191
+            + 0.1344 * (minus_c_arm_leg3 * t166)) * t199;
+        let minus_gcross_vy_leg3 = t193 * t199;
+        let rate_cross_leg3 = gcross_vz_leg3 * t309
+            - (minus_gcross_vx_leg3 * t318 + minus_gcross_vy_leg3 * t311);
+        let t472 = 0.8660254037844387 * rate_cross_leg3;
+        let grod_vx_leg3 = (t140 * t179
+            + 0.20784609690826528 * (minus_c_arm_leg3 * t170)) * t199;
+        let minus_grod_vy_leg3 = 0.25 * t135 * t199;
+        let rate_rod_leg3 = grod_vx_leg3 * t318 - minus_grod_vy_leg3 * t311;
+        let t485 = t472 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
+        let t487 = 0.5 * rate_cross_leg3;
+        let t489 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
+        let t490 = t487 + t489;
+        let t493 = minus_c_armcross_leg3 * rate_rod_leg3;
+        let t495 = t485 * t485 + t490 * t490 + t493 * t493;
+        let t498 = 0.12 * minus_c_arm_leg3;
+        let t500 = t31 - (t498 - 0.1);
+        let t505 = t500 * t485 - t454 * t490 - t170 * t493;
+        let t509 = 1.3333333333333333 * (t472 * t489);
+        let t511 = t487 * t493;
+        let t514 = t450 * t451 + t454 * t495 + t490 * t505 + t500 * t509 + t170 * t511;
+        let t521 = t472 * t493;
+        let t525 = t485 * t505 - (t498 * t451 + t500 * t495) + t170 * t521 + t454 * t509;
+        let t533 = t454 * t511 - t500 * t521;
+        let t535 = t169 * t451 - t170 * t495 + t533 + t533;
+        let rate_dot_arm_leg3 = garm_vy_leg3 * t514 - garm_vx_leg3 * t525
+            - garm_vz_leg3 * t535;
+        let t538 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t540 = garm_vx_leg1 * t357 + garm_vx_leg2 * t447 + garm_vx_leg3 * t538;
+        let t548 = garm_vy_leg1 * t357 + garm_vy_leg2 * t447 + garm_vy_leg3 * t538
+            - t250 * t540;
+        let t559 = t299
+            * (garm_vz_leg1 * t357 + garm_vz_leg2 * t447 + garm_vz_leg3 * t538
+                - t286 * t540 - t289 * t548);
+        let t561 = t253 * t548 - t289 * t559;
+        let t565 = t203 * t540 - t250 * t561 - t286 * t559;
+        let t576 = 9.81 * c_arm_leg1;
+        let t580 = 9.81 * c_arm_leg2;
+        let t584 = 9.81 * minus_c_arm_leg3;
+        let t588 = 9.81 * minus_s_arm_leg1;
+        let t592 = 9.81 * minus_s_arm_leg2;
+        let t596 = 9.81 * s_arm_leg3;
+        let t609 = t561 - t345;
+        let rate_dot_cross_leg1 = gcross_vy_leg1 * t609
+            - minus_gcross_vx_leg1 * (t565 - t340)
+            - minus_gcross_vz_leg1 * (t559 - t354);
+        let t617 = s_rod_leg1 * rate_dot_cross_leg1;
+        let t618 = c_rod_leg1 * rate_cross_leg1;
+        let t619 = rate_rod_leg1 * t618;
+        let t620 = t617 + t619;
+        let t622 = 1.7857142857142858 * t342;
+        let t623 = rate_rod_leg1 * t622;
+        let t624 = c_rod_leg1 * t623;
+        let t625 = s_rod_leg1 * t620 + t624;
+        let t628 = 3.188775510204082 * t343;
+        let t631 = 1.7857142857142858 * t425;
+        let t632 = rate_rod_leg2 * t631;
+        let t633 = c_rod_leg2 * t632;
+        let t634 = c_rod_leg2 * rate_cross_leg2;
+        let t635 = rate_rod_leg2 * t634;
+        let t638 = t565 - t433;
+        let t640 = t561 - t443;
+        let rate_dot_cross_leg2 = gcross_vz_leg2 * (t559 + t416)
+            - (minus_gcross_vx_leg2 * t638 + minus_gcross_vy_leg2 * t640);
+        let t644 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t645 = t635 - t644;
+        let t647 = t633 - minus_s_rod_leg2 * t645;
+        let t649 = t631 * t634;
+        let t650 = grod_vx_leg2 * t649;
+        let t652 = minus_grod_vy_leg2 * t649;
+        let t658 = t565 - t525;
+        let t660 = t561 + t514;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * (t559 - t535)
+            - (minus_gcross_vx_leg3 * t658 + minus_gcross_vy_leg3 * t660);
+        let t664 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t665 = c_rod_leg3 * rate_cross_leg3;
+        let t666 = rate_rod_leg3 * t665;
+        let t667 = t664 + t666;
+        let t669 = 1.7857142857142858 * t505;
+        let t670 = rate_rod_leg3 * t669;
+        let t671 = c_rod_leg3 * t670;
+        let t672 = s_rod_leg3 * t667 + t671;
+        let t674 = t669 * t665;
+        let t675 = grod_vx_leg3 * t674;
+        let t677 = minus_grod_vy_leg3 * t674;
+        let t681 = t619 + t620;
+        let t683 = c_rod_leg1 * rate_dot_cross_leg1;
+        let t684 = t683 - t623;
+        let t687 = c_rod_leg1 * t681 - s_rod_leg1 * (t623 - t684);
+        let t691 = 3.188775510204082 * (t342 * t342);
+        let t698 = 3.188775510204082 * (t425 * t425);
+        let t699 = t634 * t634;
+        let t700 = t698 - t699;
+        let t702 = c_rod_leg2 * rate_dot_cross_leg2;
+        let t703 = t702 - t632;
+        let t706 = t635 + t645;
+        let t708 = minus_s_rod_leg2 * (t632 - t703) + c_rod_leg2 * t706;
+        let t716 = 3.188775510204082 * (t505 * t505);
+        let t717 = t665 * t665;
+        let t718 = t716 - t717;
+        let t720 = t666 + t667;
+        let t722 = c_rod_leg3 * rate_dot_cross_leg3;
+        let t723 = t722 - t670;
+        let t726 = c_rod_leg3 * t720 - s_rod_leg3 * (t670 - t723);
+        let t733 = t622 * t618;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t609;
+        let t737 = rate_rod_leg1 * rate_rod_leg1;
+        let t740 = s_rod_leg1 * (t733 + rate_dot_rod_leg1) + c_rod_leg1 * (t737 - t691);
+        let t746 = rate_rod_leg2 * rate_rod_leg2;
+        let rate_dot_rod_leg2 = grod_vx_leg2 * t638 - minus_grod_vy_leg2 * t640;
+        let t754 = c_rod_leg2 * (t746 - t698)
+            - minus_s_rod_leg2 * (t649 + rate_dot_rod_leg2);
+        let rate_dot_rod_leg3 = grod_vx_leg3 * t658 - minus_grod_vy_leg3 * t660;
+        let t768 = rate_rod_leg3 * rate_rod_leg3;
+        let t771 = s_rod_leg3 * (t674 + rate_dot_rod_leg3) + c_rod_leg3 * (t768 - t716);
+        let t779 = c_rod_leg1 * t684 - t624;
+        let t785 = c_rod_leg2 * t703 - t633;
+        let t792 = c_rod_leg3 * t723 - t671;
+        let t798 = 1.7857142857142858 * t561;
+        let t806 = t649 - rate_dot_rod_leg2;
+        let t808 = minus_s_rod_leg2 * (t699 - t746) + c_rod_leg2 * t806;
+        let t819 = t674 - rate_dot_rod_leg3;
+        let t821 = s_rod_leg3 * (t717 - t768) - c_rod_leg3 * t819;
+        let t833 = 0.8928571428571429 * t17;
+        let t837 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
+        let t841 = 0.24 * c_cross_leg1;
+        let t843 = t833 * (t733 - rate_dot_rod_leg1) + t837 * (t691 + t737)
+            - t841 * t681;
+        let t846 = 0.24 * actuator_accelerations[0] - t576;
+        let t849 = t588 - 0.24 * t329;
+        let t852 = s_rod_leg1 * (c_cross_leg1 * t846 - s_cross_leg1 * t849);
+        let t860 = c_cross_leg1 * t849 + s_cross_leg1 * t846;
+        let t866 = 0.8928571428571429 * t49;
+        let t869 = 0.42857142857142855 * (t57 * s_cross_leg2);
+        let t873 = 0.24 * c_cross_leg2;
+        let t875 = t866 * t806 - t869 * (t698 + t746) - t873 * t706;
+        let t878 = 0.24 * actuator_accelerations[1] - t580;
+        let t881 = t592 - 0.24 * t359;
+        let t884 = minus_s_rod_leg2 * (c_cross_leg2 * t878 - s_cross_leg2 * t881);
+        let t889 = c_cross_leg2 * t881 + s_cross_leg2 * t878;
+        let t901 = 0.8928571428571429 * t135;
+        let t904 = 0.42857142857142855 * (t142 * s_cross_leg3);
+        let t908 = 0.24 * c_cross_leg3;
+        let t910 = t901 * t819 + t904 * (t716 + t768) - t908 * t720;
+        let t913 = t596 + 0.24 * t451;
+        let t916 = t584 + 0.24 * actuator_accelerations[2];
+        let t919 = s_rod_leg3 * (s_cross_leg3 * t913 + c_cross_leg3 * t916);
+        let t924 = s_cross_leg3 * t916 - c_cross_leg3 * t913;
+        let t940 = t833 * t683 + t837 * t617 + t332 * t841;
+        let t955 = t866 * t702 + t869 * t644 + rate_cross_leg2 * rate_cross_leg2 * t873;
+        let t970 = t901 * t722 + t904 * t664 + rate_cross_leg3 * rate_cross_leg3 * t908;
         Ok([
             [
-                t493, garm_vx_leg1 * actuator_accelerations[0],
+                t565, garm_vx_leg1 * actuator_accelerations[0],
                 garm_vx_leg2 * actuator_accelerations[1], garm_vx_leg3 * actuator_accelerations[2],
-                -(garm_vx_leg1 * t504), -(garm_vx_leg2 * t508), -(garm_vx_leg3 * t512),
-                garm_vx_leg1 * t516, garm_vx_leg2 * t520, garm_vx_leg3 * t524, t167, t168, t170,
-                ::overact::math::signed(garm_vx_leg1, actuator_velocities[0]),
+                -(garm_vx_leg1 * t576), -(garm_vx_leg2 * t580), garm_vx_leg3 * t584,
+                -(garm_vx_leg1 * t588), -(garm_vx_leg2 * t592), garm_vx_leg3 * t596, t259, t260,
+                t262, ::overact::math::signed(garm_vx_leg1, actuator_velocities[0]),
                 ::overact::math::signed(garm_vx_leg2, actuator_velocities[1]),
                 ::overact::math::signed(garm_vx_leg3, actuator_velocities[2]), garm_vx_leg1,
-                garm_vx_leg2, garm_vx_leg3, -(minus_gcross_vx_leg1 * t553),
-                gcross_vx_leg2 * t575 - t578, -(minus_gcross_vx_leg3 * t600 + t603),
-                -(minus_gcross_vx_leg1 * t615), gcross_vx_leg2 * t631 + grod_vx_leg2 * t636,
-                grod_vx_leg3 * t646 - minus_gcross_vx_leg3 * t654, -(minus_gcross_vx_leg1 * t668),
-                gcross_vx_leg2 * t682 + grod_vx_leg2 * t567,
-                grod_vx_leg3 * t592 - minus_gcross_vx_leg3 * t699, -(minus_gcross_vx_leg1 * t707),
-                gcross_vx_leg2 * t713 + t578, t603 - minus_gcross_vx_leg3 * t720,
-                -(minus_gcross_vx_leg1 * t726), gcross_vx_leg2 * t736 + grod_vx_leg2 * t627,
-                grod_vx_leg3 * t650 - minus_gcross_vx_leg3 * t749, 0.0,
+                garm_vx_leg2, garm_vx_leg3, -(minus_gcross_vx_leg1 * t625),
+                -(minus_gcross_vx_leg2 * t647 + t650), -(minus_gcross_vx_leg3 * t672 + t675),
+                -(minus_gcross_vx_leg1 * t687), grod_vx_leg2 * t700 - minus_gcross_vx_leg2 * t708,
+                grod_vx_leg3 * t718 - minus_gcross_vx_leg3 * t726, -(minus_gcross_vx_leg1 * t740),
+                -(minus_gcross_vx_leg2 * t754 + grod_vx_leg2 * t644),
+                grod_vx_leg3 * t664 - minus_gcross_vx_leg3 * t771, -(minus_gcross_vx_leg1 * t779),
+                t650 - minus_gcross_vx_leg2 * t785, t675 - minus_gcross_vx_leg3 * t792,
+                -(minus_gcross_vx_leg1 * t798), minus_gcross_vx_leg2 * t808 + grod_vx_leg2 * t702,
+                grod_vx_leg3 * t722 - minus_gcross_vx_leg3 * t821, 0.0,
                 grod_vx_leg2 * rate_dot_rod_leg2, grod_vx_leg3 * rate_dot_rod_leg3,
-                garm_vx_leg1 * t771 + minus_gcross_vx_leg1 * t780,
-                garm_vx_leg2 * t803 - gcross_vx_leg2 * t812
-                    - grod_vx_leg2 * (c_rod_leg2 * t817),
-                garm_vx_leg3 * t838 + minus_gcross_vx_leg3 * t847
-                    - grod_vx_leg3 * (c_rod_leg3 * t852),
-                garm_vx_leg1 * t868 - minus_gcross_vx_leg1 * t788,
-                garm_vx_leg2 * t883 + gcross_vx_leg2 * t817,
-                garm_vx_leg3 * t898 - minus_gcross_vx_leg3 * t852,
+                garm_vx_leg1 * t843 + minus_gcross_vx_leg1 * t852,
+                garm_vx_leg2 * t875 - minus_gcross_vx_leg2 * t884
+                    - grod_vx_leg2 * (c_rod_leg2 * t889),
+                garm_vx_leg3 * t910 + minus_gcross_vx_leg3 * t919
+                    - grod_vx_leg3 * (c_rod_leg3 * t924),
+                garm_vx_leg1 * t940 - minus_gcross_vx_leg1 * t860,
+                garm_vx_leg2 * t955 - minus_gcross_vx_leg2 * t889,
+                garm_vx_leg3 * t970 - minus_gcross_vx_leg3 * t924,
             ],
             [
-                t489, garm_vy_leg1 * actuator_accelerations[0],
-                garm_vy_leg2 * actuator_accelerations[1],
-                -(minus_garm_vy_leg3 * actuator_accelerations[2]), -(garm_vy_leg1 * t504),
-                -(garm_vy_leg2 * t508), minus_garm_vy_leg3 * t512, garm_vy_leg1 * t516,
-                garm_vy_leg2 * t520, -(minus_garm_vy_leg3 * t524), t162, t163, -t165,
-                ::overact::math::signed(garm_vy_leg1, actuator_velocities[0]),
+                t561, garm_vy_leg1 * actuator_accelerations[0],
+                garm_vy_leg2 * actuator_accelerations[1], garm_vy_leg3 * actuator_accelerations[2],
+                -(garm_vy_leg1 * t576), -(garm_vy_leg2 * t580), garm_vy_leg3 * t584,
+                -(garm_vy_leg1 * t588), -(garm_vy_leg2 * t592), garm_vy_leg3 * t596, t254, t255,
+                t257, ::overact::math::signed(garm_vy_leg1, actuator_velocities[0]),
                 ::overact::math::signed(garm_vy_leg2, actuator_velocities[1]),
-                -::overact::math::signed(minus_garm_vy_leg3, actuator_velocities[2]), garm_vy_leg1,
-                garm_vy_leg2, -minus_garm_vy_leg3, -(minus_gcross_vy_leg1 * t553 + t556),
-                t580 - minus_gcross_vy_leg2 * t575, gcross_vy_leg3 * t600 - t606,
-                grod_vy_leg1 * (t618 - t546 * t546) - minus_gcross_vy_leg1 * t615,
-                -(minus_gcross_vy_leg2 * t631 + minus_grod_vy_leg2 * t636),
-                gcross_vy_leg3 * t654 + grod_vy_leg3 * t646,
-                grod_vy_leg1 * t545 - minus_gcross_vy_leg1 * t668,
-                -(minus_gcross_vy_leg2 * t682 + minus_grod_vy_leg2 * t567),
-                gcross_vy_leg3 * t699 + grod_vy_leg3 * t592, t556 - minus_gcross_vy_leg1 * t707,
-                -(minus_gcross_vy_leg2 * t713 + t580), gcross_vy_leg3 * t720 + t606,
-                1.7857142857142858 * rate_dot_cross_leg1 - minus_gcross_vy_leg1 * t726,
-                -(minus_gcross_vy_leg2 * t736
-                    + 0.8928571428571429 * rate_dot_cross_leg2),
-                gcross_vy_leg3 * t749 - 0.8928571428571429 * rate_dot_cross_leg3,
+                ::overact::math::signed(garm_vy_leg3, actuator_velocities[2]), garm_vy_leg1,
+                garm_vy_leg2, garm_vy_leg3, gcross_vy_leg1 * t625 - t628,
+                t652 - minus_gcross_vy_leg2 * t647, t677 - minus_gcross_vy_leg3 * t672,
+                gcross_vy_leg1 * t687 + grod_vy_leg1 * (t691 - t618 * t618),
+                -(minus_gcross_vy_leg2 * t708 + minus_grod_vy_leg2 * t700),
+                -(minus_gcross_vy_leg3 * t726 + minus_grod_vy_leg3 * t718),
+                gcross_vy_leg1 * t740 + grod_vy_leg1 * t617,
+                minus_grod_vy_leg2 * t644 - minus_gcross_vy_leg2 * t754,
+                -(minus_gcross_vy_leg3 * t771 + minus_grod_vy_leg3 * t664),
+                gcross_vy_leg1 * t779 + t628, -(minus_gcross_vy_leg2 * t785 + t652),
+                -(minus_gcross_vy_leg3 * t792 + t677),
+                gcross_vy_leg1 * t798 + 1.7857142857142858 * rate_dot_cross_leg1,
+                minus_gcross_vy_leg2 * t808 - 0.8928571428571429 * rate_dot_cross_leg2,
+                -(minus_gcross_vy_leg3 * t821
+                    + 0.8928571428571429 * rate_dot_cross_leg3),
                 grod_vy_leg1 * rate_dot_rod_leg1,
                 -(minus_grod_vy_leg2 * rate_dot_rod_leg2),
-                grod_vy_leg3 * rate_dot_rod_leg3,
-                garm_vy_leg1 * t771 + minus_gcross_vy_leg1 * t780
-                    - 1.7857142857142858 * t788,
-                garm_vy_leg2 * t803 + minus_gcross_vy_leg2 * t812
-                    + 0.8928571428571429 * t817,
-                0.8928571428571429 * t852
-                    - (minus_garm_vy_leg3 * t838 + gcross_vy_leg3 * t847),
-                garm_vy_leg1 * t868 - minus_gcross_vy_leg1 * t788,
-                garm_vy_leg2 * t883 - minus_gcross_vy_leg2 * t817,
-                gcross_vy_leg3 * t852 - minus_garm_vy_leg3 * t898,
+                -(minus_grod_vy_leg3 * rate_dot_rod_leg3),
+                garm_vy_leg1 * t843 - gcross_vy_leg1 * t852 - 1.7857142857142858 * t860,
+                garm_vy_leg2 * t875 - minus_gcross_vy_leg2 * t884
+                    + 0.8928571428571429 * t889,
+                garm_vy_leg3 * t910 + minus_gcross_vy_leg3 * t919
+                    + 0.8928571428571429 * t924,
+                garm_vy_leg1 * t940 + gcross_vy_leg1 * t860,
+                garm_vy_leg2 * t955 - minus_gcross_vy_leg2 * t889,
+                garm_vy_leg3 * t970 - minus_gcross_vy_leg3 * t924,
             ],
             [
-                t487 + 9.81, -(minus_garm_vz_leg1 * actuator_accelerations[0]),
-                garm_vz_leg2 * actuator_accelerations[1],
-                -(minus_garm_vz_leg3 * actuator_accelerations[2]), minus_garm_vz_leg1 * t504,
-                -(garm_vz_leg2 * t508), minus_garm_vz_leg3 * t512, -(minus_garm_vz_leg1 * t516),
-                garm_vz_leg2 * t520, -(minus_garm_vz_leg3 * t524), -t212, t211, -t214,
-                -::overact::math::signed(minus_garm_vz_leg1, actuator_velocities[0]),
+                t559 + 9.81, garm_vz_leg1 * actuator_accelerations[0],
+                garm_vz_leg2 * actuator_accelerations[1], garm_vz_leg3 * actuator_accelerations[2],
+                -(garm_vz_leg1 * t576), -(garm_vz_leg2 * t580), garm_vz_leg3 * t584,
+                -(garm_vz_leg1 * t588), -(garm_vz_leg2 * t592), garm_vz_leg3 * t596, t300, t301,
+                t303, ::overact::math::signed(garm_vz_leg1, actuator_velocities[0]),
                 ::overact::math::signed(garm_vz_leg2, actuator_velocities[1]),
-                -::overact::math::signed(minus_garm_vz_leg3, actuator_velocities[2]),
-                -minus_garm_vz_leg1, garm_vz_leg2, -minus_garm_vz_leg3, gcross_vz_leg1 * t553,
-                -(minus_gcross_vz_leg2 * t575), gcross_vz_leg3 * t600, gcross_vz_leg1 * t615,
-                -(minus_gcross_vz_leg2 * t631), gcross_vz_leg3 * t654, gcross_vz_leg1 * t668,
-                -(minus_gcross_vz_leg2 * t682), gcross_vz_leg3 * t699, gcross_vz_leg1 * t707,
-                -(minus_gcross_vz_leg2 * t713), gcross_vz_leg3 * t720, gcross_vz_leg1 * t726,
-                -(minus_gcross_vz_leg2 * t736), gcross_vz_leg3 * t749, 0.0, 0.0, 0.0,
-                -(minus_garm_vz_leg1 * t771 + gcross_vz_leg1 * t780),
-                garm_vz_leg2 * t803 + minus_gcross_vz_leg2 * t812,
-                -(minus_garm_vz_leg3 * t838 + gcross_vz_leg3 * t847),
-                gcross_vz_leg1 * t788 - minus_garm_vz_leg1 * t868,
-                garm_vz_leg2 * t883 - minus_gcross_vz_leg2 * t817,
-                gcross_vz_leg3 * t852 - minus_garm_vz_leg3 * t898,
+                ::overact::math::signed(garm_vz_leg3, actuator_velocities[2]), garm_vz_leg1,
+                garm_vz_leg2, garm_vz_leg3, -(minus_gcross_vz_leg1 * t625), gcross_vz_leg2 * t647,
+                gcross_vz_leg3 * t672, -(minus_gcross_vz_leg1 * t687), gcross_vz_leg2 * t708,
+                gcross_vz_leg3 * t726, -(minus_gcross_vz_leg1 * t740), gcross_vz_leg2 * t754,
+                gcross_vz_leg3 * t771, -(minus_gcross_vz_leg1 * t779), gcross_vz_leg2 * t785,
+                gcross_vz_leg3 * t792, -(minus_gcross_vz_leg1 * t798), -(gcross_vz_leg2 * t808),
+                gcross_vz_leg3 * t821, 0.0, 0.0, 0.0,
+                garm_vz_leg1 * t843 + minus_gcross_vz_leg1 * t852,
+                garm_vz_leg2 * t875 + gcross_vz_leg2 * t884,
+                garm_vz_leg3 * t910 - gcross_vz_leg3 * t919,
+                garm_vz_leg1 * t940 - minus_gcross_vz_leg1 * t860,
+                garm_vz_leg2 * t955 + gcross_vz_leg2 * t889,
+                garm_vz_leg3 * t970 + gcross_vz_leg3 * t924,
             ],
         ])
     }
@@ -4378,7 +6542,7 @@ impl Delta {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 904 operations (291 additions, 608 multiplications, 5 divisions), 0 square roots, 9 trigonometric pairs, 3 signs, 835 intermediates.
+    /// 988 operations (341 additions, 633 multiplications, 14 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 907 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4387,8 +6551,441 @@ impl Delta {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_actuators_base_from_joints(pose, joints, twist, acceleration)
+        let t0 = pose[1] + 0.04330127018922194;
+        let t1 = t0 - 0.17320508075688776;
+        let t3 = pose[0] - 0.025;
+        let t4 = t3 + 0.1;
+        let t5 = 0.5 * t4;
+        let t6 = 0.8660254037844387 * t1 - t5;
+        let t8 = pose[2] * pose[2];
+        let t10 = 0.2304 * (t6 * t6 + t8);
+        let t11 = 1.0 / t10;
+        let t12 = 0.48 * t6;
+        let t13 = t4 * t4;
+        let t16 = t13 + t1 * t1 + t8;
+        let t18 = t16 - 0.3136 + 0.0576;
+        let t20 = 0.48 * pose[2];
+        let t22 = t10 - t18 * t18;
+        ::overact::guard::reach(t22, "leg2")?;
+        let t23 = ::overact::math::sqrt(t22);
+        let c_arm_leg2 = t11 * (t12 * t18 - t20 * t23);
+        let t28 = t6 - 0.24 * c_arm_leg2;
+        let t29 = 0.8660254037844387 * t4;
+        let t31 = t29 + 0.5 * t1;
+        let t32 = t31 * t31;
+        let t36 = 1.0 - 3.188775510204082 * t32;
+        ::overact::guard::reach(t36, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t36);
+        let c_cross_leg2 = (t16 - (0.0576 + t32) - 0.3136 * t36) / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t11 * (t20 * t18 + t12 * t23);
+        let s_cross_leg2 = 2.0833333333333335 * t23 / (0.56 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t52 = t31 * c_armcross_leg2;
+        let t55 = 0.8928571428571429 * t52 + 0.8660254037844387 * c_rod_leg2;
+        let t58 = 0.24 * minus_s_arm_leg2;
+        let t59 = pose[2] - t58;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t31;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t64 = minus_s_rod_leg2 * s_armcross_leg2;
+        let t65 = t59 * t64;
+        let t67 = t28 * (0.56 * t55) - 0.28 * t65;
+        let t68 = 0.20784609690826528 * minus_s_arm_leg2;
+        let t73 = minus_s_arm_leg2 * t64;
+        let t75 = 0.1344 * (c_arm_leg2 * t55) - 0.0672 * t73;
+        let t80 = 1.5464739353293548 * t52 - 0.5 * c_rod_leg2;
+        let t83 = t68 * t67 - 0.8660254037844387 * t59 * t75 - 0.14 * (t23 * t80);
+        ::overact::guard::leg(t83, 0.06758306237512474, "leg2")?;
+        let t84 = 1.0 / t83;
+        let garm_vy_leg2 = t67 * t84;
+        let t86 = pose[1] - 0.04330127018922194;
+        let t87 = t86 + 0.17320508075688776;
+        let t89 = t29 - 0.5 * t87;
+        let t90 = t89 * t89;
+        let t92 = 1.0 - 3.188775510204082 * t90;
+        ::overact::guard::reach(t92, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t92);
+        let t95 = t5 + 0.8660254037844387 * t87;
+        let t98 = 0.2304 * (t95 * t95 + t8);
+        let t99 = 1.0 / t98;
+        let t100 = 0.48 * t95;
+        let t103 = t13 + t87 * t87 + t8;
+        let t105 = t103 - 0.3136 + 0.0576;
+        let t107 = t98 - t105 * t105;
+        ::overact::guard::reach(t107, "leg3")?;
+        let t108 = ::overact::math::sqrt(t107);
+        let s_arm_leg3 = t99 * (t100 * t108 - t20 * t105);
+        let t113 = 0.24 * s_arm_leg3;
+        let t114 = pose[2] + t113;
+        let t117 = 0.20784609690826528 * s_arm_leg3;
+        let minus_c_arm_leg3 = t99 * (t100 * t105 + t20 * t108);
+        let t123 = t95 - 0.24 * minus_c_arm_leg3;
+        let c_cross_leg3 = (t103 - (0.0576 + t90) - 0.3136 * t92)
+            / (0.2688 * c_rod_leg3);
+        let s_cross_leg3 = 2.0833333333333335 * t108 / (0.56 * c_rod_leg3);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t137 = t89 * minus_c_armcross_leg3;
+        let t139 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t137;
+        let s_rod_leg3 = 1.7857142857142858 * t89;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t146 = s_rod_leg3 * s_armcross_leg3;
+        let t147 = t114 * t146;
+        let t149 = t123 * (0.56 * t139) + 0.28 * t147;
+        let t154 = s_arm_leg3 * t146;
+        let t156 = 0.1344 * (minus_c_arm_leg3 * t139) - 0.0672 * t154;
+        let t161 = 1.5464739353293548 * t137 + 0.5 * c_rod_leg3;
+        let t164 = t117 * t149 + 0.8660254037844387 * t114 * t156 + 0.14 * (t108 * t161);
+        ::overact::guard::leg(t164, 0.06758306237512474, "leg3")?;
+        let t165 = 1.0 / t164;
+        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t114) * t165;
+        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t59) * t84;
+        let garm_vy_leg3 = t149 * t165;
+        let garm_vx_leg2 = (t28 * (0.56 * t80) - 0.4849742261192857 * t65) * t84;
+        let t179 = pose[0] + 0.05;
+        let t180 = t179 - 0.2;
+        let t181 = t180 * t180;
+        let t183 = 0.2304 * (t181 + t8);
+        let t184 = 1.0 / t183;
+        let t185 = pose[1] * pose[1];
+        let t187 = t181 + t185 + t8;
+        let t189 = t187 - 0.3136 + 0.0576;
+        let t191 = 0.48 * t180;
+        let t193 = t183 - t189 * t189;
+        ::overact::guard::reach(t193, "leg1")?;
+        let t194 = ::overact::math::sqrt(t193);
+        ::overact::guard::leg(t194, 0.24136807991115974, "leg1")?;
+        let minus_s_arm_leg1 = t184 * (t20 * t189 + t191 * t194);
+        let t198 = 0.24 * minus_s_arm_leg1;
+        let t199 = pose[2] - t198;
+        let t200 = 1.0 / t194;
+        let t201 = 2.0 * t200;
+        let garm_vz_leg1 = t199 * t201;
+        let garm_vy_leg1 = pose[1] * t201;
+        let t206 = garm_vz_leg1 * garm_vy_leg3 - garm_vy_leg1 * garm_vz_leg3;
+        let garm_vx_leg3 = (t123 * (0.56 * t161) - 0.4849742261192857 * t147) * t165;
+        let c_arm_leg1 = t184 * (t191 * t189 - t20 * t194);
+        let t218 = 0.24 * c_arm_leg1;
+        let t220 = t179 - (0.2 + t218);
+        let garm_vx_leg1 = t220 * t201;
+        let t223 = garm_vz_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vz_leg3;
+        let t228 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
+        let t230 = garm_vx_leg2 * t206 - garm_vy_leg2 * t223 + garm_vz_leg2 * t228;
+        ::overact::guard::platform(t230, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t230, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t230, 87.78853732233405, "kept actuators")?;
+        let t231 = 1.0 / t230;
+        let t232 = (garm_vy_leg2 * garm_vz_leg3 - garm_vz_leg2 * garm_vy_leg3) * t231;
+        let t237 = (garm_vx_leg2 * garm_vz_leg3 - garm_vz_leg2 * garm_vx_leg3) * t231;
+        let t243 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t231;
+        let t244 = acceleration[2] + 9.81;
+        let t247 = t206 * t231;
+        let t249 = t223 * t231;
+        let t252 = t228 * t231;
+        let t258 = (garm_vz_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vz_leg2) * t231;
+        let t263 = (garm_vz_leg1 * garm_vy_leg2 - garm_vy_leg1 * garm_vz_leg2) * t231;
+        let t269 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t231;
+        let t272 = 0.48 * t200;
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t276 = 1.0 - 3.188775510204082 * t185;
+        ::overact::guard::reach(t276, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t276);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let s_cross_leg1 = 2.0833333333333335 * t194 / (0.56 * c_rod_leg1);
+        let c_cross_leg1 = (t187 - (0.0576 + t185) - 0.3136 * t276)
+            / (0.2688 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t290 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t272
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t290)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t290));
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t272;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t272;
+        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
+            - minus_gcross_vz_leg1 * twist[2];
+        let grod_vy_leg1 = 1.7857142857142858 * t290;
+        let rate_rod_leg1 = grod_vy_leg1 * twist[1];
+        let t310 = s_armcross_leg1 * rate_rod_leg1;
+        let t312 = pose[1] * (rate_cross_leg1 * t310);
+        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
+            + garm_vz_leg1 * twist[2];
+        let t318 = rate_arm_leg1 * rate_arm_leg1;
+        let t321 = rate_cross_leg1 * rate_cross_leg1;
+        let t323 = c_armcross_leg1 * rate_rod_leg1;
+        let t325 = t310 * t310 + t321 + t323 * t323;
+        let t330 = acceleration[0] - (t312 - (t218 * t318 + t220 * t325) + t312);
+        let t332 = pose[1] * rate_cross_leg1;
+        let t336 = acceleration[1] - (rate_cross_leg1 * t332 - pose[1] * t325);
+        let t340 = pose[1] * (rate_cross_leg1 * t323);
+        let t346 = acceleration[2] - (t340 - (t198 * t318 + t199 * t325) + t340);
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t330 + garm_vy_leg1 * t336
+            + garm_vz_leg1 * t346;
+        let t349 = 0.12 * c_arm_leg2;
+        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
+            + garm_vz_leg2 * twist[2];
+        let t355 = rate_arm_leg2 * rate_arm_leg2;
+        let t358 = t3 + 0.1 + t349;
+        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t80)
+            - 0.11639381426862856 * (minus_s_arm_leg2 * t55)) * t84;
+        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t80)
+            - 0.11639381426862856 * t73) * t84;
+        let minus_gcross_vy_leg2 = t75 * t84;
+        let rate_cross_leg2 = gcross_vz_leg2 * twist[2]
+            - (minus_gcross_vx_leg2 * twist[0] + minus_gcross_vy_leg2 * twist[1]);
+        let t376 = 0.8660254037844387 * rate_cross_leg2;
+        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t59) - t28 * t68) * t84;
+        let minus_grod_vy_leg2 = 0.25 * t23 * t84;
+        let rate_rod_leg2 = grod_vx_leg2 * twist[0] - minus_grod_vy_leg2 * twist[1];
+        let t389 = t376 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
+        let t392 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
+        let t393 = 0.5 * rate_cross_leg2;
+        let t394 = t392 - t393;
+        let t397 = c_armcross_leg2 * rate_rod_leg2;
+        let t399 = t389 * t389 + t394 * t394 + t397 * t397;
+        let t402 = 0.20784609690826528 * c_arm_leg2;
+        let t404 = t0 - (0.17320508075688776 + t402);
+        let t409 = t404 * t394 - t358 * t389 + t59 * t397;
+        let t412 = t376 * t397;
+        let t415 = 1.3333333333333333 * (t376 * t392);
+        let t419 = acceleration[0]
+            - (t349 * t355 - t358 * t399 - t389 * t409 + t59 * t412 + t404 * t415);
+        let t426 = t393 * t397;
+        let t431 = acceleration[1]
+            - (t394 * t409 - (t402 * t355 + t404 * t399) + t59 * t426 - t358 * t415);
+        let t439 = t404 * t426 + t358 * t412;
+        let t442 = acceleration[2] + t58 * t355 + t59 * t399 + t439 + t439;
+        let rate_dot_arm_leg2 = garm_vx_leg2 * t419 + garm_vy_leg2 * t431
+            + garm_vz_leg2 * t442;
+        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t139)
+            + 0.0672 * (s_arm_leg3 * t161)) * t165;
+        let minus_gcross_vx_leg3 = (0.11639381426862856 * t154
+            + 0.1344 * (minus_c_arm_leg3 * t161)) * t165;
+        let minus_gcross_vy_leg3 = t156 * t165;
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
+        let t462 = 0.8660254037844387 * rate_cross_leg3;
+        let grod_vx_leg3 = (t123 * t117
+            + 0.20784609690826528 * (minus_c_arm_leg3 * t114)) * t165;
+        let minus_grod_vy_leg3 = 0.25 * t108 * t165;
+        let rate_rod_leg3 = grod_vx_leg3 * twist[0] - minus_grod_vy_leg3 * twist[1];
+        let t475 = t462 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
+        let t476 = 0.12 * minus_c_arm_leg3;
+        let t478 = t3 - (t476 - 0.1);
+        let t480 = 0.20784609690826528 * minus_c_arm_leg3;
+        let t482 = t86 - (t480 - 0.17320508075688776);
+        let t483 = 0.5 * rate_cross_leg3;
+        let t485 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
+        let t486 = t483 + t485;
+        let t489 = minus_c_armcross_leg3 * rate_rod_leg3;
+        let t491 = t478 * t475 - t482 * t486 - t114 * t489;
+        let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
+            + garm_vz_leg3 * twist[2];
+        let t498 = rate_arm_leg3 * rate_arm_leg3;
+        let t504 = t475 * t475 + t486 * t486 + t489 * t489;
+        let t508 = t462 * t489;
+        let t511 = 1.3333333333333333 * (t462 * t485);
+        let t515 = acceleration[0]
+            - (t475 * t491 - (t476 * t498 + t478 * t504) + t114 * t508 + t482 * t511);
+        let t523 = t483 * t489;
+        let t527 = acceleration[1] + t480 * t498 + t482 * t504 + t486 * t491
+            + t478 * t511 + t114 * t523;
+        let t535 = t482 * t523 - t478 * t508;
+        let t538 = acceleration[2] - (t113 * t498 - t114 * t504 + t535 + t535);
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t515 + garm_vy_leg3 * t527
+            + garm_vz_leg3 * t538;
+        let t541 = 9.81 * c_arm_leg1;
+        let t542 = 9.81 * c_arm_leg2;
+        let t543 = 9.81 * minus_c_arm_leg3;
+        let t544 = 9.81 * minus_s_arm_leg1;
+        let t545 = 9.81 * minus_s_arm_leg2;
+        let t546 = 9.81 * s_arm_leg3;
+        let t550 = grod_vy_leg1 * t237;
+        let t551 = 1.7857142857142858 * t332;
+        let t552 = c_rod_leg1 * rate_cross_leg1;
+        let t553 = t551 * t552;
+        let t554 = t550 * t553;
+        let t559 = minus_gcross_vx_leg1 * t232 + gcross_vy_leg1 * t237
+            + minus_gcross_vz_leg1 * t243;
+        let rate_dot_cross_leg1 = gcross_vy_leg1 * t336 - minus_gcross_vx_leg1 * t330
+            - minus_gcross_vz_leg1 * t346;
+        let t565 = s_rod_leg1 * rate_dot_cross_leg1;
+        let t566 = rate_rod_leg1 * t552;
+        let t567 = t565 + t566;
+        let t569 = rate_rod_leg1 * t551;
+        let t570 = c_rod_leg1 * t569;
+        let t571 = s_rod_leg1 * t567 + t570;
+        let t574 = grod_vy_leg1 * t249;
+        let t575 = t574 * t553;
+        let t580 = minus_gcross_vx_leg1 * t247 + gcross_vy_leg1 * t249
+            + minus_gcross_vz_leg1 * t252;
+        let t587 = minus_gcross_vx_leg1 * t263 + gcross_vy_leg1 * t258
+            + minus_gcross_vz_leg1 * t269;
+        let t589 = grod_vy_leg1 * t258;
+        let t590 = t589 * t553;
+        let t596 = minus_gcross_vy_leg2 * t237 - minus_gcross_vx_leg2 * t232
+            + gcross_vz_leg2 * t243;
+        let t597 = 1.7857142857142858 * t409;
+        let t598 = rate_rod_leg2 * t597;
+        let t599 = c_rod_leg2 * t598;
+        let t600 = c_rod_leg2 * rate_cross_leg2;
+        let t601 = rate_rod_leg2 * t600;
+        let rate_dot_cross_leg2 = gcross_vz_leg2 * t442
+            - (minus_gcross_vx_leg2 * t419 + minus_gcross_vy_leg2 * t431);
+        let t607 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t608 = t601 - t607;
+        let t610 = t599 - minus_s_rod_leg2 * t608;
+        let t614 = grod_vx_leg2 * t232 + minus_grod_vy_leg2 * t237;
+        let t615 = t597 * t600;
+        let t616 = t614 * t615;
+        let t622 = minus_gcross_vy_leg2 * t249 - minus_gcross_vx_leg2 * t247
+            + gcross_vz_leg2 * t252;
+        let t626 = grod_vx_leg2 * t247 + minus_grod_vy_leg2 * t249;
+        let t627 = t626 * t615;
+        let t633 = minus_gcross_vx_leg2 * t263 - minus_gcross_vy_leg2 * t258
+            - gcross_vz_leg2 * t269;
+        let t637 = grod_vx_leg2 * t263 + minus_grod_vy_leg2 * t258;
+        let t638 = t637 * t615;
+        let t644 = minus_gcross_vy_leg3 * t237 - minus_gcross_vx_leg3 * t232
+            + gcross_vz_leg3 * t243;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * t538
+            - (minus_gcross_vx_leg3 * t515 + minus_gcross_vy_leg3 * t527);
+        let t650 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t651 = c_rod_leg3 * rate_cross_leg3;
+        let t652 = rate_rod_leg3 * t651;
+        let t653 = t650 + t652;
+        let t655 = 1.7857142857142858 * t491;
+        let t656 = rate_rod_leg3 * t655;
+        let t657 = c_rod_leg3 * t656;
+        let t658 = s_rod_leg3 * t653 + t657;
+        let t662 = grod_vx_leg3 * t232 + minus_grod_vy_leg3 * t237;
+        let t663 = t655 * t651;
+        let t664 = t662 * t663;
+        let t670 = minus_gcross_vy_leg3 * t249 - minus_gcross_vx_leg3 * t247
+            + gcross_vz_leg3 * t252;
+        let t674 = grod_vx_leg3 * t247 + minus_grod_vy_leg3 * t249;
+        let t675 = t674 * t663;
+        let t681 = minus_gcross_vx_leg3 * t263 - minus_gcross_vy_leg3 * t258
+            - gcross_vz_leg3 * t269;
+        let t685 = grod_vx_leg3 * t263 + minus_grod_vy_leg3 * t258;
+        let t686 = t685 * t663;
+        let t688 = t566 + t567;
+        let t690 = c_rod_leg1 * rate_dot_cross_leg1;
+        let t691 = t690 - t569;
+        let t694 = c_rod_leg1 * t688 - s_rod_leg1 * (t569 - t691);
+        let t697 = 3.188775510204082 * (t332 * t332);
+        let t699 = t697 - t552 * t552;
+        let t708 = c_rod_leg2 * rate_dot_cross_leg2;
+        let t709 = t708 - t598;
+        let t712 = t601 + t608;
+        let t714 = minus_s_rod_leg2 * (t598 - t709) + c_rod_leg2 * t712;
+        let t717 = 3.188775510204082 * (t409 * t409);
+        let t718 = t600 * t600;
+        let t719 = t717 - t718;
+        let t728 = t652 + t653;
+        let t730 = c_rod_leg3 * rate_dot_cross_leg3;
+        let t731 = t730 - t656;
+        let t734 = c_rod_leg3 * t728 - s_rod_leg3 * (t656 - t731);
+        let t737 = 3.188775510204082 * (t491 * t491);
+        let t738 = t651 * t651;
+        let t739 = t737 - t738;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t336;
+        let t751 = rate_rod_leg1 * rate_rod_leg1;
+        let t754 = s_rod_leg1 * (t553 + rate_dot_rod_leg1) + c_rod_leg1 * (t751 - t697);
+        let t764 = rate_rod_leg2 * rate_rod_leg2;
+        let rate_dot_rod_leg2 = grod_vx_leg2 * t419 - minus_grod_vy_leg2 * t431;
+        let t772 = c_rod_leg2 * (t764 - t717)
+            - minus_s_rod_leg2 * (t615 + rate_dot_rod_leg2);
+        let rate_dot_rod_leg3 = grod_vx_leg3 * t515 - minus_grod_vy_leg3 * t527;
+        let t787 = rate_rod_leg3 * rate_rod_leg3;
+        let t790 = s_rod_leg3 * (t663 + rate_dot_rod_leg3) + c_rod_leg3 * (t787 - t737);
+        let t801 = c_rod_leg1 * t691 - t570;
+        let t809 = c_rod_leg2 * t709 - t599;
+        let t817 = c_rod_leg3 * t731 - t657;
+        let t824 = 1.7857142857142858 * acceleration[1];
+        let t837 = t615 - rate_dot_rod_leg2;
+        let t839 = minus_s_rod_leg2 * (t718 - t764) + c_rod_leg2 * t837;
+        let t850 = t663 - rate_dot_rod_leg3;
+        let t852 = s_rod_leg3 * (t738 - t787) - c_rod_leg3 * t850;
+        let t871 = 0.8928571428571429 * t194;
+        let t875 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
+        let t879 = 0.24 * c_cross_leg1;
+        let t883 = 0.24 * rate_dot_arm_leg1 - t541;
+        let t886 = t544 - 0.24 * t318;
+        let t889 = s_rod_leg1 * (c_cross_leg1 * t883 - s_cross_leg1 * t886);
+        let t894 = c_cross_leg1 * t886 + s_cross_leg1 * t883;
+        let t895 = c_rod_leg1 * t894;
+        let t897 = t871 * (t553 - rate_dot_rod_leg1) + t875 * (t697 + t751) - t879 * t688
+            + t559 * t889 + t550 * t895;
+        let t905 = 0.24 * rate_dot_arm_leg2 - t542;
+        let t908 = t545 - 0.24 * t355;
+        let t911 = minus_s_rod_leg2 * (c_cross_leg2 * t905 - s_cross_leg2 * t908);
+        let t915 = c_cross_leg2 * t908 + s_cross_leg2 * t905;
+        let t916 = c_rod_leg2 * t915;
+        let t919 = 0.8928571428571429 * t23;
+        let t922 = 0.42857142857142855 * (t31 * s_cross_leg2);
+        let t926 = 0.24 * c_cross_leg2;
+        let t932 = t919 * t837 - t922 * (t717 + t764) - t926 * t712 + t622 * t911
+            - t626 * t916;
+        let t937 = t546 + 0.24 * t498;
+        let t940 = t543 + 0.24 * rate_dot_arm_leg3;
+        let t943 = s_rod_leg3 * (s_cross_leg3 * t937 + c_cross_leg3 * t940);
+        let t947 = s_cross_leg3 * t940 - c_cross_leg3 * t937;
+        let t948 = c_rod_leg3 * t947;
+        let t954 = 0.8928571428571429 * t108;
+        let t957 = 0.42857142857142855 * (t89 * s_cross_leg3);
+        let t961 = 0.24 * c_cross_leg3;
+        let t967 = t954 * t850 + t957 * (t737 + t787) - t961 * t728 - t681 * t943
+            + t685 * t948;
+        Ok([
+            [
+                t232 * acceleration[0] - t237 * acceleration[1] + t243 * t244, rate_dot_arm_leg1,
+                0.0, 0.0, -t541, 0.0, 0.0, -t544, 0.0, 0.0, rate_arm_leg1, 0.0, 0.0,
+                ::overact::math::sign(rate_arm_leg1), 0.0, 0.0, 1.0, 0.0, 0.0, t554 - t559 * t571,
+                t596 * t610 - t616, t644 * t658 - t664, -(t559 * t694 + t550 * t699),
+                t596 * t714 + t614 * t719, t644 * t734 + t662 * t739, -(t559 * t754 + t550 * t565),
+                t596 * t772 - t614 * t607, t644 * t790 + t662 * t650, -(t559 * t801 + t554),
+                t596 * t809 + t616, t644 * t817 + t664, -(t559 * t824 + t550 * t690),
+                t614 * t708 - t596 * t839, t644 * t852 + t662 * t730, -(t550 * rate_dot_rod_leg1),
+                t614 * rate_dot_rod_leg2, t662 * rate_dot_rod_leg3, t897, t596 * t911 - t614 * t916,
+                -(t644 * t943 + t662 * t948), t690 * t871 + t565 * t875 + t321 * t879 - t559 * t894,
+                t596 * t915, t644 * t947,
+            ],
+            [
+                t247 * acceleration[0] - t249 * acceleration[1] + t252 * t244, 0.0,
+                rate_dot_arm_leg2, 0.0, 0.0, -t542, 0.0, 0.0, -t545, 0.0, 0.0, rate_arm_leg2, 0.0,
+                0.0, ::overact::math::sign(rate_arm_leg2), 0.0, 0.0, 1.0, 0.0, t575 - t580 * t571,
+                t622 * t610 - t627, t670 * t658 - t675, -(t580 * t694 + t574 * t699),
+                t622 * t714 + t626 * t719, t670 * t734 + t674 * t739, -(t580 * t754 + t574 * t565),
+                t622 * t772 - t626 * t607, t670 * t790 + t674 * t650, -(t580 * t801 + t575),
+                t622 * t809 + t627, t670 * t817 + t675, -(t580 * t824 + t574 * t690),
+                t626 * t708 - t622 * t839, t670 * t852 + t674 * t730, -(t574 * rate_dot_rod_leg1),
+                t626 * rate_dot_rod_leg2, t674 * rate_dot_rod_leg3, t580 * t889 + t574 * t895, t932,
+                -(t670 * t943 + t674 * t948), -(t580 * t894),
+                t708 * t919 + t607 * t922 + rate_cross_leg2 * rate_cross_leg2 * t926
+                    + t622 * t915,
+                t670 * t947,
+            ],
+            [
+                t258 * acceleration[1] - t263 * acceleration[0] - t269 * t244, 0.0, 0.0,
+                rate_dot_arm_leg3, 0.0, 0.0, t543, 0.0, 0.0, t546, 0.0, 0.0, rate_arm_leg3, 0.0,
+                0.0, ::overact::math::sign(rate_arm_leg3), 0.0, 0.0, 1.0, t587 * t571 - t590,
+                t633 * t610 + t638, t681 * t658 + t686, t587 * t694 + t589 * t699,
+                t633 * t714 - t637 * t719, t681 * t734 - t685 * t739, t587 * t754 + t589 * t565,
+                t633 * t772 + t637 * t607, t681 * t790 - t685 * t650, t587 * t801 + t590,
+                t633 * t809 - t638, t681 * t817 - t686, t587 * t824 + t589 * t690,
+                -(t633 * t839 + t637 * t708), t681 * t852 - t685 * t730, t589 * rate_dot_rod_leg1,
+                -(t637 * rate_dot_rod_leg2), -(t685 * rate_dot_rod_leg3),
+                -(t587 * t889 + t589 * t895), t633 * t911 + t637 * t916, t967, t587 * t894,
+                t633 * t915,
+                t730 * t954 + t650 * t957 + rate_cross_leg3 * rate_cross_leg3 * t961
+                    + t681 * t947,
+            ],
+        ])
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -4805,7 +7402,7 @@ impl Delta {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 996 operations (328 additions, 660 multiplications, 8 divisions), 0 square roots, 9 trigonometric pairs, 3 signs, 933 intermediates.
+    /// 1080 operations (378 additions, 685 multiplications, 17 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 1005 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4816,428 +7413,482 @@ impl Delta {
         start: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
-        let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t10 = 0.5 * c_armcross_leg2;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t13 = t10 * c_rod_leg2;
-        let t16 = t10 * s_rod_leg2 - 0.8660254037844387 * c_rod_leg2;
-        let t19 = s_armcross_leg2 * c_rod_leg2;
-        let t20 = s_armcross_leg2 * s_rod_leg2;
-        let t21 = t19 * t20;
-        let t23 = 0.6272 * (t13 * t16) + 0.1568 * t21;
-        let t24 = 0.4849742261192857 * t19;
-        let t25 = 0.24 * s_arm_leg2;
-        let t26 = 0.56 * t19;
-        let t29 = t24 - 0.8660254037844387 * (t25 + t26);
-        let t35 = 0.1344 * (c_arm_leg2 * t16) + 0.0672 * (s_arm_leg2 * t20);
-        let t38 = 0.8660254037844387 * c_armcross_leg2;
-        let t41 = t38 * s_rod_leg2 + 0.5 * c_rod_leg2;
-        let t45 = c_arm_leg2 * t19;
-        let t47 = 0.1344 * (s_arm_leg2 * t13) - 0.0672 * t45;
-        let t49 = t29 * t23 + t24 * t35 + 0.56 * t41 * t47;
-        ::overact::guard::leg(t49, 0.06758306237509017, "leg2")?;
-        let t50 = 1.0 / t49;
-        let garm_vy_leg2 = t23 * t50;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
-        let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let t62 = 0.5 * c_armcross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t67 = t62 * s_rod_leg3 + 0.8660254037844387 * c_rod_leg3;
-        let t68 = s_armcross_leg3 * c_rod_leg3;
-        let t71 = 0.8660254037844387 * c_armcross_leg3;
-        let t74 = t71 * s_rod_leg3 - 0.5 * c_rod_leg3;
-        let t78 = 0.4849742261192857 * t68;
-        let t81 = s_armcross_leg3 * s_rod_leg3;
-        let t84 = 0.1344 * (c_arm_leg3 * t67) + 0.0672 * (s_arm_leg3 * t81);
-        let t86 = 0.24 * s_arm_leg3;
-        let t87 = 0.56 * t68;
-        let t90 = 0.8660254037844387 * (t86 + t87) - t78;
-        let t91 = t62 * c_rod_leg3;
-        let t94 = t68 * t81;
-        let t96 = 0.6272 * (t91 * t67) + 0.1568 * t94;
-        let t102 = c_arm_leg3 * t68;
-        let t104 = 0.1344 * (s_arm_leg3 * t91) - 0.0672 * t102;
-        let t106 = t78 * t84 - t90 * t96 + 0.56 * t74 * t104;
-        ::overact::guard::leg(t106, 0.06758306237509014, "leg3")?;
-        let t107 = 1.0 / t106;
-        let minus_garm_vz_leg3 = (0.2715855666268 * (t67 * t68) - 0.1568 * (t74 * t68))
-            * t107;
-        let garm_vz_leg2 = (0.1568 * (t41 * t19) - 0.2715855666268 * (t16 * t19)) * t50;
-        let minus_garm_vy_leg3 = t96 * t107;
-        let t118 = garm_vy_leg2 * minus_garm_vz_leg3 - garm_vz_leg2 * minus_garm_vy_leg3;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
-        let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t131 = c_armcross_leg1 * c_rod_leg1;
-        let t132 = s_armcross_leg1 * c_rod_leg1;
-        let t135 = c_arm_leg1 * t132 - s_arm_leg1 * t131;
-        ::overact::guard::leg(t135, 0.89794672585951, "leg1")?;
-        let t136 = 1.0 / t135;
-        let t137 = 4.166666666666667 * t136;
-        let garm_vx_leg1 = t131 * t137;
-        let garm_vy_leg1 = s_rod_leg1 * t137;
-        let garm_vx_leg3 = (0.2715855666268 * t94 + 0.6272 * (t91 * t74)) * t107;
-        let garm_vx_leg2 = (0.2715855666268 * t21 + 0.6272 * (t13 * t41)) * t50;
-        let t153 = garm_vz_leg2 * garm_vx_leg3 + garm_vx_leg2 * minus_garm_vz_leg3;
-        let minus_garm_vz_leg1 = t132 * t137;
-        let t159 = garm_vy_leg2 * garm_vx_leg3 + garm_vx_leg2 * minus_garm_vy_leg3;
-        let t161 = garm_vx_leg1 * t118 - garm_vy_leg1 * t153 - minus_garm_vz_leg1 * t159;
-        ::overact::guard::platform(t161, 87.78853732246624, "kept actuators")?;
-        ::overact::guard::platform(t161, 87.78853732246624, "kept actuators")?;
-        ::overact::guard::platform(t161, 87.78853732246624, "kept actuators")?;
-        let t162 = 1.0 / t161;
-        let t163 = t118 * t162;
-        let t168 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t0 = pose[1] + 0.04330127018922194;
+        let t1 = t0 - 0.17320508075688776;
+        let t3 = pose[0] - 0.025;
+        let t4 = t3 + 0.1;
+        let t5 = 0.5 * t4;
+        let t6 = 0.8660254037844387 * t1 - t5;
+        let t8 = pose[2] * pose[2];
+        let t10 = 0.2304 * (t6 * t6 + t8);
+        let t11 = 1.0 / t10;
+        let t12 = 0.48 * t6;
+        let t13 = t4 * t4;
+        let t16 = t13 + t1 * t1 + t8;
+        let t18 = t16 - 0.3136 + 0.0576;
+        let t20 = 0.48 * pose[2];
+        let t22 = t10 - t18 * t18;
+        ::overact::guard::reach(t22, "leg2")?;
+        let t23 = ::overact::math::sqrt(t22);
+        let c_arm_leg2 = t11 * (t12 * t18 - t20 * t23);
+        let t28 = t6 - 0.24 * c_arm_leg2;
+        let t29 = 0.8660254037844387 * t4;
+        let t31 = t29 + 0.5 * t1;
+        let t32 = t31 * t31;
+        let t36 = 1.0 - 3.188775510204082 * t32;
+        ::overact::guard::reach(t36, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t36);
+        let c_cross_leg2 = (t16 - (0.0576 + t32) - 0.3136 * t36) / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t11 * (t20 * t18 + t12 * t23);
+        let s_cross_leg2 = 2.0833333333333335 * t23 / (0.56 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t52 = t31 * c_armcross_leg2;
+        let t55 = 0.8928571428571429 * t52 + 0.8660254037844387 * c_rod_leg2;
+        let t58 = 0.24 * minus_s_arm_leg2;
+        let t59 = pose[2] - t58;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t31;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t64 = minus_s_rod_leg2 * s_armcross_leg2;
+        let t65 = t59 * t64;
+        let t67 = t28 * (0.56 * t55) - 0.28 * t65;
+        let t68 = 0.20784609690826528 * minus_s_arm_leg2;
+        let t73 = minus_s_arm_leg2 * t64;
+        let t75 = 0.1344 * (c_arm_leg2 * t55) - 0.0672 * t73;
+        let t80 = 1.5464739353293548 * t52 - 0.5 * c_rod_leg2;
+        let t83 = t68 * t67 - 0.8660254037844387 * t59 * t75 - 0.14 * (t23 * t80);
+        ::overact::guard::leg(t83, 0.06758306237512474, "leg2")?;
+        let t84 = 1.0 / t83;
+        let garm_vy_leg2 = t67 * t84;
+        let t86 = pose[1] - 0.04330127018922194;
+        let t87 = t86 + 0.17320508075688776;
+        let t89 = t29 - 0.5 * t87;
+        let t90 = t89 * t89;
+        let t92 = 1.0 - 3.188775510204082 * t90;
+        ::overact::guard::reach(t92, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t92);
+        let t95 = t5 + 0.8660254037844387 * t87;
+        let t98 = 0.2304 * (t95 * t95 + t8);
+        let t99 = 1.0 / t98;
+        let t100 = 0.48 * t95;
+        let t103 = t13 + t87 * t87 + t8;
+        let t105 = t103 - 0.3136 + 0.0576;
+        let t107 = t98 - t105 * t105;
+        ::overact::guard::reach(t107, "leg3")?;
+        let t108 = ::overact::math::sqrt(t107);
+        let s_arm_leg3 = t99 * (t100 * t108 - t20 * t105);
+        let t113 = 0.24 * s_arm_leg3;
+        let t114 = pose[2] + t113;
+        let t117 = 0.20784609690826528 * s_arm_leg3;
+        let minus_c_arm_leg3 = t99 * (t100 * t105 + t20 * t108);
+        let t123 = t95 - 0.24 * minus_c_arm_leg3;
+        let c_cross_leg3 = (t103 - (0.0576 + t90) - 0.3136 * t92)
+            / (0.2688 * c_rod_leg3);
+        let s_cross_leg3 = 2.0833333333333335 * t108 / (0.56 * c_rod_leg3);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t137 = t89 * minus_c_armcross_leg3;
+        let t139 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t137;
+        let s_rod_leg3 = 1.7857142857142858 * t89;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t146 = s_rod_leg3 * s_armcross_leg3;
+        let t147 = t114 * t146;
+        let t149 = t123 * (0.56 * t139) + 0.28 * t147;
+        let t154 = s_arm_leg3 * t146;
+        let t156 = 0.1344 * (minus_c_arm_leg3 * t139) - 0.0672 * t154;
+        let t161 = 1.5464739353293548 * t137 + 0.5 * c_rod_leg3;
+        let t164 = t117 * t149 + 0.8660254037844387 * t114 * t156 + 0.14 * (t108 * t161);
+        ::overact::guard::leg(t164, 0.06758306237512474, "leg3")?;
+        let t165 = 1.0 / t164;
+        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t114) * t165;
+        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t59) * t84;
+        let garm_vy_leg3 = t149 * t165;
+        let garm_vx_leg2 = (t28 * (0.56 * t80) - 0.4849742261192857 * t65) * t84;
+        let t179 = pose[0] + 0.05;
+        let t180 = t179 - 0.2;
+        let t181 = t180 * t180;
+        let t183 = 0.2304 * (t181 + t8);
+        let t184 = 1.0 / t183;
+        let t185 = pose[1] * pose[1];
+        let t187 = t181 + t185 + t8;
+        let t189 = t187 - 0.3136 + 0.0576;
+        let t191 = 0.48 * t180;
+        let t193 = t183 - t189 * t189;
+        ::overact::guard::reach(t193, "leg1")?;
+        let t194 = ::overact::math::sqrt(t193);
+        ::overact::guard::leg(t194, 0.24136807991115974, "leg1")?;
+        let minus_s_arm_leg1 = t184 * (t20 * t189 + t191 * t194);
+        let t198 = 0.24 * minus_s_arm_leg1;
+        let t199 = pose[2] - t198;
+        let t200 = 1.0 / t194;
+        let t201 = 2.0 * t200;
+        let garm_vz_leg1 = t199 * t201;
+        let garm_vy_leg1 = pose[1] * t201;
+        let t206 = garm_vz_leg1 * garm_vy_leg3 - garm_vy_leg1 * garm_vz_leg3;
+        let garm_vx_leg3 = (t123 * (0.56 * t161) - 0.4849742261192857 * t147) * t165;
+        let c_arm_leg1 = t184 * (t191 * t189 - t20 * t194);
+        let t218 = 0.24 * c_arm_leg1;
+        let t220 = t179 - (0.2 + t218);
+        let garm_vx_leg1 = t220 * t201;
+        let t223 = garm_vz_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vz_leg3;
+        let t228 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
+        let t230 = garm_vx_leg2 * t206 - garm_vy_leg2 * t223 + garm_vz_leg2 * t228;
+        ::overact::guard::platform(t230, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t230, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t230, 87.78853732233405, "kept actuators")?;
+        let t231 = 1.0 / t230;
+        let t232 = (garm_vy_leg2 * garm_vz_leg3 - garm_vz_leg2 * garm_vy_leg3) * t231;
+        let t237 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t168, 14.8697301728973, "actuators")?;
-        ::overact::guard::platform(t168, 14.8697301728973, "actuators")?;
-        let t169 = 1.0 / t168;
-        let t171 = actuator_velocities[0] * actuator_velocities[0];
-        let t174 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.7857142857142858 * t174;
-        let t185 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
-            - garm_vx_leg3 * minus_garm_vy_leg3;
-        let t186 = t185 * t169;
-        let t188 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + minus_garm_vy_leg3 * minus_garm_vy_leg3 - t185 * t186;
-        ::overact::guard::platform(t188, 14.869730172897306, "actuators")?;
-        ::overact::guard::platform(t188, 14.869730172897306, "actuators")?;
-        let t189 = 1.0 / t188;
-        let t199 = garm_vx_leg1 * actuator_velocities[0]
+        ::overact::guard::platform(t237, 14.869730172882845, "actuators")?;
+        ::overact::guard::platform(t237, 14.869730172882845, "actuators")?;
+        let t238 = 1.0 / t237;
+        let t239 = 0.48 * t200;
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t243 = 1.0 - 3.188775510204082 * t185;
+        ::overact::guard::reach(t243, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t243);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let s_cross_leg1 = 2.0833333333333335 * t194 / (0.56 * c_rod_leg1);
+        let c_cross_leg1 = (t187 - (0.0576 + t185) - 0.3136 * t243)
+            / (0.2688 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t257 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t239
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t257)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t257));
+        let t277 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3;
+        let t278 = t277 * t238;
+        let t280 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t277 * t278;
+        ::overact::guard::platform(t280, 14.869730172882843, "actuators")?;
+        ::overact::guard::platform(t280, 14.869730172882843, "actuators")?;
+        let t281 = 1.0 / t280;
+        let t291 = garm_vx_leg1 * actuator_velocities[0]
             + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2];
-        let t201 = garm_vy_leg1 * actuator_velocities[0]
+        let t293 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
-            - minus_garm_vy_leg3 * actuator_velocities[2] - t199 * t186;
-        let t212 = garm_vx_leg2 * garm_vz_leg2 - garm_vx_leg1 * minus_garm_vz_leg1
-            - garm_vx_leg3 * minus_garm_vz_leg3;
-        let t213 = t212 * t169;
-        let t215 = garm_vy_leg2 * garm_vz_leg2 - garm_vy_leg1 * minus_garm_vz_leg1
-            + minus_garm_vy_leg3 * minus_garm_vz_leg3 - t185 * t213;
-        let t216 = t215 * t189;
-        let t225 = minus_garm_vz_leg1 * minus_garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t212 * t213 - t215 * t216;
-        ::overact::guard::platform(t225, 34.85535020139291, "actuators")?;
-        ::overact::guard::platform(t225, 34.85535020139291, "actuators")?;
-        let t226 = 1.0 / t225;
-        let t236 = t226
-            * (garm_vz_leg2 * actuator_velocities[1]
-                - minus_garm_vz_leg1 * actuator_velocities[0]
-                - minus_garm_vz_leg3 * actuator_velocities[2] - t199 * t213
-                - t216 * t201);
-        let t238 = t189 * t201 - t216 * t236;
-        let rate_rod_leg1 = grod_vy_leg1 * t238;
-        let t240 = s_armcross_leg1 * rate_rod_leg1;
-        let t242 = 1.7857142857142858 * t136;
-        let gcross_vz_leg1 = s_arm_leg1 * t242;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t242;
-        let t250 = t199 * t169 - t186 * t238 - t213 * t236;
-        let minus_gcross_vy_leg1 = t242
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t174)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t174));
-        let rate_cross_leg1 = gcross_vz_leg1 * t236
-            - (minus_gcross_vx_leg1 * t250 + minus_gcross_vy_leg1 * t238);
-        let t263 = rate_cross_leg1 * rate_cross_leg1;
-        let t265 = c_armcross_leg1 * rate_rod_leg1;
-        let t267 = t240 * t240 + t263 + t265 * t265;
-        let t270 = 0.56 * s_rod_leg1;
-        let t272 = t270 * (rate_cross_leg1 * t265);
-        let t274 = 0.24 * s_arm_leg1 * t171 + 0.56 * t132 * t267 + t272 + t272;
-        let t277 = t270 * (rate_cross_leg1 * t240);
-        let t284 = t277 - (0.24 * c_arm_leg1 * t171 + 0.56 * t131 * t267) + t277;
-        let t286 = t270 * rate_cross_leg1;
-        let t289 = rate_cross_leg1 * t286 - t270 * t267;
-        let rate_dot_arm_leg1 = minus_garm_vz_leg1 * t274
-            - (garm_vx_leg1 * t284 + garm_vy_leg1 * t289);
-        let t293 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t296 = actuator_velocities[1] * actuator_velocities[1];
-        let t299 = t13 + 0.8660254037844387 * s_rod_leg2;
-        let t300 = 0.56 * t299;
-        let gcross_vx_leg2 = (0.56 * t20 * t29 - 0.1344 * (c_arm_leg2 * t41)) * t50;
-        let minus_gcross_vy_leg2 = t35 * t50;
-        let minus_gcross_vz_leg2 = (0.56 * t16 * t29 + 0.0672 * (s_arm_leg2 * t41))
-            * t50;
-        let rate_cross_leg2 = gcross_vx_leg2 * t250 - minus_gcross_vy_leg2 * t238
-            - minus_gcross_vz_leg2 * t236;
-        let t319 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (1.12 * t13 * t29 + 0.11639381426862856 * t45) * t50;
-        let minus_grod_vy_leg2 = t47 * t50;
-        let rate_rod_leg2 = grod_vx_leg2 * t250 - minus_grod_vy_leg2 * t238;
-        let t331 = t319 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t334 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t335 = 0.5 * rate_cross_leg2;
-        let t336 = t334 - t335;
-        let t339 = c_armcross_leg2 * rate_rod_leg2;
-        let t341 = t331 * t331 + t336 * t336 + t339 * t339;
-        let t347 = t38 * c_rod_leg2 - 0.5 * s_rod_leg2;
-        let t348 = 0.56 * t347;
-        let t352 = t300 * t331 + t348 * t336 - t26 * t339;
-        let t355 = t319 * t334;
-        let t358 = t319 * t339;
-        let t361 = 0.12 * c_arm_leg2 * t296 + t300 * t341 - t331 * t352
-            + 0.7466666666666667 * (t347 * t355) - t26 * t358;
-        let t371 = t335 * t339;
-        let t374 = t336 * t352 - (0.20784609690826528 * c_arm_leg2 * t296 + t348 * t341)
-            + 0.7466666666666667 * (t299 * t355) - t26 * t371;
-        let t382 = t300 * t358 - t348 * t371;
-        let t384 = t25 * t296 + t26 * t341 + t382 + t382;
-        let minus_rate_dot_arm_leg2 = garm_vx_leg2 * t361 + garm_vy_leg2 * t374
-            + garm_vz_leg2 * t384;
-        let t387 = actuator_accelerations[1] + minus_rate_dot_arm_leg2;
-        let t391 = actuator_velocities[2] * actuator_velocities[2];
-        let t395 = t71 * c_rod_leg3 + 0.5 * s_rod_leg3;
-        let t396 = 0.56 * t395;
-        let gcross_vy_leg3 = t84 * t107;
-        let minus_gcross_vx_leg3 = (0.56 * t81 * t90 + 0.1344 * (c_arm_leg3 * t74))
-            * t107;
-        let gcross_vz_leg3 = (0.56 * t67 * t90 - 0.0672 * (s_arm_leg3 * t74)) * t107;
-        let rate_cross_leg3 = gcross_vy_leg3 * t238 - minus_gcross_vx_leg3 * t250
-            + gcross_vz_leg3 * t236;
-        let t415 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (0.11639381426862856 * t102 - 1.12 * t91 * t90) * t107;
-        let grod_vy_leg3 = t104 * t107;
-        let rate_rod_leg3 = grod_vx_leg3 * t250 + grod_vy_leg3 * t238;
-        let t427 = t415 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t429 = 0.5 * rate_cross_leg3;
-        let t431 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t432 = t429 + t431;
-        let t435 = c_armcross_leg3 * rate_rod_leg3;
-        let t437 = t427 * t427 + t432 * t432 + t435 * t435;
-        let t441 = 0.8660254037844387 * s_rod_leg3 - t91;
-        let t442 = 0.56 * t441;
-        let t447 = t442 * t427 + t396 * t432 - t87 * t435;
-        let t450 = t415 * t431;
-        let t453 = t429 * t435;
-        let t456 = 0.20784609690826528 * c_arm_leg3 * t391 + t396 * t437 - t432 * t447
-            - (0.7466666666666667 * (t441 * t450) + t87 * t453);
-        let t464 = t415 * t435;
-        let t469 = 0.12 * c_arm_leg3 * t391 - t442 * t437 + t427 * t447 + t87 * t464
-            - 0.7466666666666667 * (t395 * t450);
-        let t477 = t396 * t453 + t442 * t464;
-        let t479 = t86 * t391 + t87 * t437 + t477 + t477;
-        let rate_dot_arm_leg3 = minus_garm_vy_leg3 * t456 - garm_vx_leg3 * t469
-            + minus_garm_vz_leg3 * t479;
-        let t482 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t484 = garm_vx_leg1 * t293 + garm_vx_leg2 * t387 + garm_vx_leg3 * t482;
-        let t492 = garm_vy_leg1 * t293 + garm_vy_leg2 * t387 - minus_garm_vy_leg3 * t482
-            - t186 * t484;
-        let t503 = t226
-            * (garm_vz_leg2 * t387 - minus_garm_vz_leg1 * t293
-                - minus_garm_vz_leg3 * t482 - t213 * t484 - t216 * t492);
-        let t505 = t189 * t492 - t216 * t503;
-        let t509 = t169 * t484 - t186 * t505 - t213 * t503;
-        let t511 = t153 * t162;
-        let t514 = t159 * t162;
-        let t515 = t503 + 9.81;
-        let t521 = (garm_vy_leg1 * minus_garm_vz_leg3
-            + minus_garm_vz_leg1 * minus_garm_vy_leg3) * t162;
-        let t526 = (minus_garm_vz_leg1 * garm_vx_leg3
-            - garm_vx_leg1 * minus_garm_vz_leg3) * t162;
-        let t532 = (garm_vx_leg1 * minus_garm_vy_leg3 + garm_vy_leg1 * garm_vx_leg3)
-            * t162;
-        let t538 = (garm_vx_leg1 * garm_vz_leg2 + minus_garm_vz_leg1 * garm_vx_leg2)
-            * t162;
-        let t543 = (garm_vy_leg1 * garm_vz_leg2 + minus_garm_vz_leg1 * garm_vy_leg2)
-            * t162;
-        let t549 = (garm_vx_leg1 * garm_vy_leg2 - garm_vy_leg1 * garm_vx_leg2) * t162;
-        let t552 = 9.81 * c_arm_leg1;
-        let t553 = 9.81 * c_arm_leg2;
-        let t554 = 9.81 * c_arm_leg3;
-        let t555 = 9.81 * s_arm_leg1;
-        let t556 = 9.81 * s_arm_leg2;
-        let t557 = 9.81 * s_arm_leg3;
-        let t565 = minus_gcross_vy_leg1 * t511 - minus_gcross_vx_leg1 * t163
-            + gcross_vz_leg1 * t514;
-        let t570 = t505 - t289;
-        let rate_dot_cross_leg1 = gcross_vz_leg1 * (t503 - t274)
-            - (minus_gcross_vx_leg1 * (t509 - t284) + minus_gcross_vy_leg1 * t570);
-        let t574 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t575 = c_rod_leg1 * rate_cross_leg1;
-        let t576 = rate_rod_leg1 * t575;
-        let t577 = t574 + t576;
-        let t579 = 1.7857142857142858 * t286;
-        let t580 = rate_rod_leg1 * t579;
-        let t581 = c_rod_leg1 * t580;
-        let t582 = s_rod_leg1 * t577 + t581;
-        let t584 = grod_vy_leg1 * t511;
-        let t585 = t579 * t575;
-        let t586 = t584 * t585;
-        let t592 = minus_gcross_vx_leg1 * t521 + minus_gcross_vy_leg1 * t526
-            - gcross_vz_leg1 * t532;
-        let t594 = grod_vy_leg1 * t526;
-        let t595 = t594 * t585;
-        let t601 = minus_gcross_vx_leg1 * t543 - minus_gcross_vy_leg1 * t538
-            - gcross_vz_leg1 * t549;
-        let t603 = grod_vy_leg1 * t538;
-        let t604 = t603 * t585;
-        let t610 = gcross_vx_leg2 * t163 + minus_gcross_vy_leg2 * t511
-            - minus_gcross_vz_leg2 * t514;
-        let t611 = t509 - t361;
-        let t613 = t505 - t374;
-        let rate_dot_cross_leg2 = gcross_vx_leg2 * t611 - minus_gcross_vy_leg2 * t613
-            - minus_gcross_vz_leg2 * (t503 - t384);
-        let t619 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t620 = c_rod_leg2 * rate_cross_leg2;
-        let t621 = rate_rod_leg2 * t620;
-        let t622 = t619 + t621;
-        let t624 = 1.7857142857142858 * t352;
-        let t625 = rate_rod_leg2 * t624;
-        let t626 = c_rod_leg2 * t625;
-        let t627 = s_rod_leg2 * t622 + t626;
-        let t631 = grod_vx_leg2 * t163 + minus_grod_vy_leg2 * t511;
-        let t632 = t624 * t620;
-        let t633 = t631 * t632;
-        let t639 = minus_gcross_vy_leg2 * t526 - gcross_vx_leg2 * t521
-            + minus_gcross_vz_leg2 * t532;
-        let t643 = minus_grod_vy_leg2 * t526 - grod_vx_leg2 * t521;
-        let t644 = t643 * t632;
-        let t650 = minus_gcross_vz_leg2 * t549
-            - (gcross_vx_leg2 * t543 + minus_gcross_vy_leg2 * t538);
-        let t654 = grod_vx_leg2 * t543 + minus_grod_vy_leg2 * t538;
-        let t655 = t654 * t632;
-        let t661 = gcross_vz_leg3 * t514
-            - (minus_gcross_vx_leg3 * t163 + gcross_vy_leg3 * t511);
-        let t662 = t505 - t456;
-        let t664 = t509 - t469;
-        let rate_dot_cross_leg3 = gcross_vy_leg3 * t662 - minus_gcross_vx_leg3 * t664
-            + gcross_vz_leg3 * (t503 - t479);
-        let t670 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t671 = c_rod_leg3 * rate_cross_leg3;
-        let t672 = rate_rod_leg3 * t671;
-        let t673 = t670 + t672;
-        let t675 = 1.7857142857142858 * t447;
-        let t676 = rate_rod_leg3 * t675;
-        let t677 = c_rod_leg3 * t676;
-        let t678 = s_rod_leg3 * t673 + t677;
-        let t682 = grod_vx_leg3 * t163 - grod_vy_leg3 * t511;
-        let t683 = t675 * t671;
-        let t684 = t682 * t683;
-        let t690 = minus_gcross_vx_leg3 * t521 - gcross_vy_leg3 * t526
-            - gcross_vz_leg3 * t532;
-        let t694 = grod_vx_leg3 * t521 + grod_vy_leg3 * t526;
-        let t695 = t694 * t683;
-        let t701 = minus_gcross_vx_leg3 * t543 + gcross_vy_leg3 * t538
-            - gcross_vz_leg3 * t549;
-        let t705 = grod_vy_leg3 * t538 - grod_vx_leg3 * t543;
-        let t706 = t705 * t683;
-        let t708 = t576 + t577;
-        let t710 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t711 = t710 - t580;
-        let t714 = c_rod_leg1 * t708 - s_rod_leg1 * (t580 - t711);
-        let t717 = 3.188775510204082 * (t286 * t286);
-        let t719 = t717 - t575 * t575;
-        let t728 = t621 + t622;
-        let t730 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t731 = t730 - t625;
-        let t734 = c_rod_leg2 * t728 - s_rod_leg2 * (t625 - t731);
-        let t737 = 3.188775510204082 * (t352 * t352);
-        let t738 = t620 * t620;
-        let t739 = t737 - t738;
-        let t748 = t672 + t673;
-        let t750 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t751 = t750 - t676;
-        let t754 = c_rod_leg3 * t748 - s_rod_leg3 * (t676 - t751);
-        let t757 = 3.188775510204082 * (t447 * t447);
-        let t758 = t671 * t671;
-        let t759 = t757 - t758;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t570;
-        let t771 = rate_rod_leg1 * rate_rod_leg1;
-        let t774 = s_rod_leg1 * (t585 + rate_dot_rod_leg1) + c_rod_leg1 * (t771 - t717);
-        let rate_dot_rod_leg2 = grod_vx_leg2 * t611 - minus_grod_vy_leg2 * t613;
-        let t789 = rate_rod_leg2 * rate_rod_leg2;
-        let t792 = s_rod_leg2 * (t632 + rate_dot_rod_leg2) + c_rod_leg2 * (t789 - t737);
-        let rate_dot_rod_leg3 = grod_vx_leg3 * t664 + grod_vy_leg3 * t662;
-        let t807 = rate_rod_leg3 * rate_rod_leg3;
-        let t810 = s_rod_leg3 * (t683 + rate_dot_rod_leg3) + c_rod_leg3 * (t807 - t757);
-        let t821 = c_rod_leg1 * t711 - t581;
-        let t829 = c_rod_leg2 * t731 - t626;
-        let t837 = c_rod_leg3 * t751 - t677;
-        let t844 = 1.7857142857142858 * t505;
-        let t856 = t632 - rate_dot_rod_leg2;
-        let t858 = s_rod_leg2 * (t738 - t789) - c_rod_leg2 * t856;
-        let t870 = t683 - rate_dot_rod_leg3;
-        let t872 = s_rod_leg3 * (t758 - t807) - c_rod_leg3 * t870;
-        let t891 = 0.24 * t135;
-        let t895 = s_rod_leg1 * (0.24 * s_cross_leg1);
-        let t899 = 0.24 * c_cross_leg1;
-        let t903 = t555 + 0.24 * t171;
-        let t906 = 0.24 * actuator_accelerations[0] - t552;
-        let t909 = s_rod_leg1 * (s_cross_leg1 * t903 + c_cross_leg1 * t906);
-        let t914 = s_cross_leg1 * t906 - c_cross_leg1 * t903;
-        let t915 = c_rod_leg1 * t914;
-        let t917 = t891 * (t585 - rate_dot_rod_leg1) + t895 * (t717 + t771) - t899 * t708
-            - t565 * t909 + t584 * t915;
-        let t925 = t556 + 0.24 * t296;
-        let t928 = 0.24 * actuator_accelerations[1] - t553;
-        let t931 = s_rod_leg2 * (s_cross_leg2 * t925 + c_cross_leg2 * t928);
-        let t935 = s_cross_leg2 * t928 - c_cross_leg2 * t925;
-        let t936 = c_rod_leg2 * t935;
-        let t940 = s_rod_leg2 * (0.24 * s_cross_leg2);
-        let t943 = 3.5714285714285716 * t47;
-        let t946 = 0.24 * c_cross_leg2;
-        let t952 = t940 * (t737 + t789) - t943 * t856 - t946 * t728 - t639 * t931
-            - t643 * t936;
-        let t957 = t557 + 0.24 * t391;
-        let t960 = 0.24 * actuator_accelerations[2] - t554;
-        let t963 = s_rod_leg3 * (s_cross_leg3 * t957 + c_cross_leg3 * t960);
-        let t967 = s_cross_leg3 * t960 - c_cross_leg3 * t957;
-        let t968 = c_rod_leg3 * t967;
-        let t975 = s_rod_leg3 * (0.24 * s_cross_leg3);
-        let t978 = 3.5714285714285716 * t104;
-        let t981 = 0.24 * c_cross_leg3;
-        let t987 = t975 * (t757 + t807) - t978 * t870 - t981 * t748 - t701 * t963
-            - t705 * t968;
+            + garm_vy_leg3 * actuator_velocities[2] - t291 * t278;
+        let t304 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3;
+        let t305 = t304 * t238;
+        let t307 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 - t277 * t305;
+        let t308 = t307 * t281;
+        let t317 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 - t304 * t305 - t307 * t308;
+        ::overact::guard::platform(t317, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t317, 34.855350201355726, "actuators")?;
+        let t318 = 1.0 / t317;
+        let t328 = t318
+            * (garm_vz_leg1 * actuator_velocities[0]
+                + garm_vz_leg2 * actuator_velocities[1]
+                + garm_vz_leg3 * actuator_velocities[2] - t291 * t305 - t308 * t293);
+        let t330 = t281 * t293 - t308 * t328;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t239;
+        let t337 = t291 * t238 - t278 * t330 - t305 * t328;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t239;
+        let rate_cross_leg1 = gcross_vy_leg1 * t330 - minus_gcross_vx_leg1 * t337
+            - minus_gcross_vz_leg1 * t328;
+        let grod_vy_leg1 = 1.7857142857142858 * t257;
+        let rate_rod_leg1 = grod_vy_leg1 * t330;
+        let t345 = s_armcross_leg1 * rate_rod_leg1;
+        let t347 = pose[1] * (rate_cross_leg1 * t345);
+        let t348 = actuator_velocities[0] * actuator_velocities[0];
+        let t351 = rate_cross_leg1 * rate_cross_leg1;
+        let t353 = c_armcross_leg1 * rate_rod_leg1;
+        let t355 = t345 * t345 + t351 + t353 * t353;
+        let t359 = t347 - (t218 * t348 + t220 * t355) + t347;
+        let t361 = pose[1] * rate_cross_leg1;
+        let t364 = rate_cross_leg1 * t361 - pose[1] * t355;
+        let t368 = pose[1] * (rate_cross_leg1 * t353);
+        let t373 = t368 - (t198 * t348 + t199 * t355) + t368;
+        let minus_rate_dot_arm_leg1 = garm_vx_leg1 * t359 + garm_vy_leg1 * t364
+            + garm_vz_leg1 * t373;
+        let t376 = actuator_accelerations[0] + minus_rate_dot_arm_leg1;
+        let t378 = actuator_velocities[1] * actuator_velocities[1];
+        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t80)
+            - 0.11639381426862856 * (minus_s_arm_leg2 * t55)) * t84;
+        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t80)
+            - 0.11639381426862856 * t73) * t84;
+        let minus_gcross_vy_leg2 = t75 * t84;
+        let rate_cross_leg2 = gcross_vz_leg2 * t328
+            - (minus_gcross_vx_leg2 * t337 + minus_gcross_vy_leg2 * t330);
+        let t397 = 0.8660254037844387 * rate_cross_leg2;
+        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t59) - t28 * t68) * t84;
+        let minus_grod_vy_leg2 = 0.25 * t23 * t84;
+        let rate_rod_leg2 = grod_vx_leg2 * t337 - minus_grod_vy_leg2 * t330;
+        let t410 = t397 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
+        let t413 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
+        let t414 = 0.5 * rate_cross_leg2;
+        let t415 = t413 - t414;
+        let t418 = c_armcross_leg2 * rate_rod_leg2;
+        let t420 = t410 * t410 + t415 * t415 + t418 * t418;
+        let t423 = 0.20784609690826528 * c_arm_leg2;
+        let t425 = t0 - (0.17320508075688776 + t423);
+        let t426 = t414 * t418;
+        let t428 = 0.12 * c_arm_leg2;
+        let t430 = t3 + 0.1 + t428;
+        let t431 = t397 * t418;
+        let t433 = t425 * t426 + t430 * t431;
+        let t435 = t58 * t378 + t59 * t420 + t433 + t433;
+        let t444 = t425 * t415 - t430 * t410 + t59 * t418;
+        let t449 = 1.3333333333333333 * (t397 * t413);
+        let t452 = t428 * t378 - t430 * t420 - t410 * t444 + t59 * t431 + t425 * t449;
+        let t462 = t415 * t444 - (t423 * t378 + t425 * t420) + t59 * t426 - t430 * t449;
+        let rate_dot_arm_leg2 = garm_vz_leg2 * t435
+            - (garm_vx_leg2 * t452 + garm_vy_leg2 * t462);
+        let t466 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t469 = 0.20784609690826528 * minus_c_arm_leg3;
+        let t470 = actuator_velocities[2] * actuator_velocities[2];
+        let t473 = t86 - (t469 - 0.17320508075688776);
+        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t139)
+            + 0.0672 * (s_arm_leg3 * t161)) * t165;
+        let minus_gcross_vx_leg3 = (0.11639381426862856 * t154
+            + 0.1344 * (minus_c_arm_leg3 * t161)) * t165;
+        let minus_gcross_vy_leg3 = t156 * t165;
+        let rate_cross_leg3 = gcross_vz_leg3 * t328
+            - (minus_gcross_vx_leg3 * t337 + minus_gcross_vy_leg3 * t330);
+        let t491 = 0.8660254037844387 * rate_cross_leg3;
+        let grod_vx_leg3 = (t123 * t117
+            + 0.20784609690826528 * (minus_c_arm_leg3 * t114)) * t165;
+        let minus_grod_vy_leg3 = 0.25 * t108 * t165;
+        let rate_rod_leg3 = grod_vx_leg3 * t337 - minus_grod_vy_leg3 * t330;
+        let t504 = t491 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
+        let t506 = 0.5 * rate_cross_leg3;
+        let t508 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
+        let t509 = t506 + t508;
+        let t512 = minus_c_armcross_leg3 * rate_rod_leg3;
+        let t514 = t504 * t504 + t509 * t509 + t512 * t512;
+        let t517 = 0.12 * minus_c_arm_leg3;
+        let t519 = t3 - (t517 - 0.1);
+        let t524 = t519 * t504 - t473 * t509 - t114 * t512;
+        let t528 = 1.3333333333333333 * (t491 * t508);
+        let t530 = t506 * t512;
+        let t533 = t469 * t470 + t473 * t514 + t509 * t524 + t519 * t528 + t114 * t530;
+        let t540 = t491 * t512;
+        let t544 = t504 * t524 - (t517 * t470 + t519 * t514) + t114 * t540 + t473 * t528;
+        let t552 = t473 * t530 - t519 * t540;
+        let t554 = t113 * t470 - t114 * t514 + t552 + t552;
+        let rate_dot_arm_leg3 = garm_vy_leg3 * t533 - garm_vx_leg3 * t544
+            - garm_vz_leg3 * t554;
+        let t557 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t559 = garm_vx_leg1 * t376 + garm_vx_leg2 * t466 + garm_vx_leg3 * t557;
+        let t567 = garm_vy_leg1 * t376 + garm_vy_leg2 * t466 + garm_vy_leg3 * t557
+            - t278 * t559;
+        let t578 = t318
+            * (garm_vz_leg1 * t376 + garm_vz_leg2 * t466 + garm_vz_leg3 * t557
+                - t305 * t559 - t308 * t567);
+        let t580 = t281 * t567 - t308 * t578;
+        let t584 = t238 * t559 - t278 * t580 - t305 * t578;
+        let t589 = (garm_vx_leg2 * garm_vz_leg3 - garm_vz_leg2 * garm_vx_leg3) * t231;
+        let t595 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t231;
+        let t596 = t578 + 9.81;
+        let t599 = t206 * t231;
+        let t601 = t223 * t231;
+        let t604 = t228 * t231;
+        let t610 = (garm_vz_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vz_leg2) * t231;
+        let t615 = (garm_vz_leg1 * garm_vy_leg2 - garm_vy_leg1 * garm_vz_leg2) * t231;
+        let t621 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t231;
+        let t624 = 9.81 * c_arm_leg1;
+        let t625 = 9.81 * c_arm_leg2;
+        let t626 = 9.81 * minus_c_arm_leg3;
+        let t627 = 9.81 * minus_s_arm_leg1;
+        let t628 = 9.81 * minus_s_arm_leg2;
+        let t629 = 9.81 * s_arm_leg3;
+        let t633 = grod_vy_leg1 * t589;
+        let t634 = 1.7857142857142858 * t361;
+        let t635 = c_rod_leg1 * rate_cross_leg1;
+        let t636 = t634 * t635;
+        let t637 = t633 * t636;
+        let t642 = minus_gcross_vx_leg1 * t232 + gcross_vy_leg1 * t589
+            + minus_gcross_vz_leg1 * t595;
+        let t643 = t580 - t364;
+        let rate_dot_cross_leg1 = gcross_vy_leg1 * t643
+            - minus_gcross_vx_leg1 * (t584 - t359)
+            - minus_gcross_vz_leg1 * (t578 - t373);
+        let t651 = s_rod_leg1 * rate_dot_cross_leg1;
+        let t652 = rate_rod_leg1 * t635;
+        let t653 = t651 + t652;
+        let t655 = rate_rod_leg1 * t634;
+        let t656 = c_rod_leg1 * t655;
+        let t657 = s_rod_leg1 * t653 + t656;
+        let t660 = grod_vy_leg1 * t601;
+        let t661 = t660 * t636;
+        let t666 = minus_gcross_vx_leg1 * t599 + gcross_vy_leg1 * t601
+            + minus_gcross_vz_leg1 * t604;
+        let t673 = minus_gcross_vx_leg1 * t615 + gcross_vy_leg1 * t610
+            + minus_gcross_vz_leg1 * t621;
+        let t675 = grod_vy_leg1 * t610;
+        let t676 = t675 * t636;
+        let t682 = minus_gcross_vy_leg2 * t589 - minus_gcross_vx_leg2 * t232
+            + gcross_vz_leg2 * t595;
+        let t683 = 1.7857142857142858 * t444;
+        let t684 = rate_rod_leg2 * t683;
+        let t685 = c_rod_leg2 * t684;
+        let t686 = c_rod_leg2 * rate_cross_leg2;
+        let t687 = rate_rod_leg2 * t686;
+        let t690 = t584 - t452;
+        let t692 = t580 - t462;
+        let rate_dot_cross_leg2 = gcross_vz_leg2 * (t578 + t435)
+            - (minus_gcross_vx_leg2 * t690 + minus_gcross_vy_leg2 * t692);
+        let t696 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t697 = t687 - t696;
+        let t699 = t685 - minus_s_rod_leg2 * t697;
+        let t703 = grod_vx_leg2 * t232 + minus_grod_vy_leg2 * t589;
+        let t704 = t683 * t686;
+        let t705 = t703 * t704;
+        let t711 = minus_gcross_vy_leg2 * t601 - minus_gcross_vx_leg2 * t599
+            + gcross_vz_leg2 * t604;
+        let t715 = grod_vx_leg2 * t599 + minus_grod_vy_leg2 * t601;
+        let t716 = t715 * t704;
+        let t722 = minus_gcross_vx_leg2 * t615 - minus_gcross_vy_leg2 * t610
+            - gcross_vz_leg2 * t621;
+        let t726 = grod_vx_leg2 * t615 + minus_grod_vy_leg2 * t610;
+        let t727 = t726 * t704;
+        let t733 = minus_gcross_vy_leg3 * t589 - minus_gcross_vx_leg3 * t232
+            + gcross_vz_leg3 * t595;
+        let t736 = t584 - t544;
+        let t738 = t580 + t533;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * (t578 - t554)
+            - (minus_gcross_vx_leg3 * t736 + minus_gcross_vy_leg3 * t738);
+        let t742 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t743 = c_rod_leg3 * rate_cross_leg3;
+        let t744 = rate_rod_leg3 * t743;
+        let t745 = t742 + t744;
+        let t747 = 1.7857142857142858 * t524;
+        let t748 = rate_rod_leg3 * t747;
+        let t749 = c_rod_leg3 * t748;
+        let t750 = s_rod_leg3 * t745 + t749;
+        let t754 = grod_vx_leg3 * t232 + minus_grod_vy_leg3 * t589;
+        let t755 = t747 * t743;
+        let t756 = t754 * t755;
+        let t762 = minus_gcross_vy_leg3 * t601 - minus_gcross_vx_leg3 * t599
+            + gcross_vz_leg3 * t604;
+        let t766 = grod_vx_leg3 * t599 + minus_grod_vy_leg3 * t601;
+        let t767 = t766 * t755;
+        let t773 = minus_gcross_vx_leg3 * t615 - minus_gcross_vy_leg3 * t610
+            - gcross_vz_leg3 * t621;
+        let t777 = grod_vx_leg3 * t615 + minus_grod_vy_leg3 * t610;
+        let t778 = t777 * t755;
+        let t780 = t652 + t653;
+        let t782 = c_rod_leg1 * rate_dot_cross_leg1;
+        let t783 = t782 - t655;
+        let t786 = c_rod_leg1 * t780 - s_rod_leg1 * (t655 - t783);
+        let t789 = 3.188775510204082 * (t361 * t361);
+        let t791 = t789 - t635 * t635;
+        let t800 = c_rod_leg2 * rate_dot_cross_leg2;
+        let t801 = t800 - t684;
+        let t804 = t687 + t697;
+        let t806 = minus_s_rod_leg2 * (t684 - t801) + c_rod_leg2 * t804;
+        let t809 = 3.188775510204082 * (t444 * t444);
+        let t810 = t686 * t686;
+        let t811 = t809 - t810;
+        let t820 = t744 + t745;
+        let t822 = c_rod_leg3 * rate_dot_cross_leg3;
+        let t823 = t822 - t748;
+        let t826 = c_rod_leg3 * t820 - s_rod_leg3 * (t748 - t823);
+        let t829 = 3.188775510204082 * (t524 * t524);
+        let t830 = t743 * t743;
+        let t831 = t829 - t830;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t643;
+        let t843 = rate_rod_leg1 * rate_rod_leg1;
+        let t846 = s_rod_leg1 * (t636 + rate_dot_rod_leg1) + c_rod_leg1 * (t843 - t789);
+        let t856 = rate_rod_leg2 * rate_rod_leg2;
+        let rate_dot_rod_leg2 = grod_vx_leg2 * t690 - minus_grod_vy_leg2 * t692;
+        let t864 = c_rod_leg2 * (t856 - t809)
+            - minus_s_rod_leg2 * (t704 + rate_dot_rod_leg2);
+        let rate_dot_rod_leg3 = grod_vx_leg3 * t736 - minus_grod_vy_leg3 * t738;
+        let t879 = rate_rod_leg3 * rate_rod_leg3;
+        let t882 = s_rod_leg3 * (t755 + rate_dot_rod_leg3) + c_rod_leg3 * (t879 - t829);
+        let t893 = c_rod_leg1 * t783 - t656;
+        let t901 = c_rod_leg2 * t801 - t685;
+        let t909 = c_rod_leg3 * t823 - t749;
+        let t916 = 1.7857142857142858 * t580;
+        let t929 = t704 - rate_dot_rod_leg2;
+        let t931 = minus_s_rod_leg2 * (t810 - t856) + c_rod_leg2 * t929;
+        let t942 = t755 - rate_dot_rod_leg3;
+        let t944 = s_rod_leg3 * (t830 - t879) - c_rod_leg3 * t942;
+        let t963 = 0.8928571428571429 * t194;
+        let t967 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
+        let t971 = 0.24 * c_cross_leg1;
+        let t975 = 0.24 * actuator_accelerations[0] - t624;
+        let t978 = t627 - 0.24 * t348;
+        let t981 = s_rod_leg1 * (c_cross_leg1 * t975 - s_cross_leg1 * t978);
+        let t986 = c_cross_leg1 * t978 + s_cross_leg1 * t975;
+        let t987 = c_rod_leg1 * t986;
+        let t989 = t963 * (t636 - rate_dot_rod_leg1) + t967 * (t789 + t843) - t971 * t780
+            + t642 * t981 + t633 * t987;
+        let t997 = 0.24 * actuator_accelerations[1] - t625;
+        let t1000 = t628 - 0.24 * t378;
+        let t1003 = minus_s_rod_leg2 * (c_cross_leg2 * t997 - s_cross_leg2 * t1000);
+        let t1007 = c_cross_leg2 * t1000 + s_cross_leg2 * t997;
+        let t1008 = c_rod_leg2 * t1007;
+        let t1011 = 0.8928571428571429 * t23;
+        let t1014 = 0.42857142857142855 * (t31 * s_cross_leg2);
+        let t1018 = 0.24 * c_cross_leg2;
+        let t1024 = t1011 * t929 - t1014 * (t809 + t856) - t1018 * t804 + t711 * t1003
+            - t715 * t1008;
+        let t1029 = t629 + 0.24 * t470;
+        let t1032 = t626 + 0.24 * actuator_accelerations[2];
+        let t1035 = s_rod_leg3 * (s_cross_leg3 * t1029 + c_cross_leg3 * t1032);
+        let t1039 = s_cross_leg3 * t1032 - c_cross_leg3 * t1029;
+        let t1040 = c_rod_leg3 * t1039;
+        let t1046 = 0.8928571428571429 * t108;
+        let t1049 = 0.42857142857142855 * (t89 * s_cross_leg3);
+        let t1053 = 0.24 * c_cross_leg3;
+        let t1059 = t1046 * t942 + t1049 * (t829 + t879) - t1053 * t820 - t773 * t1035
+            + t777 * t1040;
         Ok([
             [
-                t163 * t509 - t511 * t505 + t514 * t515, actuator_accelerations[0], 0.0, 0.0, -t552,
-                0.0, 0.0, t555, 0.0, 0.0, actuator_velocities[0], 0.0, 0.0,
+                t232 * t584 - t589 * t580 + t595 * t596, actuator_accelerations[0], 0.0, 0.0, -t624,
+                0.0, 0.0, -t627, 0.0, 0.0, actuator_velocities[0], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[0]), 0.0, 0.0, 1.0, 0.0, 0.0,
-                t565 * t582 + t586, t610 * t627 - t633, t661 * t678 - t684,
-                t565 * t714 - t584 * t719, t610 * t734 + t631 * t739, t661 * t754 + t682 * t759,
-                t565 * t774 - t584 * t574, t610 * t792 + t631 * t619, t661 * t810 + t682 * t670,
-                t565 * t821 - t586, t610 * t829 + t633, t661 * t837 + t684,
-                t565 * t844 - t584 * t710, t610 * t858 + t631 * t730, t661 * t872 + t682 * t750,
-                -(t584 * rate_dot_rod_leg1), t631 * rate_dot_rod_leg2, t682 * rate_dot_rod_leg3,
-                t917, -(t610 * t931 + t631 * t936), -(t661 * t963 + t682 * t968),
-                t891 * t710 + t895 * t574 + t263 * t899 + t565 * t914, t610 * t935, t661 * t967,
+                t637 - t642 * t657, t682 * t699 - t705, t733 * t750 - t756,
+                -(t642 * t786 + t633 * t791), t682 * t806 + t703 * t811, t733 * t826 + t754 * t831,
+                -(t642 * t846 + t633 * t651), t682 * t864 - t703 * t696, t733 * t882 + t754 * t742,
+                -(t642 * t893 + t637), t682 * t901 + t705, t733 * t909 + t756,
+                -(t642 * t916 + t633 * t782), t703 * t800 - t682 * t931, t733 * t944 + t754 * t822,
+                -(t633 * rate_dot_rod_leg1), t703 * rate_dot_rod_leg2, t754 * rate_dot_rod_leg3,
+                t989, t682 * t1003 - t703 * t1008, -(t733 * t1035 + t754 * t1040),
+                t963 * t782 + t967 * t651 + t351 * t971 - t642 * t986, t682 * t1007, t733 * t1039,
             ],
             [
-                -(t521 * t509 + t526 * t505 + t532 * t515), 0.0, actuator_accelerations[1], 0.0,
-                0.0, -t553, 0.0, 0.0, t556, 0.0, 0.0, actuator_velocities[1], 0.0, 0.0,
+                t599 * t584 - t601 * t580 + t604 * t596, 0.0, actuator_accelerations[1], 0.0, 0.0,
+                -t625, 0.0, 0.0, -t628, 0.0, 0.0, actuator_velocities[1], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[1]), 0.0, 0.0, 1.0, 0.0,
-                t592 * t582 + t595, t639 * t627 - t644, t690 * t678 + t695,
-                t592 * t714 - t594 * t719, t639 * t734 + t643 * t739, t690 * t754 - t694 * t759,
-                t592 * t774 - t594 * t574, t639 * t792 + t643 * t619, t690 * t810 - t694 * t670,
-                t592 * t821 - t595, t639 * t829 + t644, t690 * t837 - t695,
-                t592 * t844 - t594 * t710, t639 * t858 + t643 * t730, t690 * t872 - t694 * t750,
-                -(t594 * rate_dot_rod_leg1), t643 * rate_dot_rod_leg2, -(t694 * rate_dot_rod_leg3),
-                t594 * t915 - t592 * t909, t952, t694 * t968 - t690 * t963, t592 * t914,
-                t940 * t619 - t943 * t730 + rate_cross_leg2 * rate_cross_leg2 * t946
-                    + t639 * t935,
-                t690 * t967,
+                t661 - t666 * t657, t711 * t699 - t716, t762 * t750 - t767,
+                -(t666 * t786 + t660 * t791), t711 * t806 + t715 * t811, t762 * t826 + t766 * t831,
+                -(t666 * t846 + t660 * t651), t711 * t864 - t715 * t696, t762 * t882 + t766 * t742,
+                -(t666 * t893 + t661), t711 * t901 + t716, t762 * t909 + t767,
+                -(t666 * t916 + t660 * t782), t715 * t800 - t711 * t931, t762 * t944 + t766 * t822,
+                -(t660 * rate_dot_rod_leg1), t715 * rate_dot_rod_leg2, t766 * rate_dot_rod_leg3,
+                t666 * t981 + t660 * t987, t1024, -(t762 * t1035 + t766 * t1040), -(t666 * t986),
+                t1011 * t800 + t1014 * t696 + rate_cross_leg2 * rate_cross_leg2 * t1018
+                    + t711 * t1007,
+                t762 * t1039,
             ],
             [
-                t538 * t505 - t543 * t509 - t549 * t515, 0.0, 0.0, actuator_accelerations[2], 0.0,
-                0.0, -t554, 0.0, 0.0, t557, 0.0, 0.0, actuator_velocities[2], 0.0, 0.0,
-                ::overact::math::sign(actuator_velocities[2]), 0.0, 0.0, 1.0, t601 * t582 - t604,
-                t650 * t627 + t655, t701 * t678 - t706, t601 * t714 + t603 * t719,
-                t650 * t734 - t654 * t739, t701 * t754 + t705 * t759, t601 * t774 + t603 * t574,
-                t650 * t792 - t654 * t619, t701 * t810 + t705 * t670, t601 * t821 + t604,
-                t650 * t829 - t655, t701 * t837 + t706, t601 * t844 + t603 * t710,
-                t650 * t858 - t654 * t730, t701 * t872 + t705 * t750, t603 * rate_dot_rod_leg1,
-                -(t654 * rate_dot_rod_leg2), t705 * rate_dot_rod_leg3, -(t601 * t909 + t603 * t915),
-                t654 * t936 - t650 * t931, t987, t601 * t914, t650 * t935,
-                t975 * t670 - t978 * t750 + rate_cross_leg3 * rate_cross_leg3 * t981
-                    + t701 * t967,
+                t610 * t580 - t615 * t584 - t621 * t596, 0.0, 0.0, actuator_accelerations[2], 0.0,
+                0.0, t626, 0.0, 0.0, t629, 0.0, 0.0, actuator_velocities[2], 0.0, 0.0,
+                ::overact::math::sign(actuator_velocities[2]), 0.0, 0.0, 1.0, t673 * t657 - t676,
+                t722 * t699 + t727, t773 * t750 + t778, t673 * t786 + t675 * t791,
+                t722 * t806 - t726 * t811, t773 * t826 - t777 * t831, t673 * t846 + t675 * t651,
+                t722 * t864 + t726 * t696, t773 * t882 - t777 * t742, t673 * t893 + t676,
+                t722 * t901 - t727, t773 * t909 - t778, t673 * t916 + t675 * t782,
+                -(t722 * t931 + t726 * t800), t773 * t944 - t777 * t822, t675 * rate_dot_rod_leg1,
+                -(t726 * rate_dot_rod_leg2), -(t777 * rate_dot_rod_leg3),
+                -(t673 * t981 + t675 * t987), t722 * t1003 + t726 * t1008, t1059, t673 * t986,
+                t722 * t1007,
+                t1046 * t822 + t1049 * t742 + rate_cross_leg3 * rate_cross_leg3 * t1053
+                    + t773 * t1039,
             ],
         ])
     }
@@ -5292,7 +7943,7 @@ impl Delta {
     /// Output: 3 x 1.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 462 operations (140 additions, 315 multiplications, 7 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 477 intermediates.
+    /// 561 operations (193 additions, 352 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 564 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5303,209 +7954,271 @@ impl Delta {
         start: &[f64; 3],
     ) -> Result<[[f64; 1]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let t0 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t0);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t5 = c_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t8 = s_armcross_leg1 * c_rod_leg1;
-        let t11 = c_arm_leg1 * t8 - s_arm_leg1 * t5;
-        ::overact::guard::leg(t11, 0.89794672585951, "leg1")?;
-        let t12 = 1.0 / t11;
-        let t13 = 4.166666666666667 * t12;
-        let garm_vx_leg1 = t5 * t13;
-        let t16 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t16);
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t21 = s_armcross_leg2 * c_rod_leg2;
-        let t22 = s_armcross_leg2 * s_rod_leg2;
-        let t23 = t21 * t22;
-        let t25 = 0.5 * c_armcross_leg2;
-        let t26 = t25 * c_rod_leg2;
-        let t27 = 0.8660254037844387 * c_armcross_leg2;
-        let t30 = t27 * s_rod_leg2 + 0.5 * c_rod_leg2;
-        let t34 = 0.4849742261192857 * t21;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t37 = 0.24 * s_arm_leg2;
-        let t38 = 0.56 * t21;
-        let t41 = t34 - 0.8660254037844387 * (t37 + t38);
-        let t44 = t25 * s_rod_leg2 - 0.8660254037844387 * c_rod_leg2;
-        let t48 = 0.6272 * (t26 * t44) + 0.1568 * t23;
-        let t54 = 0.1344 * (c_arm_leg2 * t44) + 0.0672 * (s_arm_leg2 * t22);
-        let t60 = c_arm_leg2 * t21;
-        let t62 = 0.1344 * (s_arm_leg2 * t26) - 0.0672 * t60;
-        let t64 = t41 * t48 + t34 * t54 + 0.56 * t30 * t62;
-        ::overact::guard::leg(t64, 0.06758306237509017, "leg2")?;
-        let t65 = 1.0 / t64;
-        let garm_vx_leg2 = (0.2715855666268 * t23 + 0.6272 * (t26 * t30)) * t65;
-        let t69 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t69);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t74 = s_armcross_leg3 * c_rod_leg3;
-        let t75 = s_armcross_leg3 * s_rod_leg3;
-        let t76 = t74 * t75;
-        let t78 = 0.5 * c_armcross_leg3;
-        let t79 = t78 * c_rod_leg3;
-        let t80 = 0.8660254037844387 * c_armcross_leg3;
-        let t83 = t80 * s_rod_leg3 - 0.5 * c_rod_leg3;
-        let t87 = 0.4849742261192857 * t74;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t92 = t78 * s_rod_leg3 + 0.8660254037844387 * c_rod_leg3;
-        let t97 = 0.1344 * (c_arm_leg3 * t92) + 0.0672 * (s_arm_leg3 * t75);
-        let t99 = 0.24 * s_arm_leg3;
-        let t100 = 0.56 * t74;
-        let t103 = 0.8660254037844387 * (t99 + t100) - t87;
-        let t107 = 0.6272 * (t79 * t92) + 0.1568 * t76;
-        let t113 = c_arm_leg3 * t74;
-        let t115 = 0.1344 * (s_arm_leg3 * t79) - 0.0672 * t113;
-        let t117 = t87 * t97 - t103 * t107 + 0.56 * t83 * t115;
-        ::overact::guard::leg(t117, 0.06758306237509014, "leg3")?;
-        let t118 = 1.0 / t117;
-        let garm_vx_leg3 = (0.2715855666268 * t76 + 0.6272 * (t79 * t83)) * t118;
-        let t121 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.2304 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.48 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.3136 + 0.0576;
+        let t14 = 0.48 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t21 = 0.24 * c_arm_leg1;
+        let t23 = t0 - (0.2 + t21);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = t23 * t25;
+        let t28 = pose[1] + 0.04330127018922194;
+        let t29 = t28 - 0.17320508075688776;
+        let t31 = pose[0] - 0.025;
+        let t32 = t31 + 0.1;
+        let t33 = 0.5 * t32;
+        let t34 = 0.8660254037844387 * t29 - t33;
+        let t37 = 0.2304 * (t34 * t34 + t3);
+        let t38 = 1.0 / t37;
+        let t39 = 0.48 * t34;
+        let t40 = t32 * t32;
+        let t43 = t40 + t29 * t29 + t3;
+        let t45 = t43 - 0.3136 + 0.0576;
+        let t48 = t37 - t45 * t45;
+        ::overact::guard::reach(t48, "leg2")?;
+        let t49 = ::overact::math::sqrt(t48);
+        let c_arm_leg2 = t38 * (t39 * t45 - t14 * t49);
+        let t54 = t34 - 0.24 * c_arm_leg2;
+        let t55 = 0.8660254037844387 * t32;
+        let t57 = t55 + 0.5 * t29;
+        let t58 = t57 * t57;
+        let t62 = 1.0 - 3.188775510204082 * t58;
+        ::overact::guard::reach(t62, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t62);
+        let c_cross_leg2 = (t43 - (0.0576 + t58) - 0.3136 * t62) / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t38 * (t14 * t45 + t39 * t49);
+        let s_cross_leg2 = 2.0833333333333335 * t49 / (0.56 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t78 = t57 * c_armcross_leg2;
+        let t81 = 1.5464739353293548 * t78 - 0.5 * c_rod_leg2;
+        let t84 = 0.24 * minus_s_arm_leg2;
+        let t85 = pose[2] - t84;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t57;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t90 = minus_s_rod_leg2 * s_armcross_leg2;
+        let t91 = t85 * t90;
+        let t94 = 0.20784609690826528 * minus_s_arm_leg2;
+        let t97 = 0.8928571428571429 * t78 + 0.8660254037844387 * c_rod_leg2;
+        let t101 = t54 * (0.56 * t97) - 0.28 * t91;
+        let t106 = minus_s_arm_leg2 * t90;
+        let t108 = 0.1344 * (c_arm_leg2 * t97) - 0.0672 * t106;
+        let t113 = t94 * t101 - 0.8660254037844387 * t85 * t108 - 0.14 * (t49 * t81);
+        ::overact::guard::leg(t113, 0.06758306237512474, "leg2")?;
+        let t114 = 1.0 / t113;
+        let garm_vx_leg2 = (t54 * (0.56 * t81) - 0.4849742261192857 * t91) * t114;
+        let t118 = pose[1] - 0.04330127018922194;
+        let t119 = t118 + 0.17320508075688776;
+        let t121 = t33 + 0.8660254037844387 * t119;
+        let t124 = 0.2304 * (t121 * t121 + t3);
+        let t125 = 1.0 / t124;
+        let t126 = 0.48 * t121;
+        let t129 = t40 + t119 * t119 + t3;
+        let t131 = t129 - 0.3136 + 0.0576;
+        let t134 = t124 - t131 * t131;
+        ::overact::guard::reach(t134, "leg3")?;
+        let t135 = ::overact::math::sqrt(t134);
+        let minus_c_arm_leg3 = t125 * (t126 * t131 + t14 * t135);
+        let t140 = t121 - 0.24 * minus_c_arm_leg3;
+        let t142 = t55 - 0.5 * t119;
+        let t143 = t142 * t142;
+        let t147 = 1.0 - 3.188775510204082 * t143;
+        ::overact::guard::reach(t147, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t147);
+        let c_cross_leg3 = (t129 - (0.0576 + t143) - 0.3136 * t147)
+            / (0.2688 * c_rod_leg3);
+        let s_arm_leg3 = t125 * (t126 * t135 - t14 * t131);
+        let s_cross_leg3 = 2.0833333333333335 * t135 / (0.56 * c_rod_leg3);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t163 = t142 * minus_c_armcross_leg3;
+        let t166 = 1.5464739353293548 * t163 + 0.5 * c_rod_leg3;
+        let t169 = 0.24 * s_arm_leg3;
+        let t170 = pose[2] + t169;
+        let s_rod_leg3 = 1.7857142857142858 * t142;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t175 = s_rod_leg3 * s_armcross_leg3;
+        let t176 = t170 * t175;
+        let t179 = 0.20784609690826528 * s_arm_leg3;
+        let t182 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t163;
+        let t186 = t140 * (0.56 * t182) + 0.28 * t176;
+        let t191 = s_arm_leg3 * t175;
+        let t193 = 0.1344 * (minus_c_arm_leg3 * t182) - 0.0672 * t191;
+        let t198 = t179 * t186 + 0.8660254037844387 * t170 * t193 + 0.14 * (t135 * t166);
+        ::overact::guard::leg(t198, 0.06758306237512474, "leg3")?;
+        let t199 = 1.0 / t198;
+        let garm_vx_leg3 = (t140 * (0.56 * t166) - 0.4849742261192857 * t176) * t199;
+        let t202 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t121, 14.8697301728973, "actuators")?;
-        ::overact::guard::platform(t121, 14.8697301728973, "actuators")?;
-        let t122 = 1.0 / t121;
-        let minus_garm_vz_leg1 = t8 * t13;
-        let t125 = actuator_velocities[0] * actuator_velocities[0];
-        let t128 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.7857142857142858 * t128;
-        let garm_vy_leg1 = s_rod_leg1 * t13;
-        let garm_vy_leg2 = t48 * t65;
-        let minus_garm_vy_leg3 = t107 * t118;
-        let t142 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
-            - garm_vx_leg3 * minus_garm_vy_leg3;
-        let t143 = t142 * t122;
-        let t145 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + minus_garm_vy_leg3 * minus_garm_vy_leg3 - t142 * t143;
-        ::overact::guard::platform(t145, 14.869730172897306, "actuators")?;
-        ::overact::guard::platform(t145, 14.869730172897306, "actuators")?;
-        let t146 = 1.0 / t145;
-        let t156 = garm_vx_leg1 * actuator_velocities[0]
+        ::overact::guard::platform(t202, 14.869730172882845, "actuators")?;
+        ::overact::guard::platform(t202, 14.869730172882845, "actuators")?;
+        let t203 = 1.0 / t202;
+        let t204 = 0.48 * t24;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t212 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t212, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t212);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t212) / (0.2688 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t226 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t204
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t226)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t226));
+        let garm_vy_leg1 = pose[1] * t25;
+        let garm_vy_leg2 = t101 * t114;
+        let garm_vy_leg3 = t186 * t199;
+        let t249 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3;
+        let t250 = t249 * t203;
+        let t252 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t249 * t250;
+        ::overact::guard::platform(t252, 14.869730172882843, "actuators")?;
+        ::overact::guard::platform(t252, 14.869730172882843, "actuators")?;
+        let t253 = 1.0 / t252;
+        let t263 = garm_vx_leg1 * actuator_velocities[0]
             + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2];
-        let t158 = garm_vy_leg1 * actuator_velocities[0]
+        let t265 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
-            - minus_garm_vy_leg3 * actuator_velocities[2] - t156 * t143;
-        let garm_vz_leg2 = (0.1568 * (t30 * t21) - 0.2715855666268 * (t44 * t21)) * t65;
-        let minus_garm_vz_leg3 = (0.2715855666268 * (t92 * t74) - 0.1568 * (t83 * t74))
-            * t118;
-        let t181 = garm_vx_leg2 * garm_vz_leg2 - garm_vx_leg1 * minus_garm_vz_leg1
-            - garm_vx_leg3 * minus_garm_vz_leg3;
-        let t182 = t181 * t122;
-        let t184 = garm_vy_leg2 * garm_vz_leg2 - garm_vy_leg1 * minus_garm_vz_leg1
-            + minus_garm_vy_leg3 * minus_garm_vz_leg3 - t142 * t182;
-        let t185 = t184 * t146;
-        let t194 = minus_garm_vz_leg1 * minus_garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t181 * t182 - t184 * t185;
-        ::overact::guard::platform(t194, 34.85535020139291, "actuators")?;
-        ::overact::guard::platform(t194, 34.85535020139291, "actuators")?;
-        let t195 = 1.0 / t194;
-        let t205 = t195
-            * (garm_vz_leg2 * actuator_velocities[1]
-                - minus_garm_vz_leg1 * actuator_velocities[0]
-                - minus_garm_vz_leg3 * actuator_velocities[2] - t156 * t182
-                - t185 * t158);
-        let t207 = t146 * t158 - t185 * t205;
-        let rate_rod_leg1 = grod_vy_leg1 * t207;
-        let t209 = s_armcross_leg1 * rate_rod_leg1;
-        let t211 = 1.7857142857142858 * t12;
-        let gcross_vz_leg1 = s_arm_leg1 * t211;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t211;
-        let t219 = t156 * t122 - t143 * t207 - t182 * t205;
-        let minus_gcross_vy_leg1 = t211
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t128)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t128));
-        let rate_cross_leg1 = gcross_vz_leg1 * t205
-            - (minus_gcross_vx_leg1 * t219 + minus_gcross_vy_leg1 * t207);
-        let t234 = c_armcross_leg1 * rate_rod_leg1;
-        let t236 = t209 * t209 + rate_cross_leg1 * rate_cross_leg1 + t234 * t234;
-        let t239 = 0.56 * s_rod_leg1;
-        let t241 = t239 * (rate_cross_leg1 * t234);
-        let t246 = t239 * (rate_cross_leg1 * t209);
-        let t260 = garm_vx_leg1
-            * (t246 - (0.24 * c_arm_leg1 * t125 + 0.56 * t5 * t236) + t246)
-            + garm_vy_leg1 * (rate_cross_leg1 * (t239 * rate_cross_leg1) - t239 * t236);
-        let rate_dot_arm_leg1 = minus_garm_vz_leg1
-            * (0.24 * s_arm_leg1 * t125 + 0.56 * t8 * t236 + t241 + t241) - t260;
-        let t262 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t265 = actuator_velocities[1] * actuator_velocities[1];
-        let t268 = t26 + 0.8660254037844387 * s_rod_leg2;
-        let t269 = 0.56 * t268;
-        let gcross_vx_leg2 = (0.56 * t22 * t41 - 0.1344 * (c_arm_leg2 * t30)) * t65;
-        let minus_gcross_vy_leg2 = t54 * t65;
-        let minus_gcross_vz_leg2 = (0.56 * t44 * t41 + 0.0672 * (s_arm_leg2 * t30))
-            * t65;
-        let rate_cross_leg2 = gcross_vx_leg2 * t219 - minus_gcross_vy_leg2 * t207
-            - minus_gcross_vz_leg2 * t205;
-        let t288 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (1.12 * t26 * t41 + 0.11639381426862856 * t60) * t65;
-        let minus_grod_vy_leg2 = t62 * t65;
-        let rate_rod_leg2 = grod_vx_leg2 * t219 - minus_grod_vy_leg2 * t207;
-        let t300 = t288 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t303 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t304 = 0.5 * rate_cross_leg2;
-        let t305 = t303 - t304;
-        let t308 = c_armcross_leg2 * rate_rod_leg2;
-        let t310 = t300 * t300 + t305 * t305 + t308 * t308;
-        let t316 = t27 * c_rod_leg2 - 0.5 * s_rod_leg2;
-        let t317 = 0.56 * t316;
-        let t321 = t269 * t300 + t317 * t305 - t38 * t308;
-        let t324 = t288 * t303;
-        let t327 = t288 * t308;
-        let t330 = 0.12 * c_arm_leg2 * t265 + t269 * t310 - t300 * t321
-            + 0.7466666666666667 * (t316 * t324) - t38 * t327;
-        let t340 = t304 * t308;
-        let t343 = t305 * t321 - (0.20784609690826528 * c_arm_leg2 * t265 + t317 * t310)
-            + 0.7466666666666667 * (t268 * t324) - t38 * t340;
-        let t351 = t269 * t327 - t317 * t340;
-        let minus_rate_dot_arm_leg2 = garm_vx_leg2 * t330 + garm_vy_leg2 * t343
-            + garm_vz_leg2 * (t37 * t265 + t38 * t310 + t351 + t351);
-        let t356 = actuator_accelerations[1] + minus_rate_dot_arm_leg2;
-        let t360 = actuator_velocities[2] * actuator_velocities[2];
-        let t364 = t80 * c_rod_leg3 + 0.5 * s_rod_leg3;
-        let t365 = 0.56 * t364;
-        let gcross_vy_leg3 = t97 * t118;
-        let minus_gcross_vx_leg3 = (0.56 * t75 * t103 + 0.1344 * (c_arm_leg3 * t83))
-            * t118;
-        let gcross_vz_leg3 = (0.56 * t92 * t103 - 0.0672 * (s_arm_leg3 * t83)) * t118;
-        let rate_cross_leg3 = gcross_vy_leg3 * t207 - minus_gcross_vx_leg3 * t219
-            + gcross_vz_leg3 * t205;
-        let t384 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (0.11639381426862856 * t113 - 1.12 * t79 * t103) * t118;
-        let grod_vy_leg3 = t115 * t118;
-        let rate_rod_leg3 = grod_vx_leg3 * t219 + grod_vy_leg3 * t207;
-        let t396 = t384 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t398 = 0.5 * rate_cross_leg3;
-        let t400 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t401 = t398 + t400;
-        let t404 = c_armcross_leg3 * rate_rod_leg3;
-        let t406 = t396 * t396 + t401 * t401 + t404 * t404;
-        let t410 = 0.8660254037844387 * s_rod_leg3 - t79;
-        let t411 = 0.56 * t410;
-        let t416 = t411 * t396 + t365 * t401 - t100 * t404;
-        let t419 = t384 * t400;
-        let t422 = t398 * t404;
-        let t425 = 0.20784609690826528 * c_arm_leg3 * t360 + t365 * t406 - t401 * t416
-            - (0.7466666666666667 * (t410 * t419) + t100 * t422);
-        let t433 = t384 * t404;
-        let t438 = 0.12 * c_arm_leg3 * t360 - t411 * t406 + t396 * t416 + t100 * t433
-            - 0.7466666666666667 * (t364 * t419);
-        let t446 = t365 * t422 + t411 * t433;
-        let rate_dot_arm_leg3 = minus_garm_vy_leg3 * t425 - garm_vx_leg3 * t438
-            + minus_garm_vz_leg3 * (t99 * t360 + t100 * t406 + t446 + t446);
-        let t451 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t453 = garm_vx_leg1 * t262 + garm_vx_leg2 * t356 + garm_vx_leg3 * t451;
-        let t461 = garm_vy_leg1 * t262 + garm_vy_leg2 * t356 - minus_garm_vy_leg3 * t451
-            - t143 * t453;
-        let t472 = t195
-            * (garm_vz_leg2 * t356 - minus_garm_vz_leg1 * t262
-                - minus_garm_vz_leg3 * t451 - t182 * t453 - t185 * t461);
-        let t474 = t146 * t461 - t185 * t472;
-        Ok([[t122 * t453 - t143 * t474 - t182 * t472], [t474], [t472 + 9.81]])
+            + garm_vy_leg3 * actuator_velocities[2] - t263 * t250;
+        let t267 = 0.24 * minus_s_arm_leg1;
+        let t268 = pose[2] - t267;
+        let garm_vz_leg1 = t268 * t25;
+        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t85) * t114;
+        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t170) * t199;
+        let t285 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3;
+        let t286 = t285 * t203;
+        let t288 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 - t249 * t286;
+        let t289 = t288 * t253;
+        let t298 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 - t285 * t286 - t288 * t289;
+        ::overact::guard::platform(t298, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t298, 34.855350201355726, "actuators")?;
+        let t299 = 1.0 / t298;
+        let t309 = t299
+            * (garm_vz_leg1 * actuator_velocities[0]
+                + garm_vz_leg2 * actuator_velocities[1]
+                + garm_vz_leg3 * actuator_velocities[2] - t263 * t286 - t289 * t265);
+        let t311 = t253 * t265 - t289 * t309;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t204;
+        let t318 = t263 * t203 - t250 * t311 - t286 * t309;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t204;
+        let rate_cross_leg1 = gcross_vy_leg1 * t311 - minus_gcross_vx_leg1 * t318
+            - minus_gcross_vz_leg1 * t309;
+        let grod_vy_leg1 = 1.7857142857142858 * t226;
+        let rate_rod_leg1 = grod_vy_leg1 * t311;
+        let t326 = s_armcross_leg1 * rate_rod_leg1;
+        let t328 = pose[1] * (rate_cross_leg1 * t326);
+        let t329 = actuator_velocities[0] * actuator_velocities[0];
+        let t334 = c_armcross_leg1 * rate_rod_leg1;
+        let t336 = t326 * t326 + rate_cross_leg1 * rate_cross_leg1 + t334 * t334;
+        let t347 = garm_vx_leg1 * (t328 - (t21 * t329 + t23 * t336) + t328)
+            + garm_vy_leg1
+                * (rate_cross_leg1 * (pose[1] * rate_cross_leg1) - pose[1] * t336);
+        let t349 = pose[1] * (rate_cross_leg1 * t334);
+        let minus_rate_dot_arm_leg1 = t347
+            + garm_vz_leg1 * (t349 - (t267 * t329 + t268 * t336) + t349);
+        let t357 = actuator_accelerations[0] + minus_rate_dot_arm_leg1;
+        let t359 = actuator_velocities[1] * actuator_velocities[1];
+        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t81)
+            - 0.11639381426862856 * (minus_s_arm_leg2 * t97)) * t114;
+        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t81)
+            - 0.11639381426862856 * t106) * t114;
+        let minus_gcross_vy_leg2 = t108 * t114;
+        let rate_cross_leg2 = gcross_vz_leg2 * t309
+            - (minus_gcross_vx_leg2 * t318 + minus_gcross_vy_leg2 * t311);
+        let t378 = 0.8660254037844387 * rate_cross_leg2;
+        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t85) - t54 * t94) * t114;
+        let minus_grod_vy_leg2 = 0.25 * t49 * t114;
+        let rate_rod_leg2 = grod_vx_leg2 * t318 - minus_grod_vy_leg2 * t311;
+        let t391 = t378 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
+        let t394 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
+        let t395 = 0.5 * rate_cross_leg2;
+        let t396 = t394 - t395;
+        let t399 = c_armcross_leg2 * rate_rod_leg2;
+        let t401 = t391 * t391 + t396 * t396 + t399 * t399;
+        let t404 = 0.20784609690826528 * c_arm_leg2;
+        let t406 = t28 - (0.17320508075688776 + t404);
+        let t407 = t395 * t399;
+        let t409 = 0.12 * c_arm_leg2;
+        let t411 = t31 + 0.1 + t409;
+        let t412 = t378 * t399;
+        let t414 = t406 * t407 + t411 * t412;
+        let t425 = t406 * t396 - t411 * t391 + t85 * t399;
+        let t430 = 1.3333333333333333 * (t378 * t394);
+        let t434 = garm_vx_leg2
+            * (t409 * t359 - t411 * t401 - t391 * t425 + t85 * t412 + t406 * t430);
+        let t444 = garm_vy_leg2
+            * (t396 * t425 - (t404 * t359 + t406 * t401) + t85 * t407 - t411 * t430);
+        let rate_dot_arm_leg2 = garm_vz_leg2 * (t84 * t359 + t85 * t401 + t414 + t414)
+            - (t434 + t444);
+        let t447 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t450 = 0.20784609690826528 * minus_c_arm_leg3;
+        let t451 = actuator_velocities[2] * actuator_velocities[2];
+        let t454 = t118 - (t450 - 0.17320508075688776);
+        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t182)
+            + 0.0672 * (s_arm_leg3 * t166)) * t199;
+        let minus_gcross_vx_leg3 = (0.11639381426862856 * t191
+            + 0.1344 * (minus_c_arm_leg3 * t166)) * t199;
+        let minus_gcross_vy_leg3 = t193 * t199;
+        let rate_cross_leg3 = gcross_vz_leg3 * t309
+            - (minus_gcross_vx_leg3 * t318 + minus_gcross_vy_leg3 * t311);
+        let t472 = 0.8660254037844387 * rate_cross_leg3;
+        let grod_vx_leg3 = (t140 * t179
+            + 0.20784609690826528 * (minus_c_arm_leg3 * t170)) * t199;
+        let minus_grod_vy_leg3 = 0.25 * t135 * t199;
+        let rate_rod_leg3 = grod_vx_leg3 * t318 - minus_grod_vy_leg3 * t311;
+        let t485 = t472 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
+        let t487 = 0.5 * rate_cross_leg3;
+        let t489 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
+        let t490 = t487 + t489;
+        let t493 = minus_c_armcross_leg3 * rate_rod_leg3;
+        let t495 = t485 * t485 + t490 * t490 + t493 * t493;
+        let t498 = 0.12 * minus_c_arm_leg3;
+        let t500 = t31 - (t498 - 0.1);
+        let t505 = t500 * t485 - t454 * t490 - t170 * t493;
+        let t509 = 1.3333333333333333 * (t472 * t489);
+        let t511 = t487 * t493;
+        let t515 = garm_vy_leg3
+            * (t450 * t451 + t454 * t495 + t490 * t505 + t500 * t509 + t170 * t511);
+        let t521 = t472 * t493;
+        let t526 = garm_vx_leg3
+            * (t485 * t505 - (t498 * t451 + t500 * t495) + t170 * t521 + t454 * t509);
+        let t533 = t454 * t511 - t500 * t521;
+        let rate_dot_arm_leg3 = t515 - t526
+            - garm_vz_leg3 * (t169 * t451 - t170 * t495 + t533 + t533);
+        let t538 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t540 = garm_vx_leg1 * t357 + garm_vx_leg2 * t447 + garm_vx_leg3 * t538;
+        let t548 = garm_vy_leg1 * t357 + garm_vy_leg2 * t447 + garm_vy_leg3 * t538
+            - t250 * t540;
+        let t559 = t299
+            * (garm_vz_leg1 * t357 + garm_vz_leg2 * t447 + garm_vz_leg3 * t538
+                - t286 * t540 - t289 * t548);
+        let t561 = t253 * t548 - t289 * t559;
+        Ok([[t203 * t540 - t250 * t561 - t286 * t559], [t561], [t559 + 9.81]])
     }
     /// The payload's columns of case 2, eq. (38).
     ///
@@ -5517,7 +8230,7 @@ impl Delta {
     /// Output: 3 x 1.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 172 operations (44 additions, 124 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 187 intermediates.
+    /// 266 operations (87 additions, 168 multiplications, 11 divisions), 5 square roots, 0 trigonometric pairs, 0 signs, 268 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5526,95 +8239,143 @@ impl Delta {
         _twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 1]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let t0 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t0);
-        let t3 = 0.5 * c_armcross_leg2;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t6 = t3 * c_rod_leg2;
-        let t9 = t3 * s_rod_leg2 - 0.8660254037844387 * c_rod_leg2;
-        let t12 = s_armcross_leg2 * c_rod_leg2;
-        let t13 = s_armcross_leg2 * s_rod_leg2;
-        let t14 = t12 * t13;
-        let t16 = 0.6272 * (t6 * t9) + 0.1568 * t14;
-        let t17 = 0.4849742261192857 * t12;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t32 = (t17 - 0.8660254037844387 * (0.24 * s_arm_leg2 + 0.56 * t12)) * t16
-            + t17 * (0.1344 * (c_arm_leg2 * t9) + 0.0672 * (s_arm_leg2 * t13));
-        let t36 = 0.8660254037844387 * c_armcross_leg2 * s_rod_leg2 + 0.5 * c_rod_leg2;
-        let t44 = t32
-            + 0.56 * t36 * (0.1344 * (s_arm_leg2 * t6) - 0.0672 * (c_arm_leg2 * t12));
-        ::overact::guard::leg(t44, 0.06758306237509017, "leg2")?;
-        let t45 = 1.0 / t44;
-        let garm_vy_leg2 = t16 * t45;
-        let t47 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t47);
-        let t50 = 0.5 * c_armcross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t55 = t50 * s_rod_leg3 + 0.8660254037844387 * c_rod_leg3;
-        let t56 = s_armcross_leg3 * c_rod_leg3;
-        let t62 = 0.8660254037844387 * c_armcross_leg3 * s_rod_leg3 - 0.5 * c_rod_leg3;
-        let t66 = 0.4849742261192857 * t56;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t71 = s_armcross_leg3 * s_rod_leg3;
-        let t81 = t50 * c_rod_leg3;
-        let t84 = t56 * t71;
-        let t86 = 0.6272 * (t81 * t55) + 0.1568 * t84;
-        let t88 = t66 * (0.1344 * (c_arm_leg3 * t55) + 0.0672 * (s_arm_leg3 * t71))
-            - (0.8660254037844387 * (0.24 * s_arm_leg3 + 0.56 * t56) - t66) * t86;
-        let t96 = t88
-            + 0.56 * t62 * (0.1344 * (s_arm_leg3 * t81) - 0.0672 * (c_arm_leg3 * t56));
-        ::overact::guard::leg(t96, 0.06758306237509014, "leg3")?;
-        let t97 = 1.0 / t96;
-        let minus_garm_vz_leg3 = (0.2715855666268 * (t55 * t56) - 0.1568 * (t62 * t56))
-            * t97;
-        let garm_vz_leg2 = (0.1568 * (t36 * t12) - 0.2715855666268 * (t9 * t12)) * t45;
-        let minus_garm_vy_leg3 = t86 * t97;
-        let t108 = garm_vy_leg2 * minus_garm_vz_leg3 - garm_vz_leg2 * minus_garm_vy_leg3;
-        let t109 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t109);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        let t114 = c_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t117 = s_armcross_leg1 * c_rod_leg1;
-        let t120 = c_arm_leg1 * t117 - s_arm_leg1 * t114;
-        ::overact::guard::leg(t120, 0.89794672585951, "leg1")?;
-        let t121 = 4.166666666666667 / t120;
-        let garm_vx_leg1 = t114 * t121;
-        let garm_vy_leg1 = s_rod_leg1 * t121;
-        let garm_vx_leg3 = (0.2715855666268 * t84 + 0.6272 * (t81 * t62)) * t97;
-        let garm_vx_leg2 = (0.2715855666268 * t14 + 0.6272 * (t6 * t36)) * t45;
-        let t137 = garm_vz_leg2 * garm_vx_leg3 + garm_vx_leg2 * minus_garm_vz_leg3;
-        let minus_garm_vz_leg1 = t117 * t121;
-        let t143 = garm_vy_leg2 * garm_vx_leg3 + garm_vx_leg2 * minus_garm_vy_leg3;
-        let t145 = garm_vx_leg1 * t108 - garm_vy_leg1 * t137 - minus_garm_vz_leg1 * t143;
-        ::overact::guard::platform(t145, 87.78853732246624, "kept actuators")?;
-        ::overact::guard::platform(t145, 87.78853732246624, "kept actuators")?;
-        ::overact::guard::platform(t145, 87.78853732246624, "kept actuators")?;
-        let t146 = 1.0 / t145;
-        let t153 = acceleration[2] + 9.81;
-        let t166 = (garm_vy_leg1 * minus_garm_vz_leg3
-            + minus_garm_vz_leg1 * minus_garm_vy_leg3) * t146 * acceleration[0]
-            + (minus_garm_vz_leg1 * garm_vx_leg3 - garm_vx_leg1 * minus_garm_vz_leg3)
-                * t146 * acceleration[1];
-        let t183 = (garm_vx_leg1 * garm_vz_leg2 + minus_garm_vz_leg1 * garm_vx_leg2)
-            * t146 * acceleration[1]
-            - (garm_vy_leg1 * garm_vz_leg2 + minus_garm_vz_leg1 * garm_vy_leg2) * t146
+        let t1 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t4 = pose[0] - 0.025 + 0.1;
+        let t5 = 0.5 * t4;
+        let t6 = 0.8660254037844387 * t1 - t5;
+        let t8 = pose[2] * pose[2];
+        let t10 = 0.2304 * (t6 * t6 + t8);
+        let t11 = 1.0 / t10;
+        let t12 = 0.48 * t6;
+        let t13 = t4 * t4;
+        let t16 = t13 + t1 * t1 + t8;
+        let t18 = t16 - 0.3136 + 0.0576;
+        let t20 = 0.48 * pose[2];
+        let t22 = t10 - t18 * t18;
+        ::overact::guard::reach(t22, "leg2")?;
+        let t23 = ::overact::math::sqrt(t22);
+        let c_arm_leg2 = t11 * (t12 * t18 - t20 * t23);
+        let t28 = t6 - 0.24 * c_arm_leg2;
+        let t29 = 0.8660254037844387 * t4;
+        let t31 = t29 + 0.5 * t1;
+        let t32 = t31 * t31;
+        let t36 = 1.0 - 3.188775510204082 * t32;
+        ::overact::guard::reach(t36, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t36);
+        let c_cross_leg2 = (t16 - (0.0576 + t32) - 0.3136 * t36) / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t11 * (t20 * t18 + t12 * t23);
+        let s_cross_leg2 = 2.0833333333333335 * t23 / (0.56 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t52 = t31 * c_armcross_leg2;
+        let t55 = 0.8928571428571429 * t52 + 0.8660254037844387 * c_rod_leg2;
+        let t59 = pose[2] - 0.24 * minus_s_arm_leg2;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t31;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t64 = minus_s_rod_leg2 * s_armcross_leg2;
+        let t65 = t59 * t64;
+        let t67 = t28 * (0.56 * t55) - 0.28 * t65;
+        let t77 = 0.20784609690826528 * minus_s_arm_leg2 * t67
+            - 0.8660254037844387 * t59
+                * (0.1344 * (c_arm_leg2 * t55) - 0.0672 * (minus_s_arm_leg2 * t64));
+        let t80 = 1.5464739353293548 * t52 - 0.5 * c_rod_leg2;
+        let t83 = t77 - 0.14 * (t23 * t80);
+        ::overact::guard::leg(t83, 0.06758306237512474, "leg2")?;
+        let t84 = 1.0 / t83;
+        let garm_vy_leg2 = t67 * t84;
+        let t87 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t89 = t29 - 0.5 * t87;
+        let t90 = t89 * t89;
+        let t92 = 1.0 - 3.188775510204082 * t90;
+        ::overact::guard::reach(t92, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t92);
+        let t95 = t5 + 0.8660254037844387 * t87;
+        let t98 = 0.2304 * (t95 * t95 + t8);
+        let t99 = 1.0 / t98;
+        let t100 = 0.48 * t95;
+        let t103 = t13 + t87 * t87 + t8;
+        let t105 = t103 - 0.3136 + 0.0576;
+        let t107 = t98 - t105 * t105;
+        ::overact::guard::reach(t107, "leg3")?;
+        let t108 = ::overact::math::sqrt(t107);
+        let s_arm_leg3 = t99 * (t100 * t108 - t20 * t105);
+        let t114 = pose[2] + 0.24 * s_arm_leg3;
+        let minus_c_arm_leg3 = t99 * (t100 * t105 + t20 * t108);
+        let t123 = t95 - 0.24 * minus_c_arm_leg3;
+        let c_cross_leg3 = (t103 - (0.0576 + t90) - 0.3136 * t92)
+            / (0.2688 * c_rod_leg3);
+        let s_cross_leg3 = 2.0833333333333335 * t108 / (0.56 * c_rod_leg3);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t137 = t89 * minus_c_armcross_leg3;
+        let t139 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t137;
+        let s_rod_leg3 = 1.7857142857142858 * t89;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t146 = s_rod_leg3 * s_armcross_leg3;
+        let t147 = t114 * t146;
+        let t149 = t123 * (0.56 * t139) + 0.28 * t147;
+        let t158 = 0.20784609690826528 * s_arm_leg3 * t149
+            + 0.8660254037844387 * t114
+                * (0.1344 * (minus_c_arm_leg3 * t139) - 0.0672 * (s_arm_leg3 * t146));
+        let t161 = 1.5464739353293548 * t137 + 0.5 * c_rod_leg3;
+        let t164 = t158 + 0.14 * (t108 * t161);
+        ::overact::guard::leg(t164, 0.06758306237512474, "leg3")?;
+        let t165 = 1.0 / t164;
+        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t114) * t165;
+        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t59) * t84;
+        let garm_vy_leg3 = t149 * t165;
+        let garm_vx_leg2 = (t28 * (0.56 * t80) - 0.4849742261192857 * t65) * t84;
+        let t179 = pose[0] + 0.05;
+        let t180 = t179 - 0.2;
+        let t181 = t180 * t180;
+        let t183 = 0.2304 * (t181 + t8);
+        let t184 = 1.0 / t183;
+        let t189 = t181 + pose[1] * pose[1] + t8 - 0.3136 + 0.0576;
+        let t191 = 0.48 * t180;
+        let t193 = t183 - t189 * t189;
+        ::overact::guard::reach(t193, "leg1")?;
+        let t194 = ::overact::math::sqrt(t193);
+        ::overact::guard::leg(t194, 0.24136807991115974, "leg1")?;
+        let minus_s_arm_leg1 = t184 * (t20 * t189 + t191 * t194);
+        let t200 = 2.0 / t194;
+        let garm_vz_leg1 = (pose[2] - 0.24 * minus_s_arm_leg1) * t200;
+        let garm_vy_leg1 = pose[1] * t200;
+        let t205 = garm_vz_leg1 * garm_vy_leg3 - garm_vy_leg1 * garm_vz_leg3;
+        let garm_vx_leg3 = (t123 * (0.56 * t161) - 0.4849742261192857 * t147) * t165;
+        let c_arm_leg1 = t184 * (t191 * t189 - t20 * t194);
+        let garm_vx_leg1 = (t179 - (0.2 + 0.24 * c_arm_leg1)) * t200;
+        let t222 = garm_vz_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vz_leg3;
+        let t227 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
+        let t229 = garm_vx_leg2 * t205 - garm_vy_leg2 * t222 + garm_vz_leg2 * t227;
+        ::overact::guard::platform(t229, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t229, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t229, 87.78853732233405, "kept actuators")?;
+        let t230 = 1.0 / t229;
+        let t238 = (garm_vy_leg2 * garm_vz_leg3 - garm_vz_leg2 * garm_vy_leg3) * t230
+            * acceleration[0]
+            - (garm_vx_leg2 * garm_vz_leg3 - garm_vz_leg2 * garm_vx_leg3) * t230
+                * acceleration[1];
+        let t243 = acceleration[2] + 9.81;
+        let t264 = (garm_vz_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vz_leg2) * t230
+            * acceleration[1]
+            - (garm_vz_leg1 * garm_vy_leg2 - garm_vy_leg1 * garm_vz_leg2) * t230
                 * acceleration[0];
         Ok([
             [
-                t108 * t146 * acceleration[0] - t137 * t146 * acceleration[1]
-                    + t143 * t146 * t153,
+                t238
+                    + (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t230
+                        * t243,
             ],
             [
-                -(t166
-                    + (garm_vx_leg1 * minus_garm_vy_leg3 + garm_vy_leg1 * garm_vx_leg3)
-                        * t146 * t153),
+                t205 * t230 * acceleration[0] - t222 * t230 * acceleration[1]
+                    + t227 * t230 * t243,
             ],
             [
-                t183
-                    - (garm_vx_leg1 * garm_vy_leg2 - garm_vy_leg1 * garm_vx_leg2) * t146
-                        * t153,
+                t264
+                    - (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t230
+                        * t243,
             ],
         ])
     }
@@ -5626,7 +8387,7 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 129 operations (32 additions, 94 multiplications, 3 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 144 intermediates.
+    /// 223 operations (75 additions, 138 multiplications, 10 divisions), 5 square roots, 0 trigonometric pairs, 0 signs, 225 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5634,71 +8395,119 @@ impl Delta {
         pose: &[f64; 3],
         torques: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let t0 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t0);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        let t5 = c_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t8 = s_armcross_leg1 * c_rod_leg1;
-        let t11 = c_arm_leg1 * t8 - s_arm_leg1 * t5;
-        ::overact::guard::leg(t11, 0.89794672585951, "leg1")?;
-        let t12 = 4.166666666666667 / t11;
-        let garm_vx_leg1 = t5 * t12;
-        let t15 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t15);
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t20 = s_armcross_leg2 * c_rod_leg2;
-        let t21 = s_armcross_leg2 * s_rod_leg2;
-        let t22 = t20 * t21;
-        let t24 = 0.5 * c_armcross_leg2;
-        let t25 = t24 * c_rod_leg2;
-        let t29 = 0.8660254037844387 * c_armcross_leg2 * s_rod_leg2 + 0.5 * c_rod_leg2;
-        let t33 = 0.4849742261192857 * t20;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t43 = t24 * s_rod_leg2 - 0.8660254037844387 * c_rod_leg2;
-        let t47 = 0.6272 * (t25 * t43) + 0.1568 * t22;
-        let t55 = (t33 - 0.8660254037844387 * (0.24 * s_arm_leg2 + 0.56 * t20)) * t47
-            + t33 * (0.1344 * (c_arm_leg2 * t43) + 0.0672 * (s_arm_leg2 * t21));
-        let t63 = t55
-            + 0.56 * t29 * (0.1344 * (s_arm_leg2 * t25) - 0.0672 * (c_arm_leg2 * t20));
-        ::overact::guard::leg(t63, 0.06758306237509017, "leg2")?;
-        let t64 = 1.0 / t63;
-        let garm_vx_leg2 = (0.2715855666268 * t22 + 0.6272 * (t25 * t29)) * t64;
-        let t68 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t68);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t73 = s_armcross_leg3 * c_rod_leg3;
-        let t74 = s_armcross_leg3 * s_rod_leg3;
-        let t75 = t73 * t74;
-        let t77 = 0.5 * c_armcross_leg3;
-        let t78 = t77 * c_rod_leg3;
-        let t82 = 0.8660254037844387 * c_armcross_leg3 * s_rod_leg3 - 0.5 * c_rod_leg3;
-        let t86 = 0.4849742261192857 * t73;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t91 = t77 * s_rod_leg3 + 0.8660254037844387 * c_rod_leg3;
-        let t106 = 0.6272 * (t78 * t91) + 0.1568 * t75;
-        let t108 = t86 * (0.1344 * (c_arm_leg3 * t91) + 0.0672 * (s_arm_leg3 * t74))
-            - (0.8660254037844387 * (0.24 * s_arm_leg3 + 0.56 * t73) - t86) * t106;
-        let t116 = t108
-            + 0.56 * t82 * (0.1344 * (s_arm_leg3 * t78) - 0.0672 * (c_arm_leg3 * t73));
-        ::overact::guard::leg(t116, 0.06758306237509014, "leg3")?;
-        let t117 = 1.0 / t116;
-        let garm_vx_leg3 = (0.2715855666268 * t75 + 0.6272 * (t78 * t82)) * t117;
-        let garm_vy_leg1 = s_rod_leg1 * t12;
-        let garm_vy_leg2 = t47 * t64;
-        let minus_garm_vy_leg3 = t106 * t117;
-        let garm_vz_leg2 = (0.1568 * (t29 * t20) - 0.2715855666268 * (t43 * t20)) * t64;
-        let minus_garm_vz_leg1 = t8 * t12;
-        let minus_garm_vz_leg3 = (0.2715855666268 * (t91 * t73) - 0.1568 * (t82 * t73))
-            * t117;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.2304 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.48 * t1;
+        let t12 = t2 + pose[1] * pose[1] + t3 - 0.3136 + 0.0576;
+        let t14 = 0.48 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t24 = 2.0 / t17;
+        let garm_vx_leg1 = (t0 - (0.2 + 0.24 * c_arm_leg1)) * t24;
+        let t28 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t31 = pose[0] - 0.025 + 0.1;
+        let t32 = 0.5 * t31;
+        let t33 = 0.8660254037844387 * t28 - t32;
+        let t36 = 0.2304 * (t33 * t33 + t3);
+        let t37 = 1.0 / t36;
+        let t38 = 0.48 * t33;
+        let t39 = t31 * t31;
+        let t42 = t39 + t28 * t28 + t3;
+        let t44 = t42 - 0.3136 + 0.0576;
+        let t47 = t36 - t44 * t44;
+        ::overact::guard::reach(t47, "leg2")?;
+        let t48 = ::overact::math::sqrt(t47);
+        let c_arm_leg2 = t37 * (t38 * t44 - t14 * t48);
+        let t53 = t33 - 0.24 * c_arm_leg2;
+        let t54 = 0.8660254037844387 * t31;
+        let t56 = t54 + 0.5 * t28;
+        let t57 = t56 * t56;
+        let t61 = 1.0 - 3.188775510204082 * t57;
+        ::overact::guard::reach(t61, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t61);
+        let c_cross_leg2 = (t42 - (0.0576 + t57) - 0.3136 * t61) / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t37 * (t14 * t44 + t38 * t48);
+        let s_cross_leg2 = 2.0833333333333335 * t48 / (0.56 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t77 = t56 * c_armcross_leg2;
+        let t80 = 1.5464739353293548 * t77 - 0.5 * c_rod_leg2;
+        let t84 = pose[2] - 0.24 * minus_s_arm_leg2;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t56;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t89 = minus_s_rod_leg2 * s_armcross_leg2;
+        let t90 = t84 * t89;
+        let t96 = 0.8928571428571429 * t77 + 0.8660254037844387 * c_rod_leg2;
+        let t100 = t53 * (0.56 * t96) - 0.28 * t90;
+        let t109 = 0.20784609690826528 * minus_s_arm_leg2 * t100
+            - 0.8660254037844387 * t84
+                * (0.1344 * (c_arm_leg2 * t96) - 0.0672 * (minus_s_arm_leg2 * t89));
+        let t112 = t109 - 0.14 * (t48 * t80);
+        ::overact::guard::leg(t112, 0.06758306237512474, "leg2")?;
+        let t113 = 1.0 / t112;
+        let garm_vx_leg2 = (t53 * (0.56 * t80) - 0.4849742261192857 * t90) * t113;
+        let t118 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t120 = t32 + 0.8660254037844387 * t118;
+        let t123 = 0.2304 * (t120 * t120 + t3);
+        let t124 = 1.0 / t123;
+        let t125 = 0.48 * t120;
+        let t128 = t39 + t118 * t118 + t3;
+        let t130 = t128 - 0.3136 + 0.0576;
+        let t133 = t123 - t130 * t130;
+        ::overact::guard::reach(t133, "leg3")?;
+        let t134 = ::overact::math::sqrt(t133);
+        let minus_c_arm_leg3 = t124 * (t125 * t130 + t14 * t134);
+        let t139 = t120 - 0.24 * minus_c_arm_leg3;
+        let t141 = t54 - 0.5 * t118;
+        let t142 = t141 * t141;
+        let t146 = 1.0 - 3.188775510204082 * t142;
+        ::overact::guard::reach(t146, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t146);
+        let c_cross_leg3 = (t128 - (0.0576 + t142) - 0.3136 * t146)
+            / (0.2688 * c_rod_leg3);
+        let s_arm_leg3 = t124 * (t125 * t134 - t14 * t130);
+        let s_cross_leg3 = 2.0833333333333335 * t134 / (0.56 * c_rod_leg3);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t162 = t141 * minus_c_armcross_leg3;
+        let t165 = 1.5464739353293548 * t162 + 0.5 * c_rod_leg3;
+        let t169 = pose[2] + 0.24 * s_arm_leg3;
+        let s_rod_leg3 = 1.7857142857142858 * t141;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t174 = s_rod_leg3 * s_armcross_leg3;
+        let t175 = t169 * t174;
+        let t181 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t162;
+        let t185 = t139 * (0.56 * t181) + 0.28 * t175;
+        let t194 = 0.20784609690826528 * s_arm_leg3 * t185
+            + 0.8660254037844387 * t169
+                * (0.1344 * (minus_c_arm_leg3 * t181) - 0.0672 * (s_arm_leg3 * t174));
+        let t197 = t194 + 0.14 * (t134 * t165);
+        ::overact::guard::leg(t197, 0.06758306237512474, "leg3")?;
+        let t198 = 1.0 / t197;
+        let garm_vx_leg3 = (t139 * (0.56 * t165) - 0.4849742261192857 * t175) * t198;
+        let garm_vy_leg1 = pose[1] * t24;
+        let garm_vy_leg2 = t100 * t113;
+        let garm_vy_leg3 = t185 * t198;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let garm_vz_leg1 = (pose[2] - 0.24 * minus_s_arm_leg1) * t24;
+        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t84) * t113;
+        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t169) * t198;
         Ok([
             garm_vx_leg1 * torques[0] + garm_vx_leg2 * torques[1]
                 + garm_vx_leg3 * torques[2],
             garm_vy_leg1 * torques[0] + garm_vy_leg2 * torques[1]
-                - minus_garm_vy_leg3 * torques[2],
-            garm_vz_leg2 * torques[1] - minus_garm_vz_leg1 * torques[0]
-                - minus_garm_vz_leg3 * torques[2],
+                + garm_vy_leg3 * torques[2],
+            garm_vz_leg1 * torques[0] + garm_vz_leg2 * torques[1]
+                + garm_vz_leg3 * torques[2],
         ])
     }
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
@@ -5724,7 +8533,7 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 924 operations (342 additions, 575 multiplications, 7 divisions), 0 square roots, 9 trigonometric pairs, 3 signs, 942 intermediates.
+    /// 1008 operations (392 additions, 600 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 1014 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5734,8 +8543,452 @@ impl Delta {
         acceleration: &[f64; 3],
         parameters: &[f64; 53],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::inverse_dynamics_from_joints(pose, joints, twist, acceleration, parameters)
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.2304 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.48 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.3136 + 0.0576;
+        let t14 = 0.48 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t21 = 0.24 * c_arm_leg1;
+        let t23 = t0 - (0.2 + t21);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = t23 * t25;
+        let t27 = 0.48 * t24;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t35 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t35, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t35);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t35) / (0.2688 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t49 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t27
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t49)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t49));
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t27;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t27;
+        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
+            - minus_gcross_vz_leg1 * twist[2];
+        let grod_vy_leg1 = 1.7857142857142858 * t49;
+        let rate_rod_leg1 = grod_vy_leg1 * twist[1];
+        let t69 = s_armcross_leg1 * rate_rod_leg1;
+        let t71 = pose[1] * (rate_cross_leg1 * t69);
+        let garm_vy_leg1 = pose[1] * t25;
+        let t76 = 0.24 * minus_s_arm_leg1;
+        let t77 = pose[2] - t76;
+        let garm_vz_leg1 = t77 * t25;
+        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
+            + garm_vz_leg1 * twist[2];
+        let t81 = rate_arm_leg1 * rate_arm_leg1;
+        let t84 = rate_cross_leg1 * rate_cross_leg1;
+        let t86 = c_armcross_leg1 * rate_rod_leg1;
+        let t88 = t69 * t69 + t84 + t86 * t86;
+        let t93 = acceleration[0] - (t71 - (t21 * t81 + t23 * t88) + t71);
+        let t95 = pose[1] * rate_cross_leg1;
+        let t99 = acceleration[1] - (rate_cross_leg1 * t95 - pose[1] * t88);
+        let t103 = pose[1] * (rate_cross_leg1 * t86);
+        let t109 = acceleration[2] - (t103 - (t76 * t81 + t77 * t88) + t103);
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t93 + garm_vy_leg1 * t99
+            + garm_vz_leg1 * t109;
+        let t113 = 9.81 * c_arm_leg1;
+        let t116 = 9.81 * minus_s_arm_leg1;
+        let t125 = parameters[0] * rate_dot_arm_leg1 - parameters[1] * t113
+            - parameters[2] * t116 + parameters[3] * rate_dot_arm_leg1
+            + parameters[4] * rate_arm_leg1
+            + ::overact::math::signed(parameters[5], rate_arm_leg1) + parameters[6];
+        let t127 = 1.7857142857142858 * t95;
+        let t128 = c_rod_leg1 * rate_cross_leg1;
+        let t129 = t127 * t128;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t99;
+        let t131 = t129 - rate_dot_rod_leg1;
+        let t133 = t128 * t128;
+        let t134 = rate_rod_leg1 * rate_rod_leg1;
+        let rate_dot_cross_leg1 = gcross_vy_leg1 * t99 - minus_gcross_vx_leg1 * t93
+            - minus_gcross_vz_leg1 * t109;
+        let t143 = c_rod_leg1 * rate_dot_cross_leg1;
+        let t147 = t116 - 0.24 * t81;
+        let t150 = 0.24 * rate_dot_arm_leg1 - t113;
+        let t152 = c_cross_leg1 * t147 + s_cross_leg1 * t150;
+        let t153 = c_rod_leg1 * t152;
+        let t156 = 0.8928571428571429 * t17
+            * (parameters[14] * t131 - parameters[13] * (t133 + t134)
+                + parameters[15] * t143 + parameters[16] * t153);
+        let t159 = t129 + rate_dot_rod_leg1;
+        let t162 = 3.188775510204082 * (t95 * t95);
+        let t166 = s_rod_leg1 * rate_dot_cross_leg1;
+        let t169 = s_rod_leg1 * t152;
+        let t172 = 0.42857142857142855 * (pose[1] * s_cross_leg1)
+            * (parameters[13] * t159 - parameters[14] * (t162 + t134)
+                - parameters[15] * t166 - parameters[16] * t169);
+        let t175 = rate_rod_leg1 * t127;
+        let t176 = t143 - t175;
+        let t177 = t175 - t176;
+        let t179 = rate_rod_leg1 * t128;
+        let t180 = t166 + t179;
+        let t181 = t179 + t180;
+        let t188 = c_cross_leg1 * t150 - s_cross_leg1 * t147;
+        let t192 = t156 - t172
+            - 0.24 * c_cross_leg1
+                * (parameters[13] * t177 + parameters[14] * t181 - parameters[15] * t84
+                    - parameters[16] * t188);
+        let t193 = t125 + t192;
+        let t204 = parameters[7] * t180 - parameters[8] * t177 + parameters[9] * t159
+            - parameters[10] * t179 + parameters[11] * (t133 - t134);
+        let t221 = parameters[7] * t175 + parameters[8] * t181
+            + parameters[9] * (t134 - t162) + parameters[10] * t176
+            - parameters[11] * t131;
+        let t229 = s_rod_leg1
+            * (t204 + parameters[12] * t179 - parameters[14] * t188
+                + parameters[15] * t169)
+            + c_rod_leg1
+                * (t221 - parameters[12] * t175 + parameters[13] * t188
+                    + parameters[15] * t153);
+        let t232 = pose[1] + 0.04330127018922194;
+        let t233 = t232 - 0.17320508075688776;
+        let t235 = pose[0] - 0.025;
+        let t236 = t235 + 0.1;
+        let t237 = 0.5 * t236;
+        let t238 = 0.8660254037844387 * t233 - t237;
+        let t241 = 0.2304 * (t238 * t238 + t3);
+        let t242 = 1.0 / t241;
+        let t243 = 0.48 * t238;
+        let t244 = t236 * t236;
+        let t247 = t244 + t233 * t233 + t3;
+        let t249 = t247 - 0.3136 + 0.0576;
+        let t252 = t241 - t249 * t249;
+        ::overact::guard::reach(t252, "leg2")?;
+        let t253 = ::overact::math::sqrt(t252);
+        let c_arm_leg2 = t242 * (t243 * t249 - t14 * t253);
+        let t258 = t238 - 0.24 * c_arm_leg2;
+        let t259 = 0.8660254037844387 * t236;
+        let t261 = t259 + 0.5 * t233;
+        let t262 = t261 * t261;
+        let t266 = 1.0 - 3.188775510204082 * t262;
+        ::overact::guard::reach(t266, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t266);
+        let c_cross_leg2 = (t247 - (0.0576 + t262) - 0.3136 * t266)
+            / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t242 * (t14 * t249 + t243 * t253);
+        let s_cross_leg2 = 2.0833333333333335 * t253 / (0.56 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t282 = t261 * c_armcross_leg2;
+        let t285 = 1.5464739353293548 * t282 - 0.5 * c_rod_leg2;
+        let t288 = 0.24 * minus_s_arm_leg2;
+        let t289 = pose[2] - t288;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t261;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t294 = minus_s_rod_leg2 * s_armcross_leg2;
+        let t295 = t289 * t294;
+        let t298 = 0.20784609690826528 * minus_s_arm_leg2;
+        let t301 = 0.8928571428571429 * t282 + 0.8660254037844387 * c_rod_leg2;
+        let t305 = t258 * (0.56 * t301) - 0.28 * t295;
+        let t310 = minus_s_arm_leg2 * t294;
+        let t312 = 0.1344 * (c_arm_leg2 * t301) - 0.0672 * t310;
+        let t317 = t298 * t305 - 0.8660254037844387 * t289 * t312 - 0.14 * (t253 * t285);
+        ::overact::guard::leg(t317, 0.06758306237512474, "leg2")?;
+        let t318 = 1.0 / t317;
+        let garm_vx_leg2 = (t258 * (0.56 * t285) - 0.4849742261192857 * t295) * t318;
+        let t320 = 0.12 * c_arm_leg2;
+        let garm_vy_leg2 = t305 * t318;
+        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t289) * t318;
+        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
+            + garm_vz_leg2 * twist[2];
+        let t330 = rate_arm_leg2 * rate_arm_leg2;
+        let t333 = t235 + 0.1 + t320;
+        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t285)
+            - 0.11639381426862856 * (minus_s_arm_leg2 * t301)) * t318;
+        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t285)
+            - 0.11639381426862856 * t310) * t318;
+        let minus_gcross_vy_leg2 = t312 * t318;
+        let rate_cross_leg2 = gcross_vz_leg2 * twist[2]
+            - (minus_gcross_vx_leg2 * twist[0] + minus_gcross_vy_leg2 * twist[1]);
+        let t351 = 0.8660254037844387 * rate_cross_leg2;
+        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t289) - t258 * t298)
+            * t318;
+        let minus_grod_vy_leg2 = 0.25 * t253 * t318;
+        let rate_rod_leg2 = grod_vx_leg2 * twist[0] - minus_grod_vy_leg2 * twist[1];
+        let t364 = t351 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
+        let t367 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
+        let t368 = 0.5 * rate_cross_leg2;
+        let t369 = t367 - t368;
+        let t372 = c_armcross_leg2 * rate_rod_leg2;
+        let t374 = t364 * t364 + t369 * t369 + t372 * t372;
+        let t377 = 0.20784609690826528 * c_arm_leg2;
+        let t379 = t232 - (0.17320508075688776 + t377);
+        let t384 = t379 * t369 - t333 * t364 + t289 * t372;
+        let t387 = t351 * t372;
+        let t390 = 1.3333333333333333 * (t351 * t367);
+        let t394 = acceleration[0]
+            - (t320 * t330 - t333 * t374 - t364 * t384 + t289 * t387 + t379 * t390);
+        let t401 = t368 * t372;
+        let t406 = acceleration[1]
+            - (t369 * t384 - (t377 * t330 + t379 * t374) + t289 * t401 - t333 * t390);
+        let t414 = t379 * t401 + t333 * t387;
+        let t417 = acceleration[2] + t288 * t330 + t289 * t374 + t414 + t414;
+        let rate_dot_arm_leg2 = garm_vx_leg2 * t394 + garm_vy_leg2 * t406
+            + garm_vz_leg2 * t417;
+        let t421 = 9.81 * c_arm_leg2;
+        let t424 = 9.81 * minus_s_arm_leg2;
+        let t433 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t421
+            - parameters[19] * t424 + parameters[20] * rate_dot_arm_leg2
+            + parameters[21] * rate_arm_leg2
+            + ::overact::math::signed(parameters[22], rate_arm_leg2) + parameters[23];
+        let t435 = 1.7857142857142858 * t384;
+        let t436 = c_rod_leg2 * rate_cross_leg2;
+        let t437 = t435 * t436;
+        let rate_dot_rod_leg2 = grod_vx_leg2 * t394 - minus_grod_vy_leg2 * t406;
+        let t441 = t437 - rate_dot_rod_leg2;
+        let t443 = t436 * t436;
+        let t444 = rate_rod_leg2 * rate_rod_leg2;
+        let rate_dot_cross_leg2 = gcross_vz_leg2 * t417
+            - (minus_gcross_vx_leg2 * t394 + minus_gcross_vy_leg2 * t406);
+        let t453 = c_rod_leg2 * rate_dot_cross_leg2;
+        let t457 = t424 - 0.24 * t330;
+        let t460 = 0.24 * rate_dot_arm_leg2 - t421;
+        let t462 = c_cross_leg2 * t457 + s_cross_leg2 * t460;
+        let t463 = c_rod_leg2 * t462;
+        let t466 = 0.8928571428571429 * t253
+            * (parameters[31] * t441 - parameters[30] * (t443 + t444)
+                + parameters[32] * t453 + parameters[33] * t463);
+        let t469 = t437 + rate_dot_rod_leg2;
+        let t472 = 3.188775510204082 * (t384 * t384);
+        let t476 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t479 = minus_s_rod_leg2 * t462;
+        let t482 = 0.42857142857142855 * (t261 * s_cross_leg2)
+            * (parameters[30] * t469 - parameters[31] * (t472 + t444)
+                + parameters[32] * t476 + parameters[33] * t479);
+        let t485 = rate_rod_leg2 * t435;
+        let t486 = t453 - t485;
+        let t487 = t485 - t486;
+        let t489 = rate_rod_leg2 * t436;
+        let t490 = t489 - t476;
+        let t491 = t489 + t490;
+        let t499 = c_cross_leg2 * t460 - s_cross_leg2 * t457;
+        let t502 = 0.24 * c_cross_leg2
+            * (parameters[30] * t487 + parameters[31] * t491
+                - parameters[32] * (rate_cross_leg2 * rate_cross_leg2)
+                - parameters[33] * t499);
+        let t504 = t433 + t466 + t482 - t502;
+        let t515 = parameters[24] * t485 + parameters[25] * t491
+            + parameters[26] * (t444 - t472) + parameters[27] * t486
+            - parameters[28] * t441;
+        let t532 = parameters[24] * t490 - parameters[25] * t487 + parameters[26] * t469
+            - parameters[27] * t489 + parameters[28] * (t443 - t444);
+        let t540 = c_rod_leg2
+            * (t515 - parameters[29] * t485 + parameters[30] * t499
+                + parameters[32] * t463)
+            - minus_s_rod_leg2
+                * (t532 + parameters[29] * t489 - parameters[31] * t499
+                    - parameters[32] * t479);
+        let t552 = parameters[25] * (t472 - t443) - parameters[24] * t437
+            - parameters[26] * t476 + parameters[27] * t437 + parameters[28] * t453;
+        let t558 = t552 + parameters[29] * rate_dot_rod_leg2 + parameters[30] * t479
+            - parameters[31] * t463;
+        let t562 = pose[1] - 0.04330127018922194;
+        let t563 = t562 + 0.17320508075688776;
+        let t565 = t237 + 0.8660254037844387 * t563;
+        let t568 = 0.2304 * (t565 * t565 + t3);
+        let t569 = 1.0 / t568;
+        let t570 = 0.48 * t565;
+        let t573 = t244 + t563 * t563 + t3;
+        let t575 = t573 - 0.3136 + 0.0576;
+        let t578 = t568 - t575 * t575;
+        ::overact::guard::reach(t578, "leg3")?;
+        let t579 = ::overact::math::sqrt(t578);
+        let minus_c_arm_leg3 = t569 * (t570 * t575 + t14 * t579);
+        let t584 = t565 - 0.24 * minus_c_arm_leg3;
+        let t586 = t259 - 0.5 * t563;
+        let t587 = t586 * t586;
+        let t591 = 1.0 - 3.188775510204082 * t587;
+        ::overact::guard::reach(t591, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t591);
+        let c_cross_leg3 = (t573 - (0.0576 + t587) - 0.3136 * t591)
+            / (0.2688 * c_rod_leg3);
+        let s_arm_leg3 = t569 * (t570 * t579 - t14 * t575);
+        let s_cross_leg3 = 2.0833333333333335 * t579 / (0.56 * c_rod_leg3);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t607 = t586 * minus_c_armcross_leg3;
+        let t610 = 1.5464739353293548 * t607 + 0.5 * c_rod_leg3;
+        let t613 = 0.24 * s_arm_leg3;
+        let t614 = pose[2] + t613;
+        let s_rod_leg3 = 1.7857142857142858 * t586;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t619 = s_rod_leg3 * s_armcross_leg3;
+        let t620 = t614 * t619;
+        let t623 = 0.20784609690826528 * s_arm_leg3;
+        let t626 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t607;
+        let t630 = t584 * (0.56 * t626) + 0.28 * t620;
+        let t635 = s_arm_leg3 * t619;
+        let t637 = 0.1344 * (minus_c_arm_leg3 * t626) - 0.0672 * t635;
+        let t642 = t623 * t630 + 0.8660254037844387 * t614 * t637 + 0.14 * (t579 * t610);
+        ::overact::guard::leg(t642, 0.06758306237512474, "leg3")?;
+        let t643 = 1.0 / t642;
+        let garm_vx_leg3 = (t584 * (0.56 * t610) - 0.4849742261192857 * t620) * t643;
+        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t626)
+            + 0.0672 * (s_arm_leg3 * t610)) * t643;
+        let minus_gcross_vx_leg3 = (0.11639381426862856 * t635
+            + 0.1344 * (minus_c_arm_leg3 * t610)) * t643;
+        let minus_gcross_vy_leg3 = t637 * t643;
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
+        let t662 = 0.8660254037844387 * rate_cross_leg3;
+        let grod_vx_leg3 = (t584 * t623
+            + 0.20784609690826528 * (minus_c_arm_leg3 * t614)) * t643;
+        let minus_grod_vy_leg3 = 0.25 * t579 * t643;
+        let rate_rod_leg3 = grod_vx_leg3 * twist[0] - minus_grod_vy_leg3 * twist[1];
+        let t675 = t662 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
+        let t676 = 0.12 * minus_c_arm_leg3;
+        let t678 = t235 - (t676 - 0.1);
+        let t680 = 0.20784609690826528 * minus_c_arm_leg3;
+        let t682 = t562 - (t680 - 0.17320508075688776);
+        let t683 = 0.5 * rate_cross_leg3;
+        let t685 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
+        let t686 = t683 + t685;
+        let t689 = minus_c_armcross_leg3 * rate_rod_leg3;
+        let t691 = t678 * t675 - t682 * t686 - t614 * t689;
+        let garm_vy_leg3 = t630 * t643;
+        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t614) * t643;
+        let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
+            + garm_vz_leg3 * twist[2];
+        let t702 = rate_arm_leg3 * rate_arm_leg3;
+        let t708 = t675 * t675 + t686 * t686 + t689 * t689;
+        let t712 = t662 * t689;
+        let t715 = 1.3333333333333333 * (t662 * t685);
+        let t719 = acceleration[0]
+            - (t675 * t691 - (t676 * t702 + t678 * t708) + t614 * t712 + t682 * t715);
+        let t727 = t683 * t689;
+        let t731 = acceleration[1] + t680 * t702 + t682 * t708 + t686 * t691
+            + t678 * t715 + t614 * t727;
+        let t739 = t682 * t727 - t678 * t712;
+        let t742 = acceleration[2] - (t613 * t702 - t614 * t708 + t739 + t739);
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t719 + garm_vy_leg3 * t731
+            + garm_vz_leg3 * t742;
+        let t746 = 9.81 * minus_c_arm_leg3;
+        let t749 = 9.81 * s_arm_leg3;
+        let t758 = parameters[34] * rate_dot_arm_leg3 + parameters[35] * t746
+            + parameters[36] * t749 + parameters[37] * rate_dot_arm_leg3
+            + parameters[38] * rate_arm_leg3
+            + ::overact::math::signed(parameters[39], rate_arm_leg3) + parameters[40];
+        let t760 = 1.7857142857142858 * t691;
+        let t761 = c_rod_leg3 * rate_cross_leg3;
+        let t762 = t760 * t761;
+        let rate_dot_rod_leg3 = grod_vx_leg3 * t719 - minus_grod_vy_leg3 * t731;
+        let t766 = t762 - rate_dot_rod_leg3;
+        let t768 = t761 * t761;
+        let t769 = rate_rod_leg3 * rate_rod_leg3;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * t742
+            - (minus_gcross_vx_leg3 * t719 + minus_gcross_vy_leg3 * t731);
+        let t778 = c_rod_leg3 * rate_dot_cross_leg3;
+        let t782 = t746 + 0.24 * rate_dot_arm_leg3;
+        let t785 = t749 + 0.24 * t702;
+        let t787 = s_cross_leg3 * t782 - c_cross_leg3 * t785;
+        let t788 = c_rod_leg3 * t787;
+        let t791 = 0.8928571428571429 * t579
+            * (parameters[48] * t766 - parameters[47] * (t768 + t769)
+                + parameters[49] * t778 + parameters[50] * t788);
+        let t794 = t762 + rate_dot_rod_leg3;
+        let t797 = 3.188775510204082 * (t691 * t691);
+        let t801 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t804 = s_rod_leg3 * t787;
+        let t807 = 0.42857142857142855 * (t586 * s_cross_leg3)
+            * (parameters[47] * t794 - parameters[48] * (t797 + t769)
+                - parameters[49] * t801 - parameters[50] * t804);
+        let t810 = rate_rod_leg3 * t760;
+        let t811 = t778 - t810;
+        let t812 = t810 - t811;
+        let t814 = rate_rod_leg3 * t761;
+        let t815 = t801 + t814;
+        let t816 = t814 + t815;
+        let t824 = s_cross_leg3 * t785 + c_cross_leg3 * t782;
+        let t827 = 0.24 * c_cross_leg3
+            * (parameters[47] * t812 + parameters[48] * t816
+                - parameters[49] * (rate_cross_leg3 * rate_cross_leg3)
+                - parameters[50] * t824);
+        let t829 = t758 + t791 - t807 - t827;
+        let t840 = parameters[41] * t815 - parameters[42] * t812 + parameters[43] * t794
+            - parameters[44] * t814 + parameters[45] * (t768 - t769);
+        let t857 = parameters[41] * t810 + parameters[42] * t816
+            + parameters[43] * (t769 - t797) + parameters[44] * t811
+            - parameters[45] * t766;
+        let t865 = s_rod_leg3
+            * (t840 + parameters[46] * t814 - parameters[48] * t824
+                + parameters[49] * t804)
+            + c_rod_leg3
+                * (t857 - parameters[46] * t810 + parameters[47] * t824
+                    + parameters[49] * t788);
+        let t877 = parameters[42] * (t797 - t768) - parameters[41] * t762
+            + parameters[43] * t801 + parameters[44] * t762 + parameters[45] * t778;
+        let t883 = t877 + parameters[46] * rate_dot_rod_leg3 - parameters[47] * t804
+            - parameters[48] * t788;
+        let t886 = garm_vx_leg1 * t193 - minus_gcross_vx_leg1 * t229
+            + garm_vx_leg2 * t504 - minus_gcross_vx_leg2 * t540 + grod_vx_leg2 * t558
+            + garm_vx_leg3 * t829 - minus_gcross_vx_leg3 * t865 + grod_vx_leg3 * t883;
+        let t890 = t886 + acceleration[0] * parameters[51]
+            + acceleration[0] * parameters[52];
+        let t895 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3;
+        ::overact::guard::platform(t895, 14.869730172882845, "actuators")?;
+        let t896 = 1.0 / t895;
+        let t902 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3;
+        let t903 = t902 * t896;
+        let t910 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t902 * t903;
+        ::overact::guard::platform(t910, 14.869730172882843, "actuators")?;
+        let t911 = 1.0 / t910;
+        let t924 = parameters[8] * (t162 - t133) - parameters[7] * t129
+            + parameters[9] * t166 + parameters[10] * t129 + parameters[11] * t143;
+        let t932 = garm_vy_leg1 * t193 + gcross_vy_leg1 * t229
+            + grod_vy_leg1
+                * (t924 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t169
+                    - parameters[14] * t153);
+        let t944 = t932 + garm_vy_leg2 * t504 - minus_gcross_vy_leg2 * t540
+            - minus_grod_vy_leg2 * t558 + garm_vy_leg3 * t829
+            - minus_gcross_vy_leg3 * t865 - minus_grod_vy_leg3 * t883;
+        let t950 = t944 + acceleration[1] * parameters[51]
+            + acceleration[1] * parameters[52] - t890 * t903;
+        let t961 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3;
+        let t962 = t961 * t896;
+        let t964 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 - t902 * t962;
+        let t965 = t964 * t911;
+        let t974 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 - t961 * t962 - t964 * t965;
+        ::overact::guard::platform(t974, 34.855350201355726, "actuators")?;
+        let t985 = garm_vz_leg1 * t193 - minus_gcross_vz_leg1 * t229
+            + garm_vz_leg2 * t504 + gcross_vz_leg2 * t540 + garm_vz_leg3 * t829
+            + gcross_vz_leg3 * t865;
+        let t986 = acceleration[2] + 9.81;
+        let t995 = (t985 + parameters[51] * t986 + parameters[52] * t986 - t890 * t962
+            - t965 * t950) / t974;
+        let t997 = t911 * t950 - t965 * t995;
+        let t1001 = t890 * t896 - t903 * t997 - t962 * t995;
+        Ok([
+            garm_vx_leg1 * t1001 + garm_vy_leg1 * t997 + garm_vz_leg1 * t995,
+            garm_vx_leg2 * t1001 + garm_vy_leg2 * t997 + garm_vz_leg2 * t995,
+            garm_vx_leg3 * t1001 + garm_vy_leg3 * t997 + garm_vz_leg3 * t995,
+        ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -6161,7 +9414,7 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 973 operations (363 additions, 603 multiplications, 7 divisions), 0 square roots, 9 trigonometric pairs, 3 signs, 991 intermediates.
+    /// 1057 operations (413 additions, 628 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 1063 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6173,421 +9426,477 @@ impl Delta {
         start: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
-        let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t12 = c_armcross_leg1 * c_rod_leg1;
-        let t13 = s_armcross_leg1 * c_rod_leg1;
-        let t16 = c_arm_leg1 * t13 - s_arm_leg1 * t12;
-        ::overact::guard::leg(t16, 0.89794672585951, "leg1")?;
-        let t17 = 1.0 / t16;
-        let t18 = 4.166666666666667 * t17;
-        let garm_vx_leg1 = t12 * t18;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
-        let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t33 = s_armcross_leg2 * c_rod_leg2;
-        let t34 = s_armcross_leg2 * s_rod_leg2;
-        let t35 = t33 * t34;
-        let t37 = 0.5 * c_armcross_leg2;
-        let t38 = t37 * c_rod_leg2;
-        let t39 = 0.8660254037844387 * c_armcross_leg2;
-        let t42 = t39 * s_rod_leg2 + 0.5 * c_rod_leg2;
-        let t46 = 0.4849742261192857 * t33;
-        let t47 = 0.24 * s_arm_leg2;
-        let t48 = 0.56 * t33;
-        let t51 = t46 - 0.8660254037844387 * (t47 + t48);
-        let t54 = t37 * s_rod_leg2 - 0.8660254037844387 * c_rod_leg2;
-        let t58 = 0.6272 * (t38 * t54) + 0.1568 * t35;
-        let t64 = 0.1344 * (c_arm_leg2 * t54) + 0.0672 * (s_arm_leg2 * t34);
-        let t70 = c_arm_leg2 * t33;
-        let t72 = 0.1344 * (s_arm_leg2 * t38) - 0.0672 * t70;
-        let t74 = t51 * t58 + t46 * t64 + 0.56 * t42 * t72;
-        ::overact::guard::leg(t74, 0.06758306237509017, "leg2")?;
-        let t75 = 1.0 / t74;
-        let garm_vx_leg2 = (0.2715855666268 * t35 + 0.6272 * (t38 * t42)) * t75;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
-        let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t91 = s_armcross_leg3 * c_rod_leg3;
-        let t92 = s_armcross_leg3 * s_rod_leg3;
-        let t93 = t91 * t92;
-        let t95 = 0.5 * c_armcross_leg3;
-        let t96 = t95 * c_rod_leg3;
-        let t97 = 0.8660254037844387 * c_armcross_leg3;
-        let t100 = t97 * s_rod_leg3 - 0.5 * c_rod_leg3;
-        let t104 = 0.4849742261192857 * t91;
-        let t107 = t95 * s_rod_leg3 + 0.8660254037844387 * c_rod_leg3;
-        let t112 = 0.1344 * (c_arm_leg3 * t107) + 0.0672 * (s_arm_leg3 * t92);
-        let t114 = 0.24 * s_arm_leg3;
-        let t115 = 0.56 * t91;
-        let t118 = 0.8660254037844387 * (t114 + t115) - t104;
-        let t122 = 0.6272 * (t96 * t107) + 0.1568 * t93;
-        let t128 = c_arm_leg3 * t91;
-        let t130 = 0.1344 * (s_arm_leg3 * t96) - 0.0672 * t128;
-        let t132 = t104 * t112 - t118 * t122 + 0.56 * t100 * t130;
-        ::overact::guard::leg(t132, 0.06758306237509014, "leg3")?;
-        let t133 = 1.0 / t132;
-        let garm_vx_leg3 = (0.2715855666268 * t93 + 0.6272 * (t96 * t100)) * t133;
-        let t136 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.2304 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.48 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.3136 + 0.0576;
+        let t14 = 0.48 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t21 = 0.24 * c_arm_leg1;
+        let t23 = t0 - (0.2 + t21);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = t23 * t25;
+        let t28 = pose[1] + 0.04330127018922194;
+        let t29 = t28 - 0.17320508075688776;
+        let t31 = pose[0] - 0.025;
+        let t32 = t31 + 0.1;
+        let t33 = 0.5 * t32;
+        let t34 = 0.8660254037844387 * t29 - t33;
+        let t37 = 0.2304 * (t34 * t34 + t3);
+        let t38 = 1.0 / t37;
+        let t39 = 0.48 * t34;
+        let t40 = t32 * t32;
+        let t43 = t40 + t29 * t29 + t3;
+        let t45 = t43 - 0.3136 + 0.0576;
+        let t48 = t37 - t45 * t45;
+        ::overact::guard::reach(t48, "leg2")?;
+        let t49 = ::overact::math::sqrt(t48);
+        let c_arm_leg2 = t38 * (t39 * t45 - t14 * t49);
+        let t54 = t34 - 0.24 * c_arm_leg2;
+        let t55 = 0.8660254037844387 * t32;
+        let t57 = t55 + 0.5 * t29;
+        let t58 = t57 * t57;
+        let t62 = 1.0 - 3.188775510204082 * t58;
+        ::overact::guard::reach(t62, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t62);
+        let c_cross_leg2 = (t43 - (0.0576 + t58) - 0.3136 * t62) / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t38 * (t14 * t45 + t39 * t49);
+        let s_cross_leg2 = 2.0833333333333335 * t49 / (0.56 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t78 = t57 * c_armcross_leg2;
+        let t81 = 1.5464739353293548 * t78 - 0.5 * c_rod_leg2;
+        let t84 = 0.24 * minus_s_arm_leg2;
+        let t85 = pose[2] - t84;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t57;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t90 = minus_s_rod_leg2 * s_armcross_leg2;
+        let t91 = t85 * t90;
+        let t94 = 0.20784609690826528 * minus_s_arm_leg2;
+        let t97 = 0.8928571428571429 * t78 + 0.8660254037844387 * c_rod_leg2;
+        let t101 = t54 * (0.56 * t97) - 0.28 * t91;
+        let t106 = minus_s_arm_leg2 * t90;
+        let t108 = 0.1344 * (c_arm_leg2 * t97) - 0.0672 * t106;
+        let t113 = t94 * t101 - 0.8660254037844387 * t85 * t108 - 0.14 * (t49 * t81);
+        ::overact::guard::leg(t113, 0.06758306237512474, "leg2")?;
+        let t114 = 1.0 / t113;
+        let garm_vx_leg2 = (t54 * (0.56 * t81) - 0.4849742261192857 * t91) * t114;
+        let t118 = pose[1] - 0.04330127018922194;
+        let t119 = t118 + 0.17320508075688776;
+        let t121 = t33 + 0.8660254037844387 * t119;
+        let t124 = 0.2304 * (t121 * t121 + t3);
+        let t125 = 1.0 / t124;
+        let t126 = 0.48 * t121;
+        let t129 = t40 + t119 * t119 + t3;
+        let t131 = t129 - 0.3136 + 0.0576;
+        let t134 = t124 - t131 * t131;
+        ::overact::guard::reach(t134, "leg3")?;
+        let t135 = ::overact::math::sqrt(t134);
+        let minus_c_arm_leg3 = t125 * (t126 * t131 + t14 * t135);
+        let t140 = t121 - 0.24 * minus_c_arm_leg3;
+        let t142 = t55 - 0.5 * t119;
+        let t143 = t142 * t142;
+        let t147 = 1.0 - 3.188775510204082 * t143;
+        ::overact::guard::reach(t147, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t147);
+        let c_cross_leg3 = (t129 - (0.0576 + t143) - 0.3136 * t147)
+            / (0.2688 * c_rod_leg3);
+        let s_arm_leg3 = t125 * (t126 * t135 - t14 * t131);
+        let s_cross_leg3 = 2.0833333333333335 * t135 / (0.56 * c_rod_leg3);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t163 = t142 * minus_c_armcross_leg3;
+        let t166 = 1.5464739353293548 * t163 + 0.5 * c_rod_leg3;
+        let t169 = 0.24 * s_arm_leg3;
+        let t170 = pose[2] + t169;
+        let s_rod_leg3 = 1.7857142857142858 * t142;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t175 = s_rod_leg3 * s_armcross_leg3;
+        let t176 = t170 * t175;
+        let t179 = 0.20784609690826528 * s_arm_leg3;
+        let t182 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t163;
+        let t186 = t140 * (0.56 * t182) + 0.28 * t176;
+        let t191 = s_arm_leg3 * t175;
+        let t193 = 0.1344 * (minus_c_arm_leg3 * t182) - 0.0672 * t191;
+        let t198 = t179 * t186 + 0.8660254037844387 * t170 * t193 + 0.14 * (t135 * t166);
+        ::overact::guard::leg(t198, 0.06758306237512474, "leg3")?;
+        let t199 = 1.0 / t198;
+        let garm_vx_leg3 = (t140 * (0.56 * t166) - 0.4849742261192857 * t176) * t199;
+        let t202 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t136, 14.8697301728973, "actuators")?;
-        ::overact::guard::platform(t136, 14.8697301728973, "actuators")?;
-        ::overact::guard::platform(t136, 14.8697301728973, "actuators")?;
-        let t137 = 1.0 / t136;
-        let t139 = 9.81 * c_arm_leg1;
-        let t142 = 9.81 * s_arm_leg1;
-        let t151 = actuator_accelerations[0] * parameters[0] - t139 * parameters[1]
-            + t142 * parameters[2] + actuator_accelerations[0] * parameters[3]
+        ::overact::guard::platform(t202, 14.869730172882845, "actuators")?;
+        ::overact::guard::platform(t202, 14.869730172882845, "actuators")?;
+        ::overact::guard::platform(t202, 14.869730172882845, "actuators")?;
+        let t203 = 1.0 / t202;
+        let t205 = 9.81 * c_arm_leg1;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let t212 = 9.81 * minus_s_arm_leg1;
+        let t221 = actuator_accelerations[0] * parameters[0] - t205 * parameters[1]
+            - t212 * parameters[2] + actuator_accelerations[0] * parameters[3]
             + actuator_velocities[0] * parameters[4]
             + ::overact::math::signed(parameters[5], actuator_velocities[0])
             + parameters[6];
-        let t153 = 0.56 * s_rod_leg1;
-        let t154 = 1.7857142857142858 * t17;
-        let gcross_vz_leg1 = s_arm_leg1 * t154;
-        let minus_garm_vz_leg1 = t13 * t18;
-        let garm_vz_leg2 = (0.1568 * (t42 * t33) - 0.2715855666268 * (t54 * t33)) * t75;
-        let minus_garm_vz_leg3 = (0.2715855666268 * (t107 * t91) - 0.1568 * (t100 * t91))
-            * t133;
-        let t178 = garm_vx_leg2 * garm_vz_leg2 - garm_vx_leg1 * minus_garm_vz_leg1
-            - garm_vx_leg3 * minus_garm_vz_leg3;
-        let t179 = t178 * t137;
-        let garm_vy_leg2 = t58 * t75;
-        let garm_vy_leg1 = s_rod_leg1 * t18;
-        let minus_garm_vy_leg3 = t122 * t133;
-        let t194 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
-            - garm_vx_leg3 * minus_garm_vy_leg3;
-        let t196 = garm_vy_leg2 * garm_vz_leg2 - garm_vy_leg1 * minus_garm_vz_leg1
-            + minus_garm_vy_leg3 * minus_garm_vz_leg3 - t194 * t179;
-        let t202 = t194 * t137;
-        let t204 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + minus_garm_vy_leg3 * minus_garm_vy_leg3 - t194 * t202;
-        ::overact::guard::platform(t204, 14.869730172897306, "actuators")?;
-        ::overact::guard::platform(t204, 14.869730172897306, "actuators")?;
-        ::overact::guard::platform(t204, 14.869730172897306, "actuators")?;
-        let t205 = 1.0 / t204;
-        let t206 = t196 * t205;
-        let t208 = minus_garm_vz_leg1 * minus_garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t178 * t179 - t196 * t206;
-        ::overact::guard::platform(t208, 34.85535020139291, "actuators")?;
-        ::overact::guard::platform(t208, 34.85535020139291, "actuators")?;
-        ::overact::guard::platform(t208, 34.85535020139291, "actuators")?;
-        let t209 = 1.0 / t208;
-        let t219 = garm_vx_leg1 * actuator_velocities[0]
+        let t223 = 0.48 * t24;
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t227 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t227, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t227);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t227) / (0.2688 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t241 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t223
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t241)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t241));
+        let garm_vy_leg1 = pose[1] * t25;
+        let garm_vy_leg2 = t101 * t114;
+        let garm_vy_leg3 = t186 * t199;
+        let t264 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3;
+        let t265 = t264 * t203;
+        let t267 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t264 * t265;
+        ::overact::guard::platform(t267, 14.869730172882843, "actuators")?;
+        ::overact::guard::platform(t267, 14.869730172882843, "actuators")?;
+        ::overact::guard::platform(t267, 14.869730172882843, "actuators")?;
+        let t268 = 1.0 / t267;
+        let t278 = garm_vx_leg1 * actuator_velocities[0]
             + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2];
-        let t228 = garm_vy_leg1 * actuator_velocities[0]
+        let t280 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
-            - minus_garm_vy_leg3 * actuator_velocities[2] - t219 * t202;
-        let t231 = t209
-            * (garm_vz_leg2 * actuator_velocities[1]
-                - minus_garm_vz_leg1 * actuator_velocities[0]
-                - minus_garm_vz_leg3 * actuator_velocities[2] - t219 * t179
-                - t206 * t228);
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t154;
-        let t237 = t205 * t228 - t206 * t231;
-        let t241 = t219 * t137 - t202 * t237 - t179 * t231;
-        let t244 = 1.0 / c_rod_leg1;
-        let minus_gcross_vy_leg1 = t154
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t244)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t244));
-        let rate_cross_leg1 = gcross_vz_leg1 * t231
-            - (minus_gcross_vx_leg1 * t241 + minus_gcross_vy_leg1 * t237);
-        let t255 = t153 * rate_cross_leg1;
-        let t256 = 1.7857142857142858 * t255;
-        let t257 = c_rod_leg1 * rate_cross_leg1;
-        let t258 = t256 * t257;
-        let grod_vy_leg1 = 1.7857142857142858 * t244;
-        let t261 = actuator_velocities[0] * actuator_velocities[0];
-        let rate_rod_leg1 = grod_vy_leg1 * t237;
-        let t265 = s_armcross_leg1 * rate_rod_leg1;
-        let t267 = rate_cross_leg1 * rate_cross_leg1;
-        let t269 = c_armcross_leg1 * rate_rod_leg1;
-        let t271 = t265 * t265 + t267 + t269 * t269;
-        let t275 = t153 * (rate_cross_leg1 * t269);
-        let t277 = 0.24 * s_arm_leg1 * t261 + 0.56 * t13 * t271 + t275 + t275;
-        let t280 = t153 * (rate_cross_leg1 * t265);
-        let t287 = t280 - (0.24 * c_arm_leg1 * t261 + 0.56 * t12 * t271) + t280;
-        let t291 = rate_cross_leg1 * t255 - t153 * t271;
-        let rate_dot_arm_leg1 = minus_garm_vz_leg1 * t277
-            - (garm_vx_leg1 * t287 + garm_vy_leg1 * t291);
-        let t295 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t298 = actuator_velocities[1] * actuator_velocities[1];
-        let t301 = t38 + 0.8660254037844387 * s_rod_leg2;
-        let t302 = 0.56 * t301;
-        let gcross_vx_leg2 = (0.56 * t34 * t51 - 0.1344 * (c_arm_leg2 * t42)) * t75;
-        let minus_gcross_vy_leg2 = t64 * t75;
-        let minus_gcross_vz_leg2 = (0.56 * t54 * t51 + 0.0672 * (s_arm_leg2 * t42))
-            * t75;
-        let rate_cross_leg2 = gcross_vx_leg2 * t241 - minus_gcross_vy_leg2 * t237
-            - minus_gcross_vz_leg2 * t231;
-        let t321 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (1.12 * t38 * t51 + 0.11639381426862856 * t70) * t75;
-        let minus_grod_vy_leg2 = t72 * t75;
-        let rate_rod_leg2 = grod_vx_leg2 * t241 - minus_grod_vy_leg2 * t237;
-        let t333 = t321 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t336 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t337 = 0.5 * rate_cross_leg2;
-        let t338 = t336 - t337;
-        let t341 = c_armcross_leg2 * rate_rod_leg2;
-        let t343 = t333 * t333 + t338 * t338 + t341 * t341;
-        let t349 = t39 * c_rod_leg2 - 0.5 * s_rod_leg2;
-        let t350 = 0.56 * t349;
-        let t354 = t302 * t333 + t350 * t338 - t48 * t341;
-        let t357 = t321 * t336;
-        let t360 = t321 * t341;
-        let t363 = 0.12 * c_arm_leg2 * t298 + t302 * t343 - t333 * t354
-            + 0.7466666666666667 * (t349 * t357) - t48 * t360;
-        let t373 = t337 * t341;
-        let t376 = t338 * t354 - (0.20784609690826528 * c_arm_leg2 * t298 + t350 * t343)
-            + 0.7466666666666667 * (t301 * t357) - t48 * t373;
-        let t384 = t302 * t360 - t350 * t373;
-        let t386 = t47 * t298 + t48 * t343 + t384 + t384;
-        let minus_rate_dot_arm_leg2 = garm_vx_leg2 * t363 + garm_vy_leg2 * t376
-            + garm_vz_leg2 * t386;
-        let t389 = actuator_accelerations[1] + minus_rate_dot_arm_leg2;
-        let t393 = actuator_velocities[2] * actuator_velocities[2];
-        let t397 = t97 * c_rod_leg3 + 0.5 * s_rod_leg3;
-        let t398 = 0.56 * t397;
-        let gcross_vy_leg3 = t112 * t133;
-        let minus_gcross_vx_leg3 = (0.56 * t92 * t118 + 0.1344 * (c_arm_leg3 * t100))
-            * t133;
-        let gcross_vz_leg3 = (0.56 * t107 * t118 - 0.0672 * (s_arm_leg3 * t100)) * t133;
-        let rate_cross_leg3 = gcross_vy_leg3 * t237 - minus_gcross_vx_leg3 * t241
-            + gcross_vz_leg3 * t231;
-        let t417 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (0.11639381426862856 * t128 - 1.12 * t96 * t118) * t133;
-        let grod_vy_leg3 = t130 * t133;
-        let rate_rod_leg3 = grod_vx_leg3 * t241 + grod_vy_leg3 * t237;
-        let t429 = t417 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t431 = 0.5 * rate_cross_leg3;
-        let t433 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t434 = t431 + t433;
-        let t437 = c_armcross_leg3 * rate_rod_leg3;
-        let t439 = t429 * t429 + t434 * t434 + t437 * t437;
-        let t443 = 0.8660254037844387 * s_rod_leg3 - t96;
-        let t444 = 0.56 * t443;
-        let t449 = t444 * t429 + t398 * t434 - t115 * t437;
-        let t452 = t417 * t433;
-        let t455 = t431 * t437;
-        let t458 = 0.20784609690826528 * c_arm_leg3 * t393 + t398 * t439 - t434 * t449
-            - (0.7466666666666667 * (t443 * t452) + t115 * t455);
-        let t466 = t417 * t437;
-        let t471 = 0.12 * c_arm_leg3 * t393 - t444 * t439 + t429 * t449 + t115 * t466
-            - 0.7466666666666667 * (t397 * t452);
-        let t479 = t398 * t455 + t444 * t466;
-        let t481 = t114 * t393 + t115 * t439 + t479 + t479;
-        let rate_dot_arm_leg3 = minus_garm_vy_leg3 * t458 - garm_vx_leg3 * t471
-            + minus_garm_vz_leg3 * t481;
-        let t484 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t491 = garm_vx_leg1 * t295 + garm_vx_leg2 * t389 + garm_vx_leg3 * t484;
-        let t493 = garm_vy_leg1 * t295 + garm_vy_leg2 * t389 - minus_garm_vy_leg3 * t484
-            - t202 * t491;
-        let t504 = t209
-            * (garm_vz_leg2 * t389 - minus_garm_vz_leg1 * t295
-                - minus_garm_vz_leg3 * t484 - t179 * t491 - t206 * t493);
-        let t506 = t205 * t493 - t206 * t504;
-        let t507 = t506 - t291;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t507;
-        let t509 = t258 - rate_dot_rod_leg1;
-        let t511 = t257 * t257;
-        let t512 = rate_rod_leg1 * rate_rod_leg1;
-        let t522 = t137 * t491 - t202 * t506 - t179 * t504;
-        let rate_dot_cross_leg1 = gcross_vz_leg1 * (t504 - t277)
-            - (minus_gcross_vx_leg1 * (t522 - t287) + minus_gcross_vy_leg1 * t507);
-        let t528 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t532 = 0.24 * actuator_accelerations[0] - t139;
-        let t535 = t142 + 0.24 * t261;
-        let t537 = s_cross_leg1 * t532 - c_cross_leg1 * t535;
-        let t538 = c_rod_leg1 * t537;
-        let t541 = 0.24 * t16
-            * (parameters[14] * t509 - (t511 + t512) * parameters[13]
-                + parameters[15] * t528 + parameters[16] * t538);
-        let t544 = t258 + rate_dot_rod_leg1;
-        let t547 = 3.188775510204082 * (t255 * t255);
-        let t551 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t554 = s_rod_leg1 * t537;
-        let t557 = s_rod_leg1 * (0.24 * s_cross_leg1)
-            * (parameters[13] * t544 - (t547 + t512) * parameters[14]
-                - parameters[15] * t551 - parameters[16] * t554);
-        let t560 = rate_rod_leg1 * t256;
-        let t561 = t528 - t560;
-        let t562 = t560 - t561;
-        let t564 = rate_rod_leg1 * t257;
-        let t565 = t551 + t564;
-        let t566 = t564 + t565;
-        let t573 = s_cross_leg1 * t535 + c_cross_leg1 * t532;
-        let t577 = t541 - t557
+            + garm_vy_leg3 * actuator_velocities[2] - t278 * t265;
+        let t282 = 0.24 * minus_s_arm_leg1;
+        let t283 = pose[2] - t282;
+        let garm_vz_leg1 = t283 * t25;
+        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t85) * t114;
+        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t170) * t199;
+        let t300 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3;
+        let t301 = t300 * t203;
+        let t303 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 - t264 * t301;
+        let t304 = t303 * t268;
+        let t313 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 - t300 * t301 - t303 * t304;
+        ::overact::guard::platform(t313, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t313, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t313, 34.855350201355726, "actuators")?;
+        let t314 = 1.0 / t313;
+        let t324 = t314
+            * (garm_vz_leg1 * actuator_velocities[0]
+                + garm_vz_leg2 * actuator_velocities[1]
+                + garm_vz_leg3 * actuator_velocities[2] - t278 * t301 - t304 * t280);
+        let t326 = t268 * t280 - t304 * t324;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t223;
+        let t333 = t278 * t203 - t265 * t326 - t301 * t324;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t223;
+        let rate_cross_leg1 = gcross_vy_leg1 * t326 - minus_gcross_vx_leg1 * t333
+            - minus_gcross_vz_leg1 * t324;
+        let t339 = pose[1] * rate_cross_leg1;
+        let t340 = 1.7857142857142858 * t339;
+        let t341 = c_rod_leg1 * rate_cross_leg1;
+        let t342 = t340 * t341;
+        let grod_vy_leg1 = 1.7857142857142858 * t241;
+        let rate_rod_leg1 = grod_vy_leg1 * t326;
+        let t345 = s_armcross_leg1 * rate_rod_leg1;
+        let t347 = pose[1] * (rate_cross_leg1 * t345);
+        let t348 = actuator_velocities[0] * actuator_velocities[0];
+        let t351 = rate_cross_leg1 * rate_cross_leg1;
+        let t353 = c_armcross_leg1 * rate_rod_leg1;
+        let t355 = t345 * t345 + t351 + t353 * t353;
+        let t359 = t347 - (t21 * t348 + t23 * t355) + t347;
+        let t363 = rate_cross_leg1 * t339 - pose[1] * t355;
+        let t367 = pose[1] * (rate_cross_leg1 * t353);
+        let t372 = t367 - (t282 * t348 + t283 * t355) + t367;
+        let minus_rate_dot_arm_leg1 = garm_vx_leg1 * t359 + garm_vy_leg1 * t363
+            + garm_vz_leg1 * t372;
+        let t375 = actuator_accelerations[0] + minus_rate_dot_arm_leg1;
+        let t377 = actuator_velocities[1] * actuator_velocities[1];
+        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t81)
+            - 0.11639381426862856 * (minus_s_arm_leg2 * t97)) * t114;
+        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t81)
+            - 0.11639381426862856 * t106) * t114;
+        let minus_gcross_vy_leg2 = t108 * t114;
+        let rate_cross_leg2 = gcross_vz_leg2 * t324
+            - (minus_gcross_vx_leg2 * t333 + minus_gcross_vy_leg2 * t326);
+        let t396 = 0.8660254037844387 * rate_cross_leg2;
+        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t85) - t54 * t94) * t114;
+        let minus_grod_vy_leg2 = 0.25 * t49 * t114;
+        let rate_rod_leg2 = grod_vx_leg2 * t333 - minus_grod_vy_leg2 * t326;
+        let t409 = t396 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
+        let t412 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
+        let t413 = 0.5 * rate_cross_leg2;
+        let t414 = t412 - t413;
+        let t417 = c_armcross_leg2 * rate_rod_leg2;
+        let t419 = t409 * t409 + t414 * t414 + t417 * t417;
+        let t422 = 0.20784609690826528 * c_arm_leg2;
+        let t424 = t28 - (0.17320508075688776 + t422);
+        let t425 = t413 * t417;
+        let t427 = 0.12 * c_arm_leg2;
+        let t429 = t31 + 0.1 + t427;
+        let t430 = t396 * t417;
+        let t432 = t424 * t425 + t429 * t430;
+        let t434 = t84 * t377 + t85 * t419 + t432 + t432;
+        let t443 = t424 * t414 - t429 * t409 + t85 * t417;
+        let t448 = 1.3333333333333333 * (t396 * t412);
+        let t451 = t427 * t377 - t429 * t419 - t409 * t443 + t85 * t430 + t424 * t448;
+        let t461 = t414 * t443 - (t422 * t377 + t424 * t419) + t85 * t425 - t429 * t448;
+        let rate_dot_arm_leg2 = garm_vz_leg2 * t434
+            - (garm_vx_leg2 * t451 + garm_vy_leg2 * t461);
+        let t465 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t468 = 0.20784609690826528 * minus_c_arm_leg3;
+        let t469 = actuator_velocities[2] * actuator_velocities[2];
+        let t472 = t118 - (t468 - 0.17320508075688776);
+        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t182)
+            + 0.0672 * (s_arm_leg3 * t166)) * t199;
+        let minus_gcross_vx_leg3 = (0.11639381426862856 * t191
+            + 0.1344 * (minus_c_arm_leg3 * t166)) * t199;
+        let minus_gcross_vy_leg3 = t193 * t199;
+        let rate_cross_leg3 = gcross_vz_leg3 * t324
+            - (minus_gcross_vx_leg3 * t333 + minus_gcross_vy_leg3 * t326);
+        let t490 = 0.8660254037844387 * rate_cross_leg3;
+        let grod_vx_leg3 = (t140 * t179
+            + 0.20784609690826528 * (minus_c_arm_leg3 * t170)) * t199;
+        let minus_grod_vy_leg3 = 0.25 * t135 * t199;
+        let rate_rod_leg3 = grod_vx_leg3 * t333 - minus_grod_vy_leg3 * t326;
+        let t503 = t490 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
+        let t505 = 0.5 * rate_cross_leg3;
+        let t507 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
+        let t508 = t505 + t507;
+        let t511 = minus_c_armcross_leg3 * rate_rod_leg3;
+        let t513 = t503 * t503 + t508 * t508 + t511 * t511;
+        let t516 = 0.12 * minus_c_arm_leg3;
+        let t518 = t31 - (t516 - 0.1);
+        let t523 = t518 * t503 - t472 * t508 - t170 * t511;
+        let t527 = 1.3333333333333333 * (t490 * t507);
+        let t529 = t505 * t511;
+        let t532 = t468 * t469 + t472 * t513 + t508 * t523 + t518 * t527 + t170 * t529;
+        let t539 = t490 * t511;
+        let t543 = t503 * t523 - (t516 * t469 + t518 * t513) + t170 * t539 + t472 * t527;
+        let t551 = t472 * t529 - t518 * t539;
+        let t553 = t169 * t469 - t170 * t513 + t551 + t551;
+        let rate_dot_arm_leg3 = garm_vy_leg3 * t532 - garm_vx_leg3 * t543
+            - garm_vz_leg3 * t553;
+        let t556 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t563 = garm_vx_leg1 * t375 + garm_vx_leg2 * t465 + garm_vx_leg3 * t556;
+        let t565 = garm_vy_leg1 * t375 + garm_vy_leg2 * t465 + garm_vy_leg3 * t556
+            - t265 * t563;
+        let t576 = t314
+            * (garm_vz_leg1 * t375 + garm_vz_leg2 * t465 + garm_vz_leg3 * t556
+                - t301 * t563 - t304 * t565);
+        let t578 = t268 * t565 - t304 * t576;
+        let t579 = t578 - t363;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t579;
+        let t581 = t342 - rate_dot_rod_leg1;
+        let t583 = t341 * t341;
+        let t584 = rate_rod_leg1 * rate_rod_leg1;
+        let t593 = t203 * t563 - t265 * t578 - t301 * t576;
+        let rate_dot_cross_leg1 = gcross_vy_leg1 * t579
+            - minus_gcross_vx_leg1 * (t593 - t359)
+            - minus_gcross_vz_leg1 * (t576 - t372);
+        let t600 = c_rod_leg1 * rate_dot_cross_leg1;
+        let t604 = t212 - 0.24 * t348;
+        let t607 = 0.24 * actuator_accelerations[0] - t205;
+        let t609 = c_cross_leg1 * t604 + s_cross_leg1 * t607;
+        let t610 = c_rod_leg1 * t609;
+        let t613 = 0.8928571428571429 * t17
+            * (parameters[14] * t581 - (t583 + t584) * parameters[13]
+                + parameters[15] * t600 + parameters[16] * t610);
+        let t616 = t342 + rate_dot_rod_leg1;
+        let t619 = 3.188775510204082 * (t339 * t339);
+        let t623 = s_rod_leg1 * rate_dot_cross_leg1;
+        let t626 = s_rod_leg1 * t609;
+        let t629 = 0.42857142857142855 * (pose[1] * s_cross_leg1)
+            * (parameters[13] * t616 - (t619 + t584) * parameters[14]
+                - parameters[15] * t623 - parameters[16] * t626);
+        let t632 = rate_rod_leg1 * t340;
+        let t633 = t600 - t632;
+        let t634 = t632 - t633;
+        let t636 = rate_rod_leg1 * t341;
+        let t637 = t623 + t636;
+        let t638 = t636 + t637;
+        let t645 = c_cross_leg1 * t607 - s_cross_leg1 * t604;
+        let t649 = t613 - t629
             - 0.24 * c_cross_leg1
-                * (parameters[13] * t562 + parameters[14] * t566 - t267 * parameters[15]
-                    - parameters[16] * t573);
-        let t578 = t151 + t577;
-        let t589 = parameters[7] * t565 - parameters[8] * t562 + parameters[9] * t544
-            - t564 * parameters[10] + parameters[11] * (t511 - t512);
-        let t606 = t560 * parameters[7] + parameters[8] * t566
-            + parameters[9] * (t512 - t547) + parameters[10] * t561
-            - parameters[11] * t509;
-        let t614 = s_rod_leg1
-            * (t589 + t564 * parameters[12] - parameters[14] * t573
-                + parameters[15] * t554)
+                * (parameters[13] * t634 + parameters[14] * t638 - t351 * parameters[15]
+                    - parameters[16] * t645);
+        let t650 = t221 + t649;
+        let t661 = parameters[7] * t637 - parameters[8] * t634 + parameters[9] * t616
+            - t636 * parameters[10] + parameters[11] * (t583 - t584);
+        let t678 = t632 * parameters[7] + parameters[8] * t638
+            + parameters[9] * (t584 - t619) + parameters[10] * t633
+            - parameters[11] * t581;
+        let t686 = s_rod_leg1
+            * (t661 + t636 * parameters[12] - parameters[14] * t645
+                + parameters[15] * t626)
             + c_rod_leg1
-                * (t606 - t560 * parameters[12] + parameters[13] * t573
-                    + parameters[15] * t538);
-        let t618 = 9.81 * c_arm_leg2;
-        let t621 = 9.81 * s_arm_leg2;
-        let t630 = actuator_accelerations[1] * parameters[17] - t618 * parameters[18]
-            + t621 * parameters[19] + actuator_accelerations[1] * parameters[20]
+                * (t678 - t632 * parameters[12] + parameters[13] * t645
+                    + parameters[15] * t610);
+        let t690 = 9.81 * c_arm_leg2;
+        let t693 = 9.81 * minus_s_arm_leg2;
+        let t702 = actuator_accelerations[1] * parameters[17] - t690 * parameters[18]
+            - t693 * parameters[19] + actuator_accelerations[1] * parameters[20]
             + actuator_velocities[1] * parameters[21]
             + ::overact::math::signed(parameters[22], actuator_velocities[1])
             + parameters[23];
-        let t632 = 1.7857142857142858 * t354;
-        let t633 = c_rod_leg2 * rate_cross_leg2;
-        let t634 = t632 * t633;
-        let t635 = t522 - t363;
-        let t637 = t506 - t376;
-        let rate_dot_rod_leg2 = grod_vx_leg2 * t635 - minus_grod_vy_leg2 * t637;
-        let t640 = t634 - rate_dot_rod_leg2;
-        let t642 = t633 * t633;
-        let t643 = rate_rod_leg2 * rate_rod_leg2;
-        let rate_dot_cross_leg2 = gcross_vx_leg2 * t635 - minus_gcross_vy_leg2 * t637
-            - minus_gcross_vz_leg2 * (t504 - t386);
-        let t653 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t657 = 0.24 * actuator_accelerations[1] - t618;
-        let t660 = t621 + 0.24 * t298;
-        let t662 = s_cross_leg2 * t657 - c_cross_leg2 * t660;
-        let t663 = c_rod_leg2 * t662;
-        let t666 = 3.5714285714285716 * t72
-            * (parameters[31] * t640 - (t642 + t643) * parameters[30]
-                + parameters[32] * t653 + parameters[33] * t663);
-        let t669 = t634 + rate_dot_rod_leg2;
-        let t672 = 3.188775510204082 * (t354 * t354);
-        let t676 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t679 = s_rod_leg2 * t662;
-        let t682 = s_rod_leg2 * (0.24 * s_cross_leg2)
-            * (parameters[30] * t669 - (t672 + t643) * parameters[31]
-                - parameters[32] * t676 - parameters[33] * t679);
-        let t685 = rate_rod_leg2 * t632;
-        let t686 = t653 - t685;
-        let t687 = t685 - t686;
-        let t689 = rate_rod_leg2 * t633;
-        let t690 = t676 + t689;
-        let t691 = t689 + t690;
-        let t699 = s_cross_leg2 * t660 + c_cross_leg2 * t657;
-        let t702 = 0.24 * c_cross_leg2
-            * (parameters[30] * t687 + parameters[31] * t691
+        let t704 = 1.7857142857142858 * t443;
+        let t705 = c_rod_leg2 * rate_cross_leg2;
+        let t706 = t704 * t705;
+        let t707 = t593 - t451;
+        let t709 = t578 - t461;
+        let rate_dot_rod_leg2 = grod_vx_leg2 * t707 - minus_grod_vy_leg2 * t709;
+        let t712 = t706 - rate_dot_rod_leg2;
+        let t714 = t705 * t705;
+        let t715 = rate_rod_leg2 * rate_rod_leg2;
+        let rate_dot_cross_leg2 = gcross_vz_leg2 * (t576 + t434)
+            - (minus_gcross_vx_leg2 * t707 + minus_gcross_vy_leg2 * t709);
+        let t725 = c_rod_leg2 * rate_dot_cross_leg2;
+        let t729 = t693 - 0.24 * t377;
+        let t732 = 0.24 * actuator_accelerations[1] - t690;
+        let t734 = c_cross_leg2 * t729 + s_cross_leg2 * t732;
+        let t735 = c_rod_leg2 * t734;
+        let t738 = 0.8928571428571429 * t49
+            * (parameters[31] * t712 - (t714 + t715) * parameters[30]
+                + parameters[32] * t725 + parameters[33] * t735);
+        let t741 = t706 + rate_dot_rod_leg2;
+        let t744 = 3.188775510204082 * (t443 * t443);
+        let t748 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t751 = minus_s_rod_leg2 * t734;
+        let t754 = 0.42857142857142855 * (t57 * s_cross_leg2)
+            * (parameters[30] * t741 - (t744 + t715) * parameters[31]
+                + parameters[32] * t748 + parameters[33] * t751);
+        let t757 = rate_rod_leg2 * t704;
+        let t758 = t725 - t757;
+        let t759 = t757 - t758;
+        let t761 = rate_rod_leg2 * t705;
+        let t762 = t761 - t748;
+        let t763 = t761 + t762;
+        let t771 = c_cross_leg2 * t732 - s_cross_leg2 * t729;
+        let t774 = 0.24 * c_cross_leg2
+            * (parameters[30] * t759 + parameters[31] * t763
                 - rate_cross_leg2 * rate_cross_leg2 * parameters[32]
-                - parameters[33] * t699);
-        let t704 = t630 - (t666 + t682 + t702);
-        let t715 = parameters[24] * t690 - parameters[25] * t687 + parameters[26] * t669
-            - t689 * parameters[27] + parameters[28] * (t642 - t643);
-        let t732 = t685 * parameters[24] + parameters[25] * t691
-            + parameters[26] * (t643 - t672) + parameters[27] * t686
-            - parameters[28] * t640;
-        let t740 = s_rod_leg2
-            * (t715 + t689 * parameters[29] - parameters[31] * t699
-                + parameters[32] * t679)
-            + c_rod_leg2
-                * (t732 - t685 * parameters[29] + parameters[30] * t699
-                    + parameters[32] * t663);
-        let t752 = parameters[25] * (t672 - t642) - t634 * parameters[24]
-            + parameters[26] * t676 + t634 * parameters[27] + parameters[28] * t653;
-        let t758 = t752 + parameters[29] * rate_dot_rod_leg2 - parameters[30] * t679
-            - parameters[31] * t663;
-        let t763 = 9.81 * c_arm_leg3;
-        let t766 = 9.81 * s_arm_leg3;
-        let t775 = actuator_accelerations[2] * parameters[34] - t763 * parameters[35]
-            + t766 * parameters[36] + actuator_accelerations[2] * parameters[37]
+                - parameters[33] * t771);
+        let t776 = t702 + t738 + t754 - t774;
+        let t787 = t757 * parameters[24] + parameters[25] * t763
+            + parameters[26] * (t715 - t744) + parameters[27] * t758
+            - parameters[28] * t712;
+        let t804 = parameters[24] * t762 - parameters[25] * t759 + parameters[26] * t741
+            - t761 * parameters[27] + parameters[28] * (t714 - t715);
+        let t812 = c_rod_leg2
+            * (t787 - t757 * parameters[29] + parameters[30] * t771
+                + parameters[32] * t735)
+            - minus_s_rod_leg2
+                * (t804 + t761 * parameters[29] - parameters[31] * t771
+                    - parameters[32] * t751);
+        let t824 = parameters[25] * (t744 - t714) - t706 * parameters[24]
+            - parameters[26] * t748 + t706 * parameters[27] + parameters[28] * t725;
+        let t830 = t824 + parameters[29] * rate_dot_rod_leg2 + parameters[30] * t751
+            - parameters[31] * t735;
+        let t835 = 9.81 * minus_c_arm_leg3;
+        let t838 = 9.81 * s_arm_leg3;
+        let t847 = actuator_accelerations[2] * parameters[34] + t835 * parameters[35]
+            + t838 * parameters[36] + actuator_accelerations[2] * parameters[37]
             + actuator_velocities[2] * parameters[38]
             + ::overact::math::signed(parameters[39], actuator_velocities[2])
             + parameters[40];
-        let t777 = 1.7857142857142858 * t449;
-        let t778 = c_rod_leg3 * rate_cross_leg3;
-        let t779 = t777 * t778;
-        let t780 = t522 - t471;
-        let t782 = t506 - t458;
-        let rate_dot_rod_leg3 = grod_vx_leg3 * t780 + grod_vy_leg3 * t782;
-        let t785 = t779 - rate_dot_rod_leg3;
-        let t787 = t778 * t778;
-        let t788 = rate_rod_leg3 * rate_rod_leg3;
-        let rate_dot_cross_leg3 = gcross_vy_leg3 * t782 - minus_gcross_vx_leg3 * t780
-            + gcross_vz_leg3 * (t504 - t481);
-        let t798 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t802 = 0.24 * actuator_accelerations[2] - t763;
-        let t805 = t766 + 0.24 * t393;
-        let t807 = s_cross_leg3 * t802 - c_cross_leg3 * t805;
-        let t808 = c_rod_leg3 * t807;
-        let t811 = 3.5714285714285716 * t130
-            * (parameters[48] * t785 - (t787 + t788) * parameters[47]
-                + parameters[49] * t798 + parameters[50] * t808);
-        let t814 = t779 + rate_dot_rod_leg3;
-        let t817 = 3.188775510204082 * (t449 * t449);
-        let t821 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t824 = s_rod_leg3 * t807;
-        let t827 = s_rod_leg3 * (0.24 * s_cross_leg3)
-            * (parameters[47] * t814 - (t817 + t788) * parameters[48]
-                - parameters[49] * t821 - parameters[50] * t824);
-        let t830 = rate_rod_leg3 * t777;
-        let t831 = t798 - t830;
-        let t832 = t830 - t831;
-        let t834 = rate_rod_leg3 * t778;
-        let t835 = t821 + t834;
-        let t836 = t834 + t835;
-        let t844 = s_cross_leg3 * t805 + c_cross_leg3 * t802;
-        let t847 = 0.24 * c_cross_leg3
-            * (parameters[47] * t832 + parameters[48] * t836
+        let t849 = 1.7857142857142858 * t523;
+        let t850 = c_rod_leg3 * rate_cross_leg3;
+        let t851 = t849 * t850;
+        let t852 = t593 - t543;
+        let t854 = t578 + t532;
+        let rate_dot_rod_leg3 = grod_vx_leg3 * t852 - minus_grod_vy_leg3 * t854;
+        let t857 = t851 - rate_dot_rod_leg3;
+        let t859 = t850 * t850;
+        let t860 = rate_rod_leg3 * rate_rod_leg3;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * (t576 - t553)
+            - (minus_gcross_vx_leg3 * t852 + minus_gcross_vy_leg3 * t854);
+        let t870 = c_rod_leg3 * rate_dot_cross_leg3;
+        let t874 = t835 + 0.24 * actuator_accelerations[2];
+        let t877 = t838 + 0.24 * t469;
+        let t879 = s_cross_leg3 * t874 - c_cross_leg3 * t877;
+        let t880 = c_rod_leg3 * t879;
+        let t883 = 0.8928571428571429 * t135
+            * (parameters[48] * t857 - (t859 + t860) * parameters[47]
+                + parameters[49] * t870 + parameters[50] * t880);
+        let t886 = t851 + rate_dot_rod_leg3;
+        let t889 = 3.188775510204082 * (t523 * t523);
+        let t893 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t896 = s_rod_leg3 * t879;
+        let t899 = 0.42857142857142855 * (t142 * s_cross_leg3)
+            * (parameters[47] * t886 - (t889 + t860) * parameters[48]
+                - parameters[49] * t893 - parameters[50] * t896);
+        let t902 = rate_rod_leg3 * t849;
+        let t903 = t870 - t902;
+        let t904 = t902 - t903;
+        let t906 = rate_rod_leg3 * t850;
+        let t907 = t893 + t906;
+        let t908 = t906 + t907;
+        let t916 = s_cross_leg3 * t877 + c_cross_leg3 * t874;
+        let t919 = 0.24 * c_cross_leg3
+            * (parameters[47] * t904 + parameters[48] * t908
                 - rate_cross_leg3 * rate_cross_leg3 * parameters[49]
-                - parameters[50] * t844);
-        let t849 = t775 - (t811 + t827 + t847);
-        let t860 = parameters[41] * t835 - parameters[42] * t832 + parameters[43] * t814
-            - t834 * parameters[44] + parameters[45] * (t787 - t788);
-        let t877 = t830 * parameters[41] + parameters[42] * t836
-            + parameters[43] * (t788 - t817) + parameters[44] * t831
-            - parameters[45] * t785;
-        let t885 = s_rod_leg3
-            * (t860 + t834 * parameters[46] - parameters[48] * t844
-                + parameters[49] * t824)
+                - parameters[50] * t916);
+        let t921 = t847 + t883 - t899 - t919;
+        let t932 = parameters[41] * t907 - parameters[42] * t904 + parameters[43] * t886
+            - t906 * parameters[44] + parameters[45] * (t859 - t860);
+        let t949 = t902 * parameters[41] + parameters[42] * t908
+            + parameters[43] * (t860 - t889) + parameters[44] * t903
+            - parameters[45] * t857;
+        let t957 = s_rod_leg3
+            * (t932 + t906 * parameters[46] - parameters[48] * t916
+                + parameters[49] * t896)
             + c_rod_leg3
-                * (t877 - t830 * parameters[46] + parameters[47] * t844
-                    + parameters[49] * t808);
-        let t897 = parameters[42] * (t817 - t787) - t779 * parameters[41]
-            + parameters[43] * t821 + t779 * parameters[44] + parameters[45] * t798;
-        let t903 = t897 + parameters[46] * rate_dot_rod_leg3 - parameters[47] * t824
-            - parameters[48] * t808;
-        let t906 = garm_vx_leg1 * t578 - minus_gcross_vx_leg1 * t614
-            + garm_vx_leg2 * t704 + gcross_vx_leg2 * t740 + grod_vx_leg2 * t758
-            + garm_vx_leg3 * t849 - minus_gcross_vx_leg3 * t885 + grod_vx_leg3 * t903;
-        let t910 = t906 + t522 * parameters[51] + t522 * parameters[52];
-        let t924 = parameters[8] * (t547 - t511) - t258 * parameters[7]
-            + parameters[9] * t551 + t258 * parameters[10] + parameters[11] * t528;
-        let t932 = garm_vy_leg1 * t578 - minus_gcross_vy_leg1 * t614
+                * (t949 - t902 * parameters[46] + parameters[47] * t916
+                    + parameters[49] * t880);
+        let t969 = parameters[42] * (t889 - t859) - t851 * parameters[41]
+            + parameters[43] * t893 + t851 * parameters[44] + parameters[45] * t870;
+        let t975 = t969 + parameters[46] * rate_dot_rod_leg3 - parameters[47] * t896
+            - parameters[48] * t880;
+        let t978 = garm_vx_leg1 * t650 - minus_gcross_vx_leg1 * t686
+            + garm_vx_leg2 * t776 - minus_gcross_vx_leg2 * t812 + grod_vx_leg2 * t830
+            + garm_vx_leg3 * t921 - minus_gcross_vx_leg3 * t957 + grod_vx_leg3 * t975;
+        let t982 = t978 + t593 * parameters[51] + t593 * parameters[52];
+        let t996 = parameters[8] * (t619 - t583) - t342 * parameters[7]
+            + parameters[9] * t623 + t342 * parameters[10] + parameters[11] * t600;
+        let t1004 = garm_vy_leg1 * t650 + gcross_vy_leg1 * t686
             + grod_vy_leg1
-                * (t924 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t554
-                    - parameters[14] * t538);
-        let t944 = t932 + garm_vy_leg2 * t704 - minus_gcross_vy_leg2 * t740
-            - minus_grod_vy_leg2 * t758 + gcross_vy_leg3 * t885
-            - minus_garm_vy_leg3 * t849 + grod_vy_leg3 * t903;
-        let t950 = t944 + t506 * parameters[51] + t506 * parameters[52] - t202 * t910;
-        let t962 = gcross_vz_leg1 * t614 - minus_garm_vz_leg1 * t578
-            + garm_vz_leg2 * t704 - minus_gcross_vz_leg2 * t740 + gcross_vz_leg3 * t885
-            - minus_garm_vz_leg3 * t849;
-        let t963 = t504 + 9.81;
-        let t972 = t209
-            * (t962 + parameters[51] * t963 + parameters[52] * t963 - t179 * t910
-                - t206 * t950);
-        let t974 = t205 * t950 - t206 * t972;
-        let t978 = t137 * t910 - t202 * t974 - t179 * t972;
+                * (t996 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t626
+                    - parameters[14] * t610);
+        let t1016 = t1004 + garm_vy_leg2 * t776 - minus_gcross_vy_leg2 * t812
+            - minus_grod_vy_leg2 * t830 + garm_vy_leg3 * t921
+            - minus_gcross_vy_leg3 * t957 - minus_grod_vy_leg3 * t975;
+        let t1022 = t1016 + t578 * parameters[51] + t578 * parameters[52] - t265 * t982;
+        let t1034 = garm_vz_leg1 * t650 - minus_gcross_vz_leg1 * t686
+            + garm_vz_leg2 * t776 + gcross_vz_leg2 * t812 + garm_vz_leg3 * t921
+            + gcross_vz_leg3 * t957;
+        let t1035 = t576 + 9.81;
+        let t1044 = t314
+            * (t1034 + parameters[51] * t1035 + parameters[52] * t1035 - t301 * t982
+                - t304 * t1022);
+        let t1046 = t268 * t1022 - t304 * t1044;
+        let t1050 = t203 * t982 - t265 * t1046 - t301 * t1044;
         Ok([
-            garm_vx_leg1 * t978 + garm_vy_leg1 * t974 - minus_garm_vz_leg1 * t972,
-            garm_vx_leg2 * t978 + garm_vy_leg2 * t974 + garm_vz_leg2 * t972,
-            garm_vx_leg3 * t978 - minus_garm_vy_leg3 * t974 - minus_garm_vz_leg3 * t972,
+            garm_vx_leg1 * t1050 + garm_vy_leg1 * t1046 + garm_vz_leg1 * t1044,
+            garm_vx_leg2 * t1050 + garm_vy_leg2 * t1046 + garm_vz_leg2 * t1044,
+            garm_vx_leg3 * t1050 + garm_vy_leg3 * t1046 + garm_vz_leg3 * t1044,
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -6598,7 +9907,7 @@ impl Delta {
     ///
     /// Output: 3 x 3.
     ///
-    /// 782 operations (270 additions, 508 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 794 intermediates.
+    /// 889 operations (320 additions, 556 multiplications, 13 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 889 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6606,347 +9915,408 @@ impl Delta {
         pose: &[f64; 3],
         parameters: &[f64; 53],
     ) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
-        let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.2304 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.48 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.3136 + 0.0576;
+        let t14 = 0.48 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t23 = t0 - (0.2 + 0.24 * c_arm_leg1);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = t23 * t25;
+        let t30 = 0.8928571428571429 * t17;
+        let t31 = 1.7857142857142858 * t23;
+        let t34 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t34, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t34);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t12 = c_armcross_leg1 * c_rod_leg1;
-        let t13 = s_armcross_leg1 * c_rod_leg1;
-        let t16 = c_arm_leg1 * t13 - s_arm_leg1 * t12;
-        ::overact::guard::leg(t16, 0.89794672585951, "leg1")?;
-        let t17 = 1.0 / t16;
-        let t18 = 4.166666666666667 * t17;
-        let garm_vx_leg1 = t12 * t18;
-        let t23 = 0.24 * t16;
-        let t25 = 1.7857142857142858 * t17;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t25;
-        let t27 = c_rod_leg1 * minus_gcross_vx_leg1;
-        let t32 = s_rod_leg1 * (0.24 * s_cross_leg1);
-        let t33 = s_rod_leg1 * minus_gcross_vx_leg1;
-        let t35 = c_armcross_leg1 * s_rod_leg1;
-        let t40 = 0.24 * c_cross_leg1;
-        let t45 = c_cross_leg1 * (0.24 * garm_vx_leg1);
-        let t49 = t23 * (t12 * parameters[16] - parameters[15] * t27)
-            - t32 * (parameters[15] * t33 - t35 * parameters[16])
-            - t40 * (parameters[13] * t27 - parameters[14] * t33 - parameters[16] * t45);
-        let t68 = s_rod_leg1
-            * (t35 * parameters[15]
-                - (parameters[7] * t33 + parameters[8] * t27 + parameters[14] * t45))
+        let t36 = 0.48 * t24;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t36;
+        let t38 = c_rod_leg1 * minus_gcross_vx_leg1;
+        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        let t46 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t48 = s_rod_leg1 * minus_gcross_vx_leg1;
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t34) / (0.2688 * c_rod_leg1);
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let t63 = s_rod_leg1 * c_armcross_leg1;
+        let t68 = 0.24 * c_cross_leg1;
+        let t73 = c_cross_leg1 * (0.24 * garm_vx_leg1);
+        let t77 = t30 * (t31 * parameters[16] - parameters[15] * t38)
+            - t46 * (parameters[15] * t48 - t63 * parameters[16])
+            - t68 * (parameters[13] * t38 - parameters[14] * t48 - parameters[16] * t73);
+        let t96 = s_rod_leg1
+            * (t63 * parameters[15]
+                - (parameters[7] * t48 + parameters[8] * t38 + parameters[14] * t73))
             + c_rod_leg1
-                * (parameters[13] * t45 - (parameters[8] * t33 + parameters[10] * t27)
-                    + t12 * parameters[15]);
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
-        let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t83 = s_armcross_leg2 * c_rod_leg2;
-        let t84 = s_armcross_leg2 * s_rod_leg2;
-        let t85 = t83 * t84;
-        let t87 = 0.5 * c_armcross_leg2;
-        let t88 = t87 * c_rod_leg2;
-        let t89 = 0.8660254037844387 * c_armcross_leg2;
-        let t92 = t89 * s_rod_leg2 + 0.5 * c_rod_leg2;
-        let t96 = 0.4849742261192857 * t83;
-        let t101 = t96 - 0.8660254037844387 * (0.24 * s_arm_leg2 + 0.56 * t83);
-        let t104 = t87 * s_rod_leg2 - 0.8660254037844387 * c_rod_leg2;
-        let t108 = 0.6272 * (t88 * t104) + 0.1568 * t85;
-        let t114 = 0.1344 * (c_arm_leg2 * t104) + 0.0672 * (s_arm_leg2 * t84);
-        let t120 = c_arm_leg2 * t83;
-        let t122 = 0.1344 * (s_arm_leg2 * t88) - 0.0672 * t120;
-        let t124 = t101 * t108 + t96 * t114 + 0.56 * t92 * t122;
-        ::overact::guard::leg(t124, 0.06758306237509017, "leg2")?;
-        let t125 = 1.0 / t124;
-        let garm_vx_leg2 = (0.2715855666268 * t85 + 0.6272 * (t88 * t92)) * t125;
-        let t130 = 3.5714285714285716 * t122;
-        let gcross_vx_leg2 = (0.56 * t84 * t101 - 0.1344 * (c_arm_leg2 * t92)) * t125;
-        let t137 = c_rod_leg2 * gcross_vx_leg2;
-        let grod_vx_leg2 = (1.12 * t88 * t101 + 0.11639381426862856 * t120) * t125;
-        let t147 = t88 + 0.8660254037844387 * s_rod_leg2;
-        let t152 = s_rod_leg2 * (0.24 * s_cross_leg2);
-        let t154 = s_rod_leg2 * gcross_vx_leg2;
-        let t157 = 0.24 * garm_vx_leg2;
-        let t159 = s_rod_leg2 * (s_cross_leg2 * t157);
-        let t163 = t130
-            * (parameters[32] * t137 - grod_vx_leg2 * parameters[31]
-                - t147 * parameters[33])
-            + t152
-                * (grod_vx_leg2 * parameters[30] - parameters[32] * t154
-                    - parameters[33] * t159);
-        let t164 = 0.24 * c_cross_leg2;
-        let t168 = c_cross_leg2 * t157;
-        let t173 = garm_vx_leg2 * parameters[17] + garm_vx_leg2 * parameters[20]
-            - (t163
-                + t164
-                    * (parameters[31] * t154 - parameters[30] * t137
-                        - parameters[33] * t168));
-        let t184 = s_rod_leg2
-            * (parameters[32] * t159
-                - (parameters[31] * t168
-                    - (parameters[24] * t154 + parameters[25] * t137
-                        + grod_vx_leg2 * parameters[26])));
-        let t194 = c_rod_leg2
-            * (parameters[30] * t168 + parameters[25] * t154 + parameters[27] * t137
-                + grod_vx_leg2 * parameters[28] - t147 * parameters[32]);
-        let t207 = grod_vx_leg2
-            * (parameters[30] * t159
-                - (parameters[26] * t154 + parameters[28] * t137
-                    + grod_vx_leg2 * parameters[29]) - t147 * parameters[31]);
-        let t209 = garm_vx_leg1
-            * (garm_vx_leg1 * parameters[0] + garm_vx_leg1 * parameters[3] + t49)
-            - minus_gcross_vx_leg1 * t68 + garm_vx_leg2 * t173
-            + gcross_vx_leg2 * (t184 + t194) - t207;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
-        let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t222 = s_armcross_leg3 * c_rod_leg3;
-        let t223 = s_armcross_leg3 * s_rod_leg3;
-        let t224 = t222 * t223;
-        let t226 = 0.5 * c_armcross_leg3;
-        let t227 = t226 * c_rod_leg3;
-        let t228 = 0.8660254037844387 * c_armcross_leg3;
-        let t231 = t228 * s_rod_leg3 - 0.5 * c_rod_leg3;
-        let t235 = 0.4849742261192857 * t222;
-        let t238 = t226 * s_rod_leg3 + 0.8660254037844387 * c_rod_leg3;
-        let t243 = 0.1344 * (c_arm_leg3 * t238) + 0.0672 * (s_arm_leg3 * t223);
-        let t249 = 0.8660254037844387 * (0.24 * s_arm_leg3 + 0.56 * t222) - t235;
-        let t253 = 0.6272 * (t227 * t238) + 0.1568 * t224;
-        let t259 = c_arm_leg3 * t222;
-        let t261 = 0.1344 * (s_arm_leg3 * t227) - 0.0672 * t259;
-        let t263 = t235 * t243 - t249 * t253 + 0.56 * t231 * t261;
-        ::overact::guard::leg(t263, 0.06758306237509014, "leg3")?;
-        let t264 = 1.0 / t263;
-        let garm_vx_leg3 = (0.2715855666268 * t224 + 0.6272 * (t227 * t231)) * t264;
-        let t269 = 3.5714285714285716 * t261;
-        let t271 = 0.8660254037844387 * s_rod_leg3 - t227;
-        let minus_gcross_vx_leg3 = (0.56 * t223 * t249 + 0.1344 * (c_arm_leg3 * t231))
-            * t264;
-        let t279 = c_rod_leg3 * minus_gcross_vx_leg3;
-        let grod_vx_leg3 = (0.11639381426862856 * t259 - 1.12 * t227 * t249) * t264;
-        let t291 = s_rod_leg3 * (0.24 * s_cross_leg3);
-        let t293 = s_rod_leg3 * minus_gcross_vx_leg3;
-        let t296 = 0.24 * garm_vx_leg3;
-        let t298 = s_rod_leg3 * (s_cross_leg3 * t296);
-        let t302 = t269
-            * (t271 * parameters[50]
-                - (parameters[49] * t279 + grod_vx_leg3 * parameters[48]))
-            + t291
-                * (grod_vx_leg3 * parameters[47] + parameters[49] * t293
-                    - parameters[50] * t298);
-        let t303 = 0.24 * c_cross_leg3;
-        let t307 = c_cross_leg3 * t296;
-        let t312 = garm_vx_leg3 * parameters[34] + garm_vx_leg3 * parameters[37]
-            - (t302
-                + t303
-                    * (parameters[47] * t279 - parameters[48] * t293
-                        - parameters[50] * t307));
-        let t323 = s_rod_leg3
+                * (parameters[13] * t73 - (parameters[8] * t48 + parameters[10] * t38)
+                    + t31 * parameters[15]);
+        let t99 = pose[1] + 0.04330127018922194;
+        let t100 = t99 - 0.17320508075688776;
+        let t102 = pose[0] - 0.025;
+        let t103 = t102 + 0.1;
+        let t104 = 0.5 * t103;
+        let t105 = 0.8660254037844387 * t100 - t104;
+        let t108 = 0.2304 * (t105 * t105 + t3);
+        let t109 = 1.0 / t108;
+        let t110 = 0.48 * t105;
+        let t111 = t103 * t103;
+        let t114 = t111 + t100 * t100 + t3;
+        let t116 = t114 - 0.3136 + 0.0576;
+        let t119 = t108 - t116 * t116;
+        ::overact::guard::reach(t119, "leg2")?;
+        let t120 = ::overact::math::sqrt(t119);
+        let c_arm_leg2 = t109 * (t110 * t116 - t14 * t120);
+        let t125 = t105 - 0.24 * c_arm_leg2;
+        let t126 = 0.8660254037844387 * t103;
+        let t128 = t126 + 0.5 * t100;
+        let t129 = t128 * t128;
+        let t133 = 1.0 - 3.188775510204082 * t129;
+        ::overact::guard::reach(t133, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t133);
+        let c_cross_leg2 = (t114 - (0.0576 + t129) - 0.3136 * t133)
+            / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t109 * (t14 * t116 + t110 * t120);
+        let s_cross_leg2 = 2.0833333333333335 * t120 / (0.56 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t149 = t128 * c_armcross_leg2;
+        let t152 = 1.5464739353293548 * t149 - 0.5 * c_rod_leg2;
+        let t156 = pose[2] - 0.24 * minus_s_arm_leg2;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t128;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t161 = minus_s_rod_leg2 * s_armcross_leg2;
+        let t162 = t156 * t161;
+        let t165 = 0.20784609690826528 * minus_s_arm_leg2;
+        let t168 = 0.8928571428571429 * t149 + 0.8660254037844387 * c_rod_leg2;
+        let t172 = t125 * (0.56 * t168) - 0.28 * t162;
+        let t177 = minus_s_arm_leg2 * t161;
+        let t179 = 0.1344 * (c_arm_leg2 * t168) - 0.0672 * t177;
+        let t184 = t165 * t172 - 0.8660254037844387 * t156 * t179 - 0.14 * (t120 * t152);
+        ::overact::guard::leg(t184, 0.06758306237512474, "leg2")?;
+        let t185 = 1.0 / t184;
+        let garm_vx_leg2 = (t125 * (0.56 * t152) - 0.4849742261192857 * t162) * t185;
+        let t190 = 0.8928571428571429 * t120;
+        let t194 = 1.7857142857142858 * (t102 + 0.1 + 0.12 * c_arm_leg2);
+        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t152)
+            - 0.11639381426862856 * t177) * t185;
+        let t201 = c_rod_leg2 * minus_gcross_vx_leg2;
+        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t156) - t125 * t165)
+            * t185;
+        let t213 = 0.42857142857142855 * (t128 * s_cross_leg2);
+        let t215 = minus_s_rod_leg2 * minus_gcross_vx_leg2;
+        let t218 = 0.24 * garm_vx_leg2;
+        let t220 = minus_s_rod_leg2 * (s_cross_leg2 * t218);
+        let t224 = t190
+            * (t194 * parameters[33]
+                - (parameters[32] * t201 + grod_vx_leg2 * parameters[31]))
+            + t213
+                * (grod_vx_leg2 * parameters[30] - parameters[32] * t215
+                    + parameters[33] * t220);
+        let t225 = 0.24 * c_cross_leg2;
+        let t226 = c_cross_leg2 * t218;
+        let t234 = garm_vx_leg2 * parameters[17] + garm_vx_leg2 * parameters[20] + t224
+            + t225
+                * (parameters[33] * t226
+                    - (parameters[30] * t201 + parameters[31] * t215));
+        let t245 = c_rod_leg2
+            * (parameters[25] * t215 - parameters[27] * t201
+                + grod_vx_leg2 * parameters[28] + parameters[30] * t226
+                + t194 * parameters[32]);
+        let t255 = minus_s_rod_leg2
+            * (parameters[24] * t215 - parameters[25] * t201
+                + grod_vx_leg2 * parameters[26] - parameters[31] * t226
+                - parameters[32] * t220);
+        let t268 = grod_vx_leg2
+            * (parameters[26] * t215 - parameters[28] * t201
+                + grod_vx_leg2 * parameters[29] + parameters[30] * t220
+                - t194 * parameters[31]);
+        let t270 = garm_vx_leg1
+            * (garm_vx_leg1 * parameters[0] + garm_vx_leg1 * parameters[3] + t77)
+            - minus_gcross_vx_leg1 * t96 + garm_vx_leg2 * t234
+            - minus_gcross_vx_leg2 * (t245 - t255) + t268;
+        let t271 = pose[1] - 0.04330127018922194;
+        let t272 = t271 + 0.17320508075688776;
+        let t274 = t104 + 0.8660254037844387 * t272;
+        let t277 = 0.2304 * (t274 * t274 + t3);
+        let t278 = 1.0 / t277;
+        let t279 = 0.48 * t274;
+        let t282 = t111 + t272 * t272 + t3;
+        let t284 = t282 - 0.3136 + 0.0576;
+        let t287 = t277 - t284 * t284;
+        ::overact::guard::reach(t287, "leg3")?;
+        let t288 = ::overact::math::sqrt(t287);
+        let minus_c_arm_leg3 = t278 * (t279 * t284 + t14 * t288);
+        let t293 = t274 - 0.24 * minus_c_arm_leg3;
+        let t295 = t126 - 0.5 * t272;
+        let t296 = t295 * t295;
+        let t300 = 1.0 - 3.188775510204082 * t296;
+        ::overact::guard::reach(t300, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t300);
+        let c_cross_leg3 = (t282 - (0.0576 + t296) - 0.3136 * t300)
+            / (0.2688 * c_rod_leg3);
+        let s_arm_leg3 = t278 * (t279 * t288 - t14 * t284);
+        let s_cross_leg3 = 2.0833333333333335 * t288 / (0.56 * c_rod_leg3);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t316 = t295 * minus_c_armcross_leg3;
+        let t319 = 1.5464739353293548 * t316 + 0.5 * c_rod_leg3;
+        let t323 = pose[2] + 0.24 * s_arm_leg3;
+        let s_rod_leg3 = 1.7857142857142858 * t295;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t328 = s_rod_leg3 * s_armcross_leg3;
+        let t329 = t323 * t328;
+        let t332 = 0.20784609690826528 * s_arm_leg3;
+        let t335 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t316;
+        let t339 = t293 * (0.56 * t335) + 0.28 * t329;
+        let t344 = s_arm_leg3 * t328;
+        let t346 = 0.1344 * (minus_c_arm_leg3 * t335) - 0.0672 * t344;
+        let t351 = t332 * t339 + 0.8660254037844387 * t323 * t346 + 0.14 * (t288 * t319);
+        ::overact::guard::leg(t351, 0.06758306237512474, "leg3")?;
+        let t352 = 1.0 / t351;
+        let garm_vx_leg3 = (t293 * (0.56 * t319) - 0.4849742261192857 * t329) * t352;
+        let t357 = 0.8928571428571429 * t288;
+        let t361 = 1.7857142857142858 * (t102 - (0.12 * minus_c_arm_leg3 - 0.1));
+        let minus_gcross_vx_leg3 = (0.11639381426862856 * t344
+            + 0.1344 * (minus_c_arm_leg3 * t319)) * t352;
+        let t368 = c_rod_leg3 * minus_gcross_vx_leg3;
+        let grod_vx_leg3 = (t293 * t332
+            + 0.20784609690826528 * (minus_c_arm_leg3 * t323)) * t352;
+        let t380 = 0.42857142857142855 * (t295 * s_cross_leg3);
+        let t382 = s_rod_leg3 * minus_gcross_vx_leg3;
+        let t385 = 0.24 * garm_vx_leg3;
+        let t387 = s_rod_leg3 * (s_cross_leg3 * t385);
+        let t391 = t357
+            * (t361 * parameters[50]
+                - (parameters[49] * t368 + grod_vx_leg3 * parameters[48]))
+            - t380
+                * (grod_vx_leg3 * parameters[47] + parameters[49] * t382
+                    - parameters[50] * t387);
+        let t392 = 0.24 * c_cross_leg3;
+        let t396 = c_cross_leg3 * t385;
+        let t401 = garm_vx_leg3 * parameters[34] + garm_vx_leg3 * parameters[37] + t391
+            - t392
+                * (parameters[47] * t368 - parameters[48] * t382
+                    - parameters[50] * t396);
+        let t412 = s_rod_leg3
             * (grod_vx_leg3 * parameters[43]
-                - (parameters[41] * t293 + parameters[42] * t279) - parameters[48] * t307
-                + parameters[49] * t298);
-        let t333 = c_rod_leg3
+                - (parameters[41] * t382 + parameters[42] * t368) - parameters[48] * t396
+                + parameters[49] * t387);
+        let t422 = c_rod_leg3
             * (grod_vx_leg3 * parameters[45]
-                - (parameters[42] * t293 + parameters[44] * t279) + parameters[47] * t307
-                + t271 * parameters[49]);
-        let t346 = grod_vx_leg3
+                - (parameters[42] * t382 + parameters[44] * t368) + parameters[47] * t396
+                + t361 * parameters[49]);
+        let t435 = grod_vx_leg3
             * (grod_vx_leg3 * parameters[46]
-                - (parameters[43] * t293 + parameters[45] * t279) - parameters[47] * t298
-                - t271 * parameters[48]);
-        let t349 = parameters[51] + parameters[52];
-        let garm_vy_leg1 = s_rod_leg1 * t18;
-        let t356 = s_armcross_leg1 * s_rod_leg1;
-        let t357 = 1.0 / c_rod_leg1;
-        let minus_gcross_vy_leg1 = t25
-            * (s_arm_leg1 * (t356 * t357) + c_arm_leg1 * (t35 * t357));
-        let t364 = c_rod_leg1 * minus_gcross_vy_leg1;
-        let grod_vy_leg1 = 1.7857142857142858 * t357;
-        let t372 = s_rod_leg1 * minus_gcross_vy_leg1;
-        let t377 = s_rod_leg1 * (s_cross_leg1 * (0.24 * garm_vy_leg1));
-        let t381 = t23
-            * (s_rod_leg1 * parameters[16]
-                - (parameters[15] * t364 + grod_vy_leg1 * parameters[14]))
-            - t32
-                * (grod_vy_leg1 * parameters[13] + parameters[15] * t372
-                    - parameters[16] * t377);
-        let t382 = parameters[13] * t364;
-        let t385 = 0.56 * t364;
-        let t390 = garm_vy_leg1 * parameters[0] + garm_vy_leg1 * parameters[3] + t381
-            - t40 * (t382 - parameters[14] * t372 - parameters[16] * t385);
-        let t401 = s_rod_leg1
-            * (grod_vy_leg1 * parameters[9]
-                - (parameters[7] * t372 + parameters[8] * t364) - parameters[14] * t385
-                + parameters[15] * t377);
-        let t411 = c_rod_leg1
-            * (grod_vy_leg1 * parameters[11]
-                - (parameters[8] * t372 + parameters[10] * t364) + 0.56 * t382
+                - (parameters[43] * t382 + parameters[45] * t368) - parameters[47] * t387
+                - t361 * parameters[48]);
+        let t438 = parameters[51] + parameters[52];
+        let garm_vy_leg1 = pose[1] * t25;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t447 = s_rod_leg1 * s_armcross_leg1;
+        let t448 = 1.0 / c_rod_leg1;
+        let gcross_vy_leg1 = t36
+            * (minus_s_arm_leg1 * (t447 * t448) - c_arm_leg1 * (t63 * t448));
+        let t455 = c_rod_leg1 * gcross_vy_leg1;
+        let grod_vy_leg1 = 1.7857142857142858 * t448;
+        let t464 = s_rod_leg1 * gcross_vy_leg1;
+        let t469 = s_rod_leg1 * (s_cross_leg1 * (0.24 * garm_vy_leg1));
+        let t473 = t30
+            * (parameters[15] * t455 - grod_vy_leg1 * parameters[14]
+                + s_rod_leg1 * parameters[16])
+            - t46
+                * (grod_vy_leg1 * parameters[13] - parameters[15] * t464
+                    - parameters[16] * t469);
+        let t475 = parameters[13] * t455;
+        let t477 = 0.56 * t455;
+        let t482 = garm_vy_leg1 * parameters[0] + garm_vy_leg1 * parameters[3] + t473
+            - t68 * (parameters[14] * t464 - t475 + parameters[16] * t477);
+        let t493 = s_rod_leg1
+            * (parameters[7] * t464 + parameters[8] * t455 + grod_vy_leg1 * parameters[9]
+                + parameters[14] * t477 + parameters[15] * t469);
+        let t503 = c_rod_leg1
+            * (parameters[8] * t464 + parameters[10] * t455
+                + grod_vy_leg1 * parameters[11] - 0.56 * t475
                 + s_rod_leg1 * parameters[15]);
-        let t412 = t401 + t411;
-        let garm_vy_leg2 = t108 * t125;
-        let minus_grod_vy_leg2 = t122 * t125;
-        let minus_gcross_vy_leg2 = t114 * t125;
-        let t422 = c_rod_leg2 * minus_gcross_vy_leg2;
-        let t427 = t89 * c_rod_leg2 - 0.5 * s_rod_leg2;
-        let t431 = s_rod_leg2 * minus_gcross_vy_leg2;
-        let t435 = 0.24 * garm_vy_leg2;
-        let t437 = s_rod_leg2 * (s_cross_leg2 * t435);
-        let t441 = t130
-            * (minus_grod_vy_leg2 * parameters[31] - parameters[32] * t422
-                + t427 * parameters[33])
-            + t152
-                * (parameters[32] * t431 - minus_grod_vy_leg2 * parameters[30]
-                    - parameters[33] * t437);
-        let t445 = c_cross_leg2 * t435;
-        let t450 = garm_vy_leg2 * parameters[17] + garm_vy_leg2 * parameters[20]
-            - (t441
-                + t164
-                    * (parameters[30] * t422 - parameters[31] * t431
-                        - parameters[33] * t445));
-        let t461 = s_rod_leg2
-            * (parameters[32] * t437
-                - (parameters[24] * t431 + parameters[25] * t422
-                    + minus_grod_vy_leg2 * parameters[26] + parameters[31] * t445));
-        let t471 = c_rod_leg2
-            * (parameters[30] * t445
-                - (parameters[25] * t431 + parameters[27] * t422
-                    + minus_grod_vy_leg2 * parameters[28]) + t427 * parameters[32]);
-        let t472 = t461 + t471;
-        let t483 = parameters[26] * t431 + parameters[28] * t422
-            + minus_grod_vy_leg2 * parameters[29] + parameters[30] * t437
-            + t427 * parameters[31];
-        let gcross_vy_leg3 = t243 * t264;
-        let t488 = s_rod_leg3 * gcross_vy_leg3;
-        let t490 = c_rod_leg3 * gcross_vy_leg3;
-        let grod_vy_leg3 = t261 * t264;
-        let minus_garm_vy_leg3 = t253 * t264;
-        let t497 = 0.24 * minus_garm_vy_leg3;
-        let t499 = s_rod_leg3 * (s_cross_leg3 * t497);
-        let t504 = t228 * c_rod_leg3 + 0.5 * s_rod_leg3;
-        let t506 = parameters[43] * t488 + parameters[45] * t490
-            + grod_vy_leg3 * parameters[46] + parameters[47] * t499
-            + t504 * parameters[48];
-        let t523 = t269
-            * (parameters[49] * t490 - grod_vy_leg3 * parameters[48]
-                - t504 * parameters[50])
-            + t291
-                * (grod_vy_leg3 * parameters[47] - parameters[49] * t488
-                    + parameters[50] * t499);
-        let t527 = c_cross_leg3 * t497;
-        let t532 = minus_garm_vy_leg3 * parameters[34]
-            + minus_garm_vy_leg3 * parameters[37] + t523
-            + t303
-                * (parameters[48] * t488 - parameters[47] * t490
-                    + parameters[50] * t527);
-        let t543 = s_rod_leg3
-            * (parameters[41] * t488 + parameters[42] * t490
-                + grod_vy_leg3 * parameters[43] + parameters[48] * t527
-                - parameters[49] * t499);
-        let t553 = c_rod_leg3
-            * (parameters[42] * t488 + parameters[44] * t490
-                + grod_vy_leg3 * parameters[45] - parameters[47] * t527
-                - t504 * parameters[49]);
-        let t554 = t543 + t553;
-        let t558 = garm_vx_leg1 * t390 - minus_gcross_vx_leg1 * t412
-            + garm_vx_leg2 * t450 + gcross_vx_leg2 * t472 - grod_vx_leg2 * t483
-            + grod_vx_leg3 * t506 - (garm_vx_leg3 * t532 + minus_gcross_vx_leg3 * t554);
-        let gcross_vz_leg1 = s_arm_leg1 * t25;
-        let t560 = c_rod_leg1 * gcross_vz_leg1;
-        let t566 = s_rod_leg1 * gcross_vz_leg1;
-        let minus_garm_vz_leg1 = t13 * t18;
-        let t576 = c_cross_leg1 * (0.24 * minus_garm_vz_leg1);
-        let t580 = t23 * (parameters[15] * t560 - t13 * parameters[16])
-            - t32 * (t356 * parameters[16] - parameters[15] * t566)
-            - t40
-                * (parameters[14] * t566 - parameters[13] * t560
-                    + parameters[16] * t576);
-        let t584 = t580
-            - (minus_garm_vz_leg1 * parameters[0] + minus_garm_vz_leg1 * parameters[3]);
-        let t602 = s_rod_leg1
-            * (parameters[7] * t566 + parameters[8] * t560 + parameters[14] * t576
-                - t356 * parameters[15])
-            + c_rod_leg1
-                * (parameters[8] * t566 + parameters[10] * t560 - parameters[13] * t576
-                    - t13 * parameters[15]);
-        let garm_vz_leg2 = (0.1568 * (t92 * t83) - 0.2715855666268 * (t104 * t83))
-            * t125;
-        let minus_gcross_vz_leg2 = (0.56 * t104 * t101 + 0.0672 * (s_arm_leg2 * t92))
-            * t125;
-        let t620 = s_rod_leg2 * minus_gcross_vz_leg2;
-        let t625 = c_rod_leg2 * minus_gcross_vz_leg2;
-        let t635 = c_cross_leg2 * (0.24 * garm_vz_leg2);
-        let t639 = t152 * (parameters[32] * t620 + t84 * parameters[33])
-            - t130 * (parameters[32] * t625 + t83 * parameters[33])
-            + t164
-                * (parameters[30] * t625 - parameters[31] * t620
-                    - parameters[33] * t635);
-        let t640 = garm_vz_leg2 * parameters[17] + garm_vz_leg2 * parameters[20] - t639;
-        let t658 = c_rod_leg2
-            * (parameters[30] * t635 - (parameters[25] * t620 + parameters[27] * t625)
-                - t83 * parameters[32])
-            - s_rod_leg2
-                * (t84 * parameters[32] + parameters[24] * t620 + parameters[25] * t625
-                    + parameters[31] * t635);
-        let t667 = parameters[26] * t620 + parameters[28] * t625 - t84 * parameters[30]
-            - t83 * parameters[31];
-        let gcross_vz_leg3 = (0.56 * t238 * t249 - 0.0672 * (s_arm_leg3 * t231)) * t264;
-        let t677 = s_rod_leg3 * gcross_vz_leg3;
-        let t679 = c_rod_leg3 * gcross_vz_leg3;
-        let t685 = parameters[43] * t677 + parameters[45] * t679 + t223 * parameters[47]
-            + t222 * parameters[48];
-        let minus_garm_vz_leg3 = (0.2715855666268 * (t238 * t222)
-            - 0.1568 * (t231 * t222)) * t264;
-        let t709 = c_cross_leg3 * (0.24 * minus_garm_vz_leg3);
-        let t713 = t269 * (parameters[49] * t679 - t222 * parameters[50])
-            + t291 * (t223 * parameters[50] - parameters[49] * t677)
-            + t303
-                * (parameters[48] * t677 - parameters[47] * t679
-                    + parameters[50] * t709);
-        let t714 = minus_garm_vz_leg3 * parameters[34]
-            + minus_garm_vz_leg3 * parameters[37] + t713;
-        let t732 = s_rod_leg3
-            * (parameters[41] * t677 + parameters[42] * t679 + parameters[48] * t709
-                - t223 * parameters[49])
+        let t504 = t493 + t503;
+        let garm_vy_leg2 = t172 * t185;
+        let minus_grod_vy_leg2 = 0.25 * t120 * t185;
+        let minus_gcross_vy_leg2 = t179 * t185;
+        let t515 = c_rod_leg2 * minus_gcross_vy_leg2;
+        let t521 = 1.7857142857142858
+            * (t99 - (0.17320508075688776 + 0.20784609690826528 * c_arm_leg2));
+        let t525 = 0.24 * garm_vy_leg2;
+        let t527 = minus_s_rod_leg2 * (s_cross_leg2 * t525);
+        let t530 = minus_s_rod_leg2 * minus_gcross_vy_leg2;
+        let t535 = t190
+            * (minus_grod_vy_leg2 * parameters[31] - parameters[32] * t515
+                + t521 * parameters[33])
+            + t213
+                * (parameters[33] * t527
+                    - (minus_grod_vy_leg2 * parameters[30] + parameters[32] * t530));
+        let t536 = c_cross_leg2 * t525;
+        let t544 = garm_vy_leg2 * parameters[17] + garm_vy_leg2 * parameters[20] + t535
+            + t225
+                * (parameters[33] * t536
+                    - (parameters[30] * t515 + parameters[31] * t530));
+        let t555 = c_rod_leg2
+            * (parameters[25] * t530 - parameters[27] * t515
+                - minus_grod_vy_leg2 * parameters[28] + parameters[30] * t536
+                + t521 * parameters[32]);
+        let t565 = minus_s_rod_leg2
+            * (parameters[24] * t530 - parameters[25] * t515
+                - minus_grod_vy_leg2 * parameters[26] - parameters[31] * t536
+                - parameters[32] * t527);
+        let t566 = t555 - t565;
+        let t577 = parameters[26] * t530 - parameters[28] * t515
+            - minus_grod_vy_leg2 * parameters[29] + parameters[30] * t527
+            - t521 * parameters[31];
+        let garm_vy_leg3 = t339 * t352;
+        let minus_grod_vy_leg3 = 0.25 * t288 * t352;
+        let minus_gcross_vy_leg3 = t346 * t352;
+        let t589 = c_rod_leg3 * minus_gcross_vy_leg3;
+        let t595 = 1.7857142857142858
+            * (t271 - (0.20784609690826528 * minus_c_arm_leg3 - 0.17320508075688776));
+        let t599 = s_rod_leg3 * minus_gcross_vy_leg3;
+        let t603 = 0.24 * garm_vy_leg3;
+        let t605 = s_rod_leg3 * (s_cross_leg3 * t603);
+        let t609 = t357
+            * (minus_grod_vy_leg3 * parameters[48] - parameters[49] * t589
+                + t595 * parameters[50])
+            - t380
+                * (parameters[49] * t599 - minus_grod_vy_leg3 * parameters[47]
+                    - parameters[50] * t605);
+        let t613 = c_cross_leg3 * t603;
+        let t618 = garm_vy_leg3 * parameters[34] + garm_vy_leg3 * parameters[37] + t609
+            - t392
+                * (parameters[47] * t589 - parameters[48] * t599
+                    - parameters[50] * t613);
+        let t629 = s_rod_leg3
+            * (parameters[49] * t605
+                - (parameters[41] * t599 + parameters[42] * t589
+                    + minus_grod_vy_leg3 * parameters[43] + parameters[48] * t613));
+        let t639 = c_rod_leg3
+            * (parameters[47] * t613
+                - (parameters[42] * t599 + parameters[44] * t589
+                    + minus_grod_vy_leg3 * parameters[45]) + t595 * parameters[49]);
+        let t640 = t629 + t639;
+        let t651 = parameters[43] * t599 + parameters[45] * t589
+            + minus_grod_vy_leg3 * parameters[46] + parameters[47] * t605
+            + t595 * parameters[48];
+        let t654 = garm_vx_leg1 * t482 - minus_gcross_vx_leg1 * t504
+            + garm_vx_leg2 * t544 - minus_gcross_vx_leg2 * t566 + grod_vx_leg2 * t577
+            + garm_vx_leg3 * t618 - minus_gcross_vx_leg3 * t640 - grod_vx_leg3 * t651;
+        let t656 = pose[2] - 0.24 * minus_s_arm_leg1;
+        let garm_vz_leg1 = t656 * t25;
+        let t661 = 1.7857142857142858 * t656;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t36;
+        let t664 = c_rod_leg1 * minus_gcross_vz_leg1;
+        let t668 = s_rod_leg1 * minus_gcross_vz_leg1;
+        let t678 = c_cross_leg1 * (0.24 * garm_vz_leg1);
+        let t682 = t30 * (t661 * parameters[16] - parameters[15] * t664)
+            - t46 * (parameters[15] * t668 + t447 * parameters[16])
+            - t68
+                * (parameters[13] * t664 - parameters[14] * t668
+                    - parameters[16] * t678);
+        let t683 = garm_vz_leg1 * parameters[0] + garm_vz_leg1 * parameters[3] + t682;
+        let t701 = c_rod_leg1
+            * (parameters[13] * t678 - (parameters[8] * t668 + parameters[10] * t664)
+                + t661 * parameters[15])
+            - s_rod_leg1
+                * (parameters[7] * t668 + parameters[8] * t664 + parameters[14] * t678
+                    + t447 * parameters[15]);
+        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t156) * t185;
+        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t152)
+            - 0.11639381426862856 * (minus_s_arm_leg2 * t168)) * t185;
+        let t716 = c_rod_leg2 * gcross_vz_leg2;
+        let t718 = 1.7857142857142858 * t156;
+        let t722 = minus_s_rod_leg2 * gcross_vz_leg2;
+        let t732 = c_cross_leg2 * (0.24 * garm_vz_leg2);
+        let t736 = t190 * (parameters[32] * t716 + t718 * parameters[33])
+            + t213 * (parameters[32] * t722 - t161 * parameters[33])
+            + t225
+                * (parameters[30] * t716 + parameters[31] * t722
+                    + parameters[33] * t732);
+        let t737 = garm_vz_leg2 * parameters[17] + garm_vz_leg2 * parameters[20] + t736;
+        let t755 = c_rod_leg2
+            * (parameters[27] * t716 - parameters[25] * t722 + parameters[30] * t732
+                + t718 * parameters[32])
+            - minus_s_rod_leg2
+                * (parameters[25] * t716 - parameters[24] * t722 - parameters[31] * t732
+                    + t161 * parameters[32]);
+        let t764 = parameters[28] * t716 - parameters[26] * t722 - t161 * parameters[30]
+            - t718 * parameters[31];
+        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t323) * t352;
+        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t335)
+            + 0.0672 * (s_arm_leg3 * t319)) * t352;
+        let t780 = c_rod_leg3 * gcross_vz_leg3;
+        let t782 = 1.7857142857142858 * t323;
+        let t787 = s_rod_leg3 * gcross_vz_leg3;
+        let t796 = c_cross_leg3 * (0.24 * garm_vz_leg3);
+        let t800 = t357 * (parameters[49] * t780 + t782 * parameters[50])
+            - t380 * (t328 * parameters[50] - parameters[49] * t787)
+            - t392
+                * (parameters[48] * t787 - parameters[47] * t780
+                    - parameters[50] * t796);
+        let t801 = garm_vz_leg3 * parameters[34] + garm_vz_leg3 * parameters[37] + t800;
+        let t819 = s_rod_leg3
+            * (parameters[41] * t787 + parameters[42] * t780 - parameters[48] * t796
+                - t328 * parameters[49])
             + c_rod_leg3
-                * (parameters[42] * t677 + parameters[44] * t679 - parameters[47] * t709
-                    - t222 * parameters[49]);
-        let t736 = garm_vx_leg1 * t584 - minus_gcross_vx_leg1 * t602
-            + garm_vx_leg2 * t640 + gcross_vx_leg2 * t658 - grod_vx_leg2 * t667
-            + grod_vx_leg3 * t685 - (garm_vx_leg3 * t714 + minus_gcross_vx_leg3 * t732);
-        let t749 = grod_vy_leg1
-            * (grod_vy_leg1 * parameters[12]
-                - (parameters[9] * t372 + parameters[11] * t364) - parameters[13] * t377
+                * (parameters[42] * t787 + parameters[44] * t780 + parameters[47] * t796
+                    + t782 * parameters[49]);
+        let t828 = parameters[43] * t787 + parameters[45] * t780 + t328 * parameters[47]
+            - t782 * parameters[48];
+        let t831 = garm_vx_leg1 * t683 - minus_gcross_vx_leg1 * t701
+            + garm_vx_leg2 * t737 - minus_gcross_vx_leg2 * t755 + grod_vx_leg2 * t764
+            + garm_vx_leg3 * t801 - minus_gcross_vx_leg3 * t819 + grod_vx_leg3 * t828;
+        let t844 = grod_vy_leg1
+            * (parameters[9] * t464 + parameters[11] * t455
+                + grod_vy_leg1 * parameters[12] - parameters[13] * t469
                 - s_rod_leg1 * parameters[14]);
-        let t756 = garm_vy_leg1 * t390 - minus_gcross_vy_leg1 * t412 + t749
-            + garm_vy_leg2 * t450 - minus_gcross_vy_leg2 * t472
-            + minus_grod_vy_leg2 * t483;
-        let t775 = garm_vy_leg1 * t584 - minus_gcross_vy_leg1 * t602
+        let t851 = garm_vy_leg1 * t482 + gcross_vy_leg1 * t504 + t844
+            + garm_vy_leg2 * t544 - minus_gcross_vy_leg2 * t566
+            - minus_grod_vy_leg2 * t577;
+        let t870 = garm_vy_leg1 * t683 + gcross_vy_leg1 * t701
             + grod_vy_leg1
-                * (parameters[9] * t566 + parameters[11] * t560 + t356 * parameters[13]
-                    + t13 * parameters[14]);
-        let t787 = t775 + garm_vy_leg2 * t640 - minus_gcross_vy_leg2 * t658
-            + minus_grod_vy_leg2 * t667 + gcross_vy_leg3 * t732
-            + minus_garm_vy_leg3 * t714 + grod_vy_leg3 * t685;
-        let t798 = gcross_vz_leg1 * t602 - minus_garm_vz_leg1 * t584
-            + garm_vz_leg2 * t640 - minus_gcross_vz_leg2 * t658 + gcross_vz_leg3 * t732
-            + minus_garm_vz_leg3 * t714;
+                * (t447 * parameters[13] - (parameters[9] * t668 + parameters[11] * t664)
+                    - t661 * parameters[14]);
+        let t882 = t870 + garm_vy_leg2 * t737 - minus_gcross_vy_leg2 * t755
+            - minus_grod_vy_leg2 * t764 + garm_vy_leg3 * t801
+            - minus_gcross_vy_leg3 * t819 - minus_grod_vy_leg3 * t828;
+        let t893 = garm_vz_leg1 * t683 - minus_gcross_vz_leg1 * t701
+            + garm_vz_leg2 * t737 + gcross_vz_leg2 * t755 + garm_vz_leg3 * t801
+            + gcross_vz_leg3 * t819;
         Ok([
             [
-                t209 + garm_vx_leg3 * t312 - minus_gcross_vx_leg3 * (t323 + t333) + t346
-                    + t349,
-                t558,
-                t736,
+                t270 + garm_vx_leg3 * t401 - minus_gcross_vx_leg3 * (t412 + t422) + t435
+                    + t438,
+                t654,
+                t831,
             ],
             [
-                t558,
-                t756 + gcross_vy_leg3 * t554 + minus_garm_vy_leg3 * t532
-                    + grod_vy_leg3 * t506 + t349,
-                t787,
+                t654,
+                t851 + garm_vy_leg3 * t618 - minus_gcross_vy_leg3 * t640
+                    + minus_grod_vy_leg3 * t651 + t438,
+                t882,
             ],
-            [t736, t787, t798 + t349],
+            [t831, t882, t893 + t438],
         ])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -6958,7 +10328,7 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 832 operations (300 additions, 528 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 3 signs, 850 intermediates.
+    /// 916 operations (350 additions, 553 multiplications, 13 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 922 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6967,360 +10337,418 @@ impl Delta {
         twist: &[f64; 3],
         parameters: &[f64; 53],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
-        let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t12 = c_armcross_leg1 * c_rod_leg1;
-        let t13 = s_armcross_leg1 * c_rod_leg1;
-        let t16 = c_arm_leg1 * t13 - s_arm_leg1 * t12;
-        ::overact::guard::leg(t16, 0.89794672585951, "leg1")?;
-        let t17 = 1.0 / t16;
-        let t18 = 4.166666666666667 * t17;
-        let garm_vx_leg1 = t12 * t18;
-        let minus_garm_vz_leg1 = t13 * t18;
-        let garm_vy_leg1 = s_rod_leg1 * t18;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.2304 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.48 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.3136 + 0.0576;
+        let t14 = 0.48 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t21 = 0.24 * c_arm_leg1;
+        let t23 = t0 - (0.2 + t21);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = t23 * t25;
+        let garm_vy_leg1 = pose[1] * t25;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let t35 = 0.24 * minus_s_arm_leg1;
+        let t36 = pose[2] - t35;
+        let garm_vz_leg1 = t36 * t25;
         let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
-            - minus_garm_vz_leg1 * twist[2];
-        let t28 = rate_arm_leg1 * rate_arm_leg1;
-        let t31 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.7857142857142858 * t31;
+            + garm_vz_leg1 * twist[2];
+        let t41 = 0.48 * t24;
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t45 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t45, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t45);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t45) / (0.2688 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t59 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t41
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t59)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t59));
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t41;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t41;
+        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
+            - minus_gcross_vz_leg1 * twist[2];
+        let grod_vy_leg1 = 1.7857142857142858 * t59;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t34 = s_armcross_leg1 * rate_rod_leg1;
-        let t36 = 1.7857142857142858 * t17;
-        let gcross_vz_leg1 = s_arm_leg1 * t36;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t36;
-        let minus_gcross_vy_leg1 = t36
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t31)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t31));
-        let rate_cross_leg1 = gcross_vz_leg1 * twist[2]
-            - (minus_gcross_vx_leg1 * twist[0] + minus_gcross_vy_leg1 * twist[1]);
-        let t52 = rate_cross_leg1 * rate_cross_leg1;
-        let t54 = c_armcross_leg1 * rate_rod_leg1;
-        let t56 = t34 * t34 + t52 + t54 * t54;
-        let t59 = 0.56 * s_rod_leg1;
-        let t61 = t59 * (rate_cross_leg1 * t54);
-        let t63 = 0.24 * s_arm_leg1 * t28 + 0.56 * t13 * t56 + t61 + t61;
-        let t66 = t59 * (rate_cross_leg1 * t34);
-        let t73 = t66 - (0.24 * c_arm_leg1 * t28 + 0.56 * t12 * t56) + t66;
-        let t75 = t59 * rate_cross_leg1;
-        let t78 = rate_cross_leg1 * t75 - t59 * t56;
-        let rate_dot_arm_leg1 = minus_garm_vz_leg1 * t63
-            - (garm_vx_leg1 * t73 + garm_vy_leg1 * t78);
-        let t83 = 9.81 * c_arm_leg1;
-        let t86 = 9.81 * s_arm_leg1;
-        let t95 = parameters[0] * rate_dot_arm_leg1 - parameters[1] * t83
-            + parameters[2] * t86 + parameters[3] * rate_dot_arm_leg1
-            + parameters[4] * rate_arm_leg1
-            + ::overact::math::signed(parameters[5], rate_arm_leg1) + parameters[6];
-        let t97 = 1.7857142857142858 * t75;
-        let t98 = c_rod_leg1 * rate_cross_leg1;
-        let t99 = t97 * t98;
-        let minus_rate_dot_rod_leg1 = grod_vy_leg1 * t78;
-        let t101 = t99 + minus_rate_dot_rod_leg1;
-        let t103 = t98 * t98;
-        let t104 = rate_rod_leg1 * rate_rod_leg1;
-        let rate_dot_cross_leg1 = minus_gcross_vx_leg1 * t73 + minus_gcross_vy_leg1 * t78
-            - gcross_vz_leg1 * t63;
-        let t113 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t117 = 0.24 * rate_dot_arm_leg1 - t83;
-        let t120 = t86 + 0.24 * t28;
-        let t122 = s_cross_leg1 * t117 - c_cross_leg1 * t120;
-        let t123 = c_rod_leg1 * t122;
-        let t126 = 0.24 * t16
-            * (parameters[14] * t101 - parameters[13] * (t103 + t104)
-                + parameters[15] * t113 + parameters[16] * t123);
-        let t129 = t99 - minus_rate_dot_rod_leg1;
-        let t132 = 3.188775510204082 * (t75 * t75);
-        let t136 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t139 = s_rod_leg1 * t122;
-        let t142 = s_rod_leg1 * (0.24 * s_cross_leg1)
-            * (parameters[13] * t129 - parameters[14] * (t132 + t104)
-                - parameters[15] * t136 - parameters[16] * t139);
-        let t145 = rate_rod_leg1 * t97;
-        let t146 = t113 - t145;
-        let t147 = t145 - t146;
-        let t149 = rate_rod_leg1 * t98;
-        let t150 = t136 + t149;
-        let t151 = t149 + t150;
-        let t158 = s_cross_leg1 * t120 + c_cross_leg1 * t117;
-        let t162 = t126 - t142
+        let t79 = s_armcross_leg1 * rate_rod_leg1;
+        let t81 = pose[1] * (rate_cross_leg1 * t79);
+        let t82 = rate_arm_leg1 * rate_arm_leg1;
+        let t85 = rate_cross_leg1 * rate_cross_leg1;
+        let t87 = c_armcross_leg1 * rate_rod_leg1;
+        let t89 = t79 * t79 + t85 + t87 * t87;
+        let t93 = t81 - (t21 * t82 + t23 * t89) + t81;
+        let t95 = pose[1] * rate_cross_leg1;
+        let t98 = rate_cross_leg1 * t95 - pose[1] * t89;
+        let t102 = pose[1] * (rate_cross_leg1 * t87);
+        let t107 = t102 - (t35 * t82 + t36 * t89) + t102;
+        let minus_rate_dot_arm_leg1 = garm_vx_leg1 * t93 + garm_vy_leg1 * t98
+            + garm_vz_leg1 * t107;
+        let t116 = 9.81 * c_arm_leg1;
+        let t119 = 9.81 * minus_s_arm_leg1;
+        let t122 = parameters[4] * rate_arm_leg1
+            - parameters[3] * minus_rate_dot_arm_leg1
+            + ::overact::math::signed(parameters[5], rate_arm_leg1) + parameters[6]
+            - (parameters[0] * minus_rate_dot_arm_leg1 + parameters[1] * t116
+                + parameters[2] * t119);
+        let t124 = 1.7857142857142858 * t95;
+        let t125 = c_rod_leg1 * rate_cross_leg1;
+        let t126 = t124 * t125;
+        let minus_rate_dot_rod_leg1 = grod_vy_leg1 * t98;
+        let t128 = t126 + minus_rate_dot_rod_leg1;
+        let t130 = t125 * t125;
+        let t131 = rate_rod_leg1 * rate_rod_leg1;
+        let rate_dot_cross_leg1 = minus_gcross_vx_leg1 * t93 - gcross_vy_leg1 * t98
+            + minus_gcross_vz_leg1 * t107;
+        let t140 = c_rod_leg1 * rate_dot_cross_leg1;
+        let t144 = t119 - 0.24 * t82;
+        let t147 = t116 + 0.24 * minus_rate_dot_arm_leg1;
+        let t149 = c_cross_leg1 * t144 - s_cross_leg1 * t147;
+        let t150 = c_rod_leg1 * t149;
+        let t153 = 0.8928571428571429 * t17
+            * (parameters[14] * t128 - parameters[13] * (t130 + t131)
+                + parameters[15] * t140 + parameters[16] * t150);
+        let t156 = t126 - minus_rate_dot_rod_leg1;
+        let t159 = 3.188775510204082 * (t95 * t95);
+        let t163 = s_rod_leg1 * rate_dot_cross_leg1;
+        let t166 = s_rod_leg1 * t149;
+        let t169 = 0.42857142857142855 * (pose[1] * s_cross_leg1)
+            * (parameters[13] * t156 - parameters[14] * (t159 + t131)
+                - parameters[15] * t163 - parameters[16] * t166);
+        let t172 = rate_rod_leg1 * t124;
+        let t173 = t140 - t172;
+        let t174 = t172 - t173;
+        let t176 = rate_rod_leg1 * t125;
+        let t177 = t163 + t176;
+        let t178 = t176 + t177;
+        let t185 = s_cross_leg1 * t144 + c_cross_leg1 * t147;
+        let t189 = t153 - t169
             - 0.24 * c_cross_leg1
-                * (parameters[13] * t147 + parameters[14] * t151 - parameters[15] * t52
-                    - parameters[16] * t158);
-        let t163 = t95 + t162;
-        let t174 = parameters[7] * t150 - parameters[8] * t147 + parameters[9] * t129
-            - parameters[10] * t149 + parameters[11] * (t103 - t104);
-        let t191 = parameters[7] * t145 + parameters[8] * t151
-            + parameters[9] * (t104 - t132) + parameters[10] * t146
-            - parameters[11] * t101;
-        let t199 = s_rod_leg1
-            * (t174 + parameters[12] * t149 - parameters[14] * t158
-                + parameters[15] * t139)
+                * (parameters[13] * t174 + parameters[14] * t178 - parameters[15] * t85
+                    + parameters[16] * t185);
+        let t190 = t122 + t189;
+        let t201 = parameters[7] * t177 - parameters[8] * t174 + parameters[9] * t156
+            - parameters[10] * t176 + parameters[11] * (t130 - t131);
+        let t218 = parameters[7] * t172 + parameters[8] * t178
+            + parameters[9] * (t131 - t159) + parameters[10] * t173
+            - parameters[11] * t128;
+        let t226 = s_rod_leg1
+            * (t201 + parameters[12] * t176 + parameters[14] * t185
+                + parameters[15] * t166)
             + c_rod_leg1
-                * (t191 - parameters[12] * t145 + parameters[13] * t158
-                    + parameters[15] * t123);
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
-        let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t214 = s_armcross_leg2 * c_rod_leg2;
-        let t215 = s_armcross_leg2 * s_rod_leg2;
-        let t216 = t214 * t215;
-        let t218 = 0.5 * c_armcross_leg2;
-        let t219 = t218 * c_rod_leg2;
-        let t220 = 0.8660254037844387 * c_armcross_leg2;
-        let t223 = t220 * s_rod_leg2 + 0.5 * c_rod_leg2;
-        let t227 = 0.4849742261192857 * t214;
-        let t228 = 0.24 * s_arm_leg2;
-        let t229 = 0.56 * t214;
-        let t232 = t227 - 0.8660254037844387 * (t228 + t229);
-        let t235 = t218 * s_rod_leg2 - 0.8660254037844387 * c_rod_leg2;
-        let t239 = 0.6272 * (t219 * t235) + 0.1568 * t216;
-        let t245 = 0.1344 * (c_arm_leg2 * t235) + 0.0672 * (s_arm_leg2 * t215);
-        let t251 = c_arm_leg2 * t214;
-        let t253 = 0.1344 * (s_arm_leg2 * t219) - 0.0672 * t251;
-        let t255 = t232 * t239 + t227 * t245 + 0.56 * t223 * t253;
-        ::overact::guard::leg(t255, 0.06758306237509017, "leg2")?;
-        let t256 = 1.0 / t255;
-        let garm_vx_leg2 = (0.2715855666268 * t216 + 0.6272 * (t219 * t223)) * t256;
-        let t258 = 9.81 * s_arm_leg2;
-        let garm_vy_leg2 = t239 * t256;
-        let garm_vz_leg2 = (0.1568 * (t223 * t214) - 0.2715855666268 * (t235 * t214))
-            * t256;
+                * (t218 - parameters[12] * t172 - parameters[13] * t185
+                    + parameters[15] * t150);
+        let t229 = pose[1] + 0.04330127018922194;
+        let t230 = t229 - 0.17320508075688776;
+        let t232 = pose[0] - 0.025;
+        let t233 = t232 + 0.1;
+        let t234 = 0.5 * t233;
+        let t235 = 0.8660254037844387 * t230 - t234;
+        let t238 = 0.2304 * (t235 * t235 + t3);
+        let t239 = 1.0 / t238;
+        let t240 = 0.48 * t235;
+        let t241 = t233 * t233;
+        let t244 = t241 + t230 * t230 + t3;
+        let t246 = t244 - 0.3136 + 0.0576;
+        let t249 = t238 - t246 * t246;
+        ::overact::guard::reach(t249, "leg2")?;
+        let t250 = ::overact::math::sqrt(t249);
+        let c_arm_leg2 = t239 * (t240 * t246 - t14 * t250);
+        let t255 = t235 - 0.24 * c_arm_leg2;
+        let t256 = 0.8660254037844387 * t233;
+        let t258 = t256 + 0.5 * t230;
+        let t259 = t258 * t258;
+        let t263 = 1.0 - 3.188775510204082 * t259;
+        ::overact::guard::reach(t263, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t263);
+        let c_cross_leg2 = (t244 - (0.0576 + t259) - 0.3136 * t263)
+            / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t239 * (t14 * t246 + t240 * t250);
+        let s_cross_leg2 = 2.0833333333333335 * t250 / (0.56 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t279 = t258 * c_armcross_leg2;
+        let t282 = 1.5464739353293548 * t279 - 0.5 * c_rod_leg2;
+        let t285 = 0.24 * minus_s_arm_leg2;
+        let t286 = pose[2] - t285;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t258;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t291 = minus_s_rod_leg2 * s_armcross_leg2;
+        let t292 = t286 * t291;
+        let t295 = 0.20784609690826528 * minus_s_arm_leg2;
+        let t298 = 0.8928571428571429 * t279 + 0.8660254037844387 * c_rod_leg2;
+        let t302 = t255 * (0.56 * t298) - 0.28 * t292;
+        let t307 = minus_s_arm_leg2 * t291;
+        let t309 = 0.1344 * (c_arm_leg2 * t298) - 0.0672 * t307;
+        let t314 = t295 * t302 - 0.8660254037844387 * t286 * t309 - 0.14 * (t250 * t282);
+        ::overact::guard::leg(t314, 0.06758306237512474, "leg2")?;
+        let t315 = 1.0 / t314;
+        let garm_vx_leg2 = (t255 * (0.56 * t282) - 0.4849742261192857 * t292) * t315;
+        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t286) * t315;
+        let garm_vy_leg2 = t302 * t315;
         let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
             + garm_vz_leg2 * twist[2];
-        let t273 = rate_arm_leg2 * rate_arm_leg2;
-        let t276 = t219 + 0.8660254037844387 * s_rod_leg2;
-        let t277 = 0.56 * t276;
-        let gcross_vx_leg2 = (0.56 * t215 * t232 - 0.1344 * (c_arm_leg2 * t223)) * t256;
-        let minus_gcross_vy_leg2 = t245 * t256;
-        let minus_gcross_vz_leg2 = (0.56 * t235 * t232 + 0.0672 * (s_arm_leg2 * t223))
-            * t256;
-        let rate_cross_leg2 = gcross_vx_leg2 * twist[0] - minus_gcross_vy_leg2 * twist[1]
-            - minus_gcross_vz_leg2 * twist[2];
-        let t296 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (1.12 * t219 * t232 + 0.11639381426862856 * t251) * t256;
-        let minus_grod_vy_leg2 = t253 * t256;
+        let t326 = rate_arm_leg2 * rate_arm_leg2;
+        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t282)
+            - 0.11639381426862856 * (minus_s_arm_leg2 * t298)) * t315;
+        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t282)
+            - 0.11639381426862856 * t307) * t315;
+        let minus_gcross_vy_leg2 = t309 * t315;
+        let rate_cross_leg2 = gcross_vz_leg2 * twist[2]
+            - (minus_gcross_vx_leg2 * twist[0] + minus_gcross_vy_leg2 * twist[1]);
+        let t345 = 0.8660254037844387 * rate_cross_leg2;
+        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t286) - t255 * t295)
+            * t315;
+        let minus_grod_vy_leg2 = 0.25 * t250 * t315;
         let rate_rod_leg2 = grod_vx_leg2 * twist[0] - minus_grod_vy_leg2 * twist[1];
-        let t308 = t296 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t311 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t312 = 0.5 * rate_cross_leg2;
-        let t313 = t311 - t312;
-        let t316 = c_armcross_leg2 * rate_rod_leg2;
-        let t318 = t308 * t308 + t313 * t313 + t316 * t316;
-        let t324 = t220 * c_rod_leg2 - 0.5 * s_rod_leg2;
-        let t325 = 0.56 * t324;
-        let t329 = t277 * t308 + t325 * t313 - t229 * t316;
-        let t332 = t296 * t311;
-        let t335 = t296 * t316;
-        let t338 = 0.12 * c_arm_leg2 * t273 + t277 * t318 - t308 * t329
-            + 0.7466666666666667 * (t324 * t332) - t229 * t335;
-        let t348 = t312 * t316;
-        let t351 = t313 * t329 - (0.20784609690826528 * c_arm_leg2 * t273 + t325 * t318)
-            + 0.7466666666666667 * (t276 * t332) - t229 * t348;
-        let t359 = t277 * t335 - t325 * t348;
-        let t361 = t228 * t273 + t229 * t318 + t359 + t359;
-        let minus_rate_dot_arm_leg2 = garm_vx_leg2 * t338 + garm_vy_leg2 * t351
-            + garm_vz_leg2 * t361;
-        let t365 = 9.81 * c_arm_leg2;
-        let t375 = parameters[19] * t258
-            - (parameters[17] * minus_rate_dot_arm_leg2 + parameters[18] * t365)
-            + parameters[21] * rate_arm_leg2 - parameters[20] * minus_rate_dot_arm_leg2
+        let t358 = t345 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
+        let t361 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
+        let t362 = 0.5 * rate_cross_leg2;
+        let t363 = t361 - t362;
+        let t366 = c_armcross_leg2 * rate_rod_leg2;
+        let t368 = t358 * t358 + t363 * t363 + t366 * t366;
+        let t371 = 0.20784609690826528 * c_arm_leg2;
+        let t373 = t229 - (0.17320508075688776 + t371);
+        let t374 = t362 * t366;
+        let t376 = 0.12 * c_arm_leg2;
+        let t378 = t232 + 0.1 + t376;
+        let t379 = t345 * t366;
+        let t381 = t373 * t374 + t378 * t379;
+        let t383 = t285 * t326 + t286 * t368 + t381 + t381;
+        let t392 = t373 * t363 - t378 * t358 + t286 * t366;
+        let t397 = 1.3333333333333333 * (t345 * t361);
+        let t400 = t376 * t326 - t378 * t368 - t358 * t392 + t286 * t379 + t373 * t397;
+        let t410 = t363 * t392 - (t371 * t326 + t373 * t368) + t286 * t374 - t378 * t397;
+        let rate_dot_arm_leg2 = garm_vz_leg2 * t383
+            - (garm_vx_leg2 * t400 + garm_vy_leg2 * t410);
+        let t415 = 9.81 * c_arm_leg2;
+        let t418 = 9.81 * minus_s_arm_leg2;
+        let t427 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t415
+            - parameters[19] * t418 + parameters[20] * rate_dot_arm_leg2
+            + parameters[21] * rate_arm_leg2
             + ::overact::math::signed(parameters[22], rate_arm_leg2) + parameters[23];
-        let t377 = 1.7857142857142858 * t329;
-        let t378 = c_rod_leg2 * rate_cross_leg2;
-        let t379 = t377 * t378;
-        let rate_dot_rod_leg2 = minus_grod_vy_leg2 * t351 - grod_vx_leg2 * t338;
-        let t383 = t379 - rate_dot_rod_leg2;
-        let t385 = t378 * t378;
-        let t386 = rate_rod_leg2 * rate_rod_leg2;
-        let rate_dot_cross_leg2 = minus_gcross_vy_leg2 * t351 - gcross_vx_leg2 * t338
-            + minus_gcross_vz_leg2 * t361;
-        let t395 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t399 = t258 + 0.24 * t273;
-        let t402 = t365 + 0.24 * minus_rate_dot_arm_leg2;
-        let t404 = c_cross_leg2 * t399 + s_cross_leg2 * t402;
-        let t405 = c_rod_leg2 * t404;
-        let t408 = 3.5714285714285716 * t253
-            * (parameters[31] * t383 - parameters[30] * (t385 + t386)
-                + parameters[32] * t395 - parameters[33] * t405);
-        let t411 = t379 + rate_dot_rod_leg2;
-        let t414 = 3.188775510204082 * (t329 * t329);
-        let t418 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t421 = s_rod_leg2 * t404;
-        let t424 = s_rod_leg2 * (0.24 * s_cross_leg2)
-            * (parameters[30] * t411 - parameters[31] * (t414 + t386)
-                - parameters[32] * t418 + parameters[33] * t421);
-        let t427 = rate_rod_leg2 * t377;
-        let t428 = t395 - t427;
-        let t429 = t427 - t428;
-        let t431 = rate_rod_leg2 * t378;
-        let t432 = t418 + t431;
-        let t433 = t431 + t432;
-        let t441 = s_cross_leg2 * t399 - c_cross_leg2 * t402;
-        let t444 = 0.24 * c_cross_leg2
-            * (parameters[30] * t429 + parameters[31] * t433
+        let t429 = 1.7857142857142858 * t392;
+        let t430 = c_rod_leg2 * rate_cross_leg2;
+        let t431 = t429 * t430;
+        let rate_dot_rod_leg2 = minus_grod_vy_leg2 * t410 - grod_vx_leg2 * t400;
+        let t435 = t431 - rate_dot_rod_leg2;
+        let t437 = t430 * t430;
+        let t438 = rate_rod_leg2 * rate_rod_leg2;
+        let rate_dot_cross_leg2 = minus_gcross_vx_leg2 * t400
+            + minus_gcross_vy_leg2 * t410 + gcross_vz_leg2 * t383;
+        let t447 = c_rod_leg2 * rate_dot_cross_leg2;
+        let t451 = t418 - 0.24 * t326;
+        let t454 = 0.24 * rate_dot_arm_leg2 - t415;
+        let t456 = c_cross_leg2 * t451 + s_cross_leg2 * t454;
+        let t457 = c_rod_leg2 * t456;
+        let t460 = 0.8928571428571429 * t250
+            * (parameters[31] * t435 - parameters[30] * (t437 + t438)
+                + parameters[32] * t447 + parameters[33] * t457);
+        let t463 = t431 + rate_dot_rod_leg2;
+        let t466 = 3.188775510204082 * (t392 * t392);
+        let t470 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t473 = minus_s_rod_leg2 * t456;
+        let t476 = 0.42857142857142855 * (t258 * s_cross_leg2)
+            * (parameters[30] * t463 - parameters[31] * (t466 + t438)
+                + parameters[32] * t470 + parameters[33] * t473);
+        let t479 = rate_rod_leg2 * t429;
+        let t480 = t447 - t479;
+        let t481 = t479 - t480;
+        let t483 = rate_rod_leg2 * t430;
+        let t484 = t483 - t470;
+        let t485 = t483 + t484;
+        let t493 = c_cross_leg2 * t454 - s_cross_leg2 * t451;
+        let t496 = 0.24 * c_cross_leg2
+            * (parameters[30] * t481 + parameters[31] * t485
                 - parameters[32] * (rate_cross_leg2 * rate_cross_leg2)
-                - parameters[33] * t441);
-        let t446 = t375 - (t408 + t424 + t444);
-        let t457 = parameters[24] * t432 - parameters[25] * t429 + parameters[26] * t411
-            - parameters[27] * t431 + parameters[28] * (t385 - t386);
-        let t474 = parameters[24] * t427 + parameters[25] * t433
-            + parameters[26] * (t386 - t414) + parameters[27] * t428
-            - parameters[28] * t383;
-        let t482 = s_rod_leg2
-            * (t457 + parameters[29] * t431 - parameters[31] * t441
-                - parameters[32] * t421)
-            + c_rod_leg2
-                * (t474 - parameters[29] * t427 + parameters[30] * t441
-                    - parameters[32] * t405);
-        let t494 = parameters[25] * (t414 - t385) - parameters[24] * t379
-            + parameters[26] * t418 + parameters[27] * t379 + parameters[28] * t395;
-        let t500 = t494 + parameters[29] * rate_dot_rod_leg2 + parameters[30] * t421
-            + parameters[31] * t405;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
-        let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t516 = s_armcross_leg3 * c_rod_leg3;
-        let t517 = s_armcross_leg3 * s_rod_leg3;
-        let t518 = t516 * t517;
-        let t520 = 0.5 * c_armcross_leg3;
-        let t521 = t520 * c_rod_leg3;
-        let t522 = 0.8660254037844387 * c_armcross_leg3;
-        let t525 = t522 * s_rod_leg3 - 0.5 * c_rod_leg3;
-        let t529 = 0.4849742261192857 * t516;
-        let t532 = t520 * s_rod_leg3 + 0.8660254037844387 * c_rod_leg3;
-        let t537 = 0.1344 * (c_arm_leg3 * t532) + 0.0672 * (s_arm_leg3 * t517);
-        let t539 = 0.24 * s_arm_leg3;
-        let t540 = 0.56 * t516;
-        let t543 = 0.8660254037844387 * (t539 + t540) - t529;
-        let t547 = 0.6272 * (t521 * t532) + 0.1568 * t518;
-        let t553 = c_arm_leg3 * t516;
-        let t555 = 0.1344 * (s_arm_leg3 * t521) - 0.0672 * t553;
-        let t557 = t529 * t537 - t543 * t547 + 0.56 * t525 * t555;
-        ::overact::guard::leg(t557, 0.06758306237509014, "leg3")?;
-        let t558 = 1.0 / t557;
-        let garm_vx_leg3 = (0.2715855666268 * t518 + 0.6272 * (t521 * t525)) * t558;
-        let minus_garm_vy_leg3 = t547 * t558;
-        let minus_garm_vz_leg3 = (0.2715855666268 * (t532 * t516)
-            - 0.1568 * (t525 * t516)) * t558;
-        let rate_arm_leg3 = garm_vx_leg3 * twist[0] - minus_garm_vy_leg3 * twist[1]
-            - minus_garm_vz_leg3 * twist[2];
-        let t573 = rate_arm_leg3 * rate_arm_leg3;
-        let t577 = t522 * c_rod_leg3 + 0.5 * s_rod_leg3;
-        let t578 = 0.56 * t577;
-        let gcross_vy_leg3 = t537 * t558;
-        let minus_gcross_vx_leg3 = (0.56 * t517 * t543 + 0.1344 * (c_arm_leg3 * t525))
-            * t558;
-        let gcross_vz_leg3 = (0.56 * t532 * t543 - 0.0672 * (s_arm_leg3 * t525)) * t558;
-        let rate_cross_leg3 = gcross_vy_leg3 * twist[1] - minus_gcross_vx_leg3 * twist[0]
-            + gcross_vz_leg3 * twist[2];
-        let t597 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (0.11639381426862856 * t553 - 1.12 * t521 * t543) * t558;
-        let grod_vy_leg3 = t555 * t558;
-        let rate_rod_leg3 = grod_vx_leg3 * twist[0] + grod_vy_leg3 * twist[1];
-        let t609 = t597 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t611 = 0.5 * rate_cross_leg3;
-        let t613 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t614 = t611 + t613;
-        let t617 = c_armcross_leg3 * rate_rod_leg3;
-        let t619 = t609 * t609 + t614 * t614 + t617 * t617;
-        let t623 = 0.8660254037844387 * s_rod_leg3 - t521;
-        let t624 = 0.56 * t623;
-        let t629 = t624 * t609 + t578 * t614 - t540 * t617;
-        let t632 = t597 * t613;
-        let t635 = t611 * t617;
-        let t638 = 0.20784609690826528 * c_arm_leg3 * t573 + t578 * t619 - t614 * t629
-            - (0.7466666666666667 * (t623 * t632) + t540 * t635);
-        let t646 = t597 * t617;
-        let t651 = 0.12 * c_arm_leg3 * t573 - t624 * t619 + t609 * t629 + t540 * t646
-            - 0.7466666666666667 * (t577 * t632);
-        let t659 = t578 * t635 + t624 * t646;
-        let t661 = t539 * t573 + t540 * t619 + t659 + t659;
-        let rate_dot_arm_leg3 = minus_garm_vy_leg3 * t638 - garm_vx_leg3 * t651
-            + minus_garm_vz_leg3 * t661;
-        let t665 = 9.81 * c_arm_leg3;
-        let t668 = 9.81 * s_arm_leg3;
-        let t677 = parameters[34] * rate_dot_arm_leg3 - parameters[35] * t665
-            + parameters[36] * t668 + parameters[37] * rate_dot_arm_leg3
+                - parameters[33] * t493);
+        let t498 = t427 + t460 + t476 - t496;
+        let t509 = parameters[24] * t479 + parameters[25] * t485
+            + parameters[26] * (t438 - t466) + parameters[27] * t480
+            - parameters[28] * t435;
+        let t526 = parameters[24] * t484 - parameters[25] * t481 + parameters[26] * t463
+            - parameters[27] * t483 + parameters[28] * (t437 - t438);
+        let t534 = c_rod_leg2
+            * (t509 - parameters[29] * t479 + parameters[30] * t493
+                + parameters[32] * t457)
+            - minus_s_rod_leg2
+                * (t526 + parameters[29] * t483 - parameters[31] * t493
+                    - parameters[32] * t473);
+        let t546 = parameters[25] * (t466 - t437) - parameters[24] * t431
+            - parameters[26] * t470 + parameters[27] * t431 + parameters[28] * t447;
+        let t552 = t546 + parameters[29] * rate_dot_rod_leg2 + parameters[30] * t473
+            - parameters[31] * t457;
+        let t556 = pose[1] - 0.04330127018922194;
+        let t557 = t556 + 0.17320508075688776;
+        let t559 = t234 + 0.8660254037844387 * t557;
+        let t562 = 0.2304 * (t559 * t559 + t3);
+        let t563 = 1.0 / t562;
+        let t564 = 0.48 * t559;
+        let t567 = t241 + t557 * t557 + t3;
+        let t569 = t567 - 0.3136 + 0.0576;
+        let t572 = t562 - t569 * t569;
+        ::overact::guard::reach(t572, "leg3")?;
+        let t573 = ::overact::math::sqrt(t572);
+        let minus_c_arm_leg3 = t563 * (t564 * t569 + t14 * t573);
+        let t578 = t559 - 0.24 * minus_c_arm_leg3;
+        let t580 = t256 - 0.5 * t557;
+        let t581 = t580 * t580;
+        let t585 = 1.0 - 3.188775510204082 * t581;
+        ::overact::guard::reach(t585, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t585);
+        let c_cross_leg3 = (t567 - (0.0576 + t581) - 0.3136 * t585)
+            / (0.2688 * c_rod_leg3);
+        let s_arm_leg3 = t563 * (t564 * t573 - t14 * t569);
+        let s_cross_leg3 = 2.0833333333333335 * t573 / (0.56 * c_rod_leg3);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t601 = t580 * minus_c_armcross_leg3;
+        let t604 = 1.5464739353293548 * t601 + 0.5 * c_rod_leg3;
+        let t607 = 0.24 * s_arm_leg3;
+        let t608 = pose[2] + t607;
+        let s_rod_leg3 = 1.7857142857142858 * t580;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t613 = s_rod_leg3 * s_armcross_leg3;
+        let t614 = t608 * t613;
+        let t617 = 0.20784609690826528 * s_arm_leg3;
+        let t620 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t601;
+        let t624 = t578 * (0.56 * t620) + 0.28 * t614;
+        let t629 = s_arm_leg3 * t613;
+        let t631 = 0.1344 * (minus_c_arm_leg3 * t620) - 0.0672 * t629;
+        let t636 = t617 * t624 + 0.8660254037844387 * t608 * t631 + 0.14 * (t573 * t604);
+        ::overact::guard::leg(t636, 0.06758306237512474, "leg3")?;
+        let t637 = 1.0 / t636;
+        let garm_vx_leg3 = (t578 * (0.56 * t604) - 0.4849742261192857 * t614) * t637;
+        let garm_vy_leg3 = t624 * t637;
+        let t640 = 0.20784609690826528 * minus_c_arm_leg3;
+        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t608) * t637;
+        let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
+            + garm_vz_leg3 * twist[2];
+        let t649 = rate_arm_leg3 * rate_arm_leg3;
+        let t652 = t556 - (t640 - 0.17320508075688776);
+        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t620)
+            + 0.0672 * (s_arm_leg3 * t604)) * t637;
+        let minus_gcross_vx_leg3 = (0.11639381426862856 * t629
+            + 0.1344 * (minus_c_arm_leg3 * t604)) * t637;
+        let minus_gcross_vy_leg3 = t631 * t637;
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
+        let t670 = 0.8660254037844387 * rate_cross_leg3;
+        let grod_vx_leg3 = (t578 * t617
+            + 0.20784609690826528 * (minus_c_arm_leg3 * t608)) * t637;
+        let minus_grod_vy_leg3 = 0.25 * t573 * t637;
+        let rate_rod_leg3 = grod_vx_leg3 * twist[0] - minus_grod_vy_leg3 * twist[1];
+        let t683 = t670 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
+        let t685 = 0.5 * rate_cross_leg3;
+        let t687 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
+        let t688 = t685 + t687;
+        let t691 = minus_c_armcross_leg3 * rate_rod_leg3;
+        let t693 = t683 * t683 + t688 * t688 + t691 * t691;
+        let t696 = 0.12 * minus_c_arm_leg3;
+        let t698 = t232 - (t696 - 0.1);
+        let t703 = t698 * t683 - t652 * t688 - t608 * t691;
+        let t707 = 1.3333333333333333 * (t670 * t687);
+        let t709 = t685 * t691;
+        let t712 = t640 * t649 + t652 * t693 + t688 * t703 + t698 * t707 + t608 * t709;
+        let t719 = t670 * t691;
+        let t723 = t683 * t703 - (t696 * t649 + t698 * t693) + t608 * t719 + t652 * t707;
+        let t731 = t652 * t709 - t698 * t719;
+        let t733 = t607 * t649 - t608 * t693 + t731 + t731;
+        let rate_dot_arm_leg3 = garm_vy_leg3 * t712 - garm_vx_leg3 * t723
+            - garm_vz_leg3 * t733;
+        let t737 = 9.81 * minus_c_arm_leg3;
+        let t740 = 9.81 * s_arm_leg3;
+        let t749 = parameters[34] * rate_dot_arm_leg3 + parameters[35] * t737
+            + parameters[36] * t740 + parameters[37] * rate_dot_arm_leg3
             + parameters[38] * rate_arm_leg3
             + ::overact::math::signed(parameters[39], rate_arm_leg3) + parameters[40];
-        let t679 = 1.7857142857142858 * t629;
-        let t680 = c_rod_leg3 * rate_cross_leg3;
-        let t681 = t679 * t680;
-        let minus_rate_dot_rod_leg3 = grod_vx_leg3 * t651 + grod_vy_leg3 * t638;
-        let t685 = t681 + minus_rate_dot_rod_leg3;
-        let t687 = t680 * t680;
-        let t688 = rate_rod_leg3 * rate_rod_leg3;
-        let rate_dot_cross_leg3 = minus_gcross_vx_leg3 * t651 - gcross_vy_leg3 * t638
-            - gcross_vz_leg3 * t661;
-        let t697 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t701 = 0.24 * rate_dot_arm_leg3 - t665;
-        let t704 = t668 + 0.24 * t573;
-        let t706 = s_cross_leg3 * t701 - c_cross_leg3 * t704;
-        let t707 = c_rod_leg3 * t706;
-        let t710 = 3.5714285714285716 * t555
-            * (parameters[48] * t685 - parameters[47] * (t687 + t688)
-                + parameters[49] * t697 + parameters[50] * t707);
-        let t713 = t681 - minus_rate_dot_rod_leg3;
-        let t716 = 3.188775510204082 * (t629 * t629);
-        let t720 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t723 = s_rod_leg3 * t706;
-        let t726 = s_rod_leg3 * (0.24 * s_cross_leg3)
-            * (parameters[47] * t713 - parameters[48] * (t716 + t688)
-                - parameters[49] * t720 - parameters[50] * t723);
-        let t729 = rate_rod_leg3 * t679;
-        let t730 = t697 - t729;
-        let t731 = t729 - t730;
-        let t733 = rate_rod_leg3 * t680;
-        let t734 = t720 + t733;
-        let t735 = t733 + t734;
-        let t743 = s_cross_leg3 * t704 + c_cross_leg3 * t701;
-        let t746 = 0.24 * c_cross_leg3
-            * (parameters[47] * t731 + parameters[48] * t735
+        let t751 = 1.7857142857142858 * t703;
+        let t752 = c_rod_leg3 * rate_cross_leg3;
+        let t753 = t751 * t752;
+        let minus_rate_dot_rod_leg3 = grod_vx_leg3 * t723 + minus_grod_vy_leg3 * t712;
+        let t757 = t753 + minus_rate_dot_rod_leg3;
+        let t759 = t752 * t752;
+        let t760 = rate_rod_leg3 * rate_rod_leg3;
+        let rate_dot_cross_leg3 = minus_gcross_vx_leg3 * t723
+            - minus_gcross_vy_leg3 * t712 - gcross_vz_leg3 * t733;
+        let t769 = c_rod_leg3 * rate_dot_cross_leg3;
+        let t773 = t737 + 0.24 * rate_dot_arm_leg3;
+        let t776 = t740 + 0.24 * t649;
+        let t778 = s_cross_leg3 * t773 - c_cross_leg3 * t776;
+        let t779 = c_rod_leg3 * t778;
+        let t782 = 0.8928571428571429 * t573
+            * (parameters[48] * t757 - parameters[47] * (t759 + t760)
+                + parameters[49] * t769 + parameters[50] * t779);
+        let t785 = t753 - minus_rate_dot_rod_leg3;
+        let t788 = 3.188775510204082 * (t703 * t703);
+        let t792 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t795 = s_rod_leg3 * t778;
+        let t798 = 0.42857142857142855 * (t580 * s_cross_leg3)
+            * (parameters[47] * t785 - parameters[48] * (t788 + t760)
+                - parameters[49] * t792 - parameters[50] * t795);
+        let t801 = rate_rod_leg3 * t751;
+        let t802 = t769 - t801;
+        let t803 = t801 - t802;
+        let t805 = rate_rod_leg3 * t752;
+        let t806 = t792 + t805;
+        let t807 = t805 + t806;
+        let t815 = s_cross_leg3 * t776 + c_cross_leg3 * t773;
+        let t818 = 0.24 * c_cross_leg3
+            * (parameters[47] * t803 + parameters[48] * t807
                 - parameters[49] * (rate_cross_leg3 * rate_cross_leg3)
-                - parameters[50] * t743);
-        let t748 = t677 - (t710 + t726 + t746);
-        let t759 = parameters[41] * t734 - parameters[42] * t731 + parameters[43] * t713
-            - parameters[44] * t733 + parameters[45] * (t687 - t688);
-        let t776 = parameters[41] * t729 + parameters[42] * t735
-            + parameters[43] * (t688 - t716) + parameters[44] * t730
-            - parameters[45] * t685;
-        let t784 = s_rod_leg3
-            * (t759 + parameters[46] * t733 - parameters[48] * t743
-                + parameters[49] * t723)
+                - parameters[50] * t815);
+        let t820 = t749 + t782 - t798 - t818;
+        let t831 = parameters[41] * t806 - parameters[42] * t803 + parameters[43] * t785
+            - parameters[44] * t805 + parameters[45] * (t759 - t760);
+        let t848 = parameters[41] * t801 + parameters[42] * t807
+            + parameters[43] * (t760 - t788) + parameters[44] * t802
+            - parameters[45] * t757;
+        let t856 = s_rod_leg3
+            * (t831 + parameters[46] * t805 - parameters[48] * t815
+                + parameters[49] * t795)
             + c_rod_leg3
-                * (t776 - parameters[46] * t729 + parameters[47] * t743
-                    + parameters[49] * t707);
-        let t796 = parameters[42] * (t716 - t687) - parameters[41] * t681
-            + parameters[43] * t720 + parameters[44] * t681 + parameters[45] * t697;
-        let t802 = t796 - parameters[46] * minus_rate_dot_rod_leg3
-            - parameters[47] * t723 - parameters[48] * t707;
-        let t805 = garm_vx_leg1 * t163 - minus_gcross_vx_leg1 * t199
-            + garm_vx_leg2 * t446 + gcross_vx_leg2 * t482 + grod_vx_leg2 * t500
-            + garm_vx_leg3 * t748 - minus_gcross_vx_leg3 * t784 + grod_vx_leg3 * t802;
-        let t818 = parameters[8] * (t132 - t103) - parameters[7] * t99
-            + parameters[9] * t136 + parameters[10] * t99 + parameters[11] * t113;
-        let t826 = garm_vy_leg1 * t163 - minus_gcross_vy_leg1 * t199
+                * (t848 - parameters[46] * t801 + parameters[47] * t815
+                    + parameters[49] * t779);
+        let t868 = parameters[42] * (t788 - t759) - parameters[41] * t753
+            + parameters[43] * t792 + parameters[44] * t753 + parameters[45] * t769;
+        let t874 = t868 - parameters[46] * minus_rate_dot_rod_leg3
+            - parameters[47] * t795 - parameters[48] * t779;
+        let t877 = garm_vx_leg1 * t190 - minus_gcross_vx_leg1 * t226
+            + garm_vx_leg2 * t498 - minus_gcross_vx_leg2 * t534 + grod_vx_leg2 * t552
+            + garm_vx_leg3 * t820 - minus_gcross_vx_leg3 * t856 + grod_vx_leg3 * t874;
+        let t890 = parameters[8] * (t159 - t130) - parameters[7] * t126
+            + parameters[9] * t163 + parameters[10] * t126 + parameters[11] * t140;
+        let t898 = garm_vy_leg1 * t190 + gcross_vy_leg1 * t226
             + grod_vy_leg1
-                * (t818 - parameters[12] * minus_rate_dot_rod_leg1
-                    - parameters[13] * t139 - parameters[14] * t123);
-        let t838 = t826 + garm_vy_leg2 * t446 - minus_gcross_vy_leg2 * t482
-            - minus_grod_vy_leg2 * t500 + gcross_vy_leg3 * t784
-            - minus_garm_vy_leg3 * t748 + grod_vy_leg3 * t802;
-        let t849 = gcross_vz_leg1 * t199 - minus_garm_vz_leg1 * t163
-            + garm_vz_leg2 * t446 - minus_gcross_vz_leg2 * t482 + gcross_vz_leg3 * t784
-            - minus_garm_vz_leg3 * t748;
-        Ok([t805, t838, t849 + 9.81 * (parameters[51] + parameters[52])])
+                * (t890 - parameters[12] * minus_rate_dot_rod_leg1
+                    - parameters[13] * t166 - parameters[14] * t150);
+        let t910 = t898 + garm_vy_leg2 * t498 - minus_gcross_vy_leg2 * t534
+            - minus_grod_vy_leg2 * t552 + garm_vy_leg3 * t820
+            - minus_gcross_vy_leg3 * t856 - minus_grod_vy_leg3 * t874;
+        let t921 = garm_vz_leg1 * t190 - minus_gcross_vz_leg1 * t226
+            + garm_vz_leg2 * t498 + gcross_vz_leg2 * t534 + garm_vz_leg3 * t820
+            + gcross_vz_leg3 * t856;
+        Ok([t877, t910, t921 + 9.81 * (parameters[51] + parameters[52])])
     }
-    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
+    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. It is `pose_in_closed_form` where that has a value.
     ///
     /// # Errors
     /// No convergence, or a singular or unreachable configuration on the way.
@@ -7328,28 +10756,32 @@ impl Delta {
         actuators: &[f64; Self::ACTUATORS],
         start: &[f64; Self::POSE],
     ) -> Result<[f64; Self::POSE], ::overact::Error> {
+        if let Ok(pose) = Self::pose_in_closed_form(actuators) {
+            return Ok(pose);
+        }
         let mut pose = *start;
         ::overact::forward::gauss_newton(
-            ::overact::forward::Measured {
-                positions: actuators,
-                is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
-            },
-            &mut pose,
-            ::overact::forward::Workspace {
-                actuators: &mut [0.0; Self::ACTUATORS],
-                inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
-                normal: &mut [0.0; Self::DOF * Self::DOF],
-                step: &mut [0.0; Self::DOF],
-            },
-            |pose, positions, jacobian| {
-                let pose = ::overact::block::array(pose)?;
-                positions.copy_from_slice(&Self::actuator_positions(pose)?);
-                jacobian.copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
-                Ok(())
-            },
-            ::overact::forward::displace,
-        )?;
-        Ok(pose)
+                ::overact::forward::Measured {
+                    positions: actuators,
+                    is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
+                },
+                &mut pose,
+                ::overact::forward::Workspace {
+                    actuators: &mut [0.0; Self::ACTUATORS],
+                    inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
+                    normal: &mut [0.0; Self::DOF * Self::DOF],
+                    step: &mut [0.0; Self::DOF],
+                },
+                |pose, positions, jacobian| {
+                    let pose = ::overact::block::array(pose)?;
+                    positions.copy_from_slice(&Self::actuator_positions(pose)?);
+                    jacobian
+                        .copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
+                    Ok(())
+                },
+                ::overact::forward::displace,
+            )
+            .map(|()| pose)
     }
 }
 impl ::overact::Model for Delta {

@@ -262,46 +262,188 @@ impl Delta4 {
             BaseParameter::new("mz_rod_leg4", "mz_rod_leg4", &[]),
         ]
     };
-    /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration; by Newton's method.
+    /// The pose from the actuators in closed form, in the assembly mode of the home configuration; of redundant actuators only some are used.
+    ///
+    /// From the actuators' positions.
+    /// - `actuators`: q, positions of the actuated joints (m, rad)
+    ///
+    /// Output: 3.
+    ///
+    /// 79 operations (30 additions, 48 multiplications, 1 divisions), 1 square roots, 3 trigonometric pairs, 0 signs, 83 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration on the way from home.
-    pub fn joints(
-        pose: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::JOINTS], ::overact::Error> {
-        let mut joints = Self::HOME_JOINTS;
-        ::overact::inverse::solve(
-            ::overact::inverse::Legs {
-                names: &Self::LEGS,
-                joints: &[3, 3, 3, 3],
-                home_pose: &Self::HOME_POSE,
-                home_joints: &Self::HOME_JOINTS,
-                has_quaternion: false,
-            },
-            pose,
-            &mut joints,
-            ::overact::inverse::Workspace {
-                error: &mut [0.0; Self::JOINTS],
-                jacobian: &mut [0.0; Self::JOINTS * Self::JOINTS],
-                pose: &mut [0.0; Self::POSE],
-            },
-            |pose, joints, error, jacobian| {
-                let (pose, joints) = (
-                    ::overact::block::array(pose)?,
-                    ::overact::block::array(joints)?,
-                );
-                ::overact::block::write(
-                    &Self::closure_error_from_joints(pose, joints),
-                    error,
-                );
-                ::overact::block::write(
-                    &Self::legs_jacobian_from_joints(pose, joints),
-                    jacobian,
-                );
-                Ok(())
-            },
-        )?;
-        Ok(joints)
+    /// A pose out of reach, or a singular configuration.
+    pub fn pose_in_closed_form(
+        actuators: &[f64; 4],
+    ) -> Result<[f64; 3], ::overact::Error> {
+        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(actuators[0]);
+        let t4 = 0.05 - (0.2 + 0.2 * c_arm_leg1);
+        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(actuators[2]);
+        let t10 = t4 - (0.2 + 0.2 * c_arm_leg3 - 0.05);
+        let t12 = s_arm_leg1 - s_arm_leg3;
+        let t16 = 0.5 * (t10 * t10 + 0.04 * (t12 * t12));
+        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(actuators[1]);
+        let t19 = s_arm_leg1 - s_arm_leg2;
+        let t20 = 0.2 * t19;
+        let t22 = 0.2 * t12;
+        let t24 = t20 * t10 - t4 * t22;
+        let t28 = 0.05 - (0.2 + 0.2 * c_arm_leg2);
+        let t29 = t28 * t10;
+        let t39 = 0.5 * (t4 * t4 + t28 * t28 + 0.04 * (t19 * t19));
+        let t43 = t28 * t22;
+        let t49 = 1.0 / (t43 * t43 + t24 * t24 + t29 * t29);
+        let t50 = (t16 * (t20 * t24 + t28 * t29) - t39 * (t22 * t24)) * t49;
+        let t62 = (t16 * (t4 * t29 + t20 * t43) - t39 * (t22 * t43 + t10 * t29)) * t49;
+        let t72 = (t39 * (t10 * t24) + t16 * (t28 * t43 - t4 * t24)) * t49;
+        let t76 = t49 * (0.2809 - (t50 * t50 + t62 * t62 + t72 * t72));
+        ::overact::guard::reach(t76, "leg1")?;
+        let t77 = ::overact::math::sqrt(t76);
+        Ok([t50 - t4 + t43 * t77, t62 - t24 * t77, t72 - 0.2 * s_arm_leg1 - t29 * t77])
+    }
+    /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    ///
+    /// Output: 12.
+    ///
+    /// 198 operations (88 additions, 98 multiplications, 12 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 211 intermediates.
+    ///
+    /// # Errors
+    /// A pose out of reach, or a singular configuration.
+    pub fn joints(pose: &[f64; 3]) -> Result<[f64; 12], ::overact::Error> {
+        let t1 = pose[0] + 0.05 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * pose[2];
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.2809 + 0.04;
+        let t14 = 0.4 * t1;
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        let minus_s_arm_leg1 = t6 * (t7 * t12 + t14 * t17);
+        let c_arm_leg1 = t6 * (t14 * t12 - t7 * t17);
+        let t36 = 1.0 - 3.5599857600569598 * t8;
+        ::overact::guard::reach(t36, "leg1")?;
+        ::overact::guard::reach(t36, "leg3")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t36);
+        let t38 = 0.53 * c_rod_leg1;
+        let s_cross_leg1 = 2.5 * t17 / t38;
+        let t41 = 0.04 + t8;
+        let t43 = 0.2809 * t36;
+        let t45 = 0.212 * c_rod_leg1;
+        let c_cross_leg1 = (t10 - t41 - t43) / t45;
+        let s_rod_leg1 = 1.8867924528301887 * pose[1];
+        let t63 = pose[1] + 0.05 - 0.2;
+        let t64 = t63 * t63;
+        let t66 = 0.16 * (t64 + t3);
+        let t67 = 1.0 / t66;
+        let t68 = pose[0] * pose[0];
+        let t70 = t68 + t64 + t3;
+        let t72 = t70 - 0.2809 + 0.04;
+        let t74 = 0.4 * t63;
+        let t76 = t66 - t72 * t72;
+        ::overact::guard::reach(t76, "leg2")?;
+        let t77 = ::overact::math::sqrt(t76);
+        let minus_s_arm_leg2 = t67 * (t7 * t72 + t74 * t77);
+        let c_arm_leg2 = t67 * (t74 * t72 - t7 * t77);
+        let t96 = 1.0 - 3.5599857600569598 * t68;
+        ::overact::guard::reach(t96, "leg2")?;
+        ::overact::guard::reach(t96, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t96);
+        let t98 = 0.53 * c_rod_leg2;
+        let s_cross_leg2 = 2.5 * t77 / t98;
+        let t101 = 0.04 + t68;
+        let t103 = 0.2809 * t96;
+        let t105 = 0.212 * c_rod_leg2;
+        let c_cross_leg2 = (t70 - t101 - t103) / t105;
+        let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
+        let t124 = pose[0] - 0.05 + 0.2;
+        let t125 = t124 * t124;
+        let t127 = 0.16 * (t125 + t3);
+        let t128 = 1.0 / t127;
+        let t129 = 0.4 * t124;
+        let t131 = t125 + t8 + t3;
+        let t133 = t131 - 0.2809 + 0.04;
+        let t135 = t127 - t133 * t133;
+        ::overact::guard::reach(t135, "leg3")?;
+        let t136 = ::overact::math::sqrt(t135);
+        let s_arm_leg3 = t128 * (t129 * t136 - t7 * t133);
+        let minus_c_arm_leg3 = t128 * (t129 * t133 + t7 * t136);
+        let s_cross_leg3 = 2.5 * t136 / t38;
+        let c_cross_leg3 = (t131 - t41 - t43) / t45;
+        let t174 = pose[1] - 0.05 + 0.2;
+        let t175 = t174 * t174;
+        let t177 = 0.16 * (t175 + t3);
+        let t178 = 1.0 / t177;
+        let t179 = 0.4 * t174;
+        let t181 = t68 + t175 + t3;
+        let t183 = t181 - 0.2809 + 0.04;
+        let t185 = t177 - t183 * t183;
+        ::overact::guard::reach(t185, "leg4")?;
+        let t186 = ::overact::math::sqrt(t185);
+        let s_arm_leg4 = t178 * (t179 * t186 - t7 * t183);
+        let minus_c_arm_leg4 = t178 * (t179 * t183 + t7 * t186);
+        let s_cross_leg4 = 2.5 * t186 / t98;
+        let c_cross_leg4 = (t181 - t101 - t103) / t105;
+        Ok([
+            ::overact::math::atan2(
+                -(0.9349865070850686 * minus_s_arm_leg1
+                    + 0.3546832834640828 * c_arm_leg1),
+                0.9349865070850686 * c_arm_leg1 - 0.3546832834640828 * minus_s_arm_leg1,
+            ) + 0.36257530634640667,
+            ::overact::math::atan2(
+                -(0.320754716981133 * s_cross_leg1 + 0.9471622941895191 * c_cross_leg1),
+                0.9471622941895191 * s_cross_leg1 - 0.320754716981133 * c_cross_leg1,
+            ) + 1.8973225257683506,
+            ::overact::math::atan2(
+                s_rod_leg1 + 0.0000000000000005419741653399873 * c_rod_leg1,
+                c_rod_leg1 - 0.0000000000000010225927647924288 * pose[1],
+            ) - 0.0000000000000005419741653399873,
+            ::overact::math::atan2(
+                -(0.9349865070850681 * minus_s_arm_leg2
+                    + 0.35468328346408406 * c_arm_leg2),
+                0.9349865070850681 * c_arm_leg2 - 0.35468328346408406 * minus_s_arm_leg2,
+            ) + 0.36257530634640806,
+            ::overact::math::atan2(
+                -(0.3207547169811317 * s_cross_leg2 + 0.9471622941895196 * c_cross_leg2),
+                0.9471622941895196 * s_cross_leg2 - 0.3207547169811317 * c_cross_leg2,
+            ) + 1.8973225257683493,
+            ::overact::math::atan2(
+                -(minus_s_rod_leg2 + 0.00000000000000010439780840579021 * c_rod_leg2),
+                c_rod_leg2 - 0.00000000000000019697699699205702 * pose[0],
+            ) + 0.00000000000000010439780840579021,
+            ::overact::math::atan2(
+                0.9349865070850684 * s_arm_leg3 + 0.3546832834640834 * minus_c_arm_leg3,
+                0.3546832834640834 * s_arm_leg3 - 0.9349865070850684 * minus_c_arm_leg3,
+            ) + 0.36257530634640733,
+            ::overact::math::atan2(
+                -(0.32075471698113256 * s_cross_leg3
+                    + 0.9471622941895194 * c_cross_leg3),
+                0.9471622941895194 * s_cross_leg3 - 0.32075471698113256 * c_cross_leg3,
+            ) + 1.8973225257683501,
+            ::overact::math::atan2(
+                0.0000000000000005031420292211564 * c_rod_leg1 - s_rod_leg1,
+                c_rod_leg1 + 0.0000000000000009493245834361442 * pose[1],
+            ) - 0.0000000000000005031420292211564,
+            ::overact::math::atan2(
+                0.9349865070850684 * s_arm_leg4 + 0.35468328346408345 * minus_c_arm_leg4,
+                0.35468328346408345 * s_arm_leg4 - 0.9349865070850684 * minus_c_arm_leg4,
+            ) + 0.3625753063464074,
+            ::overact::math::atan2(
+                -(0.32075471698113256 * s_cross_leg4
+                    + 0.9471622941895194 * c_cross_leg4),
+                0.9471622941895194 * s_cross_leg4 - 0.32075471698113256 * c_cross_leg4,
+            ) + 1.8973225257683501,
+            ::overact::math::atan2(
+                minus_s_rod_leg2 - 0.000000000000000052054327532325807 * c_rod_leg2,
+                c_rod_leg2 + 0.00000000000000009821571232514303 * pose[0],
+            ) + 0.000000000000000052054327532325807,
+        ])
     }
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
@@ -310,13 +452,79 @@ impl Delta4 {
     ///
     /// Output: 4.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 116 operations (52 additions, 60 multiplications, 4 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 122 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn actuator_positions(pose: &[f64; 3]) -> Result<[f64; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Ok([joints[0], joints[3], joints[6], joints[9]])
+        let t1 = pose[0] + 0.05 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * pose[2];
+        let t8 = pose[1] * pose[1];
+        let t12 = t2 + t8 + t3 - 0.2809 + 0.04;
+        let t14 = 0.4 * t1;
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        let minus_s_arm_leg1 = t6 * (t7 * t12 + t14 * t17);
+        let c_arm_leg1 = t6 * (t14 * t12 - t7 * t17);
+        let t35 = pose[1] + 0.05 - 0.2;
+        let t36 = t35 * t35;
+        let t38 = 0.16 * (t36 + t3);
+        let t39 = 1.0 / t38;
+        let t40 = pose[0] * pose[0];
+        let t44 = t40 + t36 + t3 - 0.2809 + 0.04;
+        let t46 = 0.4 * t35;
+        let t48 = t38 - t44 * t44;
+        ::overact::guard::reach(t48, "leg2")?;
+        let t49 = ::overact::math::sqrt(t48);
+        let minus_s_arm_leg2 = t39 * (t7 * t44 + t46 * t49);
+        let c_arm_leg2 = t39 * (t46 * t44 - t7 * t49);
+        let t67 = pose[0] - 0.05 + 0.2;
+        let t68 = t67 * t67;
+        let t70 = 0.16 * (t68 + t3);
+        let t71 = 1.0 / t70;
+        let t72 = 0.4 * t67;
+        let t76 = t68 + t8 + t3 - 0.2809 + 0.04;
+        let t78 = t70 - t76 * t76;
+        ::overact::guard::reach(t78, "leg3")?;
+        let t79 = ::overact::math::sqrt(t78);
+        let s_arm_leg3 = t71 * (t72 * t79 - t7 * t76);
+        let minus_c_arm_leg3 = t71 * (t72 * t76 + t7 * t79);
+        let t97 = pose[1] - 0.05 + 0.2;
+        let t98 = t97 * t97;
+        let t100 = 0.16 * (t98 + t3);
+        let t101 = 1.0 / t100;
+        let t102 = 0.4 * t97;
+        let t106 = t40 + t98 + t3 - 0.2809 + 0.04;
+        let t108 = t100 - t106 * t106;
+        ::overact::guard::reach(t108, "leg4")?;
+        let t109 = ::overact::math::sqrt(t108);
+        let s_arm_leg4 = t101 * (t102 * t109 - t7 * t106);
+        let minus_c_arm_leg4 = t101 * (t102 * t106 + t7 * t109);
+        Ok([
+            ::overact::math::atan2(
+                -(0.9349865070850686 * minus_s_arm_leg1
+                    + 0.3546832834640828 * c_arm_leg1),
+                0.9349865070850686 * c_arm_leg1 - 0.3546832834640828 * minus_s_arm_leg1,
+            ) + 0.36257530634640667,
+            ::overact::math::atan2(
+                -(0.9349865070850681 * minus_s_arm_leg2
+                    + 0.35468328346408406 * c_arm_leg2),
+                0.9349865070850681 * c_arm_leg2 - 0.35468328346408406 * minus_s_arm_leg2,
+            ) + 0.36257530634640806,
+            ::overact::math::atan2(
+                0.9349865070850684 * s_arm_leg3 + 0.3546832834640834 * minus_c_arm_leg3,
+                0.3546832834640834 * s_arm_leg3 - 0.9349865070850684 * minus_c_arm_leg3,
+            ) + 0.36257530634640733,
+            ::overact::math::atan2(
+                0.9349865070850684 * s_arm_leg4 + 0.35468328346408345 * minus_c_arm_leg4,
+                0.35468328346408345 * s_arm_leg4 - 0.9349865070850684 * minus_c_arm_leg4,
+            ) + 0.3625753063464074,
+        ])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -325,13 +533,87 @@ impl Delta4 {
     ///
     /// Output: 4 x 3.
     ///
-    /// 40 operations (8 additions, 28 multiplications, 4 divisions), 0 square roots, 12 trigonometric pairs, 0 signs, 52 intermediates.
+    /// 124 operations (52 additions, 64 multiplications, 8 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 116 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::inverse_jacobian_from_joints(pose, joints)
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * t1;
+        let t8 = pose[1] * pose[1];
+        let t12 = t2 + t8 + t3 - 0.2809 + 0.04;
+        let t14 = 0.4 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.20079840636817814, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t24 = 2.0 / t17;
+        let garm_vx_leg1 = (t0 - (0.2 + 0.2 * c_arm_leg1)) * t24;
+        let t26 = pose[1] + 0.05;
+        let t27 = t26 - 0.2;
+        let t28 = t27 * t27;
+        let t30 = 0.16 * (t28 + t3);
+        let t31 = pose[0] * pose[0];
+        let t35 = t31 + t28 + t3 - 0.2809 + 0.04;
+        let t37 = t30 - t35 * t35;
+        ::overact::guard::reach(t37, "leg2")?;
+        let t38 = ::overact::math::sqrt(t37);
+        ::overact::guard::leg(t38, 0.20079840636817814, "leg2")?;
+        let t39 = 2.0 / t38;
+        let garm_vx_leg2 = pose[0] * t39;
+        let t41 = pose[0] - 0.05;
+        let t42 = t41 + 0.2;
+        let t43 = t42 * t42;
+        let t45 = 0.16 * (t43 + t3);
+        let t46 = 1.0 / t45;
+        let t47 = 0.4 * t42;
+        let t51 = t43 + t8 + t3 - 0.2809 + 0.04;
+        let t54 = t45 - t51 * t51;
+        ::overact::guard::reach(t54, "leg3")?;
+        let t55 = ::overact::math::sqrt(t54);
+        ::overact::guard::leg(t55, 0.20079840636817814, "leg3")?;
+        let minus_c_arm_leg3 = t46 * (t47 * t51 + t14 * t55);
+        let t62 = 2.0 / t55;
+        let garm_vx_leg3 = (t41 - (0.2 * minus_c_arm_leg3 - 0.2)) * t62;
+        let t64 = pose[1] - 0.05;
+        let t65 = t64 + 0.2;
+        let t66 = t65 * t65;
+        let t68 = 0.16 * (t66 + t3);
+        let t72 = t31 + t66 + t3 - 0.2809 + 0.04;
+        let t74 = t68 - t72 * t72;
+        ::overact::guard::reach(t74, "leg4")?;
+        let t75 = ::overact::math::sqrt(t74);
+        ::overact::guard::leg(t75, 0.20079840636817814, "leg4")?;
+        let t76 = 2.0 / t75;
+        let garm_vx_leg4 = pose[0] * t76;
+        let garm_vy_leg1 = pose[1] * t24;
+        let t79 = 1.0 / t30;
+        let t80 = 0.4 * t27;
+        let c_arm_leg2 = t79 * (t80 * t35 - t14 * t38);
+        let garm_vy_leg2 = (t26 - (0.2 + 0.2 * c_arm_leg2)) * t39;
+        let garm_vy_leg3 = pose[1] * t62;
+        let t90 = 1.0 / t68;
+        let t91 = 0.4 * t65;
+        let minus_c_arm_leg4 = t90 * (t91 * t72 + t14 * t75);
+        let garm_vy_leg4 = (t64 - (0.2 * minus_c_arm_leg4 - 0.2)) * t76;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let garm_vz_leg1 = (pose[2] - 0.2 * minus_s_arm_leg1) * t24;
+        let minus_s_arm_leg2 = t79 * (t14 * t35 + t80 * t38);
+        let garm_vz_leg2 = (pose[2] - 0.2 * minus_s_arm_leg2) * t39;
+        let s_arm_leg3 = t46 * (t47 * t55 - t14 * t51);
+        let garm_vz_leg3 = (pose[2] + 0.2 * s_arm_leg3) * t62;
+        let s_arm_leg4 = t90 * (t91 * t75 - t14 * t72);
+        let garm_vz_leg4 = (pose[2] + 0.2 * s_arm_leg4) * t76;
+        Ok([
+            [garm_vx_leg1, garm_vy_leg1, garm_vz_leg1], [garm_vx_leg2, garm_vy_leg2, garm_vz_leg2],
+            [garm_vx_leg3, garm_vy_leg3, garm_vz_leg3], [garm_vx_leg4, garm_vy_leg4, garm_vz_leg4],
+        ])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -411,105 +693,126 @@ impl Delta4 {
     ///
     /// Output: 3 x 4.
     ///
-    /// 156 operations (54 additions, 95 multiplications, 7 divisions), 0 square roots, 12 trigonometric pairs, 0 signs, 168 intermediates.
+    /// 240 operations (98 additions, 131 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 232 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn jacobian(pose: &[f64; 3]) -> Result<[[f64; 4]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let t0 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t0);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        let t5 = c_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t8 = s_armcross_leg1 * c_rod_leg1;
-        let t11 = c_arm_leg1 * t8 - s_arm_leg1 * t5;
-        ::overact::guard::leg(t11, 0.9471622941895192, "leg1")?;
-        let t12 = 5.0 / t11;
-        let garm_vx_leg1 = t5 * t12;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t19 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t19);
-        let t22 = s_armcross_leg2 * c_rod_leg2;
-        let t24 = c_armcross_leg2 * c_rod_leg2;
-        let t26 = c_arm_leg2 * t22 - s_arm_leg2 * t24;
-        ::overact::guard::leg(t26, 0.9471622941895197, "leg2")?;
-        let t27 = 5.0 / t26;
-        let minus_garm_vx_leg2 = s_rod_leg2 * t27;
-        let t31 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t31);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t36 = c_armcross_leg3 * c_rod_leg3;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t40 = s_armcross_leg3 * c_rod_leg3;
-        let t42 = s_arm_leg3 * t36 - c_arm_leg3 * t40;
-        ::overact::guard::leg(t42, 0.9471622941895192, "leg3")?;
-        let t43 = 5.0 / t42;
-        let garm_vx_leg3 = t36 * t43;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let t51 = joints[9] + joints[10];
-        let (s_armcross_leg4, c_armcross_leg4) = ::overact::math::sin_cos(t51);
-        let t54 = c_armcross_leg4 * c_rod_leg4;
-        let t56 = s_armcross_leg4 * c_rod_leg4;
-        let t58 = s_arm_leg4 * t54 - c_arm_leg4 * t56;
-        ::overact::guard::leg(t58, 0.9471622941895192, "leg4")?;
-        let t59 = 5.0 / t58;
-        let minus_garm_vx_leg4 = s_rod_leg4 * t59;
-        let t62 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3 + minus_garm_vx_leg4 * minus_garm_vx_leg4;
-        ::overact::guard::platform(t62, 22.53317086554555, "actuators")?;
-        let t63 = 1.0 / t62;
-        let garm_vy_leg1 = s_rod_leg1 * t12;
-        let garm_vy_leg2 = t24 * t27;
-        let garm_vy_leg3 = s_rod_leg3 * t43;
-        let garm_vy_leg4 = t54 * t59;
-        let t75 = garm_vx_leg1 * garm_vy_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
-            + garm_vx_leg3 * garm_vy_leg3 - minus_garm_vx_leg4 * garm_vy_leg4;
-        let t76 = t75 * t63;
-        let t85 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t75 * t76;
-        ::overact::guard::platform(t85, 22.533170865545543, "actuators")?;
-        let t86 = 1.0 / t85;
-        let t88 = garm_vy_leg1 - garm_vx_leg1 * t76;
-        let garm_vz_leg3 = t40 * t43;
-        let minus_garm_vz_leg1 = t8 * t12;
-        let minus_garm_vz_leg2 = t22 * t27;
-        let garm_vz_leg4 = t56 * t59;
-        let t107 = minus_garm_vx_leg2 * minus_garm_vz_leg2
-            - garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg3 * garm_vz_leg3
-            - minus_garm_vx_leg4 * garm_vz_leg4;
-        let t108 = t107 * t63;
-        let t110 = garm_vy_leg3 * garm_vz_leg3
-            - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2)
-            + garm_vy_leg4 * garm_vz_leg4 - t75 * t108;
-        let t111 = t110 * t86;
-        let t122 = minus_garm_vz_leg1 * minus_garm_vz_leg1
-            + minus_garm_vz_leg2 * minus_garm_vz_leg2 + garm_vz_leg3 * garm_vz_leg3
-            + garm_vz_leg4 * garm_vz_leg4 - t107 * t108 - t110 * t111;
-        ::overact::guard::platform(t122, 66.4019122371629, "actuators")?;
-        let t123 = 1.0 / t122;
-        let t128 = t123 * (minus_garm_vz_leg1 + garm_vx_leg1 * t108 + t111 * t88);
-        let t130 = t86 * t88 + t111 * t128;
-        let t137 = garm_vy_leg2 + minus_garm_vx_leg2 * t76;
-        let t143 = t123 * (minus_garm_vx_leg2 * t108 - minus_garm_vz_leg2 - t111 * t137);
-        let t145 = t86 * t137 - t111 * t143;
-        let t152 = garm_vy_leg3 - garm_vx_leg3 * t76;
-        let t158 = t123 * (garm_vz_leg3 - garm_vx_leg3 * t108 - t111 * t152);
-        let t160 = t86 * t152 - t111 * t158;
-        let t167 = garm_vy_leg4 + minus_garm_vx_leg4 * t76;
-        let t173 = t123 * (garm_vz_leg4 + minus_garm_vx_leg4 * t108 - t111 * t167);
-        let t175 = t86 * t167 - t111 * t173;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * t1;
+        let t8 = pose[1] * pose[1];
+        let t12 = t2 + t8 + t3 - 0.2809 + 0.04;
+        let t14 = 0.4 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.20079840636817814, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t24 = 2.0 / t17;
+        let garm_vx_leg1 = (t0 - (0.2 + 0.2 * c_arm_leg1)) * t24;
+        let t27 = pose[1] + 0.05;
+        let t28 = t27 - 0.2;
+        let t29 = t28 * t28;
+        let t31 = 0.16 * (t29 + t3);
+        let t32 = pose[0] * pose[0];
+        let t36 = t32 + t29 + t3 - 0.2809 + 0.04;
+        let t38 = t31 - t36 * t36;
+        ::overact::guard::reach(t38, "leg2")?;
+        let t39 = ::overact::math::sqrt(t38);
+        ::overact::guard::leg(t39, 0.20079840636817814, "leg2")?;
+        let t40 = 2.0 / t39;
+        let garm_vx_leg2 = pose[0] * t40;
+        let t44 = pose[0] - 0.05;
+        let t45 = t44 + 0.2;
+        let t46 = t45 * t45;
+        let t48 = 0.16 * (t46 + t3);
+        let t49 = 1.0 / t48;
+        let t50 = 0.4 * t45;
+        let t54 = t46 + t8 + t3 - 0.2809 + 0.04;
+        let t57 = t48 - t54 * t54;
+        ::overact::guard::reach(t57, "leg3")?;
+        let t58 = ::overact::math::sqrt(t57);
+        ::overact::guard::leg(t58, 0.20079840636817814, "leg3")?;
+        let minus_c_arm_leg3 = t49 * (t50 * t54 + t14 * t58);
+        let t65 = 2.0 / t58;
+        let garm_vx_leg3 = (t44 - (0.2 * minus_c_arm_leg3 - 0.2)) * t65;
+        let t69 = pose[1] - 0.05;
+        let t70 = t69 + 0.2;
+        let t71 = t70 * t70;
+        let t73 = 0.16 * (t71 + t3);
+        let t77 = t32 + t71 + t3 - 0.2809 + 0.04;
+        let t79 = t73 - t77 * t77;
+        ::overact::guard::reach(t79, "leg4")?;
+        let t80 = ::overact::math::sqrt(t79);
+        ::overact::guard::leg(t80, 0.20079840636817814, "leg4")?;
+        let t81 = 2.0 / t80;
+        let garm_vx_leg4 = pose[0] * t81;
+        let t84 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t84, 22.533170865545554, "actuators")?;
+        let t85 = 1.0 / t84;
+        let garm_vy_leg1 = pose[1] * t24;
+        let t89 = 1.0 / t31;
+        let t90 = 0.4 * t28;
+        let c_arm_leg2 = t89 * (t90 * t36 - t14 * t39);
+        let garm_vy_leg2 = (t27 - (0.2 + 0.2 * c_arm_leg2)) * t40;
+        let garm_vy_leg3 = pose[1] * t65;
+        let t104 = 1.0 / t73;
+        let t105 = 0.4 * t70;
+        let minus_c_arm_leg4 = t104 * (t105 * t77 + t14 * t80);
+        let garm_vy_leg4 = (t69 - (0.2 * minus_c_arm_leg4 - 0.2)) * t81;
+        let t115 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3 + garm_vx_leg4 * garm_vy_leg4;
+        let t116 = t115 * t85;
+        let t125 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t115 * t116;
+        ::overact::guard::platform(t125, 22.533170865545554, "actuators")?;
+        let t126 = 1.0 / t125;
+        let t128 = garm_vy_leg1 - garm_vx_leg1 * t116;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let garm_vz_leg1 = (pose[2] - 0.2 * minus_s_arm_leg1) * t24;
+        let minus_s_arm_leg2 = t89 * (t14 * t36 + t90 * t39);
+        let garm_vz_leg2 = (pose[2] - 0.2 * minus_s_arm_leg2) * t40;
+        let s_arm_leg3 = t49 * (t50 * t58 - t14 * t54);
+        let garm_vz_leg3 = (pose[2] + 0.2 * s_arm_leg3) * t65;
+        let s_arm_leg4 = t104 * (t105 * t80 - t14 * t77);
+        let garm_vz_leg4 = (pose[2] + 0.2 * s_arm_leg4) * t81;
+        let t171 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3 + garm_vx_leg4 * garm_vz_leg4;
+        let t172 = t171 * t85;
+        let t174 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 + garm_vy_leg4 * garm_vz_leg4 - t115 * t172;
+        let t175 = t174 * t126;
+        let t186 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 + garm_vz_leg4 * garm_vz_leg4 - t171 * t172
+            - t174 * t175;
+        ::overact::guard::platform(t186, 66.40191223716288, "actuators")?;
+        let t187 = 1.0 / t186;
+        let t192 = t187 * (garm_vz_leg1 - garm_vx_leg1 * t172 - t175 * t128);
+        let t194 = t126 * t128 - t175 * t192;
+        let t201 = garm_vy_leg2 - garm_vx_leg2 * t116;
+        let t207 = t187 * (garm_vz_leg2 - garm_vx_leg2 * t172 - t175 * t201);
+        let t209 = t126 * t201 - t175 * t207;
+        let t216 = garm_vy_leg3 - garm_vx_leg3 * t116;
+        let t222 = t187 * (garm_vz_leg3 - garm_vx_leg3 * t172 - t175 * t216);
+        let t224 = t126 * t216 - t175 * t222;
+        let t231 = garm_vy_leg4 - garm_vx_leg4 * t116;
+        let t237 = t187 * (garm_vz_leg4 - garm_vx_leg4 * t172 - t175 * t231);
+        let t239 = t126 * t231 - t175 * t237;
         Ok([
             [
-                garm_vx_leg1 * t63 - t76 * t130 + t108 * t128,
-                -(minus_garm_vx_leg2 * t63 + t76 * t145 + t108 * t143),
-                garm_vx_leg3 * t63 - t76 * t160 - t108 * t158,
-                -(minus_garm_vx_leg4 * t63 + t76 * t175 + t108 * t173),
+                garm_vx_leg1 * t85 - t116 * t194 - t172 * t192,
+                garm_vx_leg2 * t85 - t116 * t209 - t172 * t207,
+                garm_vx_leg3 * t85 - t116 * t224 - t172 * t222,
+                garm_vx_leg4 * t85 - t116 * t239 - t172 * t237,
             ],
-            [t130, t145, t160, t175],
-            [-t128, t143, t158, t173],
+            [t194, t209, t224, t239],
+            [t192, t207, t222, t237],
         ])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -756,52 +1059,6 @@ impl Delta4 {
             ],
         ]
     }
-    /// By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m, rad).
-    ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
-    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    ///
-    /// Output: 12.
-    ///
-    /// 60 operations (32 additions, 28 multiplications, 0 divisions), 0 square roots, 12 trigonometric pairs, 0 signs, 72 intermediates.
-    #[must_use]
-    pub fn closure_error_from_joints(pose: &[f64; 3], joints: &[f64; 12]) -> [f64; 12] {
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t5 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t5);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t30 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t30);
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t47 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t47);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let t72 = joints[9] + joints[10];
-        let (s_armcross_leg4, c_armcross_leg4) = ::overact::math::sin_cos(t72);
-        [
-            pose[0] + 0.05
-                - (0.2 + 0.2 * c_arm_leg1 + 0.53 * (c_armcross_leg1 * c_rod_leg1)),
-            pose[1] - 0.53 * s_rod_leg1,
-            pose[2] + 0.2 * s_arm_leg1 + 0.53 * (s_armcross_leg1 * c_rod_leg1),
-            pose[0] + 0.53 * s_rod_leg2,
-            pose[1] + 0.05
-                - (0.2 + 0.2 * c_arm_leg2 + 0.53 * (c_armcross_leg2 * c_rod_leg2)),
-            pose[2] + 0.2 * s_arm_leg2 + 0.53 * (s_armcross_leg2 * c_rod_leg2),
-            pose[0] - 0.05 + 0.2 + 0.2 * c_arm_leg3
-                + 0.53 * (c_armcross_leg3 * c_rod_leg3),
-            pose[1] + 0.53 * s_rod_leg3,
-            pose[2] + 0.2 * s_arm_leg3 + 0.53 * (s_armcross_leg3 * c_rod_leg3),
-            pose[0] - 0.53 * s_rod_leg4,
-            pose[1] - 0.05 + 0.2 + 0.2 * c_arm_leg4
-                + 0.53 * (c_armcross_leg4 * c_rod_leg4),
-            pose[2] + 0.2 * s_arm_leg4 + 0.53 * (s_armcross_leg4 * c_rod_leg4),
-        ]
-    }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
     /// From the platform's pose and motion.
@@ -810,7 +1067,7 @@ impl Delta4 {
     ///
     /// Output: 12.
     ///
-    /// 144 operations (32 additions, 104 multiplications, 8 divisions), 0 square roots, 12 trigonometric pairs, 0 signs, 156 intermediates.
+    /// 280 operations (96 additions, 166 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 276 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -818,120 +1075,182 @@ impl Delta4 {
         pose: &[f64; 3],
         twist: &[f64; 3],
     ) -> Result<[f64; 12], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let t0 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t0);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t5 = c_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t8 = s_armcross_leg1 * c_rod_leg1;
-        let t11 = c_arm_leg1 * t8 - s_arm_leg1 * t5;
-        ::overact::guard::leg(t11, 0.9471622941895192, "leg1")?;
-        let t12 = 1.0 / t11;
-        let t13 = 5.0 * t12;
-        let garm_vx_leg1 = t5 * t13;
-        let garm_vy_leg1 = s_rod_leg1 * t13;
-        let minus_garm_vz_leg1 = t8 * t13;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.2809 + 0.04;
+        let t14 = 0.4 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.20079840636817814, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = (t0 - (0.2 + 0.2 * c_arm_leg1)) * t25;
+        let garm_vy_leg1 = pose[1] * t25;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let garm_vz_leg1 = (pose[2] - 0.2 * minus_s_arm_leg1) * t25;
         let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
-            - minus_garm_vz_leg1 * twist[2];
-        let t22 = 1.8867924528301887 * t12;
-        let gcross_vz_leg1 = s_arm_leg1 * t22;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t22;
-        let t28 = 1.0 / c_rod_leg1;
-        let minus_gcross_vy_leg1 = t22
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t28)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t28));
-        let rate_cross_leg1 = gcross_vz_leg1 * twist[2]
-            - (minus_gcross_vx_leg1 * twist[0] + minus_gcross_vy_leg1 * twist[1]);
-        let grod_vy_leg1 = 1.8867924528301887 * t28;
+            + garm_vz_leg1 * twist[2];
+        let t40 = 0.4 * t24;
+        let s_rod_leg1 = 1.8867924528301887 * pose[1];
+        let t44 = 1.0 - 3.5599857600569598 * t8;
+        ::overact::guard::reach(t44, "leg1")?;
+        ::overact::guard::reach(t44, "leg3")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t44);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let t46 = 0.53 * c_rod_leg1;
+        let s_cross_leg1 = 2.5 * t17 / t46;
+        let t49 = 0.04 + t8;
+        let t51 = 0.2809 * t44;
+        let t53 = 0.212 * c_rod_leg1;
+        let c_cross_leg1 = (t10 - t49 - t51) / t53;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t58 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t40
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t58)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t58));
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t40;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t40;
+        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
+            - minus_gcross_vz_leg1 * twist[2];
+        let grod_vy_leg1 = 1.8867924528301887 * t58;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t42 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t42);
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
+        let t79 = pose[1] + 0.05;
+        let t80 = t79 - 0.2;
+        let t81 = t80 * t80;
+        let t83 = 0.16 * (t81 + t3);
+        let t84 = pose[0] * pose[0];
+        let t86 = t84 + t81 + t3;
+        let t88 = t86 - 0.2809 + 0.04;
+        let t90 = t83 - t88 * t88;
+        ::overact::guard::reach(t90, "leg2")?;
+        let t91 = ::overact::math::sqrt(t90);
+        ::overact::guard::leg(t91, 0.20079840636817814, "leg2")?;
+        let t92 = 1.0 / t91;
+        let t93 = 2.0 * t92;
+        let garm_vx_leg2 = pose[0] * t93;
+        let t96 = 1.0 / t83;
+        let t97 = 0.4 * t80;
+        let c_arm_leg2 = t96 * (t97 * t88 - t14 * t91);
+        let garm_vy_leg2 = (t79 - (0.2 + 0.2 * c_arm_leg2)) * t93;
+        let minus_s_arm_leg2 = t96 * (t14 * t88 + t97 * t91);
+        let garm_vz_leg2 = (pose[2] - 0.2 * minus_s_arm_leg2) * t93;
+        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
+            + garm_vz_leg2 * twist[2];
+        let t117 = 0.4 * t92;
+        let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
+        let t121 = 1.0 - 3.5599857600569598 * t84;
+        ::overact::guard::reach(t121, "leg2")?;
+        ::overact::guard::reach(t121, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t121);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t47 = c_armcross_leg2 * c_rod_leg2;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t50 = s_armcross_leg2 * c_rod_leg2;
-        let t53 = c_arm_leg2 * t50 - s_arm_leg2 * t47;
-        ::overact::guard::leg(t53, 0.9471622941895197, "leg2")?;
-        let t54 = 1.0 / t53;
-        let t55 = 5.0 * t54;
-        let garm_vy_leg2 = t47 * t55;
-        let minus_garm_vx_leg2 = s_rod_leg2 * t55;
-        let minus_garm_vz_leg2 = t50 * t55;
-        let rate_arm_leg2 = garm_vy_leg2 * twist[1] - minus_garm_vx_leg2 * twist[0]
-            - minus_garm_vz_leg2 * twist[2];
-        let t64 = 1.8867924528301887 * t54;
-        let t66 = 1.0 / c_rod_leg2;
-        let gcross_vx_leg2 = t64
-            * (s_arm_leg2 * (s_armcross_leg2 * s_rod_leg2 * t66)
-                + c_arm_leg2 * (c_armcross_leg2 * s_rod_leg2 * t66));
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t64;
-        let gcross_vz_leg2 = s_arm_leg2 * t64;
+        let t123 = 0.53 * c_rod_leg2;
+        let s_cross_leg2 = 2.5 * t91 / t123;
+        let t126 = 0.04 + t84;
+        let t128 = 0.2809 * t121;
+        let t130 = 0.212 * c_rod_leg2;
+        let c_cross_leg2 = (t86 - t126 - t128) / t130;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t135 = 1.0 / c_rod_leg2;
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let gcross_vx_leg2 = t117
+            * (minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t135)
+                - c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t135));
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t117;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t117;
         let rate_cross_leg2 = gcross_vx_leg2 * twist[0] - minus_gcross_vy_leg2 * twist[1]
-            + gcross_vz_leg2 * twist[2];
-        let minus_grod_vx_leg2 = 1.8867924528301887 * t66;
+            - minus_gcross_vz_leg2 * twist[2];
+        let minus_grod_vx_leg2 = 1.8867924528301887 * t135;
         let minus_rate_rod_leg2 = minus_grod_vx_leg2 * twist[0];
-        let t84 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t84);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t89 = c_armcross_leg3 * c_rod_leg3;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t93 = s_armcross_leg3 * c_rod_leg3;
-        let t95 = s_arm_leg3 * t89 - c_arm_leg3 * t93;
-        ::overact::guard::leg(t95, 0.9471622941895192, "leg3")?;
-        let t96 = 1.0 / t95;
-        let t97 = 5.0 * t96;
-        let garm_vx_leg3 = t89 * t97;
-        let garm_vy_leg3 = s_rod_leg3 * t97;
-        let garm_vz_leg3 = t93 * t97;
+        let t156 = pose[0] - 0.05;
+        let t157 = t156 + 0.2;
+        let t158 = t157 * t157;
+        let t160 = 0.16 * (t158 + t3);
+        let t161 = 1.0 / t160;
+        let t162 = 0.4 * t157;
+        let t164 = t158 + t8 + t3;
+        let t166 = t164 - 0.2809 + 0.04;
+        let t169 = t160 - t166 * t166;
+        ::overact::guard::reach(t169, "leg3")?;
+        let t170 = ::overact::math::sqrt(t169);
+        ::overact::guard::leg(t170, 0.20079840636817814, "leg3")?;
+        let minus_c_arm_leg3 = t161 * (t162 * t166 + t14 * t170);
+        let t177 = 1.0 / t170;
+        let t178 = 2.0 * t177;
+        let garm_vx_leg3 = (t156 - (0.2 * minus_c_arm_leg3 - 0.2)) * t178;
+        let garm_vy_leg3 = pose[1] * t178;
+        let s_arm_leg3 = t161 * (t162 * t170 - t14 * t166);
+        let garm_vz_leg3 = (pose[2] + 0.2 * s_arm_leg3) * t178;
         let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
             + garm_vz_leg3 * twist[2];
-        let t106 = 1.8867924528301887 * t96;
-        let minus_gcross_vx_leg3 = c_arm_leg3 * t106;
-        let t110 = 1.0 / c_rod_leg3;
-        let minus_gcross_vy_leg3 = t106
-            * (s_arm_leg3 * (s_armcross_leg3 * s_rod_leg3 * t110)
-                + c_arm_leg3 * (c_armcross_leg3 * s_rod_leg3 * t110));
-        let minus_gcross_vz_leg3 = s_arm_leg3 * t106;
-        let minus_rate_cross_leg3 = minus_gcross_vx_leg3 * twist[0]
-            + minus_gcross_vy_leg3 * twist[1] + minus_gcross_vz_leg3 * twist[2];
-        let minus_grod_vy_leg3 = 1.8867924528301887 * t110;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * twist[1];
-        let t126 = joints[9] + joints[10];
-        let (s_armcross_leg4, c_armcross_leg4) = ::overact::math::sin_cos(t126);
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        ::overact::guard::leg(c_rod_leg4, 1.0, "leg4")?;
-        let t131 = c_armcross_leg4 * c_rod_leg4;
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let t135 = s_armcross_leg4 * c_rod_leg4;
-        let t137 = s_arm_leg4 * t131 - c_arm_leg4 * t135;
-        ::overact::guard::leg(t137, 0.9471622941895192, "leg4")?;
-        let t138 = 1.0 / t137;
-        let t139 = 5.0 * t138;
-        let garm_vy_leg4 = t131 * t139;
-        let minus_garm_vx_leg4 = s_rod_leg4 * t139;
-        let garm_vz_leg4 = t135 * t139;
-        let rate_arm_leg4 = garm_vy_leg4 * twist[1] - minus_garm_vx_leg4 * twist[0]
+        let t193 = 0.4 * t177;
+        let gcross_vz_leg3 = s_arm_leg3 * t193;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t193;
+        let c_cross_leg3 = (t164 - t49 - t51) / t53;
+        let s_cross_leg3 = 2.5 * t170 / t46;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t193
+            * (s_arm_leg3 * (t58 * (s_rod_leg1 * s_armcross_leg3))
+                + minus_c_arm_leg3 * (t58 * (s_rod_leg1 * minus_c_armcross_leg3)));
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
+        let t221 = pose[1] - 0.05;
+        let t222 = t221 + 0.2;
+        let t223 = t222 * t222;
+        let t225 = 0.16 * (t223 + t3);
+        let t227 = t84 + t223 + t3;
+        let t229 = t227 - 0.2809 + 0.04;
+        let t231 = t225 - t229 * t229;
+        ::overact::guard::reach(t231, "leg4")?;
+        let t232 = ::overact::math::sqrt(t231);
+        ::overact::guard::leg(t232, 0.20079840636817814, "leg4")?;
+        let t233 = 1.0 / t232;
+        let t234 = 2.0 * t233;
+        let garm_vx_leg4 = pose[0] * t234;
+        let t237 = 1.0 / t225;
+        let t238 = 0.4 * t222;
+        let minus_c_arm_leg4 = t237 * (t238 * t229 + t14 * t232);
+        let garm_vy_leg4 = (t221 - (0.2 * minus_c_arm_leg4 - 0.2)) * t234;
+        let s_arm_leg4 = t237 * (t238 * t232 - t14 * t229);
+        let garm_vz_leg4 = (pose[2] + 0.2 * s_arm_leg4) * t234;
+        let rate_arm_leg4 = garm_vx_leg4 * twist[0] + garm_vy_leg4 * twist[1]
             + garm_vz_leg4 * twist[2];
-        let t148 = 1.8867924528301887 * t138;
-        let t150 = 1.0 / c_rod_leg4;
-        let gcross_vx_leg4 = t148
-            * (s_arm_leg4 * (s_armcross_leg4 * s_rod_leg4 * t150)
-                + c_arm_leg4 * (c_armcross_leg4 * s_rod_leg4 * t150));
-        let minus_gcross_vy_leg4 = c_arm_leg4 * t148;
-        let minus_gcross_vz_leg4 = s_arm_leg4 * t148;
-        let rate_cross_leg4 = gcross_vx_leg4 * twist[0] - minus_gcross_vy_leg4 * twist[1]
-            - minus_gcross_vz_leg4 * twist[2];
-        let grod_vx_leg4 = 1.8867924528301887 * t150;
-        let rate_rod_leg4 = grod_vx_leg4 * twist[0];
+        let t258 = 0.4 * t233;
+        let gcross_vz_leg4 = s_arm_leg4 * t258;
+        let c_cross_leg4 = (t227 - t126 - t128) / t130;
+        let s_cross_leg4 = 2.5 * t232 / t123;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t258
+            * (s_arm_leg4 * (t135 * (minus_s_rod_leg2 * s_armcross_leg4))
+                + minus_c_arm_leg4
+                    * (t135 * (minus_s_rod_leg2 * minus_c_armcross_leg4)));
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t258;
+        let rate_cross_leg4 = gcross_vz_leg4 * twist[2]
+            - (minus_gcross_vx_leg4 * twist[0] + minus_gcross_vy_leg4 * twist[1]);
         Ok([
             rate_arm_leg1, rate_cross_leg1 - rate_arm_leg1, rate_rod_leg1, rate_arm_leg2,
             rate_cross_leg2 - rate_arm_leg2, -minus_rate_rod_leg2, rate_arm_leg3,
-            -(rate_arm_leg3 + minus_rate_cross_leg3), -minus_rate_rod_leg3, rate_arm_leg4,
-            rate_cross_leg4 - rate_arm_leg4, rate_rod_leg4,
+            rate_cross_leg3 - rate_arm_leg3, -rate_rod_leg1, rate_arm_leg4,
+            rate_cross_leg4 - rate_arm_leg4, minus_rate_rod_leg2,
         ])
     }
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
@@ -943,7 +1262,7 @@ impl Delta4 {
     ///
     /// Output: 12.
     ///
-    /// 324 operations (96 additions, 220 multiplications, 8 divisions), 0 square roots, 12 trigonometric pairs, 0 signs, 336 intermediates.
+    /// 428 operations (156 additions, 254 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 424 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -952,194 +1271,252 @@ impl Delta4 {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[f64; 12], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let t0 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t0);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.2809 + 0.04;
+        let t14 = 0.4 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.20079840636817814, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t21 = 0.2 * c_arm_leg1;
+        let t23 = t0 - (0.2 + t21);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = t23 * t25;
+        let t27 = 0.4 * t24;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let s_rod_leg1 = 1.8867924528301887 * pose[1];
+        let t35 = 1.0 - 3.5599857600569598 * t8;
+        ::overact::guard::reach(t35, "leg1")?;
+        ::overact::guard::reach(t35, "leg3")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t35);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t5 = c_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t8 = s_armcross_leg1 * c_rod_leg1;
-        let t11 = c_arm_leg1 * t8 - s_arm_leg1 * t5;
-        ::overact::guard::leg(t11, 0.9471622941895192, "leg1")?;
-        let t12 = 1.0 / t11;
-        let t13 = 5.0 * t12;
-        let garm_vx_leg1 = t5 * t13;
-        let t15 = 0.53 * s_rod_leg1;
-        let t16 = 1.8867924528301887 * t12;
-        let gcross_vz_leg1 = s_arm_leg1 * t16;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t16;
-        let t22 = 1.0 / c_rod_leg1;
-        let minus_gcross_vy_leg1 = t16
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t22)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t22));
-        let rate_cross_leg1 = gcross_vz_leg1 * twist[2]
-            - (minus_gcross_vx_leg1 * twist[0] + minus_gcross_vy_leg1 * twist[1]);
-        let grod_vy_leg1 = 1.8867924528301887 * t22;
+        let t37 = 0.53 * c_rod_leg1;
+        let s_cross_leg1 = 2.5 * t17 / t37;
+        let t40 = 0.04 + t8;
+        let t42 = 0.2809 * t35;
+        let t44 = 0.212 * c_rod_leg1;
+        let c_cross_leg1 = (t10 - t40 - t42) / t44;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t49 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t27
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t49)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t49));
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t27;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t27;
+        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
+            - minus_gcross_vz_leg1 * twist[2];
+        let grod_vy_leg1 = 1.8867924528301887 * t49;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t35 = s_armcross_leg1 * rate_rod_leg1;
-        let t37 = t15 * (rate_cross_leg1 * t35);
-        let garm_vy_leg1 = s_rod_leg1 * t13;
-        let minus_garm_vz_leg1 = t8 * t13;
+        let t69 = s_armcross_leg1 * rate_rod_leg1;
+        let t71 = pose[1] * (rate_cross_leg1 * t69);
+        let garm_vy_leg1 = pose[1] * t25;
+        let t76 = 0.2 * minus_s_arm_leg1;
+        let t77 = pose[2] - t76;
+        let garm_vz_leg1 = t77 * t25;
         let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
-            - minus_garm_vz_leg1 * twist[2];
-        let t46 = rate_arm_leg1 * rate_arm_leg1;
-        let t52 = c_armcross_leg1 * rate_rod_leg1;
-        let t54 = t35 * t35 + rate_cross_leg1 * rate_cross_leg1 + t52 * t52;
-        let t59 = acceleration[0]
-            - (t37 - (0.2 * c_arm_leg1 * t46 + 0.53 * t5 * t54) + t37);
-        let t65 = acceleration[1]
-            - (rate_cross_leg1 * (t15 * rate_cross_leg1) - t15 * t54);
-        let t74 = t15 * (rate_cross_leg1 * t52);
-        let t77 = acceleration[2]
-            - (0.2 * s_arm_leg1 * t46 + 0.53 * t8 * t54 + t74 + t74);
-        let rate_dot_arm_leg1 = garm_vx_leg1 * t59 + garm_vy_leg1 * t65
-            - minus_garm_vz_leg1 * t77;
-        let rate_dot_cross_leg1 = gcross_vz_leg1 * t77
-            - (minus_gcross_vx_leg1 * t59 + minus_gcross_vy_leg1 * t65);
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t65;
-        let t87 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t87);
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
+            + garm_vz_leg1 * twist[2];
+        let t81 = rate_arm_leg1 * rate_arm_leg1;
+        let t86 = c_armcross_leg1 * rate_rod_leg1;
+        let t88 = t69 * t69 + rate_cross_leg1 * rate_cross_leg1 + t86 * t86;
+        let t93 = acceleration[0] - (t71 - (t21 * t81 + t23 * t88) + t71);
+        let t99 = acceleration[1]
+            - (rate_cross_leg1 * (pose[1] * rate_cross_leg1) - pose[1] * t88);
+        let t103 = pose[1] * (rate_cross_leg1 * t86);
+        let t109 = acceleration[2] - (t103 - (t76 * t81 + t77 * t88) + t103);
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t93 + garm_vy_leg1 * t99
+            + garm_vz_leg1 * t109;
+        let rate_dot_cross_leg1 = gcross_vy_leg1 * t99 - minus_gcross_vx_leg1 * t93
+            - minus_gcross_vz_leg1 * t109;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t99;
+        let t119 = pose[1] + 0.05;
+        let t120 = t119 - 0.2;
+        let t121 = t120 * t120;
+        let t123 = 0.16 * (t121 + t3);
+        let t124 = pose[0] * pose[0];
+        let t126 = t124 + t121 + t3;
+        let t128 = t126 - 0.2809 + 0.04;
+        let t130 = t123 - t128 * t128;
+        ::overact::guard::reach(t130, "leg2")?;
+        let t131 = ::overact::math::sqrt(t130);
+        ::overact::guard::leg(t131, 0.20079840636817814, "leg2")?;
+        let t132 = 1.0 / t131;
+        let t133 = 2.0 * t132;
+        let garm_vx_leg2 = pose[0] * t133;
+        let t135 = 0.4 * t132;
+        let t136 = 1.0 / t123;
+        let t138 = 0.4 * t120;
+        let minus_s_arm_leg2 = t136 * (t14 * t128 + t138 * t131);
+        let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
+        let c_arm_leg2 = t136 * (t138 * t128 - t14 * t131);
+        let t149 = 1.0 - 3.5599857600569598 * t124;
+        ::overact::guard::reach(t149, "leg2")?;
+        ::overact::guard::reach(t149, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t149);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t92 = c_armcross_leg2 * c_rod_leg2;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t95 = s_armcross_leg2 * c_rod_leg2;
-        let t98 = c_arm_leg2 * t95 - s_arm_leg2 * t92;
-        ::overact::guard::leg(t98, 0.9471622941895197, "leg2")?;
-        let t99 = 1.0 / t98;
-        let t100 = 5.0 * t99;
-        let garm_vy_leg2 = t92 * t100;
-        let minus_garm_vx_leg2 = s_rod_leg2 * t100;
-        let minus_garm_vz_leg2 = t95 * t100;
-        let rate_arm_leg2 = garm_vy_leg2 * twist[1] - minus_garm_vx_leg2 * twist[0]
-            - minus_garm_vz_leg2 * twist[2];
-        let t110 = rate_arm_leg2 * rate_arm_leg2;
-        let t113 = 1.8867924528301887 * t99;
-        let t115 = 1.0 / c_rod_leg2;
-        let gcross_vx_leg2 = t113
-            * (s_arm_leg2 * (s_armcross_leg2 * s_rod_leg2 * t115)
-                + c_arm_leg2 * (c_armcross_leg2 * s_rod_leg2 * t115));
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t113;
-        let gcross_vz_leg2 = s_arm_leg2 * t113;
+        let t151 = 0.53 * c_rod_leg2;
+        let s_cross_leg2 = 2.5 * t131 / t151;
+        let t154 = 0.04 + t124;
+        let t156 = 0.2809 * t149;
+        let t158 = 0.212 * c_rod_leg2;
+        let c_cross_leg2 = (t126 - t154 - t156) / t158;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t163 = 1.0 / c_rod_leg2;
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let gcross_vx_leg2 = t135
+            * (minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t163)
+                - c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t163));
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t135;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t135;
         let rate_cross_leg2 = gcross_vx_leg2 * twist[0] - minus_gcross_vy_leg2 * twist[1]
-            + gcross_vz_leg2 * twist[2];
-        let minus_grod_vx_leg2 = 1.8867924528301887 * t115;
+            - minus_gcross_vz_leg2 * twist[2];
+        let minus_grod_vx_leg2 = 1.8867924528301887 * t163;
         let minus_rate_rod_leg2 = minus_grod_vx_leg2 * twist[0];
-        let t133 = s_armcross_leg2 * minus_rate_rod_leg2;
-        let t136 = c_armcross_leg2 * minus_rate_rod_leg2;
-        let t138 = rate_cross_leg2 * rate_cross_leg2 + t133 * t133 + t136 * t136;
-        let t141 = 0.53 * s_rod_leg2;
-        let t143 = t141 * (rate_cross_leg2 * t133);
-        let t146 = acceleration[1] + 0.2 * c_arm_leg2 * t110 + 0.53 * t92 * t138 + t143
-            + t143;
-        let t152 = acceleration[0]
-            - (t141 * t138 - rate_cross_leg2 * (t141 * rate_cross_leg2));
-        let t161 = t141 * (rate_cross_leg2 * t136);
-        let t164 = acceleration[2]
-            - (0.2 * s_arm_leg2 * t110 + 0.53 * t95 * t138 - t161 - t161);
-        let rate_dot_arm_leg2 = garm_vy_leg2 * t146 - minus_garm_vx_leg2 * t152
-            - minus_garm_vz_leg2 * t164;
-        let rate_dot_cross_leg2 = gcross_vx_leg2 * t152 - minus_gcross_vy_leg2 * t146
-            + gcross_vz_leg2 * t164;
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t152;
-        let t174 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t174);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t179 = c_armcross_leg3 * c_rod_leg3;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t183 = s_armcross_leg3 * c_rod_leg3;
-        let t185 = s_arm_leg3 * t179 - c_arm_leg3 * t183;
-        ::overact::guard::leg(t185, 0.9471622941895192, "leg3")?;
-        let t186 = 1.0 / t185;
-        let t187 = 5.0 * t186;
-        let garm_vx_leg3 = t179 * t187;
-        let garm_vy_leg3 = s_rod_leg3 * t187;
-        let garm_vz_leg3 = t183 * t187;
+        let t186 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t189 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t191 = rate_cross_leg2 * rate_cross_leg2 + t186 * t186 + t189 * t189;
+        let t194 = acceleration[0]
+            - (rate_cross_leg2 * (pose[0] * rate_cross_leg2) - pose[0] * t191);
+        let t196 = 0.2 * c_arm_leg2;
+        let t198 = t119 - (0.2 + t196);
+        let garm_vy_leg2 = t198 * t133;
+        let t201 = pose[0] * (rate_cross_leg2 * t186);
+        let t205 = 0.2 * minus_s_arm_leg2;
+        let t206 = pose[2] - t205;
+        let garm_vz_leg2 = t206 * t133;
+        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
+            + garm_vz_leg2 * twist[2];
+        let t210 = rate_arm_leg2 * rate_arm_leg2;
+        let t216 = acceleration[1] - (t201 - (t196 * t210 + t198 * t191) + t201);
+        let t220 = pose[0] * (rate_cross_leg2 * t189);
+        let t226 = acceleration[2] - (t220 - (t205 * t210 + t206 * t191) + t220);
+        let rate_dot_arm_leg2 = garm_vx_leg2 * t194 + garm_vy_leg2 * t216
+            + garm_vz_leg2 * t226;
+        let rate_dot_cross_leg2 = gcross_vx_leg2 * t194 - minus_gcross_vy_leg2 * t216
+            - minus_gcross_vz_leg2 * t226;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t194;
+        let t236 = pose[0] - 0.05;
+        let t237 = t236 + 0.2;
+        let t238 = t237 * t237;
+        let t240 = 0.16 * (t238 + t3);
+        let t241 = 1.0 / t240;
+        let t242 = 0.4 * t237;
+        let t244 = t238 + t8 + t3;
+        let t246 = t244 - 0.2809 + 0.04;
+        let t249 = t240 - t246 * t246;
+        ::overact::guard::reach(t249, "leg3")?;
+        let t250 = ::overact::math::sqrt(t249);
+        ::overact::guard::leg(t250, 0.20079840636817814, "leg3")?;
+        let minus_c_arm_leg3 = t241 * (t242 * t246 + t14 * t250);
+        let t254 = 0.2 * minus_c_arm_leg3;
+        let t256 = t236 - (t254 - 0.2);
+        let t257 = 1.0 / t250;
+        let t258 = 2.0 * t257;
+        let garm_vx_leg3 = t256 * t258;
+        let garm_vy_leg3 = pose[1] * t258;
+        let s_arm_leg3 = t241 * (t242 * t250 - t14 * t246);
+        let t268 = 0.2 * s_arm_leg3;
+        let t269 = pose[2] + t268;
+        let garm_vz_leg3 = t269 * t258;
         let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
             + garm_vz_leg3 * twist[2];
-        let t197 = rate_arm_leg3 * rate_arm_leg3;
-        let t200 = 1.0 / c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.8867924528301887 * t200;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * twist[1];
-        let t203 = s_armcross_leg3 * minus_rate_rod_leg3;
-        let t205 = 1.8867924528301887 * t186;
-        let minus_gcross_vx_leg3 = c_arm_leg3 * t205;
-        let minus_gcross_vy_leg3 = t205
-            * (s_arm_leg3 * (s_armcross_leg3 * s_rod_leg3 * t200)
-                + c_arm_leg3 * (c_armcross_leg3 * s_rod_leg3 * t200));
-        let minus_gcross_vz_leg3 = s_arm_leg3 * t205;
-        let minus_rate_cross_leg3 = minus_gcross_vx_leg3 * twist[0]
-            + minus_gcross_vy_leg3 * twist[1] + minus_gcross_vz_leg3 * twist[2];
-        let t223 = c_armcross_leg3 * minus_rate_rod_leg3;
-        let t225 = t203 * t203 + minus_rate_cross_leg3 * minus_rate_cross_leg3
-            + t223 * t223;
-        let t228 = 0.53 * s_rod_leg3;
-        let t230 = t228 * (minus_rate_cross_leg3 * t203);
-        let t233 = acceleration[0]
-            - (0.2 * c_arm_leg3 * t197 + 0.53 * t179 * t225 - t230 - t230);
-        let t239 = acceleration[1]
-            - (t228 * t225 - minus_rate_cross_leg3 * (t228 * minus_rate_cross_leg3));
-        let t248 = t228 * (minus_rate_cross_leg3 * t223);
-        let t251 = acceleration[2]
-            - (0.2 * s_arm_leg3 * t197 + 0.53 * t183 * t225 + t248 + t248);
-        let rate_dot_arm_leg3 = garm_vx_leg3 * t233 + garm_vy_leg3 * t239
-            + garm_vz_leg3 * t251;
-        let minus_rate_dot_cross_leg3 = minus_gcross_vx_leg3 * t233
-            + minus_gcross_vy_leg3 * t239 + minus_gcross_vz_leg3 * t251;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t239;
-        let t261 = joints[9] + joints[10];
-        let (s_armcross_leg4, c_armcross_leg4) = ::overact::math::sin_cos(t261);
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        ::overact::guard::leg(c_rod_leg4, 1.0, "leg4")?;
-        let t266 = c_armcross_leg4 * c_rod_leg4;
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let t270 = s_armcross_leg4 * c_rod_leg4;
-        let t272 = s_arm_leg4 * t266 - c_arm_leg4 * t270;
-        ::overact::guard::leg(t272, 0.9471622941895192, "leg4")?;
-        let t273 = 1.0 / t272;
-        let t274 = 5.0 * t273;
-        let garm_vy_leg4 = t266 * t274;
-        let minus_garm_vx_leg4 = s_rod_leg4 * t274;
-        let garm_vz_leg4 = t270 * t274;
-        let rate_arm_leg4 = garm_vy_leg4 * twist[1] - minus_garm_vx_leg4 * twist[0]
+        let t273 = rate_arm_leg3 * rate_arm_leg3;
+        let c_cross_leg3 = (t244 - t40 - t42) / t44;
+        let s_cross_leg3 = 2.5 * t250 / t37;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t283 = s_armcross_leg3 * rate_rod_leg1;
+        let t285 = 0.4 * t257;
+        let gcross_vz_leg3 = s_arm_leg3 * t285;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t285;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t285
+            * (s_arm_leg3 * (t49 * (s_rod_leg1 * s_armcross_leg3))
+                + minus_c_arm_leg3 * (t49 * (s_rod_leg1 * minus_c_armcross_leg3)));
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
+        let t306 = minus_c_armcross_leg3 * rate_rod_leg1;
+        let t308 = t283 * t283 + rate_cross_leg3 * rate_cross_leg3 + t306 * t306;
+        let t312 = pose[1] * (rate_cross_leg3 * t283);
+        let t315 = acceleration[0] + t254 * t273 + t256 * t308 + t312 + t312;
+        let t323 = pose[1] * (rate_cross_leg3 * t306);
+        let t326 = acceleration[2] - (t268 * t273 - t269 * t308 - t323 - t323);
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t315 + garm_vy_leg3 * t99
+            + garm_vz_leg3 * t326;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * t326
+            - (minus_gcross_vx_leg3 * t315 + minus_gcross_vy_leg3 * t99);
+        let t335 = pose[1] - 0.05;
+        let t336 = t335 + 0.2;
+        let t337 = t336 * t336;
+        let t339 = 0.16 * (t337 + t3);
+        let t341 = t124 + t337 + t3;
+        let t343 = t341 - 0.2809 + 0.04;
+        let t345 = t339 - t343 * t343;
+        ::overact::guard::reach(t345, "leg4")?;
+        let t346 = ::overact::math::sqrt(t345);
+        ::overact::guard::leg(t346, 0.20079840636817814, "leg4")?;
+        let t347 = 1.0 / t346;
+        let t348 = 2.0 * t347;
+        let garm_vx_leg4 = pose[0] * t348;
+        let t351 = 1.0 / t339;
+        let t352 = 0.4 * t336;
+        let minus_c_arm_leg4 = t351 * (t352 * t343 + t14 * t346);
+        let t357 = 0.2 * minus_c_arm_leg4;
+        let t359 = t335 - (t357 - 0.2);
+        let garm_vy_leg4 = t359 * t348;
+        let s_arm_leg4 = t351 * (t352 * t346 - t14 * t343);
+        let t368 = 0.2 * s_arm_leg4;
+        let t369 = pose[2] + t368;
+        let garm_vz_leg4 = t369 * t348;
+        let rate_arm_leg4 = garm_vx_leg4 * twist[0] + garm_vy_leg4 * twist[1]
             + garm_vz_leg4 * twist[2];
-        let t284 = rate_arm_leg4 * rate_arm_leg4;
-        let t287 = 1.8867924528301887 * t273;
-        let t289 = 1.0 / c_rod_leg4;
-        let gcross_vx_leg4 = t287
-            * (s_arm_leg4 * (s_armcross_leg4 * s_rod_leg4 * t289)
-                + c_arm_leg4 * (c_armcross_leg4 * s_rod_leg4 * t289));
-        let minus_gcross_vy_leg4 = c_arm_leg4 * t287;
-        let minus_gcross_vz_leg4 = s_arm_leg4 * t287;
-        let rate_cross_leg4 = gcross_vx_leg4 * twist[0] - minus_gcross_vy_leg4 * twist[1]
-            - minus_gcross_vz_leg4 * twist[2];
-        let grod_vx_leg4 = 1.8867924528301887 * t289;
-        let rate_rod_leg4 = grod_vx_leg4 * twist[0];
-        let t307 = s_armcross_leg4 * rate_rod_leg4;
-        let t310 = c_armcross_leg4 * rate_rod_leg4;
-        let t312 = rate_cross_leg4 * rate_cross_leg4 + t307 * t307 + t310 * t310;
-        let t315 = 0.53 * s_rod_leg4;
-        let t317 = t315 * (rate_cross_leg4 * t307);
-        let t320 = acceleration[1]
-            - (0.2 * c_arm_leg4 * t284 + 0.53 * t266 * t312 - t317 - t317);
-        let t326 = acceleration[0]
-            - (rate_cross_leg4 * (t315 * rate_cross_leg4) - t315 * t312);
-        let t335 = t315 * (rate_cross_leg4 * t310);
-        let t338 = acceleration[2]
-            - (0.2 * s_arm_leg4 * t284 + 0.53 * t270 * t312 + t335 + t335);
-        let rate_dot_arm_leg4 = garm_vy_leg4 * t320 - minus_garm_vx_leg4 * t326
-            + garm_vz_leg4 * t338;
-        let rate_dot_cross_leg4 = gcross_vx_leg4 * t326 - minus_gcross_vy_leg4 * t320
-            - minus_gcross_vz_leg4 * t338;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t326;
+        let t373 = rate_arm_leg4 * rate_arm_leg4;
+        let t375 = 0.4 * t347;
+        let gcross_vz_leg4 = s_arm_leg4 * t375;
+        let c_cross_leg4 = (t341 - t154 - t156) / t158;
+        let s_cross_leg4 = 2.5 * t346 / t151;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t375
+            * (s_arm_leg4 * (t163 * (minus_s_rod_leg2 * s_armcross_leg4))
+                + minus_c_arm_leg4
+                    * (t163 * (minus_s_rod_leg2 * minus_c_armcross_leg4)));
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t375;
+        let rate_cross_leg4 = gcross_vz_leg4 * twist[2]
+            - (minus_gcross_vx_leg4 * twist[0] + minus_gcross_vy_leg4 * twist[1]);
+        let t403 = s_armcross_leg4 * minus_rate_rod_leg2;
+        let t406 = minus_c_armcross_leg4 * minus_rate_rod_leg2;
+        let t408 = rate_cross_leg4 * rate_cross_leg4 + t403 * t403 + t406 * t406;
+        let t412 = pose[0] * (rate_cross_leg4 * t403);
+        let t415 = acceleration[1] + t357 * t373 + t359 * t408 + t412 + t412;
+        let t422 = pose[0] * (rate_cross_leg4 * t406);
+        let t425 = acceleration[2] - (t368 * t373 - t369 * t408 - t422 - t422);
+        let rate_dot_arm_leg4 = garm_vx_leg4 * t194 + garm_vy_leg4 * t415
+            + garm_vz_leg4 * t425;
+        let rate_dot_cross_leg4 = gcross_vz_leg4 * t425
+            - (minus_gcross_vx_leg4 * t194 + minus_gcross_vy_leg4 * t415);
         Ok([
             rate_dot_arm_leg1, rate_dot_cross_leg1 - rate_dot_arm_leg1, rate_dot_rod_leg1,
             rate_dot_arm_leg2, rate_dot_cross_leg2 - rate_dot_arm_leg2, -minus_rate_dot_rod_leg2,
-            rate_dot_arm_leg3, -(rate_dot_arm_leg3 + minus_rate_dot_cross_leg3),
-            -minus_rate_dot_rod_leg3, rate_dot_arm_leg4, rate_dot_cross_leg4 - rate_dot_arm_leg4,
-            rate_dot_rod_leg4,
+            rate_dot_arm_leg3, rate_dot_cross_leg3 - rate_dot_arm_leg3, -rate_dot_rod_leg1,
+            rate_dot_arm_leg4, rate_dot_cross_leg4 - rate_dot_arm_leg4, minus_rate_dot_rod_leg2,
         ])
     }
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
@@ -1150,7 +1527,7 @@ impl Delta4 {
     ///
     /// Output: 3.
     ///
-    /// 131 operations (45 additions, 79 multiplications, 7 divisions), 0 square roots, 12 trigonometric pairs, 0 signs, 152 intermediates.
+    /// 215 operations (89 additions, 115 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 216 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1158,93 +1535,114 @@ impl Delta4 {
         pose: &[f64; 3],
         actuator_velocities: &[f64; 4],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let t0 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t0);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        let t5 = c_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t8 = s_armcross_leg1 * c_rod_leg1;
-        let t11 = c_arm_leg1 * t8 - s_arm_leg1 * t5;
-        ::overact::guard::leg(t11, 0.9471622941895192, "leg1")?;
-        let t12 = 5.0 / t11;
-        let garm_vx_leg1 = t5 * t12;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t19 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t19);
-        let t22 = s_armcross_leg2 * c_rod_leg2;
-        let t24 = c_armcross_leg2 * c_rod_leg2;
-        let t26 = c_arm_leg2 * t22 - s_arm_leg2 * t24;
-        ::overact::guard::leg(t26, 0.9471622941895197, "leg2")?;
-        let t27 = 5.0 / t26;
-        let minus_garm_vx_leg2 = s_rod_leg2 * t27;
-        let t31 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t31);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t36 = c_armcross_leg3 * c_rod_leg3;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t40 = s_armcross_leg3 * c_rod_leg3;
-        let t42 = s_arm_leg3 * t36 - c_arm_leg3 * t40;
-        ::overact::guard::leg(t42, 0.9471622941895192, "leg3")?;
-        let t43 = 5.0 / t42;
-        let garm_vx_leg3 = t36 * t43;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let t51 = joints[9] + joints[10];
-        let (s_armcross_leg4, c_armcross_leg4) = ::overact::math::sin_cos(t51);
-        let t54 = c_armcross_leg4 * c_rod_leg4;
-        let t56 = s_armcross_leg4 * c_rod_leg4;
-        let t58 = s_arm_leg4 * t54 - c_arm_leg4 * t56;
-        ::overact::guard::leg(t58, 0.9471622941895192, "leg4")?;
-        let t59 = 5.0 / t58;
-        let minus_garm_vx_leg4 = s_rod_leg4 * t59;
-        let t62 = garm_vx_leg1 * actuator_velocities[0]
-            - minus_garm_vx_leg2 * actuator_velocities[1]
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * t1;
+        let t8 = pose[1] * pose[1];
+        let t12 = t2 + t8 + t3 - 0.2809 + 0.04;
+        let t14 = 0.4 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.20079840636817814, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t24 = 2.0 / t17;
+        let garm_vx_leg1 = (t0 - (0.2 + 0.2 * c_arm_leg1)) * t24;
+        let t27 = pose[1] + 0.05;
+        let t28 = t27 - 0.2;
+        let t29 = t28 * t28;
+        let t31 = 0.16 * (t29 + t3);
+        let t32 = pose[0] * pose[0];
+        let t36 = t32 + t29 + t3 - 0.2809 + 0.04;
+        let t38 = t31 - t36 * t36;
+        ::overact::guard::reach(t38, "leg2")?;
+        let t39 = ::overact::math::sqrt(t38);
+        ::overact::guard::leg(t39, 0.20079840636817814, "leg2")?;
+        let t40 = 2.0 / t39;
+        let garm_vx_leg2 = pose[0] * t40;
+        let t44 = pose[0] - 0.05;
+        let t45 = t44 + 0.2;
+        let t46 = t45 * t45;
+        let t48 = 0.16 * (t46 + t3);
+        let t49 = 1.0 / t48;
+        let t50 = 0.4 * t45;
+        let t54 = t46 + t8 + t3 - 0.2809 + 0.04;
+        let t57 = t48 - t54 * t54;
+        ::overact::guard::reach(t57, "leg3")?;
+        let t58 = ::overact::math::sqrt(t57);
+        ::overact::guard::leg(t58, 0.20079840636817814, "leg3")?;
+        let minus_c_arm_leg3 = t49 * (t50 * t54 + t14 * t58);
+        let t65 = 2.0 / t58;
+        let garm_vx_leg3 = (t44 - (0.2 * minus_c_arm_leg3 - 0.2)) * t65;
+        let t69 = pose[1] - 0.05;
+        let t70 = t69 + 0.2;
+        let t71 = t70 * t70;
+        let t73 = 0.16 * (t71 + t3);
+        let t77 = t32 + t71 + t3 - 0.2809 + 0.04;
+        let t79 = t73 - t77 * t77;
+        ::overact::guard::reach(t79, "leg4")?;
+        let t80 = ::overact::math::sqrt(t79);
+        ::overact::guard::leg(t80, 0.20079840636817814, "leg4")?;
+        let t81 = 2.0 / t80;
+        let garm_vx_leg4 = pose[0] * t81;
+        let t84 = garm_vx_leg1 * actuator_velocities[0]
+            + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2]
-            - minus_garm_vx_leg4 * actuator_velocities[3];
-        let t69 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3 + minus_garm_vx_leg4 * minus_garm_vx_leg4;
-        ::overact::guard::platform(t69, 22.53317086554555, "actuators")?;
-        let t70 = 1.0 / t69;
-        let garm_vy_leg1 = s_rod_leg1 * t12;
-        let garm_vy_leg2 = t24 * t27;
-        let garm_vy_leg3 = s_rod_leg3 * t43;
-        let garm_vy_leg4 = t54 * t59;
-        let t82 = garm_vx_leg1 * garm_vy_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
-            + garm_vx_leg3 * garm_vy_leg3 - minus_garm_vx_leg4 * garm_vy_leg4;
-        let t83 = t82 * t70;
-        let t92 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t82 * t83;
-        ::overact::guard::platform(t92, 22.533170865545543, "actuators")?;
-        let t93 = 1.0 / t92;
-        let t102 = garm_vy_leg1 * actuator_velocities[0]
+            + garm_vx_leg4 * actuator_velocities[3];
+        let t91 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t91, 22.533170865545554, "actuators")?;
+        let t92 = 1.0 / t91;
+        let garm_vy_leg1 = pose[1] * t24;
+        let t96 = 1.0 / t31;
+        let t97 = 0.4 * t28;
+        let c_arm_leg2 = t96 * (t97 * t36 - t14 * t39);
+        let garm_vy_leg2 = (t27 - (0.2 + 0.2 * c_arm_leg2)) * t40;
+        let garm_vy_leg3 = pose[1] * t65;
+        let t111 = 1.0 / t73;
+        let t112 = 0.4 * t70;
+        let minus_c_arm_leg4 = t111 * (t112 * t77 + t14 * t80);
+        let garm_vy_leg4 = (t69 - (0.2 * minus_c_arm_leg4 - 0.2)) * t81;
+        let t122 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3 + garm_vx_leg4 * garm_vy_leg4;
+        let t123 = t122 * t92;
+        let t132 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t122 * t123;
+        ::overact::guard::platform(t132, 22.533170865545554, "actuators")?;
+        let t133 = 1.0 / t132;
+        let t142 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
             + garm_vy_leg3 * actuator_velocities[2]
-            + garm_vy_leg4 * actuator_velocities[3] - t62 * t83;
-        let garm_vz_leg3 = t40 * t43;
-        let minus_garm_vz_leg1 = t8 * t12;
-        let minus_garm_vz_leg2 = t22 * t27;
-        let garm_vz_leg4 = t56 * t59;
-        let t121 = minus_garm_vx_leg2 * minus_garm_vz_leg2
-            - garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg3 * garm_vz_leg3
-            - minus_garm_vx_leg4 * garm_vz_leg4;
-        let t122 = t121 * t70;
-        let t124 = garm_vy_leg3 * garm_vz_leg3
-            - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2)
-            + garm_vy_leg4 * garm_vz_leg4 - t82 * t122;
-        let t125 = t124 * t93;
-        let t136 = minus_garm_vz_leg1 * minus_garm_vz_leg1
-            + minus_garm_vz_leg2 * minus_garm_vz_leg2 + garm_vz_leg3 * garm_vz_leg3
-            + garm_vz_leg4 * garm_vz_leg4 - t121 * t122 - t124 * t125;
-        ::overact::guard::platform(t136, 66.4019122371629, "actuators")?;
-        let t147 = garm_vz_leg3 * actuator_velocities[2]
-            - (minus_garm_vz_leg1 * actuator_velocities[0]
-                + minus_garm_vz_leg2 * actuator_velocities[1])
-            + garm_vz_leg4 * actuator_velocities[3] - t62 * t122 - t125 * t102;
-        let t148 = t147 / t136;
-        let t150 = t93 * t102 - t125 * t148;
-        Ok([t62 * t70 - t83 * t150 - t122 * t148, t150, t148])
+            + garm_vy_leg4 * actuator_velocities[3] - t84 * t123;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let garm_vz_leg1 = (pose[2] - 0.2 * minus_s_arm_leg1) * t24;
+        let minus_s_arm_leg2 = t96 * (t14 * t36 + t97 * t39);
+        let garm_vz_leg2 = (pose[2] - 0.2 * minus_s_arm_leg2) * t40;
+        let s_arm_leg3 = t49 * (t50 * t58 - t14 * t54);
+        let garm_vz_leg3 = (pose[2] + 0.2 * s_arm_leg3) * t65;
+        let s_arm_leg4 = t111 * (t112 * t80 - t14 * t77);
+        let garm_vz_leg4 = (pose[2] + 0.2 * s_arm_leg4) * t81;
+        let t185 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3 + garm_vx_leg4 * garm_vz_leg4;
+        let t186 = t185 * t92;
+        let t188 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 + garm_vy_leg4 * garm_vz_leg4 - t122 * t186;
+        let t189 = t188 * t133;
+        let t200 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 + garm_vz_leg4 * garm_vz_leg4 - t185 * t186
+            - t188 * t189;
+        ::overact::guard::platform(t200, 66.40191223716288, "actuators")?;
+        let t211 = garm_vz_leg1 * actuator_velocities[0]
+            + garm_vz_leg2 * actuator_velocities[1]
+            + garm_vz_leg3 * actuator_velocities[2]
+            + garm_vz_leg4 * actuator_velocities[3] - t84 * t186 - t189 * t142;
+        let t212 = t211 / t200;
+        let t214 = t133 * t142 - t189 * t212;
+        Ok([t84 * t92 - t123 * t214 - t186 * t212, t214, t212])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1255,7 +1653,7 @@ impl Delta4 {
     ///
     /// Output: 3.
     ///
-    /// 379 operations (113 additions, 255 multiplications, 11 divisions), 0 square roots, 12 trigonometric pairs, 0 signs, 400 intermediates.
+    /// 487 operations (175 additions, 291 multiplications, 21 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 490 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1264,205 +1662,265 @@ impl Delta4 {
         twist: &[f64; 3],
         actuator_accelerations: &[f64; 4],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let t0 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t0);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.2809 + 0.04;
+        let t14 = 0.4 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.20079840636817814, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t21 = 0.2 * c_arm_leg1;
+        let t23 = t0 - (0.2 + t21);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = t23 * t25;
+        let t27 = 0.4 * t24;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let s_rod_leg1 = 1.8867924528301887 * pose[1];
+        let t35 = 1.0 - 3.5599857600569598 * t8;
+        ::overact::guard::reach(t35, "leg1")?;
+        ::overact::guard::reach(t35, "leg3")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t35);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t5 = c_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t8 = s_armcross_leg1 * c_rod_leg1;
-        let t11 = c_arm_leg1 * t8 - s_arm_leg1 * t5;
-        ::overact::guard::leg(t11, 0.9471622941895192, "leg1")?;
-        let t12 = 1.0 / t11;
-        let t13 = 5.0 * t12;
-        let garm_vx_leg1 = t5 * t13;
-        let minus_garm_vz_leg1 = t8 * t13;
-        let garm_vy_leg1 = s_rod_leg1 * t13;
-        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
-            - minus_garm_vz_leg1 * twist[2];
-        let t23 = rate_arm_leg1 * rate_arm_leg1;
-        let t26 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.8867924528301887 * t26;
+        let t37 = 0.53 * c_rod_leg1;
+        let s_cross_leg1 = 2.5 * t17 / t37;
+        let t40 = 0.04 + t8;
+        let t42 = 0.2809 * t35;
+        let t44 = 0.212 * c_rod_leg1;
+        let c_cross_leg1 = (t10 - t40 - t42) / t44;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t49 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t27
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t49)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t49));
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t27;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t27;
+        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
+            - minus_gcross_vz_leg1 * twist[2];
+        let grod_vy_leg1 = 1.8867924528301887 * t49;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t29 = s_armcross_leg1 * rate_rod_leg1;
-        let t31 = 1.8867924528301887 * t12;
-        let gcross_vz_leg1 = s_arm_leg1 * t31;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t31;
-        let minus_gcross_vy_leg1 = t31
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t26)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t26));
-        let rate_cross_leg1 = gcross_vz_leg1 * twist[2]
-            - (minus_gcross_vx_leg1 * twist[0] + minus_gcross_vy_leg1 * twist[1]);
-        let t49 = c_armcross_leg1 * rate_rod_leg1;
-        let t51 = t29 * t29 + rate_cross_leg1 * rate_cross_leg1 + t49 * t49;
-        let t54 = 0.53 * s_rod_leg1;
-        let t56 = t54 * (rate_cross_leg1 * t49);
-        let t61 = t54 * (rate_cross_leg1 * t29);
-        let t75 = garm_vx_leg1 * (t61 - (0.2 * c_arm_leg1 * t23 + 0.53 * t5 * t51) + t61)
-            + garm_vy_leg1 * (rate_cross_leg1 * (t54 * rate_cross_leg1) - t54 * t51);
-        let rate_dot_arm_leg1 = minus_garm_vz_leg1
-            * (0.2 * s_arm_leg1 * t23 + 0.53 * t8 * t51 + t56 + t56) - t75;
-        let t77 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
+        let t69 = s_armcross_leg1 * rate_rod_leg1;
+        let t71 = pose[1] * (rate_cross_leg1 * t69);
+        let garm_vy_leg1 = pose[1] * t25;
+        let t76 = 0.2 * minus_s_arm_leg1;
+        let t77 = pose[2] - t76;
+        let garm_vz_leg1 = t77 * t25;
+        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
+            + garm_vz_leg1 * twist[2];
+        let t81 = rate_arm_leg1 * rate_arm_leg1;
+        let t86 = c_armcross_leg1 * rate_rod_leg1;
+        let t88 = t69 * t69 + rate_cross_leg1 * rate_cross_leg1 + t86 * t86;
+        let t97 = rate_cross_leg1 * (pose[1] * rate_cross_leg1) - pose[1] * t88;
+        let t101 = pose[1] * (rate_cross_leg1 * t86);
+        let minus_rate_dot_arm_leg1 = garm_vx_leg1
+            * (t71 - (t21 * t81 + t23 * t88) + t71) + garm_vy_leg1 * t97
+            + garm_vz_leg1 * (t101 - (t76 * t81 + t77 * t88) + t101);
+        let t109 = actuator_accelerations[0] + minus_rate_dot_arm_leg1;
+        let t111 = pose[1] + 0.05;
+        let t112 = t111 - 0.2;
+        let t113 = t112 * t112;
+        let t115 = 0.16 * (t113 + t3);
+        let t116 = pose[0] * pose[0];
+        let t118 = t116 + t113 + t3;
+        let t120 = t118 - 0.2809 + 0.04;
+        let t122 = t115 - t120 * t120;
+        ::overact::guard::reach(t122, "leg2")?;
+        let t123 = ::overact::math::sqrt(t122);
+        ::overact::guard::leg(t123, 0.20079840636817814, "leg2")?;
+        let t124 = 1.0 / t123;
+        let t125 = 2.0 * t124;
+        let garm_vx_leg2 = pose[0] * t125;
+        let t127 = 0.4 * t124;
+        let t128 = 1.0 / t115;
+        let t130 = 0.4 * t112;
+        let minus_s_arm_leg2 = t128 * (t14 * t120 + t130 * t123);
+        let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
+        let c_arm_leg2 = t128 * (t130 * t120 - t14 * t123);
+        let t141 = 1.0 - 3.5599857600569598 * t116;
+        ::overact::guard::reach(t141, "leg2")?;
+        ::overact::guard::reach(t141, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t141);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t83 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t83);
-        let t86 = s_armcross_leg2 * c_rod_leg2;
-        let t88 = c_armcross_leg2 * c_rod_leg2;
-        let t90 = c_arm_leg2 * t86 - s_arm_leg2 * t88;
-        ::overact::guard::leg(t90, 0.9471622941895197, "leg2")?;
-        let t91 = 1.0 / t90;
-        let t92 = 5.0 * t91;
-        let minus_garm_vx_leg2 = s_rod_leg2 * t92;
-        let t94 = 0.53 * s_rod_leg2;
-        let t95 = 1.8867924528301887 * t91;
-        let t97 = 1.0 / c_rod_leg2;
-        let gcross_vx_leg2 = t95
-            * (s_arm_leg2 * (s_armcross_leg2 * s_rod_leg2 * t97)
-                + c_arm_leg2 * (c_armcross_leg2 * s_rod_leg2 * t97));
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t95;
-        let gcross_vz_leg2 = s_arm_leg2 * t95;
+        let t143 = 0.53 * c_rod_leg2;
+        let s_cross_leg2 = 2.5 * t123 / t143;
+        let t146 = 0.04 + t116;
+        let t148 = 0.2809 * t141;
+        let t150 = 0.212 * c_rod_leg2;
+        let c_cross_leg2 = (t118 - t146 - t148) / t150;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t155 = 1.0 / c_rod_leg2;
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let gcross_vx_leg2 = t127
+            * (minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t155)
+                - c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t155));
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t127;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t127;
         let rate_cross_leg2 = gcross_vx_leg2 * twist[0] - minus_gcross_vy_leg2 * twist[1]
-            + gcross_vz_leg2 * twist[2];
-        let minus_grod_vx_leg2 = 1.8867924528301887 * t97;
+            - minus_gcross_vz_leg2 * twist[2];
+        let minus_grod_vx_leg2 = 1.8867924528301887 * t155;
         let minus_rate_rod_leg2 = minus_grod_vx_leg2 * twist[0];
-        let t115 = s_armcross_leg2 * minus_rate_rod_leg2;
-        let t118 = c_armcross_leg2 * minus_rate_rod_leg2;
-        let t120 = rate_cross_leg2 * rate_cross_leg2 + t115 * t115 + t118 * t118;
-        let garm_vy_leg2 = t88 * t92;
-        let minus_garm_vz_leg2 = t86 * t92;
-        let rate_arm_leg2 = garm_vy_leg2 * twist[1] - minus_garm_vx_leg2 * twist[0]
-            - minus_garm_vz_leg2 * twist[2];
-        let t134 = rate_arm_leg2 * rate_arm_leg2;
-        let t140 = t94 * (rate_cross_leg2 * t115);
-        let t144 = minus_garm_vx_leg2
-            * (t94 * t120 - rate_cross_leg2 * (t94 * rate_cross_leg2))
-            + garm_vy_leg2 * (0.2 * c_arm_leg2 * t134 + 0.53 * t88 * t120 + t140 + t140);
-        let t151 = t94 * (rate_cross_leg2 * t118);
-        let rate_dot_arm_leg2 = t144
-            + minus_garm_vz_leg2
-                * (0.2 * s_arm_leg2 * t134 + 0.53 * t86 * t120 - t151 - t151);
-        let t156 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t159 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t159);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t164 = c_armcross_leg3 * c_rod_leg3;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t168 = s_armcross_leg3 * c_rod_leg3;
-        let t170 = s_arm_leg3 * t164 - c_arm_leg3 * t168;
-        ::overact::guard::leg(t170, 0.9471622941895192, "leg3")?;
-        let t171 = 1.0 / t170;
-        let t172 = 5.0 * t171;
-        let garm_vx_leg3 = t164 * t172;
-        let garm_vy_leg3 = s_rod_leg3 * t172;
-        let garm_vz_leg3 = t168 * t172;
+        let t178 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t181 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t183 = rate_cross_leg2 * rate_cross_leg2 + t178 * t178 + t181 * t181;
+        let t185 = rate_cross_leg2 * (pose[0] * rate_cross_leg2) - pose[0] * t183;
+        let t187 = 0.2 * c_arm_leg2;
+        let t189 = t111 - (0.2 + t187);
+        let garm_vy_leg2 = t189 * t125;
+        let t192 = pose[0] * (rate_cross_leg2 * t178);
+        let t196 = 0.2 * minus_s_arm_leg2;
+        let t197 = pose[2] - t196;
+        let garm_vz_leg2 = t197 * t125;
+        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
+            + garm_vz_leg2 * twist[2];
+        let t201 = rate_arm_leg2 * rate_arm_leg2;
+        let t210 = pose[0] * (rate_cross_leg2 * t181);
+        let minus_rate_dot_arm_leg2 = garm_vx_leg2 * t185
+            + garm_vy_leg2 * (t192 - (t187 * t201 + t189 * t183) + t192)
+            + garm_vz_leg2 * (t210 - (t196 * t201 + t197 * t183) + t210);
+        let t218 = actuator_accelerations[1] + minus_rate_dot_arm_leg2;
+        let t221 = pose[0] - 0.05;
+        let t222 = t221 + 0.2;
+        let t223 = t222 * t222;
+        let t225 = 0.16 * (t223 + t3);
+        let t226 = 1.0 / t225;
+        let t227 = 0.4 * t222;
+        let t229 = t223 + t8 + t3;
+        let t231 = t229 - 0.2809 + 0.04;
+        let t234 = t225 - t231 * t231;
+        ::overact::guard::reach(t234, "leg3")?;
+        let t235 = ::overact::math::sqrt(t234);
+        ::overact::guard::leg(t235, 0.20079840636817814, "leg3")?;
+        let minus_c_arm_leg3 = t226 * (t227 * t231 + t14 * t235);
+        let t239 = 0.2 * minus_c_arm_leg3;
+        let t241 = t221 - (t239 - 0.2);
+        let t242 = 1.0 / t235;
+        let t243 = 2.0 * t242;
+        let garm_vx_leg3 = t241 * t243;
+        let garm_vy_leg3 = pose[1] * t243;
+        let s_arm_leg3 = t226 * (t227 * t235 - t14 * t231);
+        let t253 = 0.2 * s_arm_leg3;
+        let t254 = pose[2] + t253;
+        let garm_vz_leg3 = t254 * t243;
         let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
             + garm_vz_leg3 * twist[2];
-        let t182 = rate_arm_leg3 * rate_arm_leg3;
-        let t185 = 1.0 / c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.8867924528301887 * t185;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * twist[1];
-        let t188 = s_armcross_leg3 * minus_rate_rod_leg3;
-        let t190 = 1.8867924528301887 * t171;
-        let minus_gcross_vx_leg3 = c_arm_leg3 * t190;
-        let minus_gcross_vy_leg3 = t190
-            * (s_arm_leg3 * (s_armcross_leg3 * s_rod_leg3 * t185)
-                + c_arm_leg3 * (c_armcross_leg3 * s_rod_leg3 * t185));
-        let minus_gcross_vz_leg3 = s_arm_leg3 * t190;
-        let minus_rate_cross_leg3 = minus_gcross_vx_leg3 * twist[0]
-            + minus_gcross_vy_leg3 * twist[1] + minus_gcross_vz_leg3 * twist[2];
-        let t208 = c_armcross_leg3 * minus_rate_rod_leg3;
-        let t210 = t188 * t188 + minus_rate_cross_leg3 * minus_rate_cross_leg3
-            + t208 * t208;
-        let t213 = 0.53 * s_rod_leg3;
-        let t215 = t213 * (minus_rate_cross_leg3 * t188);
-        let t224 = garm_vx_leg3
-            * (0.2 * c_arm_leg3 * t182 + 0.53 * t164 * t210 - t215 - t215)
-            + garm_vy_leg3
-                * (t213 * t210 - minus_rate_cross_leg3 * (t213 * minus_rate_cross_leg3));
-        let t231 = t213 * (minus_rate_cross_leg3 * t208);
-        let minus_rate_dot_arm_leg3 = t224
-            + garm_vz_leg3
-                * (0.2 * s_arm_leg3 * t182 + 0.53 * t168 * t210 + t231 + t231);
-        let t236 = actuator_accelerations[2] + minus_rate_dot_arm_leg3;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        ::overact::guard::leg(c_rod_leg4, 1.0, "leg4")?;
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let t243 = joints[9] + joints[10];
-        let (s_armcross_leg4, c_armcross_leg4) = ::overact::math::sin_cos(t243);
-        let t246 = c_armcross_leg4 * c_rod_leg4;
-        let t248 = s_armcross_leg4 * c_rod_leg4;
-        let t250 = s_arm_leg4 * t246 - c_arm_leg4 * t248;
-        ::overact::guard::leg(t250, 0.9471622941895192, "leg4")?;
-        let t251 = 1.0 / t250;
-        let t252 = 5.0 * t251;
-        let minus_garm_vx_leg4 = s_rod_leg4 * t252;
-        let t254 = 1.8867924528301887 * t251;
-        let t256 = 1.0 / c_rod_leg4;
-        let gcross_vx_leg4 = t254
-            * (s_arm_leg4 * (s_armcross_leg4 * s_rod_leg4 * t256)
-                + c_arm_leg4 * (c_armcross_leg4 * s_rod_leg4 * t256));
-        let minus_gcross_vy_leg4 = c_arm_leg4 * t254;
-        let minus_gcross_vz_leg4 = s_arm_leg4 * t254;
-        let rate_cross_leg4 = gcross_vx_leg4 * twist[0] - minus_gcross_vy_leg4 * twist[1]
-            - minus_gcross_vz_leg4 * twist[2];
-        let t271 = 0.53 * s_rod_leg4;
-        let grod_vx_leg4 = 1.8867924528301887 * t256;
-        let rate_rod_leg4 = grod_vx_leg4 * twist[0];
-        let t277 = s_armcross_leg4 * rate_rod_leg4;
-        let t280 = c_armcross_leg4 * rate_rod_leg4;
-        let t282 = rate_cross_leg4 * rate_cross_leg4 + t277 * t277 + t280 * t280;
-        let garm_vy_leg4 = t246 * t252;
-        let garm_vz_leg4 = t248 * t252;
-        let rate_arm_leg4 = garm_vy_leg4 * twist[1] - minus_garm_vx_leg4 * twist[0]
+        let t258 = rate_arm_leg3 * rate_arm_leg3;
+        let c_cross_leg3 = (t229 - t40 - t42) / t44;
+        let s_cross_leg3 = 2.5 * t235 / t37;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t268 = s_armcross_leg3 * rate_rod_leg1;
+        let t270 = 0.4 * t242;
+        let gcross_vz_leg3 = s_arm_leg3 * t270;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t270;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t270
+            * (s_arm_leg3 * (t49 * (s_rod_leg1 * s_armcross_leg3))
+                + minus_c_arm_leg3 * (t49 * (s_rod_leg1 * minus_c_armcross_leg3)));
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
+        let t291 = minus_c_armcross_leg3 * rate_rod_leg1;
+        let t293 = t268 * t268 + rate_cross_leg3 * rate_cross_leg3 + t291 * t291;
+        let t297 = pose[1] * (rate_cross_leg3 * t268);
+        let t307 = pose[1] * (rate_cross_leg3 * t291);
+        let rate_dot_arm_leg3 = garm_vx_leg3 * (t239 * t258 + t241 * t293 + t297 + t297)
+            - garm_vy_leg3 * t97
+            - garm_vz_leg3 * (t253 * t258 - t254 * t293 - t307 - t307);
+        let t312 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t315 = pose[1] - 0.05;
+        let t316 = t315 + 0.2;
+        let t317 = t316 * t316;
+        let t319 = 0.16 * (t317 + t3);
+        let t321 = t116 + t317 + t3;
+        let t323 = t321 - 0.2809 + 0.04;
+        let t325 = t319 - t323 * t323;
+        ::overact::guard::reach(t325, "leg4")?;
+        let t326 = ::overact::math::sqrt(t325);
+        ::overact::guard::leg(t326, 0.20079840636817814, "leg4")?;
+        let t327 = 1.0 / t326;
+        let t328 = 2.0 * t327;
+        let garm_vx_leg4 = pose[0] * t328;
+        let t330 = 1.0 / t319;
+        let t331 = 0.4 * t316;
+        let minus_c_arm_leg4 = t330 * (t331 * t323 + t14 * t326);
+        let t336 = 0.2 * minus_c_arm_leg4;
+        let t338 = t315 - (t336 - 0.2);
+        let garm_vy_leg4 = t338 * t328;
+        let s_arm_leg4 = t330 * (t331 * t326 - t14 * t323);
+        let t347 = 0.2 * s_arm_leg4;
+        let t348 = pose[2] + t347;
+        let garm_vz_leg4 = t348 * t328;
+        let rate_arm_leg4 = garm_vx_leg4 * twist[0] + garm_vy_leg4 * twist[1]
             + garm_vz_leg4 * twist[2];
-        let t294 = rate_arm_leg4 * rate_arm_leg4;
-        let t300 = t271 * (rate_cross_leg4 * t277);
-        let t304 = minus_garm_vx_leg4
-            * (rate_cross_leg4 * (t271 * rate_cross_leg4) - t271 * t282)
-            - garm_vy_leg4
-                * (0.2 * c_arm_leg4 * t294 + 0.53 * t246 * t282 - t300 - t300);
-        let t311 = t271 * (rate_cross_leg4 * t280);
-        let rate_dot_arm_leg4 = t304
-            - garm_vz_leg4
-                * (0.2 * s_arm_leg4 * t294 + 0.53 * t248 * t282 + t311 + t311);
-        let t316 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t318 = garm_vx_leg1 * t77 - minus_garm_vx_leg2 * t156 + garm_vx_leg3 * t236
-            - minus_garm_vx_leg4 * t316;
-        let t325 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3 + minus_garm_vx_leg4 * minus_garm_vx_leg4;
-        ::overact::guard::platform(t325, 22.53317086554555, "actuators")?;
-        let t326 = 1.0 / t325;
-        let t334 = garm_vx_leg1 * garm_vy_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
-            + garm_vx_leg3 * garm_vy_leg3 - minus_garm_vx_leg4 * garm_vy_leg4;
-        let t335 = t334 * t326;
-        let t344 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t334 * t335;
-        ::overact::guard::platform(t344, 22.533170865545543, "actuators")?;
-        let t345 = 1.0 / t344;
-        let t354 = garm_vy_leg1 * t77 + garm_vy_leg2 * t156 + garm_vy_leg3 * t236
-            + garm_vy_leg4 * t316 - t318 * t335;
-        let t369 = minus_garm_vx_leg2 * minus_garm_vz_leg2
-            - garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg3 * garm_vz_leg3
-            - minus_garm_vx_leg4 * garm_vz_leg4;
-        let t370 = t369 * t326;
-        let t372 = garm_vy_leg3 * garm_vz_leg3
-            - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2)
-            + garm_vy_leg4 * garm_vz_leg4 - t334 * t370;
-        let t373 = t372 * t345;
-        let t384 = minus_garm_vz_leg1 * minus_garm_vz_leg1
-            + minus_garm_vz_leg2 * minus_garm_vz_leg2 + garm_vz_leg3 * garm_vz_leg3
-            + garm_vz_leg4 * garm_vz_leg4 - t369 * t370 - t372 * t373;
-        ::overact::guard::platform(t384, 66.4019122371629, "actuators")?;
-        let t395 = garm_vz_leg3 * t236
-            - (minus_garm_vz_leg1 * t77 + minus_garm_vz_leg2 * t156)
-            + garm_vz_leg4 * t316 - t318 * t370 - t373 * t354;
-        let t396 = t395 / t384;
-        let t398 = t345 * t354 - t373 * t396;
-        Ok([t318 * t326 - t335 * t398 - t370 * t396, t398, t396])
+        let t352 = rate_arm_leg4 * rate_arm_leg4;
+        let t354 = 0.4 * t327;
+        let gcross_vz_leg4 = s_arm_leg4 * t354;
+        let c_cross_leg4 = (t321 - t146 - t148) / t150;
+        let s_cross_leg4 = 2.5 * t326 / t143;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t354
+            * (s_arm_leg4 * (t155 * (minus_s_rod_leg2 * s_armcross_leg4))
+                + minus_c_arm_leg4
+                    * (t155 * (minus_s_rod_leg2 * minus_c_armcross_leg4)));
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t354;
+        let rate_cross_leg4 = gcross_vz_leg4 * twist[2]
+            - (minus_gcross_vx_leg4 * twist[0] + minus_gcross_vy_leg4 * twist[1]);
+        let t382 = s_armcross_leg4 * minus_rate_rod_leg2;
+        let t385 = minus_c_armcross_leg4 * minus_rate_rod_leg2;
+        let t387 = rate_cross_leg4 * rate_cross_leg4 + t382 * t382 + t385 * t385;
+        let t391 = pose[0] * (rate_cross_leg4 * t382);
+        let t401 = pose[0] * (rate_cross_leg4 * t385);
+        let rate_dot_arm_leg4 = garm_vy_leg4 * (t336 * t352 + t338 * t387 + t391 + t391)
+            - garm_vx_leg4 * t185
+            - garm_vz_leg4 * (t347 * t352 - t348 * t387 - t401 - t401);
+        let t406 = actuator_accelerations[3] - rate_dot_arm_leg4;
+        let t408 = garm_vx_leg1 * t109 + garm_vx_leg2 * t218 + garm_vx_leg3 * t312
+            + garm_vx_leg4 * t406;
+        let t415 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t415, 22.533170865545554, "actuators")?;
+        let t416 = 1.0 / t415;
+        let t424 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3 + garm_vx_leg4 * garm_vy_leg4;
+        let t425 = t424 * t416;
+        let t434 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t424 * t425;
+        ::overact::guard::platform(t434, 22.533170865545554, "actuators")?;
+        let t435 = 1.0 / t434;
+        let t444 = garm_vy_leg1 * t109 + garm_vy_leg2 * t218 + garm_vy_leg3 * t312
+            + garm_vy_leg4 * t406 - t408 * t425;
+        let t459 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3 + garm_vx_leg4 * garm_vz_leg4;
+        let t460 = t459 * t416;
+        let t462 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 + garm_vy_leg4 * garm_vz_leg4 - t424 * t460;
+        let t463 = t462 * t435;
+        let t474 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 + garm_vz_leg4 * garm_vz_leg4 - t459 * t460
+            - t462 * t463;
+        ::overact::guard::platform(t474, 66.40191223716288, "actuators")?;
+        let t485 = garm_vz_leg1 * t109 + garm_vz_leg2 * t218 + garm_vz_leg3 * t312
+            + garm_vz_leg4 * t406 - t408 * t460 - t463 * t444;
+        let t486 = t485 / t474;
+        let t488 = t435 * t444 - t463 * t486;
+        Ok([t408 * t416 - t425 * t488 - t460 * t486, t488, t486])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1474,7 +1932,7 @@ impl Delta4 {
     /// Output: 3 x 69.
     /// Columns: `PARAMETERS`.
     ///
-    /// 892 operations (257 additions, 627 multiplications, 8 divisions), 0 square roots, 12 trigonometric pairs, 12 signs, 743 intermediates.
+    /// 968 operations (309 additions, 641 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 12 signs, 803 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1483,8 +1941,576 @@ impl Delta4 {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 69]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_platform_from_joints(pose, joints, twist, acceleration)
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.2809 + 0.04;
+        let t14 = 0.4 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.20079840636817814, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t21 = 0.2 * c_arm_leg1;
+        let t23 = t0 - (0.2 + t21);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = t23 * t25;
+        let t27 = 0.4 * t24;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let s_rod_leg1 = 1.8867924528301887 * pose[1];
+        let t35 = 1.0 - 3.5599857600569598 * t8;
+        ::overact::guard::reach(t35, "leg1")?;
+        ::overact::guard::reach(t35, "leg3")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t35);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let t37 = 0.53 * c_rod_leg1;
+        let s_cross_leg1 = 2.5 * t17 / t37;
+        let t40 = 0.04 + t8;
+        let t42 = 0.2809 * t35;
+        let t44 = 0.212 * c_rod_leg1;
+        let c_cross_leg1 = (t10 - t40 - t42) / t44;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t49 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t27
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t49)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t49));
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t27;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t27;
+        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
+            - minus_gcross_vz_leg1 * twist[2];
+        let grod_vy_leg1 = 1.8867924528301887 * t49;
+        let rate_rod_leg1 = grod_vy_leg1 * twist[1];
+        let t69 = s_armcross_leg1 * rate_rod_leg1;
+        let t71 = pose[1] * (rate_cross_leg1 * t69);
+        let garm_vy_leg1 = pose[1] * t25;
+        let t76 = 0.2 * minus_s_arm_leg1;
+        let t77 = pose[2] - t76;
+        let garm_vz_leg1 = t77 * t25;
+        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
+            + garm_vz_leg1 * twist[2];
+        let t81 = rate_arm_leg1 * rate_arm_leg1;
+        let t84 = rate_cross_leg1 * rate_cross_leg1;
+        let t86 = c_armcross_leg1 * rate_rod_leg1;
+        let t88 = t69 * t69 + t84 + t86 * t86;
+        let t93 = acceleration[0] - (t71 - (t21 * t81 + t23 * t88) + t71);
+        let t95 = pose[1] * rate_cross_leg1;
+        let t96 = rate_cross_leg1 * t95;
+        let t99 = acceleration[1] - (t96 - pose[1] * t88);
+        let t103 = pose[1] * (rate_cross_leg1 * t86);
+        let t109 = acceleration[2] - (t103 - (t76 * t81 + t77 * t88) + t103);
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t93 + garm_vy_leg1 * t99
+            + garm_vz_leg1 * t109;
+        let t112 = garm_vx_leg1 * rate_dot_arm_leg1;
+        let t113 = garm_vy_leg1 * rate_dot_arm_leg1;
+        let t114 = garm_vz_leg1 * rate_dot_arm_leg1;
+        let t115 = 9.81 * c_arm_leg1;
+        let t119 = 9.81 * minus_s_arm_leg1;
+        let rate_dot_cross_leg1 = gcross_vy_leg1 * t99 - minus_gcross_vx_leg1 * t93
+            - minus_gcross_vz_leg1 * t109;
+        let t134 = s_rod_leg1 * rate_dot_cross_leg1;
+        let t135 = c_rod_leg1 * rate_cross_leg1;
+        let t136 = rate_rod_leg1 * t135;
+        let t137 = t134 + t136;
+        let t139 = 1.8867924528301887 * t95;
+        let t140 = rate_rod_leg1 * t139;
+        let t141 = c_rod_leg1 * t140;
+        let t142 = s_rod_leg1 * t137 + t141;
+        let t145 = 3.5599857600569598 * t96;
+        let t148 = t136 + t137;
+        let t150 = c_rod_leg1 * rate_dot_cross_leg1;
+        let t151 = t150 - t140;
+        let t154 = c_rod_leg1 * t148 - s_rod_leg1 * (t140 - t151);
+        let t158 = 3.5599857600569598 * (t95 * t95);
+        let t164 = t139 * t135;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t99;
+        let t168 = rate_rod_leg1 * rate_rod_leg1;
+        let t171 = s_rod_leg1 * (t164 + rate_dot_rod_leg1) + c_rod_leg1 * (t168 - t158);
+        let t178 = c_rod_leg1 * t151 - t141;
+        let t179 = minus_gcross_vx_leg1 * t178;
+        let t181 = gcross_vy_leg1 * t178 + t145;
+        let t182 = minus_gcross_vz_leg1 * t178;
+        let t183 = 1.8867924528301887 * acceleration[1];
+        let t189 = grod_vy_leg1 * rate_dot_rod_leg1;
+        let t190 = 1.8867924528301887 * acceleration[0];
+        let t192 = 0.2 * rate_dot_arm_leg1 - t115;
+        let t193 = 0.2 * t192;
+        let t194 = garm_vx_leg1 * t193;
+        let t200 = garm_vy_leg1 * t193;
+        let t208 = acceleration[2] + 9.81;
+        let t209 = 1.8867924528301887 * t208;
+        let t210 = garm_vz_leg1 * t193;
+        let t216 = 0.9433962264150944 * t17;
+        let t220 = 0.37735849056603776 * (pose[1] * s_cross_leg1);
+        let t224 = 0.2 * c_cross_leg1;
+        let t226 = t216 * (t164 - rate_dot_rod_leg1) + t220 * (t158 + t168)
+            - t224 * t148;
+        let t230 = t119 - 0.2 * t81;
+        let t233 = s_rod_leg1 * (c_cross_leg1 * t192 - s_cross_leg1 * t230);
+        let t241 = c_cross_leg1 * t230 + s_cross_leg1 * t192;
+        let t251 = t150 * t216 + t134 * t220 + t84 * t224;
+        let t261 = pose[1] + 0.05;
+        let t262 = t261 - 0.2;
+        let t263 = t262 * t262;
+        let t265 = 0.16 * (t263 + t3);
+        let t266 = pose[0] * pose[0];
+        let t268 = t266 + t263 + t3;
+        let t270 = t268 - 0.2809 + 0.04;
+        let t272 = t265 - t270 * t270;
+        ::overact::guard::reach(t272, "leg2")?;
+        let t273 = ::overact::math::sqrt(t272);
+        ::overact::guard::leg(t273, 0.20079840636817814, "leg2")?;
+        let t274 = 1.0 / t273;
+        let t275 = 2.0 * t274;
+        let garm_vx_leg2 = pose[0] * t275;
+        let t277 = 0.4 * t274;
+        let t278 = 1.0 / t265;
+        let t280 = 0.4 * t262;
+        let minus_s_arm_leg2 = t278 * (t14 * t270 + t280 * t273);
+        let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
+        let c_arm_leg2 = t278 * (t280 * t270 - t14 * t273);
+        let t291 = 1.0 - 3.5599857600569598 * t266;
+        ::overact::guard::reach(t291, "leg2")?;
+        ::overact::guard::reach(t291, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t291);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t293 = 0.53 * c_rod_leg2;
+        let s_cross_leg2 = 2.5 * t273 / t293;
+        let t296 = 0.04 + t266;
+        let t298 = 0.2809 * t291;
+        let t300 = 0.212 * c_rod_leg2;
+        let c_cross_leg2 = (t268 - t296 - t298) / t300;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t305 = 1.0 / c_rod_leg2;
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let gcross_vx_leg2 = t277
+            * (minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t305)
+                - c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t305));
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t277;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t277;
+        let rate_cross_leg2 = gcross_vx_leg2 * twist[0] - minus_gcross_vy_leg2 * twist[1]
+            - minus_gcross_vz_leg2 * twist[2];
+        let t323 = pose[0] * rate_cross_leg2;
+        let t324 = rate_cross_leg2 * t323;
+        let t325 = rate_cross_leg2 * rate_cross_leg2;
+        let minus_grod_vx_leg2 = 1.8867924528301887 * t305;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * twist[0];
+        let t328 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t331 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t333 = t325 + t328 * t328 + t331 * t331;
+        let t336 = acceleration[0] - (t324 - pose[0] * t333);
+        let t338 = 0.2 * c_arm_leg2;
+        let t340 = t261 - (0.2 + t338);
+        let garm_vy_leg2 = t340 * t275;
+        let t343 = pose[0] * (rate_cross_leg2 * t328);
+        let t347 = 0.2 * minus_s_arm_leg2;
+        let t348 = pose[2] - t347;
+        let garm_vz_leg2 = t348 * t275;
+        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
+            + garm_vz_leg2 * twist[2];
+        let t352 = rate_arm_leg2 * rate_arm_leg2;
+        let t358 = acceleration[1] - (t343 - (t338 * t352 + t340 * t333) + t343);
+        let t362 = pose[0] * (rate_cross_leg2 * t331);
+        let t368 = acceleration[2] - (t362 - (t347 * t352 + t348 * t333) + t362);
+        let rate_dot_arm_leg2 = garm_vx_leg2 * t336 + garm_vy_leg2 * t358
+            + garm_vz_leg2 * t368;
+        let t371 = garm_vx_leg2 * rate_dot_arm_leg2;
+        let t372 = garm_vy_leg2 * rate_dot_arm_leg2;
+        let t373 = garm_vz_leg2 * rate_dot_arm_leg2;
+        let t374 = 9.81 * c_arm_leg2;
+        let t378 = 9.81 * minus_s_arm_leg2;
+        let rate_dot_cross_leg2 = gcross_vx_leg2 * t336 - minus_gcross_vy_leg2 * t358
+            - minus_gcross_vz_leg2 * t368;
+        let t393 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t394 = c_rod_leg2 * rate_cross_leg2;
+        let t395 = minus_rate_rod_leg2 * t394;
+        let t396 = t393 + t395;
+        let t398 = 1.8867924528301887 * t323;
+        let t399 = minus_rate_rod_leg2 * t398;
+        let t400 = c_rod_leg2 * t399;
+        let t401 = minus_s_rod_leg2 * t396 + t400;
+        let t403 = 3.5599857600569598 * t324;
+        let t407 = c_rod_leg2 * rate_dot_cross_leg2;
+        let t408 = t407 - t399;
+        let t411 = t395 + t396;
+        let t413 = minus_s_rod_leg2 * (t399 - t408) - c_rod_leg2 * t411;
+        let t416 = 3.5599857600569598 * (t323 * t323);
+        let t423 = t398 * t394;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t336;
+        let t427 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t430 = minus_s_rod_leg2 * (t423 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t427 - t416);
+        let t437 = c_rod_leg2 * t408 - t400;
+        let t439 = gcross_vx_leg2 * t437 + t403;
+        let t440 = minus_gcross_vy_leg2 * t437;
+        let t441 = minus_gcross_vz_leg2 * t437;
+        let t447 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
+        let t449 = 0.2 * rate_dot_arm_leg2 - t374;
+        let t450 = 0.2 * t449;
+        let t451 = garm_vx_leg2 * t450;
+        let t459 = garm_vy_leg2 * t450;
+        let t465 = garm_vz_leg2 * t450;
+        let t471 = 0.9433962264150944 * t273;
+        let t475 = 0.37735849056603776 * (pose[0] * s_cross_leg2);
+        let t479 = 0.2 * c_cross_leg2;
+        let t481 = t471 * (minus_rate_dot_rod_leg2 - t423) - t475 * (t416 + t427)
+            + t479 * t411;
+        let t485 = t378 - 0.2 * t352;
+        let t488 = minus_s_rod_leg2 * (c_cross_leg2 * t449 - s_cross_leg2 * t485);
+        let t493 = c_cross_leg2 * t485 + s_cross_leg2 * t449;
+        let t506 = t407 * t471 + t393 * t475 + t325 * t479;
+        let t516 = pose[0] - 0.05;
+        let t517 = t516 + 0.2;
+        let t518 = t517 * t517;
+        let t520 = 0.16 * (t518 + t3);
+        let t521 = 1.0 / t520;
+        let t522 = 0.4 * t517;
+        let t524 = t518 + t8 + t3;
+        let t526 = t524 - 0.2809 + 0.04;
+        let t529 = t520 - t526 * t526;
+        ::overact::guard::reach(t529, "leg3")?;
+        let t530 = ::overact::math::sqrt(t529);
+        ::overact::guard::leg(t530, 0.20079840636817814, "leg3")?;
+        let minus_c_arm_leg3 = t521 * (t522 * t526 + t14 * t530);
+        let t534 = 0.2 * minus_c_arm_leg3;
+        let t536 = t516 - (t534 - 0.2);
+        let t537 = 1.0 / t530;
+        let t538 = 2.0 * t537;
+        let garm_vx_leg3 = t536 * t538;
+        let garm_vy_leg3 = pose[1] * t538;
+        let s_arm_leg3 = t521 * (t522 * t530 - t14 * t526);
+        let t548 = 0.2 * s_arm_leg3;
+        let t549 = pose[2] + t548;
+        let garm_vz_leg3 = t549 * t538;
+        let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
+            + garm_vz_leg3 * twist[2];
+        let t553 = rate_arm_leg3 * rate_arm_leg3;
+        let c_cross_leg3 = (t524 - t40 - t42) / t44;
+        let s_cross_leg3 = 2.5 * t530 / t37;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t563 = s_armcross_leg3 * rate_rod_leg1;
+        let t565 = 0.4 * t537;
+        let gcross_vz_leg3 = s_arm_leg3 * t565;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t565;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t565
+            * (s_arm_leg3 * (t49 * (s_rod_leg1 * s_armcross_leg3))
+                + minus_c_arm_leg3 * (t49 * (s_rod_leg1 * minus_c_armcross_leg3)));
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
+        let t584 = rate_cross_leg3 * rate_cross_leg3;
+        let t586 = minus_c_armcross_leg3 * rate_rod_leg1;
+        let t588 = t563 * t563 + t584 + t586 * t586;
+        let t592 = pose[1] * (rate_cross_leg3 * t563);
+        let t595 = acceleration[0] + t534 * t553 + t536 * t588 + t592 + t592;
+        let t603 = pose[1] * (rate_cross_leg3 * t586);
+        let t606 = acceleration[2] - (t548 * t553 - t549 * t588 - t603 - t603);
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t595 + garm_vy_leg3 * t99
+            + garm_vz_leg3 * t606;
+        let t609 = garm_vx_leg3 * rate_dot_arm_leg3;
+        let t610 = garm_vy_leg3 * rate_dot_arm_leg3;
+        let t611 = garm_vz_leg3 * rate_dot_arm_leg3;
+        let t612 = 9.81 * minus_c_arm_leg3;
+        let t616 = 9.81 * s_arm_leg3;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * t606
+            - (minus_gcross_vx_leg3 * t595 + minus_gcross_vy_leg3 * t99);
+        let t631 = s_rod_leg1 * rate_dot_cross_leg3;
+        let t632 = c_rod_leg1 * rate_cross_leg3;
+        let t633 = rate_rod_leg1 * t632;
+        let t634 = t631 + t633;
+        let t636 = pose[1] * rate_cross_leg3;
+        let t637 = 1.8867924528301887 * t636;
+        let t638 = rate_rod_leg1 * t637;
+        let t639 = c_rod_leg1 * t638;
+        let t640 = s_rod_leg1 * t634 + t639;
+        let t644 = 3.5599857600569598 * (rate_cross_leg3 * t636);
+        let t647 = c_rod_leg1 * rate_dot_cross_leg3;
+        let t648 = t647 - t638;
+        let t649 = t638 - t648;
+        let t651 = t633 + t634;
+        let t653 = s_rod_leg1 * t649 - c_rod_leg1 * t651;
+        let t657 = 3.5599857600569598 * (t636 * t636);
+        let t658 = t632 * t632;
+        let t669 = c_rod_leg1 * t648 - t639;
+        let t679 = 0.9433962264150944 * t530;
+        let t683 = 0.37735849056603776 * (pose[1] * s_cross_leg3);
+        let t684 = t637 * t632;
+        let t688 = 0.2 * c_cross_leg3;
+        let t690 = t679 * (t658 + t168) + t683 * (t684 + rate_dot_rod_leg1)
+            + t688 * t649;
+        let t693 = t616 + 0.2 * t553;
+        let t696 = t612 + 0.2 * rate_dot_arm_leg3;
+        let t698 = s_cross_leg3 * t693 + c_cross_leg3 * t696;
+        let t699 = c_rod_leg1 * t698;
+        let t707 = s_cross_leg3 * t696 - c_cross_leg3 * t693;
+        let t720 = t679 * (rate_dot_rod_leg1 - t684) - t683 * (t657 + t168)
+            + t688 * t651;
+        let t722 = s_rod_leg1 * t698;
+        let t737 = t647 * t679 + t631 * t683 + t584 * t688;
+        let t747 = 0.2 * t696;
+        let t751 = pose[1] - 0.05;
+        let t752 = t751 + 0.2;
+        let t753 = t752 * t752;
+        let t755 = 0.16 * (t753 + t3);
+        let t757 = t266 + t753 + t3;
+        let t759 = t757 - 0.2809 + 0.04;
+        let t761 = t755 - t759 * t759;
+        ::overact::guard::reach(t761, "leg4")?;
+        let t762 = ::overact::math::sqrt(t761);
+        ::overact::guard::leg(t762, 0.20079840636817814, "leg4")?;
+        let t763 = 1.0 / t762;
+        let t764 = 2.0 * t763;
+        let garm_vx_leg4 = pose[0] * t764;
+        let t767 = 1.0 / t755;
+        let t768 = 0.4 * t752;
+        let minus_c_arm_leg4 = t767 * (t768 * t759 + t14 * t762);
+        let t773 = 0.2 * minus_c_arm_leg4;
+        let t775 = t751 - (t773 - 0.2);
+        let garm_vy_leg4 = t775 * t764;
+        let s_arm_leg4 = t767 * (t768 * t762 - t14 * t759);
+        let t784 = 0.2 * s_arm_leg4;
+        let t785 = pose[2] + t784;
+        let garm_vz_leg4 = t785 * t764;
+        let rate_arm_leg4 = garm_vx_leg4 * twist[0] + garm_vy_leg4 * twist[1]
+            + garm_vz_leg4 * twist[2];
+        let t789 = rate_arm_leg4 * rate_arm_leg4;
+        let t791 = 0.4 * t763;
+        let gcross_vz_leg4 = s_arm_leg4 * t791;
+        let c_cross_leg4 = (t757 - t296 - t298) / t300;
+        let s_cross_leg4 = 2.5 * t762 / t293;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t791
+            * (s_arm_leg4 * (t305 * (minus_s_rod_leg2 * s_armcross_leg4))
+                + minus_c_arm_leg4
+                    * (t305 * (minus_s_rod_leg2 * minus_c_armcross_leg4)));
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t791;
+        let rate_cross_leg4 = gcross_vz_leg4 * twist[2]
+            - (minus_gcross_vx_leg4 * twist[0] + minus_gcross_vy_leg4 * twist[1]);
+        let t818 = rate_cross_leg4 * rate_cross_leg4;
+        let t819 = s_armcross_leg4 * minus_rate_rod_leg2;
+        let t822 = minus_c_armcross_leg4 * minus_rate_rod_leg2;
+        let t824 = t818 + t819 * t819 + t822 * t822;
+        let t828 = pose[0] * (rate_cross_leg4 * t819);
+        let t831 = acceleration[1] + t773 * t789 + t775 * t824 + t828 + t828;
+        let t838 = pose[0] * (rate_cross_leg4 * t822);
+        let t841 = acceleration[2] - (t784 * t789 - t785 * t824 - t838 - t838);
+        let rate_dot_arm_leg4 = garm_vx_leg4 * t336 + garm_vy_leg4 * t831
+            + garm_vz_leg4 * t841;
+        let t844 = garm_vx_leg4 * rate_dot_arm_leg4;
+        let t845 = garm_vy_leg4 * rate_dot_arm_leg4;
+        let t846 = garm_vz_leg4 * rate_dot_arm_leg4;
+        let t847 = 9.81 * minus_c_arm_leg4;
+        let t851 = 9.81 * s_arm_leg4;
+        let rate_dot_cross_leg4 = gcross_vz_leg4 * t841
+            - (minus_gcross_vx_leg4 * t336 + minus_gcross_vy_leg4 * t831);
+        let t866 = minus_s_rod_leg2 * rate_dot_cross_leg4;
+        let t867 = c_rod_leg2 * rate_cross_leg4;
+        let t868 = minus_rate_rod_leg2 * t867;
+        let t869 = t866 + t868;
+        let t871 = pose[0] * rate_cross_leg4;
+        let t872 = 1.8867924528301887 * t871;
+        let t873 = minus_rate_rod_leg2 * t872;
+        let t874 = c_rod_leg2 * t873;
+        let t875 = minus_s_rod_leg2 * t869 + t874;
+        let t878 = 3.5599857600569598 * (rate_cross_leg4 * t871);
+        let t883 = 3.5599857600569598 * (t871 * t871);
+        let t884 = t867 * t867;
+        let t887 = t868 + t869;
+        let t889 = c_rod_leg2 * rate_dot_cross_leg4;
+        let t890 = t889 - t873;
+        let t891 = t873 - t890;
+        let t893 = c_rod_leg2 * t887 - minus_s_rod_leg2 * t891;
+        let t904 = c_rod_leg2 * t890 - t874;
+        let t914 = 0.9433962264150944 * t762;
+        let t918 = 0.37735849056603776 * (pose[0] * s_cross_leg4);
+        let t919 = t872 * t867;
+        let t923 = 0.2 * c_cross_leg4;
+        let t925 = t914 * (t884 + t427) + t918 * (t919 + minus_rate_dot_rod_leg2)
+            + t923 * t891;
+        let t928 = t851 + 0.2 * t789;
+        let t931 = t847 + 0.2 * rate_dot_arm_leg4;
+        let t933 = s_cross_leg4 * t928 + c_cross_leg4 * t931;
+        let t934 = c_rod_leg2 * t933;
+        let t939 = s_cross_leg4 * t931 - c_cross_leg4 * t928;
+        let t955 = t914 * (t919 - minus_rate_dot_rod_leg2) + t918 * (t883 + t427)
+            - t923 * t887;
+        let t957 = minus_s_rod_leg2 * t933;
+        let t972 = t889 * t914 + t866 * t918 + t818 * t923;
+        let t982 = 0.2 * t931;
+        Ok([
+            [
+                t112, -(garm_vx_leg1 * t115), -(garm_vx_leg1 * t119), t112,
+                garm_vx_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
+                garm_vx_leg1, -(minus_gcross_vx_leg1 * t142), -(minus_gcross_vx_leg1 * t154),
+                -(minus_gcross_vx_leg1 * t171), -t179, -(minus_gcross_vx_leg1 * t183), 0.0,
+                t190 - 0.07547169811320754 * (25.0 * t194 - 7.0225 * t179),
+                garm_vx_leg1 * t226 + minus_gcross_vx_leg1 * t233,
+                garm_vx_leg1 * t251 - minus_gcross_vx_leg1 * t241, t194, t371,
+                -(garm_vx_leg2 * t374), -(garm_vx_leg2 * t378), t371, garm_vx_leg2 * rate_arm_leg2,
+                ::overact::math::signed(garm_vx_leg2, rate_arm_leg2), garm_vx_leg2,
+                gcross_vx_leg2 * t401 - t403,
+                gcross_vx_leg2 * t413 - minus_grod_vx_leg2 * (t416 - t394 * t394),
+                gcross_vx_leg2 * t430 + minus_grod_vx_leg2 * t393, t439,
+                -(gcross_vx_leg2 * t190 + 1.8867924528301887 * rate_dot_cross_leg2), t447,
+                t190
+                    - 0.07547169811320754
+                        * (25.0 * t451 + 7.0225 * t439 + 7.0225 * t447),
+                garm_vx_leg2 * t481 + gcross_vx_leg2 * t488 + 1.8867924528301887 * t493,
+                garm_vx_leg2 * t506 + gcross_vx_leg2 * t493,
+                t451,
+                t609,
+                garm_vx_leg3 * t612,
+                garm_vx_leg3 * t616,
+                t609,
+                garm_vx_leg3 * rate_arm_leg3,
+                ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
+                garm_vx_leg3,
+                -(minus_gcross_vx_leg3 * t640),
+                -(minus_gcross_vx_leg3 * t653),
+                -(minus_gcross_vx_leg3 * t171),
+                -(minus_gcross_vx_leg3 * t669),
+                minus_gcross_vx_leg3 * t183,
+                0.0,
+                -(garm_vx_leg3 * t690 + minus_gcross_vx_leg3 * t699),
+                garm_vx_leg3 * t720 - minus_gcross_vx_leg3 * t722,
+                garm_vx_leg3 * t737 - minus_gcross_vx_leg3 * t707,
+                garm_vx_leg3 * t747,
+                t844,
+                garm_vx_leg4 * t847,
+                garm_vx_leg4 * t851,
+                t844,
+                garm_vx_leg4 * rate_arm_leg4,
+                ::overact::math::signed(garm_vx_leg4, rate_arm_leg4),
+                garm_vx_leg4,
+                -(minus_gcross_vx_leg4 * t875 + t878),
+                minus_grod_vx_leg2 * (t883 - t884) - minus_gcross_vx_leg4 * t893,
+                minus_grod_vx_leg2 * t866 - minus_gcross_vx_leg4 * t430,
+                t878 - minus_gcross_vx_leg4 * t904,
+                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t190,
+                t447,
+                -(garm_vx_leg4 * t925 + minus_gcross_vx_leg4 * t934
+                    + minus_grod_vx_leg2 * (minus_s_rod_leg2 * t939)),
+                garm_vx_leg4 * t955 + minus_gcross_vx_leg4 * t957
+                    - 1.8867924528301887 * t939,
+                garm_vx_leg4 * t972 - minus_gcross_vx_leg4 * t939,
+                garm_vx_leg4 * t982,
+                acceleration[0],
+            ],
+            [
+                t113, -(garm_vy_leg1 * t115), -(garm_vy_leg1 * t119), t113,
+                garm_vy_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
+                garm_vy_leg1, gcross_vy_leg1 * t142 - t145,
+                gcross_vy_leg1 * t154 + grod_vy_leg1 * (t158 - t135 * t135),
+                gcross_vy_leg1 * t171 + grod_vy_leg1 * t134, t181,
+                gcross_vy_leg1 * t183 + 1.8867924528301887 * rate_dot_cross_leg1, t189,
+                t183
+                    - 0.07547169811320754
+                        * (25.0 * t200 + 7.0225 * t181 + 7.0225 * t189),
+                garm_vy_leg1 * t226 - gcross_vy_leg1 * t233 - 1.8867924528301887 * t241,
+                garm_vy_leg1 * t251 + gcross_vy_leg1 * t241,
+                t200,
+                t372,
+                -(garm_vy_leg2 * t374),
+                -(garm_vy_leg2 * t378),
+                t372,
+                garm_vy_leg2 * rate_arm_leg2,
+                ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
+                garm_vy_leg2,
+                -(minus_gcross_vy_leg2 * t401),
+                -(minus_gcross_vy_leg2 * t413),
+                -(minus_gcross_vy_leg2 * t430),
+                -t440,
+                minus_gcross_vy_leg2 * t190,
+                0.0,
+                t183 - 0.07547169811320754 * (25.0 * t459 - 7.0225 * t440),
+                garm_vy_leg2 * t481 - minus_gcross_vy_leg2 * t488,
+                garm_vy_leg2 * t506 - minus_gcross_vy_leg2 * t493,
+                t459,
+                t610,
+                garm_vy_leg3 * t612,
+                garm_vy_leg3 * t616,
+                t610,
+                garm_vy_leg3 * rate_arm_leg3,
+                ::overact::math::signed(garm_vy_leg3, rate_arm_leg3),
+                garm_vy_leg3,
+                -(minus_gcross_vy_leg3 * t640 + t644),
+                -(minus_gcross_vy_leg3 * t653 + grod_vy_leg1 * (t657 - t658)),
+                grod_vy_leg1 * t631 - minus_gcross_vy_leg3 * t171,
+                t644 - minus_gcross_vy_leg3 * t669,
+                minus_gcross_vy_leg3 * t183 - 1.8867924528301887 * rate_dot_cross_leg3,
+                t189,
+                -(garm_vy_leg3 * t690 + minus_gcross_vy_leg3 * t699
+                    + grod_vy_leg1 * (s_rod_leg1 * t707)),
+                garm_vy_leg3 * t720 - minus_gcross_vy_leg3 * t722
+                    + 1.8867924528301887 * t707,
+                garm_vy_leg3 * t737 - minus_gcross_vy_leg3 * t707,
+                garm_vy_leg3 * t747,
+                t845,
+                garm_vy_leg4 * t847,
+                garm_vy_leg4 * t851,
+                t845,
+                garm_vy_leg4 * rate_arm_leg4,
+                ::overact::math::signed(garm_vy_leg4, rate_arm_leg4),
+                garm_vy_leg4,
+                -(minus_gcross_vy_leg4 * t875),
+                -(minus_gcross_vy_leg4 * t893),
+                -(minus_gcross_vy_leg4 * t430),
+                -(minus_gcross_vy_leg4 * t904),
+                -(minus_gcross_vy_leg4 * t190),
+                0.0,
+                -(garm_vy_leg4 * t925 + minus_gcross_vy_leg4 * t934),
+                garm_vy_leg4 * t955 + minus_gcross_vy_leg4 * t957,
+                garm_vy_leg4 * t972 - minus_gcross_vy_leg4 * t939,
+                garm_vy_leg4 * t982,
+                acceleration[1],
+            ],
+            [
+                t114, -(garm_vz_leg1 * t115), -(garm_vz_leg1 * t119), t114,
+                garm_vz_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vz_leg1, rate_arm_leg1),
+                garm_vz_leg1, -(minus_gcross_vz_leg1 * t142), -(minus_gcross_vz_leg1 * t154),
+                -(minus_gcross_vz_leg1 * t171), -t182, -(minus_gcross_vz_leg1 * t183), 0.0,
+                t209 - 0.07547169811320754 * (25.0 * t210 - 7.0225 * t182),
+                garm_vz_leg1 * t226 + minus_gcross_vz_leg1 * t233,
+                garm_vz_leg1 * t251 - minus_gcross_vz_leg1 * t241, t210, t373,
+                -(garm_vz_leg2 * t374), -(garm_vz_leg2 * t378), t373, garm_vz_leg2 * rate_arm_leg2,
+                ::overact::math::signed(garm_vz_leg2, rate_arm_leg2), garm_vz_leg2,
+                -(minus_gcross_vz_leg2 * t401), -(minus_gcross_vz_leg2 * t413),
+                -(minus_gcross_vz_leg2 * t430), -t441, minus_gcross_vz_leg2 * t190, 0.0,
+                t209 - 0.07547169811320754 * (25.0 * t465 - 7.0225 * t441),
+                garm_vz_leg2 * t481 - minus_gcross_vz_leg2 * t488,
+                garm_vz_leg2 * t506 - minus_gcross_vz_leg2 * t493, t465, t611, garm_vz_leg3 * t612,
+                garm_vz_leg3 * t616, t611, garm_vz_leg3 * rate_arm_leg3,
+                ::overact::math::signed(garm_vz_leg3, rate_arm_leg3), garm_vz_leg3,
+                gcross_vz_leg3 * t640, gcross_vz_leg3 * t653, gcross_vz_leg3 * t171,
+                gcross_vz_leg3 * t669, -(gcross_vz_leg3 * t183), 0.0,
+                gcross_vz_leg3 * t699 - garm_vz_leg3 * t690,
+                garm_vz_leg3 * t720 + gcross_vz_leg3 * t722,
+                garm_vz_leg3 * t737 + gcross_vz_leg3 * t707, garm_vz_leg3 * t747, t846,
+                garm_vz_leg4 * t847, garm_vz_leg4 * t851, t846, garm_vz_leg4 * rate_arm_leg4,
+                ::overact::math::signed(garm_vz_leg4, rate_arm_leg4), garm_vz_leg4,
+                gcross_vz_leg4 * t875, gcross_vz_leg4 * t893, gcross_vz_leg4 * t430,
+                gcross_vz_leg4 * t904, gcross_vz_leg4 * t190, 0.0,
+                gcross_vz_leg4 * t934 - garm_vz_leg4 * t925,
+                garm_vz_leg4 * t955 - gcross_vz_leg4 * t957,
+                garm_vz_leg4 * t972 + gcross_vz_leg4 * t939, garm_vz_leg4 * t982, t208,
+            ],
+        ])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -2043,7 +3069,7 @@ impl Delta4 {
     /// Output: 3 x 69.
     /// Columns: `PARAMETERS`.
     ///
-    /// 1044 operations (321 additions, 712 multiplications, 11 divisions), 0 square roots, 12 trigonometric pairs, 12 signs, 893 intermediates.
+    /// 1120 operations (373 additions, 726 multiplications, 21 divisions), 6 square roots, 0 trigonometric pairs, 12 signs, 953 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2054,597 +3080,645 @@ impl Delta4 {
         start: &[f64; 3],
     ) -> Result<[[f64; 69]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
-        let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.2809 + 0.04;
+        let t14 = 0.4 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.20079840636817814, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t21 = 0.2 * c_arm_leg1;
+        let t23 = t0 - (0.2 + t21);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = t23 * t25;
+        let t28 = pose[1] + 0.05;
+        let t29 = t28 - 0.2;
+        let t30 = t29 * t29;
+        let t32 = 0.16 * (t30 + t3);
+        let t33 = pose[0] * pose[0];
+        let t35 = t33 + t30 + t3;
+        let t37 = t35 - 0.2809 + 0.04;
+        let t39 = t32 - t37 * t37;
+        ::overact::guard::reach(t39, "leg2")?;
+        let t40 = ::overact::math::sqrt(t39);
+        ::overact::guard::leg(t40, 0.20079840636817814, "leg2")?;
+        let t41 = 1.0 / t40;
+        let t42 = 2.0 * t41;
+        let garm_vx_leg2 = pose[0] * t42;
+        let t46 = pose[0] - 0.05;
+        let t47 = t46 + 0.2;
+        let t48 = t47 * t47;
+        let t50 = 0.16 * (t48 + t3);
+        let t51 = 1.0 / t50;
+        let t52 = 0.4 * t47;
+        let t54 = t48 + t8 + t3;
+        let t56 = t54 - 0.2809 + 0.04;
+        let t59 = t50 - t56 * t56;
+        ::overact::guard::reach(t59, "leg3")?;
+        let t60 = ::overact::math::sqrt(t59);
+        ::overact::guard::leg(t60, 0.20079840636817814, "leg3")?;
+        let minus_c_arm_leg3 = t51 * (t52 * t56 + t14 * t60);
+        let t64 = 0.2 * minus_c_arm_leg3;
+        let t66 = t46 - (t64 - 0.2);
+        let t67 = 1.0 / t60;
+        let t68 = 2.0 * t67;
+        let garm_vx_leg3 = t66 * t68;
+        let t72 = pose[1] - 0.05;
+        let t73 = t72 + 0.2;
+        let t74 = t73 * t73;
+        let t76 = 0.16 * (t74 + t3);
+        let t78 = t33 + t74 + t3;
+        let t80 = t78 - 0.2809 + 0.04;
+        let t82 = t76 - t80 * t80;
+        ::overact::guard::reach(t82, "leg4")?;
+        let t83 = ::overact::math::sqrt(t82);
+        ::overact::guard::leg(t83, 0.20079840636817814, "leg4")?;
+        let t84 = 1.0 / t83;
+        let t85 = 2.0 * t84;
+        let garm_vx_leg4 = pose[0] * t85;
+        let t88 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t88, 22.533170865545554, "actuators")?;
+        ::overact::guard::platform(t88, 22.533170865545554, "actuators")?;
+        let t89 = 1.0 / t88;
+        let t90 = 0.4 * t24;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let s_rod_leg1 = 1.8867924528301887 * pose[1];
+        let t98 = 1.0 - 3.5599857600569598 * t8;
+        ::overact::guard::reach(t98, "leg1")?;
+        ::overact::guard::reach(t98, "leg3")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t98);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t12 = c_armcross_leg1 * c_rod_leg1;
-        let t13 = s_armcross_leg1 * c_rod_leg1;
-        let t16 = c_arm_leg1 * t13 - s_arm_leg1 * t12;
-        ::overact::guard::leg(t16, 0.9471622941895192, "leg1")?;
-        let t17 = 1.0 / t16;
-        let t18 = 5.0 * t17;
-        let garm_vx_leg1 = t12 * t18;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
-        let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t33 = s_armcross_leg2 * c_rod_leg2;
-        let t35 = c_armcross_leg2 * c_rod_leg2;
-        let t37 = c_arm_leg2 * t33 - s_arm_leg2 * t35;
-        ::overact::guard::leg(t37, 0.9471622941895197, "leg2")?;
-        let t38 = 1.0 / t37;
-        let t39 = 5.0 * t38;
-        let minus_garm_vx_leg2 = s_rod_leg2 * t39;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
-        let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t55 = c_armcross_leg3 * c_rod_leg3;
-        let t57 = s_armcross_leg3 * c_rod_leg3;
-        let t59 = s_arm_leg3 * t55 - c_arm_leg3 * t57;
-        ::overact::guard::leg(t59, 0.9471622941895192, "leg3")?;
-        let t60 = 1.0 / t59;
-        let t61 = 5.0 * t60;
-        let garm_vx_leg3 = t55 * t61;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        ::overact::guard::leg(c_rod_leg4, 1.0, "leg4")?;
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let (s_cross_leg4, c_cross_leg4) = ::overact::math::sin_cos(joints[10]);
-        let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
-        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let t77 = c_armcross_leg4 * c_rod_leg4;
-        let t79 = s_armcross_leg4 * c_rod_leg4;
-        let t81 = s_arm_leg4 * t77 - c_arm_leg4 * t79;
-        ::overact::guard::leg(t81, 0.9471622941895192, "leg4")?;
-        let t82 = 1.0 / t81;
-        let t83 = 5.0 * t82;
-        let minus_garm_vx_leg4 = s_rod_leg4 * t83;
-        let t86 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3 + minus_garm_vx_leg4 * minus_garm_vx_leg4;
-        ::overact::guard::platform(t86, 22.53317086554555, "actuators")?;
-        ::overact::guard::platform(t86, 22.53317086554555, "actuators")?;
-        let t87 = 1.0 / t86;
-        let minus_garm_vz_leg1 = t13 * t18;
-        let t96 = garm_vx_leg1 * actuator_velocities[0]
-            - minus_garm_vx_leg2 * actuator_velocities[1]
+        let t100 = 0.53 * c_rod_leg1;
+        let s_cross_leg1 = 2.5 * t17 / t100;
+        let t103 = 0.04 + t8;
+        let t105 = 0.2809 * t98;
+        let t107 = 0.212 * c_rod_leg1;
+        let c_cross_leg1 = (t10 - t103 - t105) / t107;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t112 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t90
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t112)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t112));
+        let garm_vy_leg1 = pose[1] * t25;
+        let t125 = 1.0 / t32;
+        let t126 = 0.4 * t29;
+        let c_arm_leg2 = t125 * (t126 * t37 - t14 * t40);
+        let t131 = 0.2 * c_arm_leg2;
+        let t133 = t28 - (0.2 + t131);
+        let garm_vy_leg2 = t133 * t42;
+        let garm_vy_leg3 = pose[1] * t68;
+        let t140 = 1.0 / t76;
+        let t141 = 0.4 * t73;
+        let minus_c_arm_leg4 = t140 * (t141 * t80 + t14 * t83);
+        let t146 = 0.2 * minus_c_arm_leg4;
+        let t148 = t72 - (t146 - 0.2);
+        let garm_vy_leg4 = t148 * t85;
+        let t158 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3 + garm_vx_leg4 * garm_vy_leg4;
+        let t159 = t158 * t89;
+        let t161 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t158 * t159;
+        ::overact::guard::platform(t161, 22.533170865545554, "actuators")?;
+        ::overact::guard::platform(t161, 22.533170865545554, "actuators")?;
+        let t162 = 1.0 / t161;
+        let t176 = garm_vx_leg1 * actuator_velocities[0]
+            + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2]
-            - minus_garm_vx_leg4 * actuator_velocities[3];
-        let garm_vy_leg1 = s_rod_leg1 * t18;
-        let garm_vy_leg2 = t35 * t39;
-        let garm_vy_leg3 = s_rod_leg3 * t61;
-        let garm_vy_leg4 = t77 * t83;
-        let t108 = garm_vx_leg1 * garm_vy_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
-            + garm_vx_leg3 * garm_vy_leg3 - minus_garm_vx_leg4 * garm_vy_leg4;
-        let t109 = t108 * t87;
-        let t118 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t108 * t109;
-        ::overact::guard::platform(t118, 22.533170865545543, "actuators")?;
-        ::overact::guard::platform(t118, 22.533170865545543, "actuators")?;
-        let t119 = 1.0 / t118;
-        let t128 = garm_vy_leg1 * actuator_velocities[0]
+            + garm_vx_leg4 * actuator_velocities[3];
+        let t178 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
             + garm_vy_leg3 * actuator_velocities[2]
-            + garm_vy_leg4 * actuator_velocities[3] - t96 * t109;
-        let garm_vz_leg3 = t57 * t61;
-        let minus_garm_vz_leg2 = t33 * t39;
-        let garm_vz_leg4 = t79 * t83;
-        let t146 = minus_garm_vx_leg2 * minus_garm_vz_leg2
-            - garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg3 * garm_vz_leg3
-            - minus_garm_vx_leg4 * garm_vz_leg4;
-        let t147 = t146 * t87;
-        let t149 = garm_vy_leg3 * garm_vz_leg3
-            - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2)
-            + garm_vy_leg4 * garm_vz_leg4 - t108 * t147;
-        let t150 = t149 * t119;
-        let t161 = minus_garm_vz_leg1 * minus_garm_vz_leg1
-            + minus_garm_vz_leg2 * minus_garm_vz_leg2 + garm_vz_leg3 * garm_vz_leg3
-            + garm_vz_leg4 * garm_vz_leg4 - t146 * t147 - t149 * t150;
-        ::overact::guard::platform(t161, 66.4019122371629, "actuators")?;
-        ::overact::guard::platform(t161, 66.4019122371629, "actuators")?;
-        let t162 = 1.0 / t161;
-        let t173 = garm_vz_leg3 * actuator_velocities[2]
-            - (minus_garm_vz_leg1 * actuator_velocities[0]
-                + minus_garm_vz_leg2 * actuator_velocities[1])
-            + garm_vz_leg4 * actuator_velocities[3] - t96 * t147 - t150 * t128;
-        let t174 = t162 * t173;
-        let t176 = t119 * t128 - t150 * t174;
-        let t180 = t96 * t87 - t109 * t176 - t147 * t174;
-        let rate_arm_leg1 = garm_vx_leg1 * t180 + garm_vy_leg1 * t176
-            - minus_garm_vz_leg1 * t174;
-        let t186 = rate_arm_leg1 * rate_arm_leg1;
-        let t189 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.8867924528301887 * t189;
-        let rate_rod_leg1 = grod_vy_leg1 * t176;
-        let t192 = s_armcross_leg1 * rate_rod_leg1;
-        let t194 = 1.8867924528301887 * t17;
-        let gcross_vz_leg1 = s_arm_leg1 * t194;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t194;
-        let minus_gcross_vy_leg1 = t194
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t189)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t189));
-        let rate_cross_leg1 = gcross_vz_leg1 * t174
-            - (minus_gcross_vx_leg1 * t180 + minus_gcross_vy_leg1 * t176);
-        let t210 = rate_cross_leg1 * rate_cross_leg1;
-        let t212 = c_armcross_leg1 * rate_rod_leg1;
-        let t214 = t192 * t192 + t210 + t212 * t212;
-        let t217 = 0.53 * s_rod_leg1;
-        let t219 = t217 * (rate_cross_leg1 * t212);
-        let t221 = 0.2 * s_arm_leg1 * t186 + 0.53 * t13 * t214 + t219 + t219;
-        let t224 = t217 * (rate_cross_leg1 * t192);
-        let t231 = t224 - (0.2 * c_arm_leg1 * t186 + 0.53 * t12 * t214) + t224;
-        let t233 = t217 * rate_cross_leg1;
-        let t234 = rate_cross_leg1 * t233;
-        let t236 = t234 - t217 * t214;
-        let rate_dot_arm_leg1 = minus_garm_vz_leg1 * t221
-            - (garm_vx_leg1 * t231 + garm_vy_leg1 * t236);
-        let t240 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t242 = 0.53 * s_rod_leg2;
-        let t243 = 1.8867924528301887 * t38;
-        let t245 = 1.0 / c_rod_leg2;
-        let gcross_vx_leg2 = t243
-            * (s_arm_leg2 * (s_armcross_leg2 * s_rod_leg2 * t245)
-                + c_arm_leg2 * (c_armcross_leg2 * s_rod_leg2 * t245));
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t243;
-        let gcross_vz_leg2 = s_arm_leg2 * t243;
-        let rate_cross_leg2 = gcross_vx_leg2 * t180 - minus_gcross_vy_leg2 * t176
-            + gcross_vz_leg2 * t174;
-        let t260 = rate_cross_leg2 * rate_cross_leg2;
-        let minus_grod_vx_leg2 = 1.8867924528301887 * t245;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t180;
-        let t263 = s_armcross_leg2 * minus_rate_rod_leg2;
-        let t266 = c_armcross_leg2 * minus_rate_rod_leg2;
-        let t268 = t260 + t263 * t263 + t266 * t266;
-        let t270 = t242 * rate_cross_leg2;
-        let t271 = rate_cross_leg2 * t270;
-        let t272 = t242 * t268 - t271;
-        let rate_arm_leg2 = garm_vy_leg2 * t176 - minus_garm_vx_leg2 * t180
-            - minus_garm_vz_leg2 * t174;
-        let t280 = rate_arm_leg2 * rate_arm_leg2;
-        let t286 = t242 * (rate_cross_leg2 * t263);
-        let t288 = 0.2 * c_arm_leg2 * t280 + 0.53 * t35 * t268 + t286 + t286;
-        let t297 = t242 * (rate_cross_leg2 * t266);
-        let t299 = 0.2 * s_arm_leg2 * t280 + 0.53 * t33 * t268 - t297 - t297;
-        let rate_dot_arm_leg2 = minus_garm_vx_leg2 * t272 + garm_vy_leg2 * t288
-            + minus_garm_vz_leg2 * t299;
-        let t302 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let rate_arm_leg3 = garm_vx_leg3 * t180 + garm_vy_leg3 * t176
-            + garm_vz_leg3 * t174;
-        let t311 = rate_arm_leg3 * rate_arm_leg3;
-        let t314 = 1.0 / c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.8867924528301887 * t314;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t176;
-        let t317 = s_armcross_leg3 * minus_rate_rod_leg3;
-        let t319 = 1.8867924528301887 * t60;
-        let minus_gcross_vx_leg3 = c_arm_leg3 * t319;
-        let minus_gcross_vy_leg3 = t319
-            * (s_arm_leg3 * (s_armcross_leg3 * s_rod_leg3 * t314)
-                + c_arm_leg3 * (c_armcross_leg3 * s_rod_leg3 * t314));
-        let minus_gcross_vz_leg3 = s_arm_leg3 * t319;
-        let minus_rate_cross_leg3 = minus_gcross_vx_leg3 * t180
-            + minus_gcross_vy_leg3 * t176 + minus_gcross_vz_leg3 * t174;
-        let t335 = minus_rate_cross_leg3 * minus_rate_cross_leg3;
-        let t337 = c_armcross_leg3 * minus_rate_rod_leg3;
-        let t339 = t317 * t317 + t335 + t337 * t337;
-        let t342 = 0.53 * s_rod_leg3;
-        let t344 = t342 * (minus_rate_cross_leg3 * t317);
-        let t346 = 0.2 * c_arm_leg3 * t311 + 0.53 * t55 * t339 - t344 - t344;
-        let t349 = t342 * minus_rate_cross_leg3;
-        let t350 = minus_rate_cross_leg3 * t349;
-        let t351 = t342 * t339 - t350;
-        let t360 = t342 * (minus_rate_cross_leg3 * t337);
-        let t362 = 0.2 * s_arm_leg3 * t311 + 0.53 * t57 * t339 + t360 + t360;
-        let minus_rate_dot_arm_leg3 = garm_vx_leg3 * t346 + garm_vy_leg3 * t351
-            + garm_vz_leg3 * t362;
-        let t365 = actuator_accelerations[2] + minus_rate_dot_arm_leg3;
-        let t368 = 1.8867924528301887 * t82;
-        let t370 = 1.0 / c_rod_leg4;
-        let gcross_vx_leg4 = t368
-            * (s_arm_leg4 * (s_armcross_leg4 * s_rod_leg4 * t370)
-                + c_arm_leg4 * (c_armcross_leg4 * s_rod_leg4 * t370));
-        let minus_gcross_vy_leg4 = c_arm_leg4 * t368;
-        let minus_gcross_vz_leg4 = s_arm_leg4 * t368;
-        let rate_cross_leg4 = gcross_vx_leg4 * t180 - minus_gcross_vy_leg4 * t176
-            - minus_gcross_vz_leg4 * t174;
-        let t385 = 0.53 * s_rod_leg4;
-        let t386 = t385 * rate_cross_leg4;
-        let t387 = rate_cross_leg4 * t386;
-        let t388 = rate_cross_leg4 * rate_cross_leg4;
-        let grod_vx_leg4 = 1.8867924528301887 * t370;
-        let rate_rod_leg4 = grod_vx_leg4 * t180;
-        let t391 = s_armcross_leg4 * rate_rod_leg4;
-        let t394 = c_armcross_leg4 * rate_rod_leg4;
-        let t396 = t388 + t391 * t391 + t394 * t394;
-        let t398 = t387 - t385 * t396;
-        let rate_arm_leg4 = garm_vy_leg4 * t176 - minus_garm_vx_leg4 * t180
-            + garm_vz_leg4 * t174;
-        let t406 = rate_arm_leg4 * rate_arm_leg4;
-        let t412 = t385 * (rate_cross_leg4 * t391);
-        let t414 = 0.2 * c_arm_leg4 * t406 + 0.53 * t77 * t396 - t412 - t412;
-        let t423 = t385 * (rate_cross_leg4 * t394);
-        let t425 = 0.2 * s_arm_leg4 * t406 + 0.53 * t79 * t396 + t423 + t423;
-        let rate_dot_arm_leg4 = minus_garm_vx_leg4 * t398 - garm_vy_leg4 * t414
-            - garm_vz_leg4 * t425;
-        let t428 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t430 = garm_vx_leg1 * t240 - minus_garm_vx_leg2 * t302 + garm_vx_leg3 * t365
-            - minus_garm_vx_leg4 * t428;
-        let t440 = garm_vy_leg1 * t240 + garm_vy_leg2 * t302 + garm_vy_leg3 * t365
-            + garm_vy_leg4 * t428 - t109 * t430;
-        let t452 = garm_vz_leg3 * t365
-            - (minus_garm_vz_leg1 * t240 + minus_garm_vz_leg2 * t302)
-            + garm_vz_leg4 * t428 - t147 * t430 - t150 * t440;
-        let t453 = t162 * t452;
-        let t455 = t119 * t440 - t150 * t453;
-        let t459 = t87 * t430 - t109 * t455 - t147 * t453;
-        let t460 = t459 - t231;
-        let t462 = t455 - t236;
-        let t465 = t453 - t221;
-        let rate_dot_arm_leg1_2 = garm_vx_leg1 * t460 + garm_vy_leg1 * t462
-            - minus_garm_vz_leg1 * t465;
-        let t468 = garm_vx_leg1 * rate_dot_arm_leg1_2;
-        let t469 = garm_vy_leg1 * rate_dot_arm_leg1_2;
-        let t470 = minus_garm_vz_leg1 * rate_dot_arm_leg1_2;
-        let t471 = 9.81 * c_arm_leg1;
-        let t475 = 9.81 * s_arm_leg1;
-        let rate_dot_cross_leg1 = gcross_vz_leg1 * t465
-            - (minus_gcross_vx_leg1 * t460 + minus_gcross_vy_leg1 * t462);
-        let t490 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t491 = c_rod_leg1 * rate_cross_leg1;
-        let t492 = rate_rod_leg1 * t491;
-        let t493 = t490 + t492;
-        let t495 = 1.8867924528301887 * t233;
-        let t496 = rate_rod_leg1 * t495;
-        let t497 = c_rod_leg1 * t496;
-        let t498 = s_rod_leg1 * t493 + t497;
-        let t501 = 3.5599857600569598 * t234;
-        let t504 = t492 + t493;
-        let t506 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t507 = t506 - t496;
-        let t510 = c_rod_leg1 * t504 - s_rod_leg1 * (t496 - t507);
-        let t513 = 3.5599857600569598 * (t233 * t233);
-        let t520 = t495 * t491;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t462;
-        let t524 = rate_rod_leg1 * rate_rod_leg1;
-        let t527 = s_rod_leg1 * (t520 + rate_dot_rod_leg1) + c_rod_leg1 * (t524 - t513);
-        let t534 = c_rod_leg1 * t507 - t497;
-        let t535 = minus_gcross_vx_leg1 * t534;
-        let t537 = t501 - minus_gcross_vy_leg1 * t534;
-        let t538 = gcross_vz_leg1 * t534;
-        let t539 = 1.8867924528301887 * t455;
-        let t545 = grod_vy_leg1 * rate_dot_rod_leg1;
-        let t546 = 1.8867924528301887 * t459;
-        let t548 = 0.2 * rate_dot_arm_leg1_2 - t471;
-        let t549 = 0.2 * t548;
-        let t550 = garm_vx_leg1 * t549;
-        let t556 = garm_vy_leg1 * t549;
-        let t564 = t453 + 9.81;
-        let t565 = 1.8867924528301887 * t564;
-        let t567 = minus_garm_vz_leg1 * t549;
-        let t572 = 0.2 * t16;
-        let t576 = s_rod_leg1 * (0.2 * s_cross_leg1);
-        let t580 = 0.2 * c_cross_leg1;
-        let t582 = t572 * (t520 - rate_dot_rod_leg1) + t576 * (t513 + t524)
-            - t580 * t504;
-        let t585 = t475 + 0.2 * t186;
-        let t589 = s_rod_leg1 * (s_cross_leg1 * t585 + c_cross_leg1 * t548);
-        let t597 = s_cross_leg1 * t548 - c_cross_leg1 * t585;
-        let t607 = t572 * t506 + t576 * t490 + t210 * t580;
-        let t617 = t455 + t288;
-        let t619 = t459 - t272;
-        let t622 = t453 - t299;
-        let rate_dot_arm_leg2_2 = garm_vy_leg2 * t617 - minus_garm_vx_leg2 * t619
-            - minus_garm_vz_leg2 * t622;
-        let t625 = minus_garm_vx_leg2 * rate_dot_arm_leg2_2;
-        let t626 = garm_vy_leg2 * rate_dot_arm_leg2_2;
-        let t627 = minus_garm_vz_leg2 * rate_dot_arm_leg2_2;
-        let t628 = 9.81 * c_arm_leg2;
-        let t632 = 9.81 * s_arm_leg2;
-        let rate_dot_cross_leg2 = gcross_vx_leg2 * t619 - minus_gcross_vy_leg2 * t617
-            + gcross_vz_leg2 * t622;
-        let t647 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t648 = c_rod_leg2 * rate_cross_leg2;
-        let t649 = minus_rate_rod_leg2 * t648;
-        let t650 = t647 - t649;
-        let t652 = 1.8867924528301887 * t270;
-        let t653 = minus_rate_rod_leg2 * t652;
-        let t654 = c_rod_leg2 * t653;
-        let t655 = s_rod_leg2 * t650 - t654;
-        let t657 = 3.5599857600569598 * t271;
-        let t661 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t662 = t661 + t653;
-        let t665 = t650 - t649;
-        let t667 = s_rod_leg2 * (t653 + t662) + c_rod_leg2 * t665;
-        let t670 = 3.5599857600569598 * (t270 * t270);
-        let t677 = t652 * t648;
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t619;
-        let t681 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t684 = s_rod_leg2 * (t677 - minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t681 - t670);
-        let t691 = t654 + c_rod_leg2 * t662;
-        let t693 = gcross_vx_leg2 * t691 - t657;
-        let t694 = minus_gcross_vy_leg2 * t691;
-        let t695 = gcross_vz_leg2 * t691;
-        let t701 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
-        let t704 = 0.2 * rate_dot_arm_leg2_2 - t628;
-        let t705 = 0.2 * t704;
-        let t706 = minus_garm_vx_leg2 * t705;
-        let t713 = garm_vy_leg2 * t705;
-        let t720 = minus_garm_vz_leg2 * t705;
-        let t727 = t632 + 0.2 * t280;
-        let t729 = s_cross_leg2 * t704 - c_cross_leg2 * t727;
-        let t731 = 0.2 * t37;
-        let t735 = s_rod_leg2 * (0.2 * s_cross_leg2);
-        let t739 = 0.2 * c_cross_leg2;
-        let t741 = t731 * (t677 + minus_rate_dot_rod_leg2) + t735 * (t670 + t681)
-            - t739 * t665;
-        let t746 = s_rod_leg2 * (s_cross_leg2 * t727 + c_cross_leg2 * t704);
-        let t761 = t731 * t661 + t735 * t647 + t260 * t739;
-        let t770 = t459 - t346;
-        let t772 = t455 - t351;
-        let t775 = t453 - t362;
-        let rate_dot_arm_leg3 = garm_vx_leg3 * t770 + garm_vy_leg3 * t772
-            + garm_vz_leg3 * t775;
-        let t778 = garm_vx_leg3 * rate_dot_arm_leg3;
-        let t779 = garm_vy_leg3 * rate_dot_arm_leg3;
-        let t780 = garm_vz_leg3 * rate_dot_arm_leg3;
-        let t781 = 9.81 * c_arm_leg3;
-        let t785 = 9.81 * s_arm_leg3;
-        let t795 = c_rod_leg3 * minus_rate_cross_leg3;
-        let t796 = minus_rate_rod_leg3 * t795;
-        let minus_rate_dot_cross_leg3 = minus_gcross_vx_leg3 * t770
-            + minus_gcross_vy_leg3 * t772 + minus_gcross_vz_leg3 * t775;
-        let t802 = s_rod_leg3 * minus_rate_dot_cross_leg3;
-        let t803 = t796 - t802;
-        let t805 = 1.8867924528301887 * t349;
-        let t806 = minus_rate_rod_leg3 * t805;
-        let t807 = c_rod_leg3 * t806;
-        let t808 = s_rod_leg3 * t803 + t807;
-        let t810 = 3.5599857600569598 * t350;
-        let t814 = t796 + t803;
-        let t816 = c_rod_leg3 * minus_rate_dot_cross_leg3;
-        let t817 = t816 + t806;
-        let t818 = t806 + t817;
-        let t820 = c_rod_leg3 * t814 - s_rod_leg3 * t818;
-        let t824 = 3.5599857600569598 * (t349 * t349);
-        let t825 = t795 * t795;
-        let t830 = t805 * t795;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t772;
-        let t832 = t830 - minus_rate_dot_rod_leg3;
-        let t834 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t837 = s_rod_leg3 * t832 + c_rod_leg3 * (t834 - t824);
-        let t844 = t807 + c_rod_leg3 * t817;
-        let t855 = 0.2 * t59;
-        let t859 = s_rod_leg3 * (0.2 * s_cross_leg3);
-        let t862 = 0.2 * c_cross_leg3;
-        let t864 = t855 * (t825 + t834) - t859 * t832 - t862 * t818;
-        let t867 = t785 + 0.2 * t311;
-        let t870 = 0.2 * rate_dot_arm_leg3 - t781;
-        let t872 = s_cross_leg3 * t867 + c_cross_leg3 * t870;
-        let t873 = c_rod_leg3 * t872;
-        let t881 = s_cross_leg3 * t870 - c_cross_leg3 * t867;
-        let t894 = t859 * (t824 + t834) - t855 * (t830 + minus_rate_dot_rod_leg3)
-            - t862 * t814;
-        let t896 = s_rod_leg3 * t872;
-        let t911 = t855 * t816 - t859 * t802 + t335 * t862;
-        let t921 = 0.2 * t870;
-        let t925 = t455 - t414;
-        let t927 = t459 - t398;
-        let t930 = t453 - t425;
-        let rate_dot_arm_leg4_2 = garm_vy_leg4 * t925 - minus_garm_vx_leg4 * t927
-            + garm_vz_leg4 * t930;
-        let t933 = minus_garm_vx_leg4 * rate_dot_arm_leg4_2;
-        let t934 = garm_vy_leg4 * rate_dot_arm_leg4_2;
-        let t935 = garm_vz_leg4 * rate_dot_arm_leg4_2;
-        let t936 = 9.81 * c_arm_leg4;
-        let t940 = 9.81 * s_arm_leg4;
-        let rate_dot_cross_leg4 = gcross_vx_leg4 * t927 - minus_gcross_vy_leg4 * t925
-            - minus_gcross_vz_leg4 * t930;
-        let t955 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t956 = c_rod_leg4 * rate_cross_leg4;
-        let t957 = rate_rod_leg4 * t956;
-        let t958 = t955 + t957;
-        let t960 = 1.8867924528301887 * t386;
-        let t961 = rate_rod_leg4 * t960;
-        let t962 = c_rod_leg4 * t961;
-        let t963 = s_rod_leg4 * t958 + t962;
-        let t965 = 3.5599857600569598 * t387;
-        let t969 = t957 + t958;
-        let t971 = c_rod_leg4 * rate_dot_cross_leg4;
-        let t972 = t971 - t961;
-        let t973 = t961 - t972;
-        let t975 = c_rod_leg4 * t969 - s_rod_leg4 * t973;
-        let t978 = 3.5599857600569598 * (t386 * t386);
-        let t979 = t956 * t956;
-        let t985 = t960 * t956;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t927;
-        let t987 = t985 + rate_dot_rod_leg4;
-        let t989 = rate_rod_leg4 * rate_rod_leg4;
-        let t992 = s_rod_leg4 * t987 + c_rod_leg4 * (t989 - t978);
-        let t999 = c_rod_leg4 * t972 - t962;
-        let t1011 = t940 + 0.2 * t406;
-        let t1014 = 0.2 * rate_dot_arm_leg4_2 - t936;
-        let t1016 = s_cross_leg4 * t1011 + c_cross_leg4 * t1014;
-        let t1017 = c_rod_leg4 * t1016;
-        let t1019 = 0.2 * t81;
-        let t1023 = s_rod_leg4 * (0.2 * s_cross_leg4);
-        let t1026 = 0.2 * c_cross_leg4;
-        let t1028 = t1019 * (t979 + t989) - t1023 * t987 - t1026 * t973;
-        let t1033 = s_cross_leg4 * t1014 - c_cross_leg4 * t1011;
-        let t1049 = t1023 * (t978 + t989) - t1019 * (t985 - rate_dot_rod_leg4)
-            - t1026 * t969;
-        let t1051 = s_rod_leg4 * t1016;
-        let t1067 = t1023 * t955 - t1019 * t971 + t388 * t1026;
-        let t1076 = 0.2 * t1014;
+            + garm_vy_leg4 * actuator_velocities[3] - t176 * t159;
+        let t180 = 0.2 * minus_s_arm_leg1;
+        let t181 = pose[2] - t180;
+        let garm_vz_leg1 = t181 * t25;
+        let minus_s_arm_leg2 = t125 * (t14 * t37 + t126 * t40);
+        let t188 = 0.2 * minus_s_arm_leg2;
+        let t189 = pose[2] - t188;
+        let garm_vz_leg2 = t189 * t42;
+        let s_arm_leg3 = t51 * (t52 * t60 - t14 * t56);
+        let t197 = 0.2 * s_arm_leg3;
+        let t198 = pose[2] + t197;
+        let garm_vz_leg3 = t198 * t68;
+        let s_arm_leg4 = t140 * (t141 * t83 - t14 * t80);
+        let t206 = 0.2 * s_arm_leg4;
+        let t207 = pose[2] + t206;
+        let garm_vz_leg4 = t207 * t85;
+        let t217 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3 + garm_vx_leg4 * garm_vz_leg4;
+        let t218 = t217 * t89;
+        let t220 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 + garm_vy_leg4 * garm_vz_leg4 - t158 * t218;
+        let t221 = t220 * t162;
+        let t232 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 + garm_vz_leg4 * garm_vz_leg4 - t217 * t218
+            - t220 * t221;
+        ::overact::guard::platform(t232, 66.40191223716288, "actuators")?;
+        ::overact::guard::platform(t232, 66.40191223716288, "actuators")?;
+        let t233 = 1.0 / t232;
+        let t244 = garm_vz_leg1 * actuator_velocities[0]
+            + garm_vz_leg2 * actuator_velocities[1]
+            + garm_vz_leg3 * actuator_velocities[2]
+            + garm_vz_leg4 * actuator_velocities[3] - t176 * t218 - t221 * t178;
+        let t245 = t233 * t244;
+        let t247 = t162 * t178 - t221 * t245;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t90;
+        let t254 = t176 * t89 - t159 * t247 - t218 * t245;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t90;
+        let rate_cross_leg1 = gcross_vy_leg1 * t247 - minus_gcross_vx_leg1 * t254
+            - minus_gcross_vz_leg1 * t245;
+        let grod_vy_leg1 = 1.8867924528301887 * t112;
+        let rate_rod_leg1 = grod_vy_leg1 * t247;
+        let t262 = s_armcross_leg1 * rate_rod_leg1;
+        let t264 = pose[1] * (rate_cross_leg1 * t262);
+        let rate_arm_leg1 = garm_vx_leg1 * t254 + garm_vy_leg1 * t247
+            + garm_vz_leg1 * t245;
+        let t270 = rate_arm_leg1 * rate_arm_leg1;
+        let t273 = rate_cross_leg1 * rate_cross_leg1;
+        let t275 = c_armcross_leg1 * rate_rod_leg1;
+        let t277 = t262 * t262 + t273 + t275 * t275;
+        let t281 = t264 - (t21 * t270 + t23 * t277) + t264;
+        let t283 = pose[1] * rate_cross_leg1;
+        let t284 = rate_cross_leg1 * t283;
+        let t286 = t284 - pose[1] * t277;
+        let t290 = pose[1] * (rate_cross_leg1 * t275);
+        let t295 = t290 - (t180 * t270 + t181 * t277) + t290;
+        let minus_rate_dot_arm_leg1 = garm_vx_leg1 * t281 + garm_vy_leg1 * t286
+            + garm_vz_leg1 * t295;
+        let t298 = actuator_accelerations[0] + minus_rate_dot_arm_leg1;
+        let t300 = 0.4 * t41;
+        let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
+        let t304 = 1.0 - 3.5599857600569598 * t33;
+        ::overact::guard::reach(t304, "leg2")?;
+        ::overact::guard::reach(t304, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t304);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t306 = 0.53 * c_rod_leg2;
+        let s_cross_leg2 = 2.5 * t40 / t306;
+        let t309 = 0.04 + t33;
+        let t311 = 0.2809 * t304;
+        let t313 = 0.212 * c_rod_leg2;
+        let c_cross_leg2 = (t35 - t309 - t311) / t313;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t318 = 1.0 / c_rod_leg2;
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let gcross_vx_leg2 = t300
+            * (minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t318)
+                - c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t318));
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t300;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t300;
+        let rate_cross_leg2 = gcross_vx_leg2 * t254 - minus_gcross_vy_leg2 * t247
+            - minus_gcross_vz_leg2 * t245;
+        let t336 = pose[0] * rate_cross_leg2;
+        let t337 = rate_cross_leg2 * t336;
+        let t338 = rate_cross_leg2 * rate_cross_leg2;
+        let minus_grod_vx_leg2 = 1.8867924528301887 * t318;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t254;
+        let t341 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t344 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t346 = t338 + t341 * t341 + t344 * t344;
+        let t348 = t337 - pose[0] * t346;
+        let t351 = pose[0] * (rate_cross_leg2 * t341);
+        let rate_arm_leg2 = garm_vx_leg2 * t254 + garm_vy_leg2 * t247
+            + garm_vz_leg2 * t245;
+        let t357 = rate_arm_leg2 * rate_arm_leg2;
+        let t362 = t351 - (t131 * t357 + t133 * t346) + t351;
+        let t366 = pose[0] * (rate_cross_leg2 * t344);
+        let t371 = t366 - (t188 * t357 + t189 * t346) + t366;
+        let minus_rate_dot_arm_leg2 = garm_vx_leg2 * t348 + garm_vy_leg2 * t362
+            + garm_vz_leg2 * t371;
+        let t374 = actuator_accelerations[1] + minus_rate_dot_arm_leg2;
+        let rate_arm_leg3 = garm_vx_leg3 * t254 + garm_vy_leg3 * t247
+            + garm_vz_leg3 * t245;
+        let t382 = rate_arm_leg3 * rate_arm_leg3;
+        let c_cross_leg3 = (t54 - t103 - t105) / t107;
+        let s_cross_leg3 = 2.5 * t60 / t100;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t392 = s_armcross_leg3 * rate_rod_leg1;
+        let t394 = 0.4 * t67;
+        let gcross_vz_leg3 = s_arm_leg3 * t394;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t394;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t394
+            * (s_arm_leg3 * (t112 * (s_rod_leg1 * s_armcross_leg3))
+                + minus_c_arm_leg3 * (t112 * (s_rod_leg1 * minus_c_armcross_leg3)));
+        let rate_cross_leg3 = gcross_vz_leg3 * t245
+            - (minus_gcross_vx_leg3 * t254 + minus_gcross_vy_leg3 * t247);
+        let t413 = rate_cross_leg3 * rate_cross_leg3;
+        let t415 = minus_c_armcross_leg3 * rate_rod_leg1;
+        let t417 = t392 * t392 + t413 + t415 * t415;
+        let t421 = pose[1] * (rate_cross_leg3 * t392);
+        let t423 = t64 * t382 + t66 * t417 + t421 + t421;
+        let t431 = pose[1] * (rate_cross_leg3 * t415);
+        let t433 = t197 * t382 - t198 * t417 - t431 - t431;
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t423 - garm_vy_leg3 * t286
+            - garm_vz_leg3 * t433;
+        let t436 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let rate_arm_leg4 = garm_vx_leg4 * t254 + garm_vy_leg4 * t247
+            + garm_vz_leg4 * t245;
+        let t444 = rate_arm_leg4 * rate_arm_leg4;
+        let t446 = 0.4 * t84;
+        let gcross_vz_leg4 = s_arm_leg4 * t446;
+        let c_cross_leg4 = (t78 - t309 - t311) / t313;
+        let s_cross_leg4 = 2.5 * t83 / t306;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t446
+            * (s_arm_leg4 * (t318 * (minus_s_rod_leg2 * s_armcross_leg4))
+                + minus_c_arm_leg4
+                    * (t318 * (minus_s_rod_leg2 * minus_c_armcross_leg4)));
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t446;
+        let rate_cross_leg4 = gcross_vz_leg4 * t245
+            - (minus_gcross_vx_leg4 * t254 + minus_gcross_vy_leg4 * t247);
+        let t473 = rate_cross_leg4 * rate_cross_leg4;
+        let t474 = s_armcross_leg4 * minus_rate_rod_leg2;
+        let t477 = minus_c_armcross_leg4 * minus_rate_rod_leg2;
+        let t479 = t473 + t474 * t474 + t477 * t477;
+        let t483 = pose[0] * (rate_cross_leg4 * t474);
+        let t485 = t146 * t444 + t148 * t479 + t483 + t483;
+        let t493 = pose[0] * (rate_cross_leg4 * t477);
+        let t495 = t206 * t444 - t207 * t479 - t493 - t493;
+        let rate_dot_arm_leg4 = garm_vy_leg4 * t485 - garm_vx_leg4 * t348
+            - garm_vz_leg4 * t495;
+        let t498 = actuator_accelerations[3] - rate_dot_arm_leg4;
+        let t500 = garm_vx_leg1 * t298 + garm_vx_leg2 * t374 + garm_vx_leg3 * t436
+            + garm_vx_leg4 * t498;
+        let t510 = garm_vy_leg1 * t298 + garm_vy_leg2 * t374 + garm_vy_leg3 * t436
+            + garm_vy_leg4 * t498 - t159 * t500;
+        let t522 = garm_vz_leg1 * t298 + garm_vz_leg2 * t374 + garm_vz_leg3 * t436
+            + garm_vz_leg4 * t498 - t218 * t500 - t221 * t510;
+        let t523 = t233 * t522;
+        let t525 = t162 * t510 - t221 * t523;
+        let t529 = t89 * t500 - t159 * t525 - t218 * t523;
+        let t530 = t529 - t281;
+        let t532 = t525 - t286;
+        let t535 = t523 - t295;
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t530 + garm_vy_leg1 * t532
+            + garm_vz_leg1 * t535;
+        let t538 = garm_vx_leg1 * rate_dot_arm_leg1;
+        let t539 = garm_vy_leg1 * rate_dot_arm_leg1;
+        let t540 = garm_vz_leg1 * rate_dot_arm_leg1;
+        let t541 = 9.81 * c_arm_leg1;
+        let t545 = 9.81 * minus_s_arm_leg1;
+        let rate_dot_cross_leg1 = gcross_vy_leg1 * t532 - minus_gcross_vx_leg1 * t530
+            - minus_gcross_vz_leg1 * t535;
+        let t560 = s_rod_leg1 * rate_dot_cross_leg1;
+        let t561 = c_rod_leg1 * rate_cross_leg1;
+        let t562 = rate_rod_leg1 * t561;
+        let t563 = t560 + t562;
+        let t565 = 1.8867924528301887 * t283;
+        let t566 = rate_rod_leg1 * t565;
+        let t567 = c_rod_leg1 * t566;
+        let t568 = s_rod_leg1 * t563 + t567;
+        let t571 = 3.5599857600569598 * t284;
+        let t574 = t562 + t563;
+        let t576 = c_rod_leg1 * rate_dot_cross_leg1;
+        let t577 = t576 - t566;
+        let t580 = c_rod_leg1 * t574 - s_rod_leg1 * (t566 - t577);
+        let t584 = 3.5599857600569598 * (t283 * t283);
+        let t590 = t565 * t561;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t532;
+        let t594 = rate_rod_leg1 * rate_rod_leg1;
+        let t597 = s_rod_leg1 * (t590 + rate_dot_rod_leg1) + c_rod_leg1 * (t594 - t584);
+        let t604 = c_rod_leg1 * t577 - t567;
+        let t605 = minus_gcross_vx_leg1 * t604;
+        let t607 = gcross_vy_leg1 * t604 + t571;
+        let t608 = minus_gcross_vz_leg1 * t604;
+        let t609 = 1.8867924528301887 * t525;
+        let t615 = grod_vy_leg1 * rate_dot_rod_leg1;
+        let t616 = 1.8867924528301887 * t529;
+        let t618 = 0.2 * rate_dot_arm_leg1 - t541;
+        let t619 = 0.2 * t618;
+        let t620 = garm_vx_leg1 * t619;
+        let t626 = garm_vy_leg1 * t619;
+        let t634 = t523 + 9.81;
+        let t635 = 1.8867924528301887 * t634;
+        let t636 = garm_vz_leg1 * t619;
+        let t642 = 0.9433962264150944 * t17;
+        let t646 = 0.37735849056603776 * (pose[1] * s_cross_leg1);
+        let t650 = 0.2 * c_cross_leg1;
+        let t652 = t642 * (t590 - rate_dot_rod_leg1) + t646 * (t584 + t594)
+            - t650 * t574;
+        let t656 = t545 - 0.2 * t270;
+        let t659 = s_rod_leg1 * (c_cross_leg1 * t618 - s_cross_leg1 * t656);
+        let t667 = c_cross_leg1 * t656 + s_cross_leg1 * t618;
+        let t677 = t642 * t576 + t646 * t560 + t273 * t650;
+        let t687 = t529 - t348;
+        let t689 = t525 - t362;
+        let t692 = t523 - t371;
+        let rate_dot_arm_leg2 = garm_vx_leg2 * t687 + garm_vy_leg2 * t689
+            + garm_vz_leg2 * t692;
+        let t695 = garm_vx_leg2 * rate_dot_arm_leg2;
+        let t696 = garm_vy_leg2 * rate_dot_arm_leg2;
+        let t697 = garm_vz_leg2 * rate_dot_arm_leg2;
+        let t698 = 9.81 * c_arm_leg2;
+        let t702 = 9.81 * minus_s_arm_leg2;
+        let rate_dot_cross_leg2 = gcross_vx_leg2 * t687 - minus_gcross_vy_leg2 * t689
+            - minus_gcross_vz_leg2 * t692;
+        let t717 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t718 = c_rod_leg2 * rate_cross_leg2;
+        let t719 = minus_rate_rod_leg2 * t718;
+        let t720 = t717 + t719;
+        let t722 = 1.8867924528301887 * t336;
+        let t723 = minus_rate_rod_leg2 * t722;
+        let t724 = c_rod_leg2 * t723;
+        let t725 = minus_s_rod_leg2 * t720 + t724;
+        let t727 = 3.5599857600569598 * t337;
+        let t731 = c_rod_leg2 * rate_dot_cross_leg2;
+        let t732 = t731 - t723;
+        let t735 = t719 + t720;
+        let t737 = minus_s_rod_leg2 * (t723 - t732) - c_rod_leg2 * t735;
+        let t740 = 3.5599857600569598 * (t336 * t336);
+        let t747 = t722 * t718;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t687;
+        let t751 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t754 = minus_s_rod_leg2 * (t747 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t751 - t740);
+        let t761 = c_rod_leg2 * t732 - t724;
+        let t763 = gcross_vx_leg2 * t761 + t727;
+        let t764 = minus_gcross_vy_leg2 * t761;
+        let t765 = minus_gcross_vz_leg2 * t761;
+        let t771 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
+        let t773 = 0.2 * rate_dot_arm_leg2 - t698;
+        let t774 = 0.2 * t773;
+        let t775 = garm_vx_leg2 * t774;
+        let t783 = garm_vy_leg2 * t774;
+        let t789 = garm_vz_leg2 * t774;
+        let t795 = 0.9433962264150944 * t40;
+        let t799 = 0.37735849056603776 * (pose[0] * s_cross_leg2);
+        let t803 = 0.2 * c_cross_leg2;
+        let t805 = t795 * (minus_rate_dot_rod_leg2 - t747) - t799 * (t740 + t751)
+            + t803 * t735;
+        let t809 = t702 - 0.2 * t357;
+        let t812 = minus_s_rod_leg2 * (c_cross_leg2 * t773 - s_cross_leg2 * t809);
+        let t817 = c_cross_leg2 * t809 + s_cross_leg2 * t773;
+        let t830 = t795 * t731 + t799 * t717 + t338 * t803;
+        let t840 = t529 + t423;
+        let t844 = t523 - t433;
+        let rate_dot_arm_leg3_2 = garm_vx_leg3 * t840 + garm_vy_leg3 * t532
+            + garm_vz_leg3 * t844;
+        let t847 = garm_vx_leg3 * rate_dot_arm_leg3_2;
+        let t848 = garm_vy_leg3 * rate_dot_arm_leg3_2;
+        let t849 = garm_vz_leg3 * rate_dot_arm_leg3_2;
+        let t850 = 9.81 * minus_c_arm_leg3;
+        let t854 = 9.81 * s_arm_leg3;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * t844
+            - (minus_gcross_vx_leg3 * t840 + minus_gcross_vy_leg3 * t532);
+        let t869 = s_rod_leg1 * rate_dot_cross_leg3;
+        let t870 = c_rod_leg1 * rate_cross_leg3;
+        let t871 = rate_rod_leg1 * t870;
+        let t872 = t869 + t871;
+        let t874 = pose[1] * rate_cross_leg3;
+        let t875 = 1.8867924528301887 * t874;
+        let t876 = rate_rod_leg1 * t875;
+        let t877 = c_rod_leg1 * t876;
+        let t878 = s_rod_leg1 * t872 + t877;
+        let t882 = 3.5599857600569598 * (rate_cross_leg3 * t874);
+        let t885 = c_rod_leg1 * rate_dot_cross_leg3;
+        let t886 = t885 - t876;
+        let t887 = t876 - t886;
+        let t889 = t871 + t872;
+        let t891 = s_rod_leg1 * t887 - c_rod_leg1 * t889;
+        let t895 = 3.5599857600569598 * (t874 * t874);
+        let t896 = t870 * t870;
+        let t907 = c_rod_leg1 * t886 - t877;
+        let t917 = 0.9433962264150944 * t60;
+        let t921 = 0.37735849056603776 * (pose[1] * s_cross_leg3);
+        let t922 = t875 * t870;
+        let t926 = 0.2 * c_cross_leg3;
+        let t928 = t917 * (t896 + t594) + t921 * (t922 + rate_dot_rod_leg1)
+            + t926 * t887;
+        let t931 = t854 + 0.2 * t382;
+        let t934 = t850 + 0.2 * rate_dot_arm_leg3_2;
+        let t936 = s_cross_leg3 * t931 + c_cross_leg3 * t934;
+        let t937 = c_rod_leg1 * t936;
+        let t945 = s_cross_leg3 * t934 - c_cross_leg3 * t931;
+        let t958 = t917 * (rate_dot_rod_leg1 - t922) - t921 * (t895 + t594)
+            + t926 * t889;
+        let t960 = s_rod_leg1 * t936;
+        let t975 = t917 * t885 + t921 * t869 + t413 * t926;
+        let t985 = 0.2 * t934;
+        let t990 = t525 + t485;
+        let t993 = t523 - t495;
+        let rate_dot_arm_leg4_2 = garm_vx_leg4 * t687 + garm_vy_leg4 * t990
+            + garm_vz_leg4 * t993;
+        let t996 = garm_vx_leg4 * rate_dot_arm_leg4_2;
+        let t997 = garm_vy_leg4 * rate_dot_arm_leg4_2;
+        let t998 = garm_vz_leg4 * rate_dot_arm_leg4_2;
+        let t999 = 9.81 * minus_c_arm_leg4;
+        let t1003 = 9.81 * s_arm_leg4;
+        let rate_dot_cross_leg4 = gcross_vz_leg4 * t993
+            - (minus_gcross_vx_leg4 * t687 + minus_gcross_vy_leg4 * t990);
+        let t1018 = minus_s_rod_leg2 * rate_dot_cross_leg4;
+        let t1019 = c_rod_leg2 * rate_cross_leg4;
+        let t1020 = minus_rate_rod_leg2 * t1019;
+        let t1021 = t1018 + t1020;
+        let t1023 = pose[0] * rate_cross_leg4;
+        let t1024 = 1.8867924528301887 * t1023;
+        let t1025 = minus_rate_rod_leg2 * t1024;
+        let t1026 = c_rod_leg2 * t1025;
+        let t1027 = minus_s_rod_leg2 * t1021 + t1026;
+        let t1030 = 3.5599857600569598 * (rate_cross_leg4 * t1023);
+        let t1035 = 3.5599857600569598 * (t1023 * t1023);
+        let t1036 = t1019 * t1019;
+        let t1039 = t1020 + t1021;
+        let t1041 = c_rod_leg2 * rate_dot_cross_leg4;
+        let t1042 = t1041 - t1025;
+        let t1043 = t1025 - t1042;
+        let t1045 = c_rod_leg2 * t1039 - minus_s_rod_leg2 * t1043;
+        let t1056 = c_rod_leg2 * t1042 - t1026;
+        let t1066 = 0.9433962264150944 * t83;
+        let t1070 = 0.37735849056603776 * (pose[0] * s_cross_leg4);
+        let t1071 = t1024 * t1019;
+        let t1075 = 0.2 * c_cross_leg4;
+        let t1077 = t1066 * (t1036 + t751) + t1070 * (t1071 + minus_rate_dot_rod_leg2)
+            + t1075 * t1043;
+        let t1080 = t1003 + 0.2 * t444;
+        let t1083 = t999 + 0.2 * rate_dot_arm_leg4_2;
+        let t1085 = s_cross_leg4 * t1080 + c_cross_leg4 * t1083;
+        let t1086 = c_rod_leg2 * t1085;
+        let t1091 = s_cross_leg4 * t1083 - c_cross_leg4 * t1080;
+        let t1107 = t1066 * (t1071 - minus_rate_dot_rod_leg2) + t1070 * (t1035 + t751)
+            - t1075 * t1039;
+        let t1109 = minus_s_rod_leg2 * t1085;
+        let t1124 = t1066 * t1041 + t1070 * t1018 + t473 * t1075;
+        let t1134 = 0.2 * t1083;
         Ok([
             [
-                t468, -(garm_vx_leg1 * t471), garm_vx_leg1 * t475, t468,
+                t538, -(garm_vx_leg1 * t541), -(garm_vx_leg1 * t545), t538,
                 garm_vx_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
-                garm_vx_leg1, -(minus_gcross_vx_leg1 * t498), -(minus_gcross_vx_leg1 * t510),
-                -(minus_gcross_vx_leg1 * t527), -t535, -(minus_gcross_vx_leg1 * t539), 0.0,
-                t546 - 0.07547169811320754 * (25.0 * t550 - 7.0225 * t535),
-                garm_vx_leg1 * t582 + minus_gcross_vx_leg1 * t589,
-                garm_vx_leg1 * t607 - minus_gcross_vx_leg1 * t597, t550, -t625,
-                minus_garm_vx_leg2 * t628, -(minus_garm_vx_leg2 * t632), -t625,
-                -(minus_garm_vx_leg2 * rate_arm_leg2),
-                -::overact::math::signed(minus_garm_vx_leg2, rate_arm_leg2), -minus_garm_vx_leg2,
-                gcross_vx_leg2 * t655 + t657,
-                gcross_vx_leg2 * t667 - minus_grod_vx_leg2 * (t670 - t648 * t648),
-                gcross_vx_leg2 * t684 - minus_grod_vx_leg2 * t647, t693,
-                -(gcross_vx_leg2 * t546 + 1.8867924528301887 * rate_dot_cross_leg2), t701,
-                t546
+                garm_vx_leg1, -(minus_gcross_vx_leg1 * t568), -(minus_gcross_vx_leg1 * t580),
+                -(minus_gcross_vx_leg1 * t597), -t605, -(minus_gcross_vx_leg1 * t609), 0.0,
+                t616 - 0.07547169811320754 * (25.0 * t620 - 7.0225 * t605),
+                garm_vx_leg1 * t652 + minus_gcross_vx_leg1 * t659,
+                garm_vx_leg1 * t677 - minus_gcross_vx_leg1 * t667, t620, t695,
+                -(garm_vx_leg2 * t698), -(garm_vx_leg2 * t702), t695, garm_vx_leg2 * rate_arm_leg2,
+                ::overact::math::signed(garm_vx_leg2, rate_arm_leg2), garm_vx_leg2,
+                gcross_vx_leg2 * t725 - t727,
+                gcross_vx_leg2 * t737 - minus_grod_vx_leg2 * (t740 - t718 * t718),
+                gcross_vx_leg2 * t754 + minus_grod_vx_leg2 * t717, t763,
+                -(gcross_vx_leg2 * t616 + 1.8867924528301887 * rate_dot_cross_leg2), t771,
+                t616
                     - 0.07547169811320754
-                        * (7.0225 * t693 - 25.0 * t706 + 7.0225 * t701),
-                1.8867924528301887 * t729
-                    - (minus_garm_vx_leg2 * t741 + gcross_vx_leg2 * t746),
-                gcross_vx_leg2 * t729 - minus_garm_vx_leg2 * t761,
-                -t706,
-                t778,
-                -(garm_vx_leg3 * t781),
-                garm_vx_leg3 * t785,
-                t778,
+                        * (25.0 * t775 + 7.0225 * t763 + 7.0225 * t771),
+                garm_vx_leg2 * t805 + gcross_vx_leg2 * t812 + 1.8867924528301887 * t817,
+                garm_vx_leg2 * t830 + gcross_vx_leg2 * t817,
+                t775,
+                t847,
+                garm_vx_leg3 * t850,
+                garm_vx_leg3 * t854,
+                t847,
                 garm_vx_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
                 garm_vx_leg3,
-                -(minus_gcross_vx_leg3 * t808),
-                -(minus_gcross_vx_leg3 * t820),
-                -(minus_gcross_vx_leg3 * t837),
-                minus_gcross_vx_leg3 * t844,
-                minus_gcross_vx_leg3 * t539,
+                -(minus_gcross_vx_leg3 * t878),
+                -(minus_gcross_vx_leg3 * t891),
+                -(minus_gcross_vx_leg3 * t597),
+                -(minus_gcross_vx_leg3 * t907),
+                minus_gcross_vx_leg3 * t609,
                 0.0,
-                garm_vx_leg3 * t864 - minus_gcross_vx_leg3 * t873,
-                garm_vx_leg3 * t894 + minus_gcross_vx_leg3 * t896,
-                garm_vx_leg3 * t911 - minus_gcross_vx_leg3 * t881,
-                garm_vx_leg3 * t921,
-                -t933,
-                minus_garm_vx_leg4 * t936,
-                -(minus_garm_vx_leg4 * t940),
-                -t933,
-                -(minus_garm_vx_leg4 * rate_arm_leg4),
-                -::overact::math::signed(minus_garm_vx_leg4, rate_arm_leg4),
-                -minus_garm_vx_leg4,
-                gcross_vx_leg4 * t963 - t965,
-                gcross_vx_leg4 * t975 + grod_vx_leg4 * (t978 - t979),
-                gcross_vx_leg4 * t992 + grod_vx_leg4 * t955,
-                gcross_vx_leg4 * t999 + t965,
-                gcross_vx_leg4 * t546 + 1.8867924528301887 * rate_dot_cross_leg4,
-                grod_vx_leg4 * rate_dot_rod_leg4,
-                gcross_vx_leg4 * t1017 - minus_garm_vx_leg4 * t1028
-                    - grod_vx_leg4 * (s_rod_leg4 * t1033),
-                -(minus_garm_vx_leg4 * t1049 + gcross_vx_leg4 * t1051
-                    + 1.8867924528301887 * t1033),
-                gcross_vx_leg4 * t1033 - minus_garm_vx_leg4 * t1067,
-                -(minus_garm_vx_leg4 * t1076),
-                t459,
+                -(garm_vx_leg3 * t928 + minus_gcross_vx_leg3 * t937),
+                garm_vx_leg3 * t958 - minus_gcross_vx_leg3 * t960,
+                garm_vx_leg3 * t975 - minus_gcross_vx_leg3 * t945,
+                garm_vx_leg3 * t985,
+                t996,
+                garm_vx_leg4 * t999,
+                garm_vx_leg4 * t1003,
+                t996,
+                garm_vx_leg4 * rate_arm_leg4,
+                ::overact::math::signed(garm_vx_leg4, rate_arm_leg4),
+                garm_vx_leg4,
+                -(minus_gcross_vx_leg4 * t1027 + t1030),
+                minus_grod_vx_leg2 * (t1035 - t1036) - minus_gcross_vx_leg4 * t1045,
+                minus_grod_vx_leg2 * t1018 - minus_gcross_vx_leg4 * t754,
+                t1030 - minus_gcross_vx_leg4 * t1056,
+                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t616,
+                t771,
+                -(garm_vx_leg4 * t1077 + minus_gcross_vx_leg4 * t1086
+                    + minus_grod_vx_leg2 * (minus_s_rod_leg2 * t1091)),
+                garm_vx_leg4 * t1107 + minus_gcross_vx_leg4 * t1109
+                    - 1.8867924528301887 * t1091,
+                garm_vx_leg4 * t1124 - minus_gcross_vx_leg4 * t1091,
+                garm_vx_leg4 * t1134,
+                t529,
             ],
             [
-                t469, -(garm_vy_leg1 * t471), garm_vy_leg1 * t475, t469,
+                t539, -(garm_vy_leg1 * t541), -(garm_vy_leg1 * t545), t539,
                 garm_vy_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
-                garm_vy_leg1, -(minus_gcross_vy_leg1 * t498 + t501),
-                grod_vy_leg1 * (t513 - t491 * t491) - minus_gcross_vy_leg1 * t510,
-                grod_vy_leg1 * t490 - minus_gcross_vy_leg1 * t527, t537,
-                1.8867924528301887 * rate_dot_cross_leg1 - minus_gcross_vy_leg1 * t539, t545,
-                t539
+                garm_vy_leg1, gcross_vy_leg1 * t568 - t571,
+                gcross_vy_leg1 * t580 + grod_vy_leg1 * (t584 - t561 * t561),
+                gcross_vy_leg1 * t597 + grod_vy_leg1 * t560, t607,
+                gcross_vy_leg1 * t609 + 1.8867924528301887 * rate_dot_cross_leg1, t615,
+                t609
                     - 0.07547169811320754
-                        * (25.0 * t556 + 7.0225 * t537 + 7.0225 * t545),
-                garm_vy_leg1 * t582 + minus_gcross_vy_leg1 * t589
-                    - 1.8867924528301887 * t597,
-                garm_vy_leg1 * t607 - minus_gcross_vy_leg1 * t597,
-                t556,
+                        * (25.0 * t626 + 7.0225 * t607 + 7.0225 * t615),
+                garm_vy_leg1 * t652 - gcross_vy_leg1 * t659 - 1.8867924528301887 * t667,
+                garm_vy_leg1 * t677 + gcross_vy_leg1 * t667,
                 t626,
-                -(garm_vy_leg2 * t628),
-                garm_vy_leg2 * t632,
-                t626,
+                t696,
+                -(garm_vy_leg2 * t698),
+                -(garm_vy_leg2 * t702),
+                t696,
                 garm_vy_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 garm_vy_leg2,
-                -(minus_gcross_vy_leg2 * t655),
-                -(minus_gcross_vy_leg2 * t667),
-                -(minus_gcross_vy_leg2 * t684),
-                -t694,
-                minus_gcross_vy_leg2 * t546,
+                -(minus_gcross_vy_leg2 * t725),
+                -(minus_gcross_vy_leg2 * t737),
+                -(minus_gcross_vy_leg2 * t754),
+                -t764,
+                minus_gcross_vy_leg2 * t616,
                 0.0,
-                t539 - 0.07547169811320754 * (25.0 * t713 - 7.0225 * t694),
-                garm_vy_leg2 * t741 + minus_gcross_vy_leg2 * t746,
-                garm_vy_leg2 * t761 - minus_gcross_vy_leg2 * t729,
-                t713,
-                t779,
-                -(garm_vy_leg3 * t781),
-                garm_vy_leg3 * t785,
-                t779,
+                t609 - 0.07547169811320754 * (25.0 * t783 - 7.0225 * t764),
+                garm_vy_leg2 * t805 - minus_gcross_vy_leg2 * t812,
+                garm_vy_leg2 * t830 - minus_gcross_vy_leg2 * t817,
+                t783,
+                t848,
+                garm_vy_leg3 * t850,
+                garm_vy_leg3 * t854,
+                t848,
                 garm_vy_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_vy_leg3, rate_arm_leg3),
                 garm_vy_leg3,
-                t810 - minus_gcross_vy_leg3 * t808,
-                -(minus_gcross_vy_leg3 * t820 + minus_grod_vy_leg3 * (t824 - t825)),
-                minus_grod_vy_leg3 * t802 - minus_gcross_vy_leg3 * t837,
-                minus_gcross_vy_leg3 * t844 - t810,
-                minus_gcross_vy_leg3 * t539
-                    + 1.8867924528301887 * minus_rate_dot_cross_leg3,
-                minus_grod_vy_leg3 * minus_rate_dot_rod_leg3,
-                garm_vy_leg3 * t864 - minus_gcross_vy_leg3 * t873
-                    + minus_grod_vy_leg3 * (s_rod_leg3 * t881),
-                garm_vy_leg3 * t894 + minus_gcross_vy_leg3 * t896
-                    + 1.8867924528301887 * t881,
-                garm_vy_leg3 * t911 - minus_gcross_vy_leg3 * t881,
-                garm_vy_leg3 * t921,
-                t934,
-                -(garm_vy_leg4 * t936),
-                garm_vy_leg4 * t940,
-                t934,
+                -(minus_gcross_vy_leg3 * t878 + t882),
+                -(minus_gcross_vy_leg3 * t891 + grod_vy_leg1 * (t895 - t896)),
+                grod_vy_leg1 * t869 - minus_gcross_vy_leg3 * t597,
+                t882 - minus_gcross_vy_leg3 * t907,
+                minus_gcross_vy_leg3 * t609 - 1.8867924528301887 * rate_dot_cross_leg3,
+                t615,
+                -(garm_vy_leg3 * t928 + minus_gcross_vy_leg3 * t937
+                    + grod_vy_leg1 * (s_rod_leg1 * t945)),
+                garm_vy_leg3 * t958 - minus_gcross_vy_leg3 * t960
+                    + 1.8867924528301887 * t945,
+                garm_vy_leg3 * t975 - minus_gcross_vy_leg3 * t945,
+                garm_vy_leg3 * t985,
+                t997,
+                garm_vy_leg4 * t999,
+                garm_vy_leg4 * t1003,
+                t997,
                 garm_vy_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_vy_leg4, rate_arm_leg4),
                 garm_vy_leg4,
-                -(minus_gcross_vy_leg4 * t963),
-                -(minus_gcross_vy_leg4 * t975),
-                -(minus_gcross_vy_leg4 * t992),
-                -(minus_gcross_vy_leg4 * t999),
-                -(minus_gcross_vy_leg4 * t546),
+                -(minus_gcross_vy_leg4 * t1027),
+                -(minus_gcross_vy_leg4 * t1045),
+                -(minus_gcross_vy_leg4 * t754),
+                -(minus_gcross_vy_leg4 * t1056),
+                -(minus_gcross_vy_leg4 * t616),
                 0.0,
-                garm_vy_leg4 * t1028 - minus_gcross_vy_leg4 * t1017,
-                garm_vy_leg4 * t1049 + minus_gcross_vy_leg4 * t1051,
-                garm_vy_leg4 * t1067 - minus_gcross_vy_leg4 * t1033,
-                garm_vy_leg4 * t1076,
-                t455,
+                -(garm_vy_leg4 * t1077 + minus_gcross_vy_leg4 * t1086),
+                garm_vy_leg4 * t1107 + minus_gcross_vy_leg4 * t1109,
+                garm_vy_leg4 * t1124 - minus_gcross_vy_leg4 * t1091,
+                garm_vy_leg4 * t1134,
+                t525,
             ],
             [
-                -t470, minus_garm_vz_leg1 * t471, -(minus_garm_vz_leg1 * t475), -t470,
-                -(minus_garm_vz_leg1 * rate_arm_leg1),
-                -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1), -minus_garm_vz_leg1,
-                gcross_vz_leg1 * t498, gcross_vz_leg1 * t510, gcross_vz_leg1 * t527, t538,
-                gcross_vz_leg1 * t539, 0.0,
-                t565 - 0.07547169811320754 * (7.0225 * t538 - 25.0 * t567),
-                -(minus_garm_vz_leg1 * t582 + gcross_vz_leg1 * t589),
-                gcross_vz_leg1 * t597 - minus_garm_vz_leg1 * t607, -t567, -t627,
-                minus_garm_vz_leg2 * t628, -(minus_garm_vz_leg2 * t632), -t627,
-                -(minus_garm_vz_leg2 * rate_arm_leg2),
-                -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2), -minus_garm_vz_leg2,
-                gcross_vz_leg2 * t655, gcross_vz_leg2 * t667, gcross_vz_leg2 * t684, t695,
-                -(gcross_vz_leg2 * t546), 0.0,
-                t565 - 0.07547169811320754 * (7.0225 * t695 - 25.0 * t720),
-                -(minus_garm_vz_leg2 * t741 + gcross_vz_leg2 * t746),
-                gcross_vz_leg2 * t729 - minus_garm_vz_leg2 * t761, -t720, t780,
-                -(garm_vz_leg3 * t781), garm_vz_leg3 * t785, t780, garm_vz_leg3 * rate_arm_leg3,
+                t540, -(garm_vz_leg1 * t541), -(garm_vz_leg1 * t545), t540,
+                garm_vz_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vz_leg1, rate_arm_leg1),
+                garm_vz_leg1, -(minus_gcross_vz_leg1 * t568), -(minus_gcross_vz_leg1 * t580),
+                -(minus_gcross_vz_leg1 * t597), -t608, -(minus_gcross_vz_leg1 * t609), 0.0,
+                t635 - 0.07547169811320754 * (25.0 * t636 - 7.0225 * t608),
+                garm_vz_leg1 * t652 + minus_gcross_vz_leg1 * t659,
+                garm_vz_leg1 * t677 - minus_gcross_vz_leg1 * t667, t636, t697,
+                -(garm_vz_leg2 * t698), -(garm_vz_leg2 * t702), t697, garm_vz_leg2 * rate_arm_leg2,
+                ::overact::math::signed(garm_vz_leg2, rate_arm_leg2), garm_vz_leg2,
+                -(minus_gcross_vz_leg2 * t725), -(minus_gcross_vz_leg2 * t737),
+                -(minus_gcross_vz_leg2 * t754), -t765, minus_gcross_vz_leg2 * t616, 0.0,
+                t635 - 0.07547169811320754 * (25.0 * t789 - 7.0225 * t765),
+                garm_vz_leg2 * t805 - minus_gcross_vz_leg2 * t812,
+                garm_vz_leg2 * t830 - minus_gcross_vz_leg2 * t817, t789, t849, garm_vz_leg3 * t850,
+                garm_vz_leg3 * t854, t849, garm_vz_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_vz_leg3, rate_arm_leg3), garm_vz_leg3,
-                -(minus_gcross_vz_leg3 * t808), -(minus_gcross_vz_leg3 * t820),
-                -(minus_gcross_vz_leg3 * t837), minus_gcross_vz_leg3 * t844,
-                minus_gcross_vz_leg3 * t539, 0.0, garm_vz_leg3 * t864 - minus_gcross_vz_leg3 * t873,
-                garm_vz_leg3 * t894 + minus_gcross_vz_leg3 * t896,
-                garm_vz_leg3 * t911 - minus_gcross_vz_leg3 * t881, garm_vz_leg3 * t921, t935,
-                -(garm_vz_leg4 * t936), garm_vz_leg4 * t940, t935, garm_vz_leg4 * rate_arm_leg4,
+                gcross_vz_leg3 * t878, gcross_vz_leg3 * t891, gcross_vz_leg3 * t597,
+                gcross_vz_leg3 * t907, -(gcross_vz_leg3 * t609), 0.0,
+                gcross_vz_leg3 * t937 - garm_vz_leg3 * t928,
+                garm_vz_leg3 * t958 + gcross_vz_leg3 * t960,
+                garm_vz_leg3 * t975 + gcross_vz_leg3 * t945, garm_vz_leg3 * t985, t998,
+                garm_vz_leg4 * t999, garm_vz_leg4 * t1003, t998, garm_vz_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_vz_leg4, rate_arm_leg4), garm_vz_leg4,
-                -(minus_gcross_vz_leg4 * t963), -(minus_gcross_vz_leg4 * t975),
-                -(minus_gcross_vz_leg4 * t992), -(minus_gcross_vz_leg4 * t999),
-                -(minus_gcross_vz_leg4 * t546), 0.0,
-                garm_vz_leg4 * t1028 - minus_gcross_vz_leg4 * t1017,
-                garm_vz_leg4 * t1049 + minus_gcross_vz_leg4 * t1051,
-                garm_vz_leg4 * t1067 - minus_gcross_vz_leg4 * t1033, garm_vz_leg4 * t1076, t564,
+                gcross_vz_leg4 * t1027, gcross_vz_leg4 * t1045, gcross_vz_leg4 * t754,
+                gcross_vz_leg4 * t1056, gcross_vz_leg4 * t616, 0.0,
+                gcross_vz_leg4 * t1086 - garm_vz_leg4 * t1077,
+                garm_vz_leg4 * t1107 - gcross_vz_leg4 * t1109,
+                garm_vz_leg4 * t1124 + gcross_vz_leg4 * t1091, garm_vz_leg4 * t1134, t634,
             ],
         ])
     }
@@ -2658,7 +3732,7 @@ impl Delta4 {
     /// Output: 3 x 69.
     /// Columns: `PARAMETERS`.
     ///
-    /// 1058 operations (342 additions, 707 multiplications, 9 divisions), 0 square roots, 12 trigonometric pairs, 6 signs, 938 intermediates.
+    /// 1115 operations (392 additions, 704 multiplications, 19 divisions), 6 square roots, 0 trigonometric pairs, 6 signs, 983 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2667,8 +3741,605 @@ impl Delta4 {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 69]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_actuators_from_joints(pose, joints, twist, acceleration)
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.2809 + 0.04;
+        let t14 = 0.4 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.20079840636817814, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t21 = 0.2 * c_arm_leg1;
+        let t23 = t0 - (0.2 + t21);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = t23 * t25;
+        let t27 = 0.4 * t24;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let s_rod_leg1 = 1.8867924528301887 * pose[1];
+        let t35 = 1.0 - 3.5599857600569598 * t8;
+        ::overact::guard::reach(t35, "leg1")?;
+        ::overact::guard::reach(t35, "leg3")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t35);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let t37 = 0.53 * c_rod_leg1;
+        let s_cross_leg1 = 2.5 * t17 / t37;
+        let t40 = 0.04 + t8;
+        let t42 = 0.2809 * t35;
+        let t44 = 0.212 * c_rod_leg1;
+        let c_cross_leg1 = (t10 - t40 - t42) / t44;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t49 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t27
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t49)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t49));
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t27;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t27;
+        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
+            - minus_gcross_vz_leg1 * twist[2];
+        let grod_vy_leg1 = 1.8867924528301887 * t49;
+        let rate_rod_leg1 = grod_vy_leg1 * twist[1];
+        let t69 = s_armcross_leg1 * rate_rod_leg1;
+        let t71 = pose[1] * (rate_cross_leg1 * t69);
+        let garm_vy_leg1 = pose[1] * t25;
+        let t76 = 0.2 * minus_s_arm_leg1;
+        let t77 = pose[2] - t76;
+        let garm_vz_leg1 = t77 * t25;
+        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
+            + garm_vz_leg1 * twist[2];
+        let t81 = rate_arm_leg1 * rate_arm_leg1;
+        let t84 = rate_cross_leg1 * rate_cross_leg1;
+        let t86 = c_armcross_leg1 * rate_rod_leg1;
+        let t88 = t69 * t69 + t84 + t86 * t86;
+        let t93 = acceleration[0] - (t71 - (t21 * t81 + t23 * t88) + t71);
+        let t95 = pose[1] * rate_cross_leg1;
+        let t99 = acceleration[1] - (rate_cross_leg1 * t95 - pose[1] * t88);
+        let t103 = pose[1] * (rate_cross_leg1 * t86);
+        let t109 = acceleration[2] - (t103 - (t76 * t81 + t77 * t88) + t103);
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t93 + garm_vy_leg1 * t99
+            + garm_vz_leg1 * t109;
+        let t112 = 9.81 * c_arm_leg1;
+        let t113 = 9.81 * minus_s_arm_leg1;
+        let t115 = pose[1] + 0.05;
+        let t116 = t115 - 0.2;
+        let t117 = t116 * t116;
+        let t119 = 0.16 * (t117 + t3);
+        let t120 = 1.0 / t119;
+        let t121 = pose[0] * pose[0];
+        let t123 = t121 + t117 + t3;
+        let t125 = t123 - 0.2809 + 0.04;
+        let t127 = 0.4 * t116;
+        let t129 = t119 - t125 * t125;
+        ::overact::guard::reach(t129, "leg2")?;
+        let t130 = ::overact::math::sqrt(t129);
+        ::overact::guard::leg(t130, 0.20079840636817814, "leg2")?;
+        let minus_s_arm_leg2 = t120 * (t14 * t125 + t127 * t130);
+        let t134 = 0.2 * minus_s_arm_leg2;
+        let t135 = pose[2] - t134;
+        let t136 = 1.0 / t130;
+        let t137 = 2.0 * t136;
+        let garm_vz_leg2 = t135 * t137;
+        let t139 = pose[0] - 0.05;
+        let t140 = t139 + 0.2;
+        let t141 = t140 * t140;
+        let t143 = 0.16 * (t141 + t3);
+        let t144 = 1.0 / t143;
+        let t145 = 0.4 * t140;
+        let t147 = t141 + t8 + t3;
+        let t149 = t147 - 0.2809 + 0.04;
+        let t152 = t143 - t149 * t149;
+        ::overact::guard::reach(t152, "leg3")?;
+        let t153 = ::overact::math::sqrt(t152);
+        ::overact::guard::leg(t153, 0.20079840636817814, "leg3")?;
+        let minus_c_arm_leg3 = t144 * (t145 * t149 + t14 * t153);
+        let t157 = 0.2 * minus_c_arm_leg3;
+        let t159 = t139 - (t157 - 0.2);
+        let t160 = 1.0 / t153;
+        let t161 = 2.0 * t160;
+        let garm_vx_leg3 = t159 * t161;
+        let garm_vx_leg2 = pose[0] * t137;
+        let s_arm_leg3 = t144 * (t145 * t153 - t14 * t149);
+        let t169 = 0.2 * s_arm_leg3;
+        let t170 = pose[2] + t169;
+        let garm_vz_leg3 = t170 * t161;
+        let c_arm_leg2 = t120 * (t127 * t125 - t14 * t130);
+        let t178 = 0.2 * c_arm_leg2;
+        let t180 = t115 - (0.2 + t178);
+        let garm_vy_leg2 = t180 * t137;
+        let t184 = garm_vz_leg1 * garm_vy_leg2 - garm_vy_leg1 * garm_vz_leg2;
+        let garm_vy_leg3 = pose[1] * t161;
+        let t189 = garm_vz_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vz_leg2;
+        let t194 = garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2;
+        let t196 = garm_vx_leg3 * t184 - garm_vy_leg3 * t189 + garm_vz_leg3 * t194;
+        ::overact::guard::platform(t196, 91.80843988045552, "kept actuators")?;
+        ::overact::guard::platform(t196, 91.80843988045552, "kept actuators")?;
+        ::overact::guard::platform(t196, 91.80843988045552, "kept actuators")?;
+        let t197 = 1.0 / t196;
+        let t198 = (garm_vz_leg2 * garm_vx_leg3 - garm_vx_leg2 * garm_vz_leg3) * t197;
+        let t199 = grod_vy_leg1 * t198;
+        let t200 = 1.8867924528301887 * t95;
+        let t201 = c_rod_leg1 * rate_cross_leg1;
+        let t202 = t200 * t201;
+        let t203 = t199 * t202;
+        let t207 = (garm_vz_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vz_leg3) * t197;
+        let t214 = (garm_vy_leg2 * garm_vx_leg3 - garm_vx_leg2 * garm_vy_leg3) * t197;
+        let t216 = minus_gcross_vx_leg1 * t207 + gcross_vy_leg1 * t198
+            + minus_gcross_vz_leg1 * t214;
+        let rate_dot_cross_leg1 = gcross_vy_leg1 * t99 - minus_gcross_vx_leg1 * t93
+            - minus_gcross_vz_leg1 * t109;
+        let t222 = s_rod_leg1 * rate_dot_cross_leg1;
+        let t223 = rate_rod_leg1 * t201;
+        let t224 = t222 + t223;
+        let t226 = rate_rod_leg1 * t200;
+        let t227 = c_rod_leg1 * t226;
+        let t228 = s_rod_leg1 * t224 + t227;
+        let t234 = (garm_vz_leg1 * garm_vy_leg3 - garm_vy_leg1 * garm_vz_leg3) * t197;
+        let t239 = (garm_vz_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vz_leg3) * t197;
+        let t245 = (garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3) * t197;
+        let t247 = minus_gcross_vx_leg1 * t234 + gcross_vy_leg1 * t239
+            + minus_gcross_vz_leg1 * t245;
+        let t249 = grod_vy_leg1 * t239;
+        let t250 = t249 * t202;
+        let t252 = t189 * t197;
+        let t253 = grod_vy_leg1 * t252;
+        let t254 = t253 * t202;
+        let t255 = t184 * t197;
+        let t259 = t194 * t197;
+        let t261 = minus_gcross_vx_leg1 * t255 + gcross_vy_leg1 * t252
+            + minus_gcross_vz_leg1 * t259;
+        let t264 = t223 + t224;
+        let t266 = c_rod_leg1 * rate_dot_cross_leg1;
+        let t267 = t266 - t226;
+        let t270 = c_rod_leg1 * t264 - s_rod_leg1 * (t226 - t267);
+        let t273 = 3.5599857600569598 * (t95 * t95);
+        let t275 = t273 - t201 * t201;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t99;
+        let t287 = rate_rod_leg1 * rate_rod_leg1;
+        let t290 = s_rod_leg1 * (t202 + rate_dot_rod_leg1) + c_rod_leg1 * (t287 - t273);
+        let t294 = t247 * t290;
+        let t301 = c_rod_leg1 * t267 - t227;
+        let t303 = t216 * t301 + t203;
+        let t305 = t247 * t301 + t250;
+        let t307 = t261 * t301 + t254;
+        let t308 = 1.8867924528301887 * acceleration[1];
+        let t312 = t247 * t308;
+        let t318 = t199 * rate_dot_rod_leg1;
+        let t319 = t249 * rate_dot_rod_leg1;
+        let t320 = t253 * rate_dot_rod_leg1;
+        let t324 = acceleration[2] + 9.81;
+        let t326 = t207 * acceleration[0] - t198 * acceleration[1] + t214 * t324;
+        let t327 = 1.8867924528301887 * t326;
+        let t329 = 0.2 * rate_dot_arm_leg1 - t112;
+        let t341 = t239 * acceleration[1] - t234 * acceleration[0] - t245 * t324;
+        let t342 = 1.8867924528301887 * t341;
+        let t350 = t255 * acceleration[0] - t252 * acceleration[1] + t259 * t324;
+        let t351 = 1.8867924528301887 * t350;
+        let t355 = 0.9433962264150944 * t17;
+        let t359 = 0.37735849056603776 * (pose[1] * s_cross_leg1);
+        let t363 = 0.2 * c_cross_leg1;
+        let t368 = t113 - 0.2 * t81;
+        let t371 = s_rod_leg1 * (c_cross_leg1 * t329 - s_cross_leg1 * t368);
+        let t376 = c_cross_leg1 * t368 + s_cross_leg1 * t329;
+        let t377 = c_rod_leg1 * t376;
+        let t379 = t355 * (t202 - rate_dot_rod_leg1) + t359 * (t273 + t287) - t363 * t264
+            + t216 * t371 + t199 * t377;
+        let t396 = 0.4 * t136;
+        let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
+        let t400 = 1.0 - 3.5599857600569598 * t121;
+        ::overact::guard::reach(t400, "leg2")?;
+        ::overact::guard::reach(t400, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t400);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t402 = 0.53 * c_rod_leg2;
+        let s_cross_leg2 = 2.5 * t130 / t402;
+        let t405 = 0.04 + t121;
+        let t407 = 0.2809 * t400;
+        let t409 = 0.212 * c_rod_leg2;
+        let c_cross_leg2 = (t123 - t405 - t407) / t409;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t414 = 1.0 / c_rod_leg2;
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let gcross_vx_leg2 = t396
+            * (minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t414)
+                - c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t414));
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t396;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t396;
+        let rate_cross_leg2 = gcross_vx_leg2 * twist[0] - minus_gcross_vy_leg2 * twist[1]
+            - minus_gcross_vz_leg2 * twist[2];
+        let t432 = pose[0] * rate_cross_leg2;
+        let t434 = rate_cross_leg2 * rate_cross_leg2;
+        let minus_grod_vx_leg2 = 1.8867924528301887 * t414;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * twist[0];
+        let t437 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t440 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t442 = t434 + t437 * t437 + t440 * t440;
+        let t445 = acceleration[0] - (rate_cross_leg2 * t432 - pose[0] * t442);
+        let t448 = pose[0] * (rate_cross_leg2 * t437);
+        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
+            + garm_vz_leg2 * twist[2];
+        let t454 = rate_arm_leg2 * rate_arm_leg2;
+        let t460 = acceleration[1] - (t448 - (t178 * t454 + t180 * t442) + t448);
+        let t464 = pose[0] * (rate_cross_leg2 * t440);
+        let t470 = acceleration[2] - (t464 - (t134 * t454 + t135 * t442) + t464);
+        let rate_dot_arm_leg2 = garm_vx_leg2 * t445 + garm_vy_leg2 * t460
+            + garm_vz_leg2 * t470;
+        let t473 = 9.81 * c_arm_leg2;
+        let t474 = 9.81 * minus_s_arm_leg2;
+        let t480 = gcross_vx_leg2 * t207 + minus_gcross_vy_leg2 * t198
+            - minus_gcross_vz_leg2 * t214;
+        let rate_dot_cross_leg2 = gcross_vx_leg2 * t445 - minus_gcross_vy_leg2 * t460
+            - minus_gcross_vz_leg2 * t470;
+        let t486 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t487 = c_rod_leg2 * rate_cross_leg2;
+        let t488 = minus_rate_rod_leg2 * t487;
+        let t489 = t486 + t488;
+        let t491 = 1.8867924528301887 * t432;
+        let t492 = minus_rate_rod_leg2 * t491;
+        let t493 = c_rod_leg2 * t492;
+        let t494 = minus_s_rod_leg2 * t489 + t493;
+        let t496 = minus_grod_vx_leg2 * t207;
+        let t497 = t491 * t487;
+        let t498 = t496 * t497;
+        let t504 = minus_gcross_vz_leg2 * t245
+            - (gcross_vx_leg2 * t234 + minus_gcross_vy_leg2 * t239);
+        let t506 = minus_grod_vx_leg2 * t234;
+        let t507 = t506 * t497;
+        let t513 = gcross_vx_leg2 * t255 + minus_gcross_vy_leg2 * t252
+            - minus_gcross_vz_leg2 * t259;
+        let t515 = minus_grod_vx_leg2 * t255;
+        let t516 = t515 * t497;
+        let t518 = c_rod_leg2 * rate_dot_cross_leg2;
+        let t519 = t518 - t492;
+        let t522 = t488 + t489;
+        let t524 = minus_s_rod_leg2 * (t492 - t519) - c_rod_leg2 * t522;
+        let t527 = 3.5599857600569598 * (t432 * t432);
+        let t529 = t527 - t487 * t487;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t445;
+        let t541 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t544 = minus_s_rod_leg2 * (t497 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t541 - t527);
+        let t555 = c_rod_leg2 * t519 - t493;
+        let t557 = t480 * t555 + t498;
+        let t559 = t504 * t555 - t507;
+        let t561 = t513 * t555 + t516;
+        let t562 = 1.8867924528301887 * acceleration[0];
+        let t572 = t496 * minus_rate_dot_rod_leg2;
+        let t573 = t506 * minus_rate_dot_rod_leg2;
+        let t574 = t515 * minus_rate_dot_rod_leg2;
+        let t579 = 0.2 * rate_dot_arm_leg2 - t473;
+        let t592 = t474 - 0.2 * t454;
+        let t595 = minus_s_rod_leg2 * (c_cross_leg2 * t579 - s_cross_leg2 * t592);
+        let t599 = c_cross_leg2 * t592 + s_cross_leg2 * t579;
+        let t600 = c_rod_leg2 * t599;
+        let t603 = 0.9433962264150944 * t130;
+        let t607 = 0.37735849056603776 * (pose[0] * s_cross_leg2);
+        let t611 = 0.2 * c_cross_leg2;
+        let t617 = t603 * (minus_rate_dot_rod_leg2 - t497) - t607 * (t527 + t541)
+            + t611 * t522 + t504 * t595 - t506 * t600;
+        let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
+            + garm_vz_leg3 * twist[2];
+        let t636 = rate_arm_leg3 * rate_arm_leg3;
+        let c_cross_leg3 = (t147 - t40 - t42) / t44;
+        let s_cross_leg3 = 2.5 * t153 / t37;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t646 = s_armcross_leg3 * rate_rod_leg1;
+        let t648 = 0.4 * t160;
+        let gcross_vz_leg3 = s_arm_leg3 * t648;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t648;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t648
+            * (s_arm_leg3 * (t49 * (s_rod_leg1 * s_armcross_leg3))
+                + minus_c_arm_leg3 * (t49 * (s_rod_leg1 * minus_c_armcross_leg3)));
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
+        let t667 = rate_cross_leg3 * rate_cross_leg3;
+        let t669 = minus_c_armcross_leg3 * rate_rod_leg1;
+        let t671 = t646 * t646 + t667 + t669 * t669;
+        let t675 = pose[1] * (rate_cross_leg3 * t646);
+        let t678 = acceleration[0] + t157 * t636 + t159 * t671 + t675 + t675;
+        let t686 = pose[1] * (rate_cross_leg3 * t669);
+        let t689 = acceleration[2] - (t169 * t636 - t170 * t671 - t686 - t686);
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t678 + garm_vy_leg3 * t99
+            + garm_vz_leg3 * t689;
+        let t692 = 9.81 * minus_c_arm_leg3;
+        let t693 = 9.81 * s_arm_leg3;
+        let t699 = minus_gcross_vy_leg3 * t198 - minus_gcross_vx_leg3 * t207
+            + gcross_vz_leg3 * t214;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * t689
+            - (minus_gcross_vx_leg3 * t678 + minus_gcross_vy_leg3 * t99);
+        let t705 = s_rod_leg1 * rate_dot_cross_leg3;
+        let t706 = c_rod_leg1 * rate_cross_leg3;
+        let t707 = rate_rod_leg1 * t706;
+        let t708 = t705 + t707;
+        let t710 = pose[1] * rate_cross_leg3;
+        let t711 = 1.8867924528301887 * t710;
+        let t712 = rate_rod_leg1 * t711;
+        let t713 = c_rod_leg1 * t712;
+        let t714 = s_rod_leg1 * t708 + t713;
+        let t716 = t711 * t706;
+        let t717 = t199 * t716;
+        let t720 = t249 * t716;
+        let t726 = minus_gcross_vy_leg3 * t252 - minus_gcross_vx_leg3 * t255
+            + gcross_vz_leg3 * t259;
+        let t728 = t253 * t716;
+        let t730 = c_rod_leg1 * rate_dot_cross_leg3;
+        let t731 = t730 - t712;
+        let t732 = t712 - t731;
+        let t734 = t707 + t708;
+        let t736 = s_rod_leg1 * t732 - c_rod_leg1 * t734;
+        let t739 = 3.5599857600569598 * (t710 * t710);
+        let t740 = t706 * t706;
+        let t741 = t739 - t740;
+        let t759 = c_rod_leg1 * t731 - t713;
+        let t775 = t693 + 0.2 * t636;
+        let t778 = t692 + 0.2 * rate_dot_arm_leg3;
+        let t780 = s_cross_leg3 * t775 + c_cross_leg3 * t778;
+        let t781 = c_rod_leg1 * t780;
+        let t785 = s_cross_leg3 * t778 - c_cross_leg3 * t775;
+        let t786 = s_rod_leg1 * t785;
+        let t793 = 0.9433962264150944 * t153;
+        let t797 = 0.37735849056603776 * (pose[1] * s_cross_leg3);
+        let t801 = 0.2 * c_cross_leg3;
+        let t806 = t726 * t781
+            - (t793 * (t740 + t287) + t797 * (t716 + rate_dot_rod_leg1) + t801 * t732)
+            + t253 * t786;
+        let t807 = s_rod_leg1 * t780;
+        let t809 = c_rod_leg1 * t785;
+        let t825 = t793 * (rate_dot_rod_leg1 - t716) - t797 * (t739 + t287) + t801 * t734
+            + t726 * t807 - t253 * t809;
+        let t836 = pose[1] - 0.05;
+        let t837 = t836 + 0.2;
+        let t838 = t837 * t837;
+        let t840 = 0.16 * (t838 + t3);
+        let t842 = t121 + t838 + t3;
+        let t844 = t842 - 0.2809 + 0.04;
+        let t846 = t840 - t844 * t844;
+        ::overact::guard::reach(t846, "leg4")?;
+        let t847 = ::overact::math::sqrt(t846);
+        ::overact::guard::leg(t847, 0.20079840636817814, "leg4")?;
+        let t848 = 1.0 / t847;
+        let t849 = 2.0 * t848;
+        let garm_vx_leg4 = pose[0] * t849;
+        let t852 = 1.0 / t840;
+        let t853 = 0.4 * t837;
+        let minus_c_arm_leg4 = t852 * (t853 * t844 + t14 * t847);
+        let t858 = 0.2 * minus_c_arm_leg4;
+        let t860 = t836 - (t858 - 0.2);
+        let garm_vy_leg4 = t860 * t849;
+        let s_arm_leg4 = t852 * (t853 * t847 - t14 * t844);
+        let t868 = 0.2 * s_arm_leg4;
+        let t869 = pose[2] + t868;
+        let garm_vz_leg4 = t869 * t849;
+        let t872 = garm_vx_leg4 * t207 - garm_vy_leg4 * t198 + garm_vz_leg4 * t214;
+        let rate_arm_leg4 = garm_vx_leg4 * twist[0] + garm_vy_leg4 * twist[1]
+            + garm_vz_leg4 * twist[2];
+        let t879 = rate_arm_leg4 * rate_arm_leg4;
+        let t881 = 0.4 * t848;
+        let gcross_vz_leg4 = s_arm_leg4 * t881;
+        let c_cross_leg4 = (t842 - t405 - t407) / t409;
+        let s_cross_leg4 = 2.5 * t847 / t402;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t881
+            * (s_arm_leg4 * (t414 * (minus_s_rod_leg2 * s_armcross_leg4))
+                + minus_c_arm_leg4
+                    * (t414 * (minus_s_rod_leg2 * minus_c_armcross_leg4)));
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t881;
+        let rate_cross_leg4 = gcross_vz_leg4 * twist[2]
+            - (minus_gcross_vx_leg4 * twist[0] + minus_gcross_vy_leg4 * twist[1]);
+        let t908 = rate_cross_leg4 * rate_cross_leg4;
+        let t909 = s_armcross_leg4 * minus_rate_rod_leg2;
+        let t912 = minus_c_armcross_leg4 * minus_rate_rod_leg2;
+        let t914 = t908 + t909 * t909 + t912 * t912;
+        let t918 = pose[0] * (rate_cross_leg4 * t909);
+        let t921 = acceleration[1] + t858 * t879 + t860 * t914 + t918 + t918;
+        let t928 = pose[0] * (rate_cross_leg4 * t912);
+        let t931 = acceleration[2] - (t868 * t879 - t869 * t914 - t928 - t928);
+        let rate_dot_arm_leg4 = garm_vx_leg4 * t445 + garm_vy_leg4 * t921
+            + garm_vz_leg4 * t931;
+        let t934 = t872 * rate_dot_arm_leg4;
+        let t939 = garm_vy_leg4 * t239 - garm_vx_leg4 * t234 - garm_vz_leg4 * t245;
+        let t940 = t939 * rate_dot_arm_leg4;
+        let t945 = garm_vx_leg4 * t255 - garm_vy_leg4 * t252 + garm_vz_leg4 * t259;
+        let t946 = t945 * rate_dot_arm_leg4;
+        let t947 = 9.81 * minus_c_arm_leg4;
+        let t951 = 9.81 * s_arm_leg4;
+        let t965 = minus_gcross_vy_leg4 * t198 - minus_gcross_vx_leg4 * t207
+            + gcross_vz_leg4 * t214;
+        let rate_dot_cross_leg4 = gcross_vz_leg4 * t931
+            - (minus_gcross_vx_leg4 * t445 + minus_gcross_vy_leg4 * t921);
+        let t971 = minus_s_rod_leg2 * rate_dot_cross_leg4;
+        let t972 = c_rod_leg2 * rate_cross_leg4;
+        let t973 = minus_rate_rod_leg2 * t972;
+        let t974 = t971 + t973;
+        let t976 = pose[0] * rate_cross_leg4;
+        let t977 = 1.8867924528301887 * t976;
+        let t978 = minus_rate_rod_leg2 * t977;
+        let t979 = c_rod_leg2 * t978;
+        let t980 = minus_s_rod_leg2 * t974 + t979;
+        let t982 = t977 * t972;
+        let t983 = t496 * t982;
+        let t989 = minus_gcross_vx_leg4 * t234 - minus_gcross_vy_leg4 * t239
+            - gcross_vz_leg4 * t245;
+        let t991 = t506 * t982;
+        let t997 = minus_gcross_vy_leg4 * t252 - minus_gcross_vx_leg4 * t255
+            + gcross_vz_leg4 * t259;
+        let t999 = t515 * t982;
+        let t1001 = t973 + t974;
+        let t1003 = c_rod_leg2 * rate_dot_cross_leg4;
+        let t1004 = t1003 - t978;
+        let t1005 = t978 - t1004;
+        let t1007 = c_rod_leg2 * t1001 - minus_s_rod_leg2 * t1005;
+        let t1010 = 3.5599857600569598 * (t976 * t976);
+        let t1011 = t972 * t972;
+        let t1012 = t1010 - t1011;
+        let t1031 = c_rod_leg2 * t1004 - t979;
+        let t1048 = t951 + 0.2 * t879;
+        let t1051 = t947 + 0.2 * rate_dot_arm_leg4;
+        let t1053 = s_cross_leg4 * t1048 + c_cross_leg4 * t1051;
+        let t1054 = c_rod_leg2 * t1053;
+        let t1056 = 0.9433962264150944 * t847;
+        let t1060 = 0.37735849056603776 * (pose[0] * s_cross_leg4);
+        let t1064 = 0.2 * c_cross_leg4;
+        let t1066 = t1056 * (t1011 + t541) + t1060 * (t982 + minus_rate_dot_rod_leg2)
+            + t1064 * t1005;
+        let t1071 = s_cross_leg4 * t1051 - c_cross_leg4 * t1048;
+        let t1072 = minus_s_rod_leg2 * t1071;
+        let t1091 = t1056 * (t982 - minus_rate_dot_rod_leg2) + t1060 * (t1010 + t541)
+            - t1064 * t1001;
+        let t1093 = minus_s_rod_leg2 * t1053;
+        let t1096 = c_rod_leg2 * t1071;
+        let t1113 = t1003 * t1056 + t971 * t1060 + t908 * t1064;
+        let t1123 = 0.2 * t1051;
+        Ok([
+            [
+                rate_dot_arm_leg1, -t112, -t113, rate_dot_arm_leg1, rate_arm_leg1,
+                ::overact::math::sign(rate_arm_leg1), 1.0, t203 - t216 * t228,
+                -(t216 * t270 + t199 * t275), -(t216 * t290 + t199 * t222), -t303,
+                -(t216 * t308 + t199 * t266), -t318,
+                t327
+                    - 0.07547169811320754 * (5.0 * t329 - 7.0225 * t303 - 7.0225 * t318),
+                t379,
+                t266 * t355 + t222 * t359 + t84 * t363 - t216 * t376,
+                0.2 * t329,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                t480 * t494 - t498,
+                t480 * t524 - t496 * t529,
+                t480 * t544 + t496 * t486,
+                t557,
+                -(t480 * t562 + t496 * t518),
+                t572,
+                t327 - 0.53 * (t557 + t572),
+                t480 * t595 + t496 * t600,
+                t480 * t599,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                t699 * t714 + t717,
+                t699 * t736 + t199 * t741,
+                t699 * t290 - t199 * t705,
+                t699 * t759 - t717,
+                t199 * t730 - t699 * t308,
+                -t318,
+                t699 * t781 + t199 * t786,
+                t699 * t807 - t199 * t809,
+                t699 * t785,
+                0.0,
+                t934,
+                t872 * t947,
+                t872 * t951,
+                t934,
+                t872 * rate_arm_leg4,
+                ::overact::math::signed(t872, rate_arm_leg4),
+                t872,
+                t965 * t980 - t983,
+                t965 * t1007 + t496 * t1012,
+                t965 * t544 + t496 * t971,
+                t965 * t1031 + t983,
+                t965 * t562 + t496 * t1003,
+                t572,
+                t965 * t1054 - t872 * t1066 - t496 * t1072,
+                t872 * t1091 - t965 * t1093 - t496 * t1096,
+                t872 * t1113 + t965 * t1071,
+                t872 * t1123,
+                t326,
+            ],
+            [
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t247 * t228 - t250, t247 * t270 + t249 * t275,
+                t294 + t249 * t222, t305, t312 + t249 * t266, t319, t342 - 0.53 * (t305 + t319),
+                -(t247 * t371 + t249 * t377), t247 * t376, 0.0, rate_dot_arm_leg2, -t473, -t474,
+                rate_dot_arm_leg2, rate_arm_leg2, ::overact::math::sign(rate_arm_leg2), 1.0,
+                t504 * t494 + t507, t504 * t524 + t506 * t529, t504 * t544 - t506 * t486, t559,
+                t506 * t518 - t504 * t562, -t573,
+                t342
+                    - 0.07547169811320754 * (5.0 * t579 + 7.0225 * t559 - 7.0225 * t573),
+                t617,
+                t518 * t603 + t486 * t607 + t434 * t611 + t504 * t599,
+                0.2 * t579,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                t247 * t714 - t720,
+                t247 * t736 - t249 * t741,
+                t294 + t249 * t705,
+                t247 * t759 + t720,
+                -(t312 + t249 * t730),
+                t319,
+                t247 * t781 - t249 * t786,
+                t247 * t807 + t249 * t809,
+                t247 * t785,
+                0.0,
+                t940,
+                t939 * t947,
+                t939 * t951,
+                t940,
+                t939 * rate_arm_leg4,
+                ::overact::math::signed(t939, rate_arm_leg4),
+                t939,
+                t989 * t980 + t991,
+                t989 * t1007 - t506 * t1012,
+                t989 * t544 - t506 * t971,
+                t989 * t1031 - t991,
+                t989 * t562 - t506 * t1003,
+                -t573,
+                t989 * t1054 - t939 * t1066 + t506 * t1072,
+                t939 * t1091 - t989 * t1093 + t506 * t1096,
+                t939 * t1113 + t989 * t1071,
+                t939 * t1123,
+                t341,
+            ],
+            [
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t254 - t261 * t228, -(t261 * t270 + t253 * t275),
+                -(t261 * t290 + t253 * t222), -t307, -(t261 * t308 + t253 * t266), -t320,
+                t351 + 0.53 * (t307 + t320), t261 * t371 + t253 * t377, -(t261 * t376), 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t513 * t494 - t516, t513 * t524 - t515 * t529,
+                t513 * t544 + t515 * t486, t561, -(t513 * t562 + t515 * t518), t574,
+                t351 - 0.53 * (t561 + t574), t513 * t595 + t515 * t600, t513 * t599, 0.0,
+                rate_dot_arm_leg3, t692, t693, rate_dot_arm_leg3, rate_arm_leg3,
+                ::overact::math::sign(rate_arm_leg3), 1.0, t726 * t714 + t728,
+                t726 * t736 + t253 * t741, t726 * t290 - t253 * t705, t726 * t759 - t728,
+                t253 * t730 - t726 * t308, -t320, t806, t825,
+                t730 * t793 + t705 * t797 + t667 * t801 + t726 * t785, 0.2 * t778, t946,
+                t945 * t947, t945 * t951, t946, t945 * rate_arm_leg4,
+                ::overact::math::signed(t945, rate_arm_leg4), t945, t997 * t980 - t999,
+                t997 * t1007 + t515 * t1012, t997 * t544 + t515 * t971, t997 * t1031 + t999,
+                t997 * t562 + t515 * t1003, t574, t997 * t1054 - t945 * t1066 - t515 * t1072,
+                t945 * t1091 - t997 * t1093 - t515 * t1096, t945 * t1113 + t997 * t1071,
+                t945 * t1123, t350,
+            ],
+        ])
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -3261,7 +4932,7 @@ impl Delta4 {
     /// Output: 3 x 69.
     /// Columns: `PARAMETERS`.
     ///
-    /// 1210 operations (406 additions, 792 multiplications, 12 divisions), 0 square roots, 12 trigonometric pairs, 6 signs, 1090 intermediates.
+    /// 1267 operations (456 additions, 789 multiplications, 22 divisions), 6 square roots, 0 trigonometric pairs, 6 signs, 1135 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3272,513 +4943,555 @@ impl Delta4 {
         start: &[f64; 3],
     ) -> Result<[[f64; 69]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
-        let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.2809 + 0.04;
+        let t14 = 0.4 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.20079840636817814, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t21 = 0.2 * c_arm_leg1;
+        let t23 = t0 - (0.2 + t21);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = t23 * t25;
+        let t28 = pose[1] + 0.05;
+        let t29 = t28 - 0.2;
+        let t30 = t29 * t29;
+        let t32 = 0.16 * (t30 + t3);
+        let t33 = pose[0] * pose[0];
+        let t35 = t33 + t30 + t3;
+        let t37 = t35 - 0.2809 + 0.04;
+        let t39 = t32 - t37 * t37;
+        ::overact::guard::reach(t39, "leg2")?;
+        let t40 = ::overact::math::sqrt(t39);
+        ::overact::guard::leg(t40, 0.20079840636817814, "leg2")?;
+        let t41 = 1.0 / t40;
+        let t42 = 2.0 * t41;
+        let garm_vx_leg2 = pose[0] * t42;
+        let t46 = pose[0] - 0.05;
+        let t47 = t46 + 0.2;
+        let t48 = t47 * t47;
+        let t50 = 0.16 * (t48 + t3);
+        let t51 = 1.0 / t50;
+        let t52 = 0.4 * t47;
+        let t54 = t48 + t8 + t3;
+        let t56 = t54 - 0.2809 + 0.04;
+        let t59 = t50 - t56 * t56;
+        ::overact::guard::reach(t59, "leg3")?;
+        let t60 = ::overact::math::sqrt(t59);
+        ::overact::guard::leg(t60, 0.20079840636817814, "leg3")?;
+        let minus_c_arm_leg3 = t51 * (t52 * t56 + t14 * t60);
+        let t64 = 0.2 * minus_c_arm_leg3;
+        let t66 = t46 - (t64 - 0.2);
+        let t67 = 1.0 / t60;
+        let t68 = 2.0 * t67;
+        let garm_vx_leg3 = t66 * t68;
+        let t72 = pose[1] - 0.05;
+        let t73 = t72 + 0.2;
+        let t74 = t73 * t73;
+        let t76 = 0.16 * (t74 + t3);
+        let t78 = t33 + t74 + t3;
+        let t80 = t78 - 0.2809 + 0.04;
+        let t82 = t76 - t80 * t80;
+        ::overact::guard::reach(t82, "leg4")?;
+        let t83 = ::overact::math::sqrt(t82);
+        ::overact::guard::leg(t83, 0.20079840636817814, "leg4")?;
+        let t84 = 1.0 / t83;
+        let t85 = 2.0 * t84;
+        let garm_vx_leg4 = pose[0] * t85;
+        let t88 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t88, 22.533170865545554, "actuators")?;
+        ::overact::guard::platform(t88, 22.533170865545554, "actuators")?;
+        let t89 = 1.0 / t88;
+        let t90 = 0.4 * t24;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let s_rod_leg1 = 1.8867924528301887 * pose[1];
+        let t98 = 1.0 - 3.5599857600569598 * t8;
+        ::overact::guard::reach(t98, "leg1")?;
+        ::overact::guard::reach(t98, "leg3")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t98);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t12 = c_armcross_leg1 * c_rod_leg1;
-        let t13 = s_armcross_leg1 * c_rod_leg1;
-        let t16 = c_arm_leg1 * t13 - s_arm_leg1 * t12;
-        ::overact::guard::leg(t16, 0.9471622941895192, "leg1")?;
-        let t17 = 1.0 / t16;
-        let t18 = 5.0 * t17;
-        let garm_vx_leg1 = t12 * t18;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
-        let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t33 = s_armcross_leg2 * c_rod_leg2;
-        let t35 = c_armcross_leg2 * c_rod_leg2;
-        let t37 = c_arm_leg2 * t33 - s_arm_leg2 * t35;
-        ::overact::guard::leg(t37, 0.9471622941895197, "leg2")?;
-        let t38 = 1.0 / t37;
-        let t39 = 5.0 * t38;
-        let minus_garm_vx_leg2 = s_rod_leg2 * t39;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
-        let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t55 = c_armcross_leg3 * c_rod_leg3;
-        let t57 = s_armcross_leg3 * c_rod_leg3;
-        let t59 = s_arm_leg3 * t55 - c_arm_leg3 * t57;
-        ::overact::guard::leg(t59, 0.9471622941895192, "leg3")?;
-        let t60 = 1.0 / t59;
-        let t61 = 5.0 * t60;
-        let garm_vx_leg3 = t55 * t61;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        ::overact::guard::leg(c_rod_leg4, 1.0, "leg4")?;
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let (s_cross_leg4, c_cross_leg4) = ::overact::math::sin_cos(joints[10]);
-        let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
-        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let t77 = c_armcross_leg4 * c_rod_leg4;
-        let t79 = s_armcross_leg4 * c_rod_leg4;
-        let t81 = s_arm_leg4 * t77 - c_arm_leg4 * t79;
-        ::overact::guard::leg(t81, 0.9471622941895192, "leg4")?;
-        let t82 = 1.0 / t81;
-        let t83 = 5.0 * t82;
-        let minus_garm_vx_leg4 = s_rod_leg4 * t83;
-        let t86 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3 + minus_garm_vx_leg4 * minus_garm_vx_leg4;
-        ::overact::guard::platform(t86, 22.53317086554555, "actuators")?;
-        ::overact::guard::platform(t86, 22.53317086554555, "actuators")?;
-        let t87 = 1.0 / t86;
-        let minus_garm_vz_leg1 = t13 * t18;
-        let t96 = garm_vx_leg1 * actuator_velocities[0]
-            - minus_garm_vx_leg2 * actuator_velocities[1]
+        let t100 = 0.53 * c_rod_leg1;
+        let s_cross_leg1 = 2.5 * t17 / t100;
+        let t103 = 0.04 + t8;
+        let t105 = 0.2809 * t98;
+        let t107 = 0.212 * c_rod_leg1;
+        let c_cross_leg1 = (t10 - t103 - t105) / t107;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t112 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t90
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t112)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t112));
+        let garm_vy_leg1 = pose[1] * t25;
+        let t125 = 1.0 / t32;
+        let t126 = 0.4 * t29;
+        let c_arm_leg2 = t125 * (t126 * t37 - t14 * t40);
+        let t131 = 0.2 * c_arm_leg2;
+        let t133 = t28 - (0.2 + t131);
+        let garm_vy_leg2 = t133 * t42;
+        let garm_vy_leg3 = pose[1] * t68;
+        let t140 = 1.0 / t76;
+        let t141 = 0.4 * t73;
+        let minus_c_arm_leg4 = t140 * (t141 * t80 + t14 * t83);
+        let t146 = 0.2 * minus_c_arm_leg4;
+        let t148 = t72 - (t146 - 0.2);
+        let garm_vy_leg4 = t148 * t85;
+        let t158 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3 + garm_vx_leg4 * garm_vy_leg4;
+        let t159 = t158 * t89;
+        let t161 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t158 * t159;
+        ::overact::guard::platform(t161, 22.533170865545554, "actuators")?;
+        ::overact::guard::platform(t161, 22.533170865545554, "actuators")?;
+        let t162 = 1.0 / t161;
+        let t176 = garm_vx_leg1 * actuator_velocities[0]
+            + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2]
-            - minus_garm_vx_leg4 * actuator_velocities[3];
-        let garm_vy_leg1 = s_rod_leg1 * t18;
-        let garm_vy_leg2 = t35 * t39;
-        let garm_vy_leg3 = s_rod_leg3 * t61;
-        let garm_vy_leg4 = t77 * t83;
-        let t108 = garm_vx_leg1 * garm_vy_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
-            + garm_vx_leg3 * garm_vy_leg3 - minus_garm_vx_leg4 * garm_vy_leg4;
-        let t109 = t108 * t87;
-        let t118 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t108 * t109;
-        ::overact::guard::platform(t118, 22.533170865545543, "actuators")?;
-        ::overact::guard::platform(t118, 22.533170865545543, "actuators")?;
-        let t119 = 1.0 / t118;
-        let t128 = garm_vy_leg1 * actuator_velocities[0]
+            + garm_vx_leg4 * actuator_velocities[3];
+        let t178 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
             + garm_vy_leg3 * actuator_velocities[2]
-            + garm_vy_leg4 * actuator_velocities[3] - t96 * t109;
-        let garm_vz_leg3 = t57 * t61;
-        let minus_garm_vz_leg2 = t33 * t39;
-        let garm_vz_leg4 = t79 * t83;
-        let t146 = minus_garm_vx_leg2 * minus_garm_vz_leg2
-            - garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg3 * garm_vz_leg3
-            - minus_garm_vx_leg4 * garm_vz_leg4;
-        let t147 = t146 * t87;
-        let t149 = garm_vy_leg3 * garm_vz_leg3
-            - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2)
-            + garm_vy_leg4 * garm_vz_leg4 - t108 * t147;
-        let t150 = t149 * t119;
-        let t161 = minus_garm_vz_leg1 * minus_garm_vz_leg1
-            + minus_garm_vz_leg2 * minus_garm_vz_leg2 + garm_vz_leg3 * garm_vz_leg3
-            + garm_vz_leg4 * garm_vz_leg4 - t146 * t147 - t149 * t150;
-        ::overact::guard::platform(t161, 66.4019122371629, "actuators")?;
-        ::overact::guard::platform(t161, 66.4019122371629, "actuators")?;
-        let t162 = 1.0 / t161;
-        let t173 = garm_vz_leg3 * actuator_velocities[2]
-            - (minus_garm_vz_leg1 * actuator_velocities[0]
-                + minus_garm_vz_leg2 * actuator_velocities[1])
-            + garm_vz_leg4 * actuator_velocities[3] - t96 * t147 - t150 * t128;
-        let t174 = t162 * t173;
-        let t176 = t119 * t128 - t150 * t174;
-        let t180 = t96 * t87 - t109 * t176 - t147 * t174;
-        let rate_arm_leg1 = garm_vx_leg1 * t180 + garm_vy_leg1 * t176
-            - minus_garm_vz_leg1 * t174;
-        let t186 = rate_arm_leg1 * rate_arm_leg1;
-        let t189 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.8867924528301887 * t189;
-        let rate_rod_leg1 = grod_vy_leg1 * t176;
-        let t192 = s_armcross_leg1 * rate_rod_leg1;
-        let t194 = 1.8867924528301887 * t17;
-        let gcross_vz_leg1 = s_arm_leg1 * t194;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t194;
-        let minus_gcross_vy_leg1 = t194
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t189)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t189));
-        let rate_cross_leg1 = gcross_vz_leg1 * t174
-            - (minus_gcross_vx_leg1 * t180 + minus_gcross_vy_leg1 * t176);
-        let t210 = rate_cross_leg1 * rate_cross_leg1;
-        let t212 = c_armcross_leg1 * rate_rod_leg1;
-        let t214 = t192 * t192 + t210 + t212 * t212;
-        let t217 = 0.53 * s_rod_leg1;
-        let t219 = t217 * (rate_cross_leg1 * t212);
-        let t221 = 0.2 * s_arm_leg1 * t186 + 0.53 * t13 * t214 + t219 + t219;
-        let t224 = t217 * (rate_cross_leg1 * t192);
-        let t231 = t224 - (0.2 * c_arm_leg1 * t186 + 0.53 * t12 * t214) + t224;
-        let t233 = t217 * rate_cross_leg1;
-        let t236 = rate_cross_leg1 * t233 - t217 * t214;
-        let rate_dot_arm_leg1 = minus_garm_vz_leg1 * t221
-            - (garm_vx_leg1 * t231 + garm_vy_leg1 * t236);
-        let t240 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t242 = 0.53 * s_rod_leg2;
-        let t243 = 1.8867924528301887 * t38;
-        let t245 = 1.0 / c_rod_leg2;
-        let gcross_vx_leg2 = t243
-            * (s_arm_leg2 * (s_armcross_leg2 * s_rod_leg2 * t245)
-                + c_arm_leg2 * (c_armcross_leg2 * s_rod_leg2 * t245));
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t243;
-        let gcross_vz_leg2 = s_arm_leg2 * t243;
-        let rate_cross_leg2 = gcross_vx_leg2 * t180 - minus_gcross_vy_leg2 * t176
-            + gcross_vz_leg2 * t174;
-        let t260 = rate_cross_leg2 * rate_cross_leg2;
-        let minus_grod_vx_leg2 = 1.8867924528301887 * t245;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t180;
-        let t263 = s_armcross_leg2 * minus_rate_rod_leg2;
-        let t266 = c_armcross_leg2 * minus_rate_rod_leg2;
-        let t268 = t260 + t263 * t263 + t266 * t266;
-        let t270 = t242 * rate_cross_leg2;
-        let t272 = t242 * t268 - rate_cross_leg2 * t270;
-        let rate_arm_leg2 = garm_vy_leg2 * t176 - minus_garm_vx_leg2 * t180
-            - minus_garm_vz_leg2 * t174;
-        let t280 = rate_arm_leg2 * rate_arm_leg2;
-        let t286 = t242 * (rate_cross_leg2 * t263);
-        let t288 = 0.2 * c_arm_leg2 * t280 + 0.53 * t35 * t268 + t286 + t286;
-        let t297 = t242 * (rate_cross_leg2 * t266);
-        let t299 = 0.2 * s_arm_leg2 * t280 + 0.53 * t33 * t268 - t297 - t297;
-        let rate_dot_arm_leg2 = minus_garm_vx_leg2 * t272 + garm_vy_leg2 * t288
-            + minus_garm_vz_leg2 * t299;
-        let t302 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let rate_arm_leg3 = garm_vx_leg3 * t180 + garm_vy_leg3 * t176
-            + garm_vz_leg3 * t174;
-        let t311 = rate_arm_leg3 * rate_arm_leg3;
-        let t314 = 1.0 / c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.8867924528301887 * t314;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t176;
-        let t317 = s_armcross_leg3 * minus_rate_rod_leg3;
-        let t319 = 1.8867924528301887 * t60;
-        let minus_gcross_vx_leg3 = c_arm_leg3 * t319;
-        let minus_gcross_vy_leg3 = t319
-            * (s_arm_leg3 * (s_armcross_leg3 * s_rod_leg3 * t314)
-                + c_arm_leg3 * (c_armcross_leg3 * s_rod_leg3 * t314));
-        let minus_gcross_vz_leg3 = s_arm_leg3 * t319;
-        let minus_rate_cross_leg3 = minus_gcross_vx_leg3 * t180
-            + minus_gcross_vy_leg3 * t176 + minus_gcross_vz_leg3 * t174;
-        let t335 = minus_rate_cross_leg3 * minus_rate_cross_leg3;
-        let t337 = c_armcross_leg3 * minus_rate_rod_leg3;
-        let t339 = t317 * t317 + t335 + t337 * t337;
-        let t342 = 0.53 * s_rod_leg3;
-        let t344 = t342 * (minus_rate_cross_leg3 * t317);
-        let t346 = 0.2 * c_arm_leg3 * t311 + 0.53 * t55 * t339 - t344 - t344;
-        let t349 = t342 * minus_rate_cross_leg3;
-        let t351 = t342 * t339 - minus_rate_cross_leg3 * t349;
-        let t360 = t342 * (minus_rate_cross_leg3 * t337);
-        let t362 = 0.2 * s_arm_leg3 * t311 + 0.53 * t57 * t339 + t360 + t360;
-        let minus_rate_dot_arm_leg3 = garm_vx_leg3 * t346 + garm_vy_leg3 * t351
-            + garm_vz_leg3 * t362;
-        let t365 = actuator_accelerations[2] + minus_rate_dot_arm_leg3;
-        let t368 = 1.8867924528301887 * t82;
-        let t370 = 1.0 / c_rod_leg4;
-        let gcross_vx_leg4 = t368
-            * (s_arm_leg4 * (s_armcross_leg4 * s_rod_leg4 * t370)
-                + c_arm_leg4 * (c_armcross_leg4 * s_rod_leg4 * t370));
-        let minus_gcross_vy_leg4 = c_arm_leg4 * t368;
-        let minus_gcross_vz_leg4 = s_arm_leg4 * t368;
-        let rate_cross_leg4 = gcross_vx_leg4 * t180 - minus_gcross_vy_leg4 * t176
-            - minus_gcross_vz_leg4 * t174;
-        let t385 = 0.53 * s_rod_leg4;
-        let t386 = t385 * rate_cross_leg4;
-        let t388 = rate_cross_leg4 * rate_cross_leg4;
-        let grod_vx_leg4 = 1.8867924528301887 * t370;
-        let rate_rod_leg4 = grod_vx_leg4 * t180;
-        let t391 = s_armcross_leg4 * rate_rod_leg4;
-        let t394 = c_armcross_leg4 * rate_rod_leg4;
-        let t396 = t388 + t391 * t391 + t394 * t394;
-        let t398 = rate_cross_leg4 * t386 - t385 * t396;
-        let rate_arm_leg4 = garm_vy_leg4 * t176 - minus_garm_vx_leg4 * t180
-            + garm_vz_leg4 * t174;
-        let t406 = rate_arm_leg4 * rate_arm_leg4;
-        let t412 = t385 * (rate_cross_leg4 * t391);
-        let t414 = 0.2 * c_arm_leg4 * t406 + 0.53 * t77 * t396 - t412 - t412;
-        let t423 = t385 * (rate_cross_leg4 * t394);
-        let t425 = 0.2 * s_arm_leg4 * t406 + 0.53 * t79 * t396 + t423 + t423;
-        let rate_dot_arm_leg4 = minus_garm_vx_leg4 * t398 - garm_vy_leg4 * t414
-            - garm_vz_leg4 * t425;
-        let t428 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t430 = garm_vx_leg1 * t240 - minus_garm_vx_leg2 * t302 + garm_vx_leg3 * t365
-            - minus_garm_vx_leg4 * t428;
-        let t440 = garm_vy_leg1 * t240 + garm_vy_leg2 * t302 + garm_vy_leg3 * t365
-            + garm_vy_leg4 * t428 - t109 * t430;
-        let t452 = garm_vz_leg3 * t365
-            - (minus_garm_vz_leg1 * t240 + minus_garm_vz_leg2 * t302)
-            + garm_vz_leg4 * t428 - t147 * t430 - t150 * t440;
-        let t453 = t162 * t452;
-        let t455 = t119 * t440 - t150 * t453;
-        let t459 = t87 * t430 - t109 * t455 - t147 * t453;
-        let t460 = t459 - t231;
-        let t462 = t455 - t236;
-        let t465 = t453 - t221;
-        let rate_dot_arm_leg1_2 = garm_vx_leg1 * t460 + garm_vy_leg1 * t462
-            - minus_garm_vz_leg1 * t465;
-        let t468 = 9.81 * c_arm_leg1;
-        let t469 = 9.81 * s_arm_leg1;
-        let t476 = garm_vy_leg1 * minus_garm_vz_leg2 - minus_garm_vz_leg1 * garm_vy_leg2;
-        let t480 = minus_garm_vz_leg1 * minus_garm_vx_leg2
-            + garm_vx_leg1 * minus_garm_vz_leg2;
-        let t485 = garm_vy_leg1 * minus_garm_vx_leg2 + garm_vx_leg1 * garm_vy_leg2;
-        let t487 = garm_vx_leg3 * t476 - garm_vy_leg3 * t480 - garm_vz_leg3 * t485;
-        ::overact::guard::platform(t487, 91.80843988045547, "kept actuators")?;
-        ::overact::guard::platform(t487, 91.80843988045547, "kept actuators")?;
-        ::overact::guard::platform(t487, 91.80843988045547, "kept actuators")?;
-        let t488 = 1.0 / t487;
-        let t489 = (minus_garm_vz_leg2 * garm_vy_leg3 + garm_vy_leg2 * garm_vz_leg3)
-            * t488;
-        let t494 = (minus_garm_vx_leg2 * garm_vz_leg3
-            - minus_garm_vz_leg2 * garm_vx_leg3) * t488;
-        let t500 = (garm_vy_leg2 * garm_vx_leg3 + minus_garm_vx_leg2 * garm_vy_leg3)
-            * t488;
-        let t502 = minus_gcross_vx_leg1 * t489 + minus_gcross_vy_leg1 * t494
-            + gcross_vz_leg1 * t500;
-        let rate_dot_cross_leg1 = gcross_vz_leg1 * t465
-            - (minus_gcross_vx_leg1 * t460 + minus_gcross_vy_leg1 * t462);
-        let t508 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t509 = c_rod_leg1 * rate_cross_leg1;
-        let t510 = rate_rod_leg1 * t509;
-        let t511 = t508 + t510;
-        let t513 = 1.8867924528301887 * t233;
-        let t514 = rate_rod_leg1 * t513;
-        let t515 = c_rod_leg1 * t514;
-        let t516 = s_rod_leg1 * t511 + t515;
-        let t518 = grod_vy_leg1 * t494;
-        let t519 = t513 * t509;
-        let t520 = t518 * t519;
-        let t525 = (minus_garm_vz_leg1 * garm_vx_leg3 + garm_vx_leg1 * garm_vz_leg3)
-            * t488;
-        let t530 = (minus_garm_vz_leg1 * garm_vy_leg3 + garm_vy_leg1 * garm_vz_leg3)
-            * t488;
-        let t536 = (garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3) * t488;
-        let t538 = minus_gcross_vy_leg1 * t525 - minus_gcross_vx_leg1 * t530
-            - gcross_vz_leg1 * t536;
-        let t540 = grod_vy_leg1 * t525;
-        let t541 = t540 * t519;
-        let t543 = t480 * t488;
-        let t545 = t476 * t488;
-        let t548 = t485 * t488;
-        let t550 = minus_gcross_vy_leg1 * t543 - minus_gcross_vx_leg1 * t545
-            - gcross_vz_leg1 * t548;
-        let t552 = grod_vy_leg1 * t543;
-        let t553 = t552 * t519;
-        let t555 = t510 + t511;
-        let t557 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t558 = t557 - t514;
-        let t561 = c_rod_leg1 * t555 - s_rod_leg1 * (t514 - t558);
-        let t564 = 3.5599857600569598 * (t233 * t233);
-        let t566 = t564 - t509 * t509;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t462;
-        let t578 = rate_rod_leg1 * rate_rod_leg1;
-        let t581 = s_rod_leg1 * (t519 + rate_dot_rod_leg1) + c_rod_leg1 * (t578 - t564);
-        let t592 = c_rod_leg1 * t558 - t515;
-        let t594 = t502 * t592 - t520;
-        let t596 = t538 * t592 - t541;
-        let t598 = t550 * t592 - t553;
-        let t599 = 1.8867924528301887 * t455;
-        let t609 = t518 * rate_dot_rod_leg1;
-        let t610 = t540 * rate_dot_rod_leg1;
-        let t611 = t552 * rate_dot_rod_leg1;
-        let t612 = t453 + 9.81;
-        let t617 = t500 * t612 - (t489 * t459 + t494 * t455);
-        let t618 = 1.8867924528301887 * t617;
-        let t620 = 0.2 * rate_dot_arm_leg1_2 - t468;
-        let t632 = t530 * t459 - t525 * t455 - t536 * t612;
-        let t633 = 1.8867924528301887 * t632;
-        let t641 = t545 * t459 - t543 * t455 - t548 * t612;
-        let t642 = 1.8867924528301887 * t641;
-        let t646 = 0.2 * t16;
-        let t650 = s_rod_leg1 * (0.2 * s_cross_leg1);
-        let t654 = 0.2 * c_cross_leg1;
-        let t658 = t469 + 0.2 * t186;
-        let t662 = s_rod_leg1 * (s_cross_leg1 * t658 + c_cross_leg1 * t620);
-        let t667 = s_cross_leg1 * t620 - c_cross_leg1 * t658;
-        let t668 = c_rod_leg1 * t667;
-        let t670 = t646 * (t519 - rate_dot_rod_leg1) + t650 * (t564 + t578) - t654 * t555
-            - t502 * t662 + t518 * t668;
-        let t687 = t455 + t288;
-        let t689 = t459 - t272;
-        let t692 = t453 - t299;
-        let rate_dot_arm_leg2_2 = garm_vy_leg2 * t687 - minus_garm_vx_leg2 * t689
-            - minus_garm_vz_leg2 * t692;
-        let t695 = 9.81 * c_arm_leg2;
-        let t696 = 9.81 * s_arm_leg2;
-        let t702 = minus_gcross_vy_leg2 * t494 - gcross_vx_leg2 * t489
-            + gcross_vz_leg2 * t500;
-        let rate_dot_cross_leg2 = gcross_vx_leg2 * t689 - minus_gcross_vy_leg2 * t687
-            + gcross_vz_leg2 * t692;
-        let t708 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t709 = c_rod_leg2 * rate_cross_leg2;
-        let t710 = minus_rate_rod_leg2 * t709;
-        let t711 = t708 - t710;
-        let t713 = 1.8867924528301887 * t270;
-        let t714 = minus_rate_rod_leg2 * t713;
-        let t715 = c_rod_leg2 * t714;
-        let t716 = s_rod_leg2 * t711 - t715;
-        let t718 = minus_grod_vx_leg2 * t489;
-        let t719 = t713 * t709;
-        let t720 = t718 * t719;
-        let t726 = gcross_vx_leg2 * t530 + minus_gcross_vy_leg2 * t525
-            - gcross_vz_leg2 * t536;
-        let t728 = minus_grod_vx_leg2 * t530;
-        let t729 = t728 * t719;
-        let t735 = gcross_vx_leg2 * t545 + minus_gcross_vy_leg2 * t543
-            - gcross_vz_leg2 * t548;
-        let t737 = minus_grod_vx_leg2 * t545;
-        let t738 = t737 * t719;
-        let t740 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t741 = t740 + t714;
-        let t744 = t711 - t710;
-        let t746 = s_rod_leg2 * (t714 + t741) + c_rod_leg2 * t744;
-        let t749 = 3.5599857600569598 * (t270 * t270);
-        let t751 = t749 - t709 * t709;
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t689;
-        let t763 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t766 = s_rod_leg2 * (t719 - minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t763 - t749);
-        let t777 = t715 + c_rod_leg2 * t741;
-        let t779 = t702 * t777 + t720;
-        let t781 = t726 * t777 - t729;
-        let t783 = t735 * t777 - t738;
-        let t785 = 1.8867924528301887 * t459;
-        let t794 = t718 * minus_rate_dot_rod_leg2;
-        let t795 = t728 * minus_rate_dot_rod_leg2;
-        let t796 = t737 * minus_rate_dot_rod_leg2;
-        let t801 = 0.2 * rate_dot_arm_leg2_2 - t695;
-        let t813 = t696 + 0.2 * t280;
-        let t817 = s_rod_leg2 * (s_cross_leg2 * t813 + c_cross_leg2 * t801);
-        let t821 = s_cross_leg2 * t801 - c_cross_leg2 * t813;
-        let t822 = c_rod_leg2 * t821;
-        let t825 = 0.2 * t37;
-        let t829 = s_rod_leg2 * (0.2 * s_cross_leg2);
-        let t833 = 0.2 * c_cross_leg2;
-        let t839 = t825 * (t719 + minus_rate_dot_rod_leg2) + t829 * (t749 + t763)
-            - t833 * t744 - t726 * t817 + t728 * t822;
-        let t853 = t459 - t346;
-        let t855 = t455 - t351;
-        let t858 = t453 - t362;
-        let rate_dot_arm_leg3 = garm_vx_leg3 * t853 + garm_vy_leg3 * t855
-            + garm_vz_leg3 * t858;
-        let t861 = 9.81 * c_arm_leg3;
-        let t862 = 9.81 * s_arm_leg3;
-        let t868 = minus_gcross_vx_leg3 * t489 + minus_gcross_vy_leg3 * t494
-            - minus_gcross_vz_leg3 * t500;
-        let t869 = c_rod_leg3 * minus_rate_cross_leg3;
-        let t870 = minus_rate_rod_leg3 * t869;
-        let minus_rate_dot_cross_leg3 = minus_gcross_vx_leg3 * t853
-            + minus_gcross_vy_leg3 * t855 + minus_gcross_vz_leg3 * t858;
-        let t876 = s_rod_leg3 * minus_rate_dot_cross_leg3;
-        let t877 = t870 - t876;
-        let t879 = 1.8867924528301887 * t349;
-        let t880 = minus_rate_rod_leg3 * t879;
-        let t881 = c_rod_leg3 * t880;
-        let t882 = s_rod_leg3 * t877 + t881;
-        let t884 = minus_grod_vy_leg3 * t494;
-        let t885 = t879 * t869;
-        let t886 = t884 * t885;
-        let t892 = minus_gcross_vy_leg3 * t525 - minus_gcross_vx_leg3 * t530
-            + minus_gcross_vz_leg3 * t536;
-        let t894 = minus_grod_vy_leg3 * t525;
-        let t895 = t894 * t885;
-        let t901 = minus_gcross_vy_leg3 * t543 - minus_gcross_vx_leg3 * t545
-            + minus_gcross_vz_leg3 * t548;
-        let t903 = minus_grod_vy_leg3 * t543;
-        let t904 = t903 * t885;
-        let t906 = t870 + t877;
-        let t908 = c_rod_leg3 * minus_rate_dot_cross_leg3;
-        let t909 = t908 + t880;
-        let t910 = t880 + t909;
-        let t912 = c_rod_leg3 * t906 - s_rod_leg3 * t910;
-        let t915 = 3.5599857600569598 * (t349 * t349);
-        let t916 = t869 * t869;
-        let t917 = t915 - t916;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t855;
-        let t927 = t885 - minus_rate_dot_rod_leg3;
-        let t929 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t932 = s_rod_leg3 * t927 + c_rod_leg3 * (t929 - t915);
-        let t943 = t881 + c_rod_leg3 * t909;
-        let t963 = t862 + 0.2 * t311;
-        let t966 = 0.2 * rate_dot_arm_leg3 - t861;
-        let t968 = s_cross_leg3 * t963 + c_cross_leg3 * t966;
-        let t969 = c_rod_leg3 * t968;
-        let t973 = s_cross_leg3 * t966 - c_cross_leg3 * t963;
-        let t974 = s_rod_leg3 * t973;
-        let t980 = 0.2 * t59;
-        let t984 = s_rod_leg3 * (0.2 * s_cross_leg3);
-        let t987 = 0.2 * c_cross_leg3;
-        let t993 = t980 * (t916 + t929) - t984 * t927 - t987 * t910 + t901 * t969
-            - t903 * t974;
-        let t994 = s_rod_leg3 * t968;
-        let t996 = c_rod_leg3 * t973;
-        let t1012 = t984 * (t915 + t929) - t980 * (t885 + minus_rate_dot_rod_leg3)
-            - t987 * t906 - t901 * t994 - t903 * t996;
-        let t1027 = minus_garm_vx_leg4 * t489 - garm_vy_leg4 * t494
-            + garm_vz_leg4 * t500;
-        let t1028 = t455 - t414;
-        let t1030 = t459 - t398;
-        let t1033 = t453 - t425;
-        let rate_dot_arm_leg4_2 = garm_vy_leg4 * t1028 - minus_garm_vx_leg4 * t1030
-            + garm_vz_leg4 * t1033;
-        let t1036 = t1027 * rate_dot_arm_leg4_2;
-        let t1041 = minus_garm_vx_leg4 * t530 + garm_vy_leg4 * t525
-            + garm_vz_leg4 * t536;
-        let t1042 = t1041 * rate_dot_arm_leg4_2;
-        let t1047 = minus_garm_vx_leg4 * t545 + garm_vy_leg4 * t543
-            + garm_vz_leg4 * t548;
-        let t1048 = t1047 * rate_dot_arm_leg4_2;
-        let t1049 = 9.81 * c_arm_leg4;
-        let t1053 = 9.81 * s_arm_leg4;
-        let t1067 = minus_gcross_vy_leg4 * t494 - gcross_vx_leg4 * t489
-            - minus_gcross_vz_leg4 * t500;
-        let rate_dot_cross_leg4 = gcross_vx_leg4 * t1030 - minus_gcross_vy_leg4 * t1028
-            - minus_gcross_vz_leg4 * t1033;
-        let t1073 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t1074 = c_rod_leg4 * rate_cross_leg4;
-        let t1075 = rate_rod_leg4 * t1074;
-        let t1076 = t1073 + t1075;
-        let t1078 = 1.8867924528301887 * t386;
-        let t1079 = rate_rod_leg4 * t1078;
-        let t1080 = c_rod_leg4 * t1079;
-        let t1081 = s_rod_leg4 * t1076 + t1080;
-        let t1083 = grod_vx_leg4 * t489;
-        let t1084 = t1078 * t1074;
-        let t1085 = t1083 * t1084;
-        let t1091 = gcross_vx_leg4 * t530 + minus_gcross_vy_leg4 * t525
-            + minus_gcross_vz_leg4 * t536;
-        let t1093 = grod_vx_leg4 * t530;
-        let t1094 = t1093 * t1084;
-        let t1100 = gcross_vx_leg4 * t545 + minus_gcross_vy_leg4 * t543
-            + minus_gcross_vz_leg4 * t548;
-        let t1102 = grod_vx_leg4 * t545;
-        let t1103 = t1102 * t1084;
-        let t1105 = t1075 + t1076;
-        let t1107 = c_rod_leg4 * rate_dot_cross_leg4;
-        let t1108 = t1107 - t1079;
-        let t1109 = t1079 - t1108;
-        let t1111 = c_rod_leg4 * t1105 - s_rod_leg4 * t1109;
-        let t1114 = 3.5599857600569598 * (t386 * t386);
-        let t1115 = t1074 * t1074;
-        let t1116 = t1114 - t1115;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t1030;
-        let t1126 = t1084 + rate_dot_rod_leg4;
-        let t1128 = rate_rod_leg4 * rate_rod_leg4;
-        let t1131 = s_rod_leg4 * t1126 + c_rod_leg4 * (t1128 - t1114);
-        let t1142 = c_rod_leg4 * t1108 - t1080;
-        let t1161 = 0.2 * t81;
-        let t1165 = s_rod_leg4 * (0.2 * s_cross_leg4);
-        let t1168 = 0.2 * c_cross_leg4;
-        let t1170 = t1161 * (t1115 + t1128) - t1165 * t1126 - t1168 * t1109;
-        let t1173 = t1053 + 0.2 * t406;
-        let t1176 = 0.2 * rate_dot_arm_leg4_2 - t1049;
-        let t1178 = s_cross_leg4 * t1173 + c_cross_leg4 * t1176;
-        let t1179 = c_rod_leg4 * t1178;
-        let t1184 = s_cross_leg4 * t1176 - c_cross_leg4 * t1173;
-        let t1185 = s_rod_leg4 * t1184;
-        let t1204 = t1165 * (t1114 + t1128) - t1161 * (t1084 - rate_dot_rod_leg4)
-            - t1168 * t1105;
-        let t1206 = s_rod_leg4 * t1178;
-        let t1209 = c_rod_leg4 * t1184;
-        let t1226 = t1165 * t1073 - t1161 * t1107 + t388 * t1168;
-        let t1236 = 0.2 * t1176;
+            + garm_vy_leg4 * actuator_velocities[3] - t176 * t159;
+        let t180 = 0.2 * minus_s_arm_leg1;
+        let t181 = pose[2] - t180;
+        let garm_vz_leg1 = t181 * t25;
+        let minus_s_arm_leg2 = t125 * (t14 * t37 + t126 * t40);
+        let t188 = 0.2 * minus_s_arm_leg2;
+        let t189 = pose[2] - t188;
+        let garm_vz_leg2 = t189 * t42;
+        let s_arm_leg3 = t51 * (t52 * t60 - t14 * t56);
+        let t197 = 0.2 * s_arm_leg3;
+        let t198 = pose[2] + t197;
+        let garm_vz_leg3 = t198 * t68;
+        let s_arm_leg4 = t140 * (t141 * t83 - t14 * t80);
+        let t206 = 0.2 * s_arm_leg4;
+        let t207 = pose[2] + t206;
+        let garm_vz_leg4 = t207 * t85;
+        let t217 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3 + garm_vx_leg4 * garm_vz_leg4;
+        let t218 = t217 * t89;
+        let t220 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 + garm_vy_leg4 * garm_vz_leg4 - t158 * t218;
+        let t221 = t220 * t162;
+        let t232 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 + garm_vz_leg4 * garm_vz_leg4 - t217 * t218
+            - t220 * t221;
+        ::overact::guard::platform(t232, 66.40191223716288, "actuators")?;
+        ::overact::guard::platform(t232, 66.40191223716288, "actuators")?;
+        let t233 = 1.0 / t232;
+        let t244 = garm_vz_leg1 * actuator_velocities[0]
+            + garm_vz_leg2 * actuator_velocities[1]
+            + garm_vz_leg3 * actuator_velocities[2]
+            + garm_vz_leg4 * actuator_velocities[3] - t176 * t218 - t221 * t178;
+        let t245 = t233 * t244;
+        let t247 = t162 * t178 - t221 * t245;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t90;
+        let t254 = t176 * t89 - t159 * t247 - t218 * t245;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t90;
+        let rate_cross_leg1 = gcross_vy_leg1 * t247 - minus_gcross_vx_leg1 * t254
+            - minus_gcross_vz_leg1 * t245;
+        let grod_vy_leg1 = 1.8867924528301887 * t112;
+        let rate_rod_leg1 = grod_vy_leg1 * t247;
+        let t262 = s_armcross_leg1 * rate_rod_leg1;
+        let t264 = pose[1] * (rate_cross_leg1 * t262);
+        let rate_arm_leg1 = garm_vx_leg1 * t254 + garm_vy_leg1 * t247
+            + garm_vz_leg1 * t245;
+        let t270 = rate_arm_leg1 * rate_arm_leg1;
+        let t273 = rate_cross_leg1 * rate_cross_leg1;
+        let t275 = c_armcross_leg1 * rate_rod_leg1;
+        let t277 = t262 * t262 + t273 + t275 * t275;
+        let t281 = t264 - (t21 * t270 + t23 * t277) + t264;
+        let t283 = pose[1] * rate_cross_leg1;
+        let t286 = rate_cross_leg1 * t283 - pose[1] * t277;
+        let t290 = pose[1] * (rate_cross_leg1 * t275);
+        let t295 = t290 - (t180 * t270 + t181 * t277) + t290;
+        let minus_rate_dot_arm_leg1 = garm_vx_leg1 * t281 + garm_vy_leg1 * t286
+            + garm_vz_leg1 * t295;
+        let t298 = actuator_accelerations[0] + minus_rate_dot_arm_leg1;
+        let t300 = 0.4 * t41;
+        let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
+        let t304 = 1.0 - 3.5599857600569598 * t33;
+        ::overact::guard::reach(t304, "leg2")?;
+        ::overact::guard::reach(t304, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t304);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t306 = 0.53 * c_rod_leg2;
+        let s_cross_leg2 = 2.5 * t40 / t306;
+        let t309 = 0.04 + t33;
+        let t311 = 0.2809 * t304;
+        let t313 = 0.212 * c_rod_leg2;
+        let c_cross_leg2 = (t35 - t309 - t311) / t313;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t318 = 1.0 / c_rod_leg2;
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let gcross_vx_leg2 = t300
+            * (minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t318)
+                - c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t318));
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t300;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t300;
+        let rate_cross_leg2 = gcross_vx_leg2 * t254 - minus_gcross_vy_leg2 * t247
+            - minus_gcross_vz_leg2 * t245;
+        let t336 = pose[0] * rate_cross_leg2;
+        let t338 = rate_cross_leg2 * rate_cross_leg2;
+        let minus_grod_vx_leg2 = 1.8867924528301887 * t318;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t254;
+        let t341 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t344 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t346 = t338 + t341 * t341 + t344 * t344;
+        let t348 = rate_cross_leg2 * t336 - pose[0] * t346;
+        let t351 = pose[0] * (rate_cross_leg2 * t341);
+        let rate_arm_leg2 = garm_vx_leg2 * t254 + garm_vy_leg2 * t247
+            + garm_vz_leg2 * t245;
+        let t357 = rate_arm_leg2 * rate_arm_leg2;
+        let t362 = t351 - (t131 * t357 + t133 * t346) + t351;
+        let t366 = pose[0] * (rate_cross_leg2 * t344);
+        let t371 = t366 - (t188 * t357 + t189 * t346) + t366;
+        let minus_rate_dot_arm_leg2 = garm_vx_leg2 * t348 + garm_vy_leg2 * t362
+            + garm_vz_leg2 * t371;
+        let t374 = actuator_accelerations[1] + minus_rate_dot_arm_leg2;
+        let rate_arm_leg3 = garm_vx_leg3 * t254 + garm_vy_leg3 * t247
+            + garm_vz_leg3 * t245;
+        let t382 = rate_arm_leg3 * rate_arm_leg3;
+        let c_cross_leg3 = (t54 - t103 - t105) / t107;
+        let s_cross_leg3 = 2.5 * t60 / t100;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t392 = s_armcross_leg3 * rate_rod_leg1;
+        let t394 = 0.4 * t67;
+        let gcross_vz_leg3 = s_arm_leg3 * t394;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t394;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t394
+            * (s_arm_leg3 * (t112 * (s_rod_leg1 * s_armcross_leg3))
+                + minus_c_arm_leg3 * (t112 * (s_rod_leg1 * minus_c_armcross_leg3)));
+        let rate_cross_leg3 = gcross_vz_leg3 * t245
+            - (minus_gcross_vx_leg3 * t254 + minus_gcross_vy_leg3 * t247);
+        let t413 = rate_cross_leg3 * rate_cross_leg3;
+        let t415 = minus_c_armcross_leg3 * rate_rod_leg1;
+        let t417 = t392 * t392 + t413 + t415 * t415;
+        let t421 = pose[1] * (rate_cross_leg3 * t392);
+        let t423 = t64 * t382 + t66 * t417 + t421 + t421;
+        let t431 = pose[1] * (rate_cross_leg3 * t415);
+        let t433 = t197 * t382 - t198 * t417 - t431 - t431;
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t423 - garm_vy_leg3 * t286
+            - garm_vz_leg3 * t433;
+        let t436 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let rate_arm_leg4 = garm_vx_leg4 * t254 + garm_vy_leg4 * t247
+            + garm_vz_leg4 * t245;
+        let t444 = rate_arm_leg4 * rate_arm_leg4;
+        let t446 = 0.4 * t84;
+        let gcross_vz_leg4 = s_arm_leg4 * t446;
+        let c_cross_leg4 = (t78 - t309 - t311) / t313;
+        let s_cross_leg4 = 2.5 * t83 / t306;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t446
+            * (s_arm_leg4 * (t318 * (minus_s_rod_leg2 * s_armcross_leg4))
+                + minus_c_arm_leg4
+                    * (t318 * (minus_s_rod_leg2 * minus_c_armcross_leg4)));
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t446;
+        let rate_cross_leg4 = gcross_vz_leg4 * t245
+            - (minus_gcross_vx_leg4 * t254 + minus_gcross_vy_leg4 * t247);
+        let t473 = rate_cross_leg4 * rate_cross_leg4;
+        let t474 = s_armcross_leg4 * minus_rate_rod_leg2;
+        let t477 = minus_c_armcross_leg4 * minus_rate_rod_leg2;
+        let t479 = t473 + t474 * t474 + t477 * t477;
+        let t483 = pose[0] * (rate_cross_leg4 * t474);
+        let t485 = t146 * t444 + t148 * t479 + t483 + t483;
+        let t493 = pose[0] * (rate_cross_leg4 * t477);
+        let t495 = t206 * t444 - t207 * t479 - t493 - t493;
+        let rate_dot_arm_leg4 = garm_vy_leg4 * t485 - garm_vx_leg4 * t348
+            - garm_vz_leg4 * t495;
+        let t498 = actuator_accelerations[3] - rate_dot_arm_leg4;
+        let t500 = garm_vx_leg1 * t298 + garm_vx_leg2 * t374 + garm_vx_leg3 * t436
+            + garm_vx_leg4 * t498;
+        let t510 = garm_vy_leg1 * t298 + garm_vy_leg2 * t374 + garm_vy_leg3 * t436
+            + garm_vy_leg4 * t498 - t159 * t500;
+        let t522 = garm_vz_leg1 * t298 + garm_vz_leg2 * t374 + garm_vz_leg3 * t436
+            + garm_vz_leg4 * t498 - t218 * t500 - t221 * t510;
+        let t523 = t233 * t522;
+        let t525 = t162 * t510 - t221 * t523;
+        let t529 = t89 * t500 - t159 * t525 - t218 * t523;
+        let t530 = t529 - t281;
+        let t532 = t525 - t286;
+        let t535 = t523 - t295;
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t530 + garm_vy_leg1 * t532
+            + garm_vz_leg1 * t535;
+        let t538 = 9.81 * c_arm_leg1;
+        let t539 = 9.81 * minus_s_arm_leg1;
+        let t546 = garm_vz_leg1 * garm_vy_leg2 - garm_vy_leg1 * garm_vz_leg2;
+        let t550 = garm_vz_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vz_leg2;
+        let t555 = garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2;
+        let t557 = garm_vx_leg3 * t546 - garm_vy_leg3 * t550 + garm_vz_leg3 * t555;
+        ::overact::guard::platform(t557, 91.80843988045552, "kept actuators")?;
+        ::overact::guard::platform(t557, 91.80843988045552, "kept actuators")?;
+        ::overact::guard::platform(t557, 91.80843988045552, "kept actuators")?;
+        let t558 = 1.0 / t557;
+        let t559 = (garm_vz_leg2 * garm_vx_leg3 - garm_vx_leg2 * garm_vz_leg3) * t558;
+        let t560 = grod_vy_leg1 * t559;
+        let t561 = 1.8867924528301887 * t283;
+        let t562 = c_rod_leg1 * rate_cross_leg1;
+        let t563 = t561 * t562;
+        let t564 = t560 * t563;
+        let t568 = (garm_vz_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vz_leg3) * t558;
+        let t575 = (garm_vy_leg2 * garm_vx_leg3 - garm_vx_leg2 * garm_vy_leg3) * t558;
+        let t577 = minus_gcross_vx_leg1 * t568 + gcross_vy_leg1 * t559
+            + minus_gcross_vz_leg1 * t575;
+        let rate_dot_cross_leg1 = gcross_vy_leg1 * t532 - minus_gcross_vx_leg1 * t530
+            - minus_gcross_vz_leg1 * t535;
+        let t583 = s_rod_leg1 * rate_dot_cross_leg1;
+        let t584 = rate_rod_leg1 * t562;
+        let t585 = t583 + t584;
+        let t587 = rate_rod_leg1 * t561;
+        let t588 = c_rod_leg1 * t587;
+        let t589 = s_rod_leg1 * t585 + t588;
+        let t595 = (garm_vz_leg1 * garm_vy_leg3 - garm_vy_leg1 * garm_vz_leg3) * t558;
+        let t600 = (garm_vz_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vz_leg3) * t558;
+        let t606 = (garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3) * t558;
+        let t608 = minus_gcross_vx_leg1 * t595 + gcross_vy_leg1 * t600
+            + minus_gcross_vz_leg1 * t606;
+        let t610 = grod_vy_leg1 * t600;
+        let t611 = t610 * t563;
+        let t613 = t550 * t558;
+        let t614 = grod_vy_leg1 * t613;
+        let t615 = t614 * t563;
+        let t616 = t546 * t558;
+        let t620 = t555 * t558;
+        let t622 = minus_gcross_vx_leg1 * t616 + gcross_vy_leg1 * t613
+            + minus_gcross_vz_leg1 * t620;
+        let t625 = t584 + t585;
+        let t627 = c_rod_leg1 * rate_dot_cross_leg1;
+        let t628 = t627 - t587;
+        let t631 = c_rod_leg1 * t625 - s_rod_leg1 * (t587 - t628);
+        let t634 = 3.5599857600569598 * (t283 * t283);
+        let t636 = t634 - t562 * t562;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t532;
+        let t648 = rate_rod_leg1 * rate_rod_leg1;
+        let t651 = s_rod_leg1 * (t563 + rate_dot_rod_leg1) + c_rod_leg1 * (t648 - t634);
+        let t655 = t608 * t651;
+        let t662 = c_rod_leg1 * t628 - t588;
+        let t664 = t577 * t662 + t564;
+        let t666 = t608 * t662 + t611;
+        let t668 = t622 * t662 + t615;
+        let t669 = 1.8867924528301887 * t525;
+        let t673 = t608 * t669;
+        let t679 = t560 * rate_dot_rod_leg1;
+        let t680 = t610 * rate_dot_rod_leg1;
+        let t681 = t614 * rate_dot_rod_leg1;
+        let t685 = t523 + 9.81;
+        let t687 = t568 * t529 - t559 * t525 + t575 * t685;
+        let t688 = 1.8867924528301887 * t687;
+        let t690 = 0.2 * rate_dot_arm_leg1 - t538;
+        let t702 = t600 * t525 - t595 * t529 - t606 * t685;
+        let t703 = 1.8867924528301887 * t702;
+        let t711 = t616 * t529 - t613 * t525 + t620 * t685;
+        let t712 = 1.8867924528301887 * t711;
+        let t716 = 0.9433962264150944 * t17;
+        let t720 = 0.37735849056603776 * (pose[1] * s_cross_leg1);
+        let t724 = 0.2 * c_cross_leg1;
+        let t729 = t539 - 0.2 * t270;
+        let t732 = s_rod_leg1 * (c_cross_leg1 * t690 - s_cross_leg1 * t729);
+        let t737 = c_cross_leg1 * t729 + s_cross_leg1 * t690;
+        let t738 = c_rod_leg1 * t737;
+        let t740 = t716 * (t563 - rate_dot_rod_leg1) + t720 * (t634 + t648) - t724 * t625
+            + t577 * t732 + t560 * t738;
+        let t757 = t529 - t348;
+        let t759 = t525 - t362;
+        let t762 = t523 - t371;
+        let rate_dot_arm_leg2 = garm_vx_leg2 * t757 + garm_vy_leg2 * t759
+            + garm_vz_leg2 * t762;
+        let t765 = 9.81 * c_arm_leg2;
+        let t766 = 9.81 * minus_s_arm_leg2;
+        let t772 = gcross_vx_leg2 * t568 + minus_gcross_vy_leg2 * t559
+            - minus_gcross_vz_leg2 * t575;
+        let rate_dot_cross_leg2 = gcross_vx_leg2 * t757 - minus_gcross_vy_leg2 * t759
+            - minus_gcross_vz_leg2 * t762;
+        let t778 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t779 = c_rod_leg2 * rate_cross_leg2;
+        let t780 = minus_rate_rod_leg2 * t779;
+        let t781 = t778 + t780;
+        let t783 = 1.8867924528301887 * t336;
+        let t784 = minus_rate_rod_leg2 * t783;
+        let t785 = c_rod_leg2 * t784;
+        let t786 = minus_s_rod_leg2 * t781 + t785;
+        let t788 = minus_grod_vx_leg2 * t568;
+        let t789 = t783 * t779;
+        let t790 = t788 * t789;
+        let t796 = minus_gcross_vz_leg2 * t606
+            - (gcross_vx_leg2 * t595 + minus_gcross_vy_leg2 * t600);
+        let t798 = minus_grod_vx_leg2 * t595;
+        let t799 = t798 * t789;
+        let t805 = gcross_vx_leg2 * t616 + minus_gcross_vy_leg2 * t613
+            - minus_gcross_vz_leg2 * t620;
+        let t807 = minus_grod_vx_leg2 * t616;
+        let t808 = t807 * t789;
+        let t810 = c_rod_leg2 * rate_dot_cross_leg2;
+        let t811 = t810 - t784;
+        let t814 = t780 + t781;
+        let t816 = minus_s_rod_leg2 * (t784 - t811) - c_rod_leg2 * t814;
+        let t819 = 3.5599857600569598 * (t336 * t336);
+        let t821 = t819 - t779 * t779;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t757;
+        let t833 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t836 = minus_s_rod_leg2 * (t789 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t833 - t819);
+        let t847 = c_rod_leg2 * t811 - t785;
+        let t849 = t772 * t847 + t790;
+        let t851 = t796 * t847 - t799;
+        let t853 = t805 * t847 + t808;
+        let t854 = 1.8867924528301887 * t529;
+        let t864 = t788 * minus_rate_dot_rod_leg2;
+        let t865 = t798 * minus_rate_dot_rod_leg2;
+        let t866 = t807 * minus_rate_dot_rod_leg2;
+        let t871 = 0.2 * rate_dot_arm_leg2 - t765;
+        let t884 = t766 - 0.2 * t357;
+        let t887 = minus_s_rod_leg2 * (c_cross_leg2 * t871 - s_cross_leg2 * t884);
+        let t891 = c_cross_leg2 * t884 + s_cross_leg2 * t871;
+        let t892 = c_rod_leg2 * t891;
+        let t895 = 0.9433962264150944 * t40;
+        let t899 = 0.37735849056603776 * (pose[0] * s_cross_leg2);
+        let t903 = 0.2 * c_cross_leg2;
+        let t909 = t895 * (minus_rate_dot_rod_leg2 - t789) - t899 * (t819 + t833)
+            + t903 * t814 + t796 * t887 - t798 * t892;
+        let t923 = t529 + t423;
+        let t927 = t523 - t433;
+        let rate_dot_arm_leg3_2 = garm_vx_leg3 * t923 + garm_vy_leg3 * t532
+            + garm_vz_leg3 * t927;
+        let t930 = 9.81 * minus_c_arm_leg3;
+        let t931 = 9.81 * s_arm_leg3;
+        let t937 = minus_gcross_vy_leg3 * t559 - minus_gcross_vx_leg3 * t568
+            + gcross_vz_leg3 * t575;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * t927
+            - (minus_gcross_vx_leg3 * t923 + minus_gcross_vy_leg3 * t532);
+        let t943 = s_rod_leg1 * rate_dot_cross_leg3;
+        let t944 = c_rod_leg1 * rate_cross_leg3;
+        let t945 = rate_rod_leg1 * t944;
+        let t946 = t943 + t945;
+        let t948 = pose[1] * rate_cross_leg3;
+        let t949 = 1.8867924528301887 * t948;
+        let t950 = rate_rod_leg1 * t949;
+        let t951 = c_rod_leg1 * t950;
+        let t952 = s_rod_leg1 * t946 + t951;
+        let t954 = t949 * t944;
+        let t955 = t560 * t954;
+        let t958 = t610 * t954;
+        let t964 = minus_gcross_vy_leg3 * t613 - minus_gcross_vx_leg3 * t616
+            + gcross_vz_leg3 * t620;
+        let t966 = t614 * t954;
+        let t968 = c_rod_leg1 * rate_dot_cross_leg3;
+        let t969 = t968 - t950;
+        let t970 = t950 - t969;
+        let t972 = t945 + t946;
+        let t974 = s_rod_leg1 * t970 - c_rod_leg1 * t972;
+        let t977 = 3.5599857600569598 * (t948 * t948);
+        let t978 = t944 * t944;
+        let t979 = t977 - t978;
+        let t997 = c_rod_leg1 * t969 - t951;
+        let t1013 = t931 + 0.2 * t382;
+        let t1016 = t930 + 0.2 * rate_dot_arm_leg3_2;
+        let t1018 = s_cross_leg3 * t1013 + c_cross_leg3 * t1016;
+        let t1019 = c_rod_leg1 * t1018;
+        let t1023 = s_cross_leg3 * t1016 - c_cross_leg3 * t1013;
+        let t1024 = s_rod_leg1 * t1023;
+        let t1031 = 0.9433962264150944 * t60;
+        let t1035 = 0.37735849056603776 * (pose[1] * s_cross_leg3);
+        let t1039 = 0.2 * c_cross_leg3;
+        let t1044 = t964 * t1019
+            - (t1031 * (t978 + t648) + t1035 * (t954 + rate_dot_rod_leg1) + t1039 * t970)
+            + t614 * t1024;
+        let t1045 = s_rod_leg1 * t1018;
+        let t1047 = c_rod_leg1 * t1023;
+        let t1063 = t1031 * (rate_dot_rod_leg1 - t954) - t1035 * (t977 + t648)
+            + t1039 * t972 + t964 * t1045 - t614 * t1047;
+        let t1078 = garm_vx_leg4 * t568 - garm_vy_leg4 * t559 + garm_vz_leg4 * t575;
+        let t1080 = t525 + t485;
+        let t1083 = t523 - t495;
+        let rate_dot_arm_leg4_2 = garm_vx_leg4 * t757 + garm_vy_leg4 * t1080
+            + garm_vz_leg4 * t1083;
+        let t1086 = t1078 * rate_dot_arm_leg4_2;
+        let t1091 = garm_vy_leg4 * t600 - garm_vx_leg4 * t595 - garm_vz_leg4 * t606;
+        let t1092 = t1091 * rate_dot_arm_leg4_2;
+        let t1097 = garm_vx_leg4 * t616 - garm_vy_leg4 * t613 + garm_vz_leg4 * t620;
+        let t1098 = t1097 * rate_dot_arm_leg4_2;
+        let t1099 = 9.81 * minus_c_arm_leg4;
+        let t1103 = 9.81 * s_arm_leg4;
+        let t1117 = minus_gcross_vy_leg4 * t559 - minus_gcross_vx_leg4 * t568
+            + gcross_vz_leg4 * t575;
+        let rate_dot_cross_leg4 = gcross_vz_leg4 * t1083
+            - (minus_gcross_vx_leg4 * t757 + minus_gcross_vy_leg4 * t1080);
+        let t1123 = minus_s_rod_leg2 * rate_dot_cross_leg4;
+        let t1124 = c_rod_leg2 * rate_cross_leg4;
+        let t1125 = minus_rate_rod_leg2 * t1124;
+        let t1126 = t1123 + t1125;
+        let t1128 = pose[0] * rate_cross_leg4;
+        let t1129 = 1.8867924528301887 * t1128;
+        let t1130 = minus_rate_rod_leg2 * t1129;
+        let t1131 = c_rod_leg2 * t1130;
+        let t1132 = minus_s_rod_leg2 * t1126 + t1131;
+        let t1134 = t1129 * t1124;
+        let t1135 = t788 * t1134;
+        let t1141 = minus_gcross_vx_leg4 * t595 - minus_gcross_vy_leg4 * t600
+            - gcross_vz_leg4 * t606;
+        let t1143 = t798 * t1134;
+        let t1149 = minus_gcross_vy_leg4 * t613 - minus_gcross_vx_leg4 * t616
+            + gcross_vz_leg4 * t620;
+        let t1151 = t807 * t1134;
+        let t1153 = t1125 + t1126;
+        let t1155 = c_rod_leg2 * rate_dot_cross_leg4;
+        let t1156 = t1155 - t1130;
+        let t1157 = t1130 - t1156;
+        let t1159 = c_rod_leg2 * t1153 - minus_s_rod_leg2 * t1157;
+        let t1162 = 3.5599857600569598 * (t1128 * t1128);
+        let t1163 = t1124 * t1124;
+        let t1164 = t1162 - t1163;
+        let t1183 = c_rod_leg2 * t1156 - t1131;
+        let t1200 = t1103 + 0.2 * t444;
+        let t1203 = t1099 + 0.2 * rate_dot_arm_leg4_2;
+        let t1205 = s_cross_leg4 * t1200 + c_cross_leg4 * t1203;
+        let t1206 = c_rod_leg2 * t1205;
+        let t1208 = 0.9433962264150944 * t83;
+        let t1212 = 0.37735849056603776 * (pose[0] * s_cross_leg4);
+        let t1216 = 0.2 * c_cross_leg4;
+        let t1218 = t1208 * (t1163 + t833) + t1212 * (t1134 + minus_rate_dot_rod_leg2)
+            + t1216 * t1157;
+        let t1223 = s_cross_leg4 * t1203 - c_cross_leg4 * t1200;
+        let t1224 = minus_s_rod_leg2 * t1223;
+        let t1243 = t1208 * (t1134 - minus_rate_dot_rod_leg2) + t1212 * (t1162 + t833)
+            - t1216 * t1153;
+        let t1245 = minus_s_rod_leg2 * t1205;
+        let t1248 = c_rod_leg2 * t1223;
+        let t1265 = t1208 * t1155 + t1212 * t1123 + t473 * t1216;
+        let t1275 = 0.2 * t1203;
         Ok([
             [
-                rate_dot_arm_leg1_2, -t468, t469, rate_dot_arm_leg1_2, rate_arm_leg1,
-                ::overact::math::sign(rate_arm_leg1), 1.0, t502 * t516 + t520,
-                t502 * t561 - t518 * t566, t502 * t581 - t518 * t508, t594,
-                t502 * t599 - t518 * t557, -t609,
-                t618
-                    - 0.07547169811320754 * (5.0 * t620 + 7.0225 * t594 - 7.0225 * t609),
-                t670,
-                t646 * t557 + t650 * t508 + t210 * t654 + t502 * t667,
-                0.2 * t620,
+                rate_dot_arm_leg1, -t538, -t539, rate_dot_arm_leg1, rate_arm_leg1,
+                ::overact::math::sign(rate_arm_leg1), 1.0, t564 - t577 * t589,
+                -(t577 * t631 + t560 * t636), -(t577 * t651 + t560 * t583), -t664,
+                -(t577 * t669 + t560 * t627), -t679,
+                t688
+                    - 0.07547169811320754 * (5.0 * t690 - 7.0225 * t664 - 7.0225 * t679),
+                t740,
+                t716 * t627 + t720 * t583 + t273 * t724 - t577 * t737,
+                0.2 * t690,
                 0.0,
                 0.0,
                 0.0,
@@ -3786,15 +5499,15 @@ impl Delta4 {
                 0.0,
                 0.0,
                 0.0,
-                t702 * t716 - t720,
-                t702 * t746 + t718 * t751,
-                t702 * t766 + t718 * t708,
-                t779,
-                t718 * t740 - t702 * t785,
-                -t794,
-                t618 - 0.53 * (t779 - t794),
-                -(t702 * t817 + t718 * t822),
-                t702 * t821,
+                t772 * t786 - t790,
+                t772 * t816 - t788 * t821,
+                t772 * t836 + t788 * t778,
+                t849,
+                -(t772 * t854 + t788 * t810),
+                t864,
+                t688 - 0.53 * (t849 + t864),
+                t772 * t887 + t788 * t892,
+                t772 * t891,
                 0.0,
                 0.0,
                 0.0,
@@ -3803,48 +5516,47 @@ impl Delta4 {
                 0.0,
                 0.0,
                 0.0,
-                t868 * t882 - t886,
-                t868 * t912 + t884 * t917,
-                t868 * t932 - t884 * t876,
-                t886 - t868 * t943,
-                -(t868 * t599 + t884 * t908),
-                -(t884 * minus_rate_dot_rod_leg3),
-                t868 * t969 - t884 * t974,
-                -(t868 * t994 + t884 * t996),
-                t868 * t973,
+                t937 * t952 + t955,
+                t937 * t974 + t560 * t979,
+                t937 * t651 - t560 * t943,
+                t937 * t997 - t955,
+                t560 * t968 - t937 * t669,
+                -t679,
+                t937 * t1019 + t560 * t1024,
+                t937 * t1045 - t560 * t1047,
+                t937 * t1023,
                 0.0,
-                t1036,
-                -(t1027 * t1049),
-                t1027 * t1053,
-                t1036,
-                t1027 * rate_arm_leg4,
-                ::overact::math::signed(t1027, rate_arm_leg4),
-                t1027,
-                t1067 * t1081 + t1085,
-                t1067 * t1111 - t1083 * t1116,
-                t1067 * t1131 - t1083 * t1073,
-                t1067 * t1142 - t1085,
-                t1067 * t785 - t1083 * t1107,
-                -(t1083 * rate_dot_rod_leg4),
-                t1027 * t1170 + t1067 * t1179 + t1083 * t1185,
-                t1027 * t1204 - t1067 * t1206 + t1083 * t1209,
-                t1027 * t1226 + t1067 * t1184,
-                t1027 * t1236,
-                t617,
+                t1086,
+                t1078 * t1099,
+                t1078 * t1103,
+                t1086,
+                t1078 * rate_arm_leg4,
+                ::overact::math::signed(t1078, rate_arm_leg4),
+                t1078,
+                t1117 * t1132 - t1135,
+                t1117 * t1159 + t788 * t1164,
+                t1117 * t836 + t788 * t1123,
+                t1117 * t1183 + t1135,
+                t1117 * t854 + t788 * t1155,
+                t864,
+                t1117 * t1206 - t1078 * t1218 - t788 * t1224,
+                t1078 * t1243 - t1117 * t1245 - t788 * t1248,
+                t1078 * t1265 + t1117 * t1223,
+                t1078 * t1275,
+                t687,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t538 * t516 + t541, t538 * t561 - t540 * t566,
-                t538 * t581 - t540 * t508, t596, t538 * t599 - t540 * t557, -t610,
-                t633 - 0.53 * (t596 - t610), t540 * t668 - t538 * t662, t538 * t667, 0.0,
-                rate_dot_arm_leg2_2, -t695, t696, rate_dot_arm_leg2_2, rate_arm_leg2,
-                ::overact::math::sign(rate_arm_leg2), 1.0, t726 * t716 + t729,
-                t726 * t746 - t728 * t751, t726 * t766 - t728 * t708, t781,
-                -(t726 * t785 + t728 * t740), t795,
-                t633
-                    - 0.07547169811320754 * (5.0 * t801 + 7.0225 * t781 + 7.0225 * t795),
-                t839,
-                t825 * t740 + t829 * t708 + t260 * t833 + t726 * t821,
-                0.2 * t801,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t608 * t589 - t611, t608 * t631 + t610 * t636,
+                t655 + t610 * t583, t666, t673 + t610 * t627, t680, t703 - 0.53 * (t666 + t680),
+                -(t608 * t732 + t610 * t738), t608 * t737, 0.0, rate_dot_arm_leg2, -t765, -t766,
+                rate_dot_arm_leg2, rate_arm_leg2, ::overact::math::sign(rate_arm_leg2), 1.0,
+                t796 * t786 + t799, t796 * t816 + t798 * t821, t796 * t836 - t798 * t778, t851,
+                t798 * t810 - t796 * t854, -t865,
+                t703
+                    - 0.07547169811320754 * (5.0 * t871 + 7.0225 * t851 - 7.0225 * t865),
+                t909,
+                t895 * t810 + t899 * t778 + t338 * t903 + t796 * t891,
+                0.2 * t871,
                 0.0,
                 0.0,
                 0.0,
@@ -3852,54 +5564,53 @@ impl Delta4 {
                 0.0,
                 0.0,
                 0.0,
-                t892 * t882 - t895,
-                t892 * t912 + t894 * t917,
-                t892 * t932 - t894 * t876,
-                t895 - t892 * t943,
-                -(t892 * t599 + t894 * t908),
-                -(t894 * minus_rate_dot_rod_leg3),
-                t892 * t969 - t894 * t974,
-                -(t892 * t994 + t894 * t996),
-                t892 * t973,
+                t608 * t952 - t958,
+                t608 * t974 - t610 * t979,
+                t655 + t610 * t943,
+                t608 * t997 + t958,
+                -(t673 + t610 * t968),
+                t680,
+                t608 * t1019 - t610 * t1024,
+                t608 * t1045 + t610 * t1047,
+                t608 * t1023,
                 0.0,
-                -t1042,
-                t1041 * t1049,
-                -(t1041 * t1053),
-                -t1042,
-                -(t1041 * rate_arm_leg4),
-                -::overact::math::signed(t1041, rate_arm_leg4),
-                -t1041,
-                t1091 * t1081 - t1094,
-                t1091 * t1111 + t1093 * t1116,
-                t1091 * t1131 + t1093 * t1073,
-                t1091 * t1142 + t1094,
-                t1091 * t785 + t1093 * t1107,
-                t1093 * rate_dot_rod_leg4,
-                t1091 * t1179 - t1041 * t1170 - t1093 * t1185,
-                -(t1041 * t1204 + t1091 * t1206 + t1093 * t1209),
-                t1091 * t1184 - t1041 * t1226,
-                -(t1041 * t1236),
-                t632,
+                t1092,
+                t1091 * t1099,
+                t1091 * t1103,
+                t1092,
+                t1091 * rate_arm_leg4,
+                ::overact::math::signed(t1091, rate_arm_leg4),
+                t1091,
+                t1141 * t1132 + t1143,
+                t1141 * t1159 - t798 * t1164,
+                t1141 * t836 - t798 * t1123,
+                t1141 * t1183 - t1143,
+                t1141 * t854 - t798 * t1155,
+                -t865,
+                t1141 * t1206 - t1091 * t1218 + t798 * t1224,
+                t1091 * t1243 - t1141 * t1245 + t798 * t1248,
+                t1091 * t1265 + t1141 * t1223,
+                t1091 * t1275,
+                t702,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t550 * t516 + t553, t550 * t561 - t552 * t566,
-                t550 * t581 - t552 * t508, t598, t550 * t599 - t552 * t557, -t611,
-                t642 - 0.53 * (t598 - t611), t552 * t668 - t550 * t662, t550 * t667, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, t735 * t716 + t738, t735 * t746 - t737 * t751,
-                t735 * t766 - t737 * t708, t783, -(t735 * t785 + t737 * t740), t796,
-                t642 - 0.53 * (t783 + t796), t737 * t822 - t735 * t817, t735 * t821, 0.0,
-                rate_dot_arm_leg3, -t861, t862, rate_dot_arm_leg3, rate_arm_leg3,
-                ::overact::math::sign(rate_arm_leg3), 1.0, t901 * t882 - t904,
-                t901 * t912 + t903 * t917, t901 * t932 - t903 * t876, t904 - t901 * t943,
-                -(t901 * t599 + t903 * t908), -(t903 * minus_rate_dot_rod_leg3), t993, t1012,
-                t980 * t908 - t984 * t876 + t335 * t987 + t901 * t973, 0.2 * t966, -t1048,
-                t1047 * t1049, -(t1047 * t1053), -t1048, -(t1047 * rate_arm_leg4),
-                -::overact::math::signed(t1047, rate_arm_leg4), -t1047, t1100 * t1081 - t1103,
-                t1100 * t1111 + t1102 * t1116, t1100 * t1131 + t1102 * t1073, t1100 * t1142 + t1103,
-                t1100 * t785 + t1102 * t1107, t1102 * rate_dot_rod_leg4,
-                t1100 * t1179 - t1047 * t1170 - t1102 * t1185,
-                -(t1047 * t1204 + t1100 * t1206 + t1102 * t1209), t1100 * t1184 - t1047 * t1226,
-                -(t1047 * t1236), t641,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t615 - t622 * t589, -(t622 * t631 + t614 * t636),
+                -(t622 * t651 + t614 * t583), -t668, -(t622 * t669 + t614 * t627), -t681,
+                t712 + 0.53 * (t668 + t681), t622 * t732 + t614 * t738, -(t622 * t737), 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t805 * t786 - t808, t805 * t816 - t807 * t821,
+                t805 * t836 + t807 * t778, t853, -(t805 * t854 + t807 * t810), t866,
+                t712 - 0.53 * (t853 + t866), t805 * t887 + t807 * t892, t805 * t891, 0.0,
+                rate_dot_arm_leg3_2, t930, t931, rate_dot_arm_leg3_2, rate_arm_leg3,
+                ::overact::math::sign(rate_arm_leg3), 1.0, t964 * t952 + t966,
+                t964 * t974 + t614 * t979, t964 * t651 - t614 * t943, t964 * t997 - t966,
+                t614 * t968 - t964 * t669, -t681, t1044, t1063,
+                t1031 * t968 + t1035 * t943 + t413 * t1039 + t964 * t1023, 0.2 * t1016, t1098,
+                t1097 * t1099, t1097 * t1103, t1098, t1097 * rate_arm_leg4,
+                ::overact::math::signed(t1097, rate_arm_leg4), t1097, t1149 * t1132 - t1151,
+                t1149 * t1159 + t807 * t1164, t1149 * t836 + t807 * t1123, t1149 * t1183 + t1151,
+                t1149 * t854 + t807 * t1155, t866, t1149 * t1206 - t1097 * t1218 - t807 * t1224,
+                t1097 * t1243 - t1149 * t1245 - t807 * t1248, t1097 * t1265 + t1149 * t1223,
+                t1097 * t1275, t711,
             ],
         ])
     }
@@ -3913,7 +5624,7 @@ impl Delta4 {
     /// Output: 3 x 55.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 801 operations (229 additions, 564 multiplications, 8 divisions), 0 square roots, 12 trigonometric pairs, 12 signs, 678 intermediates.
+    /// 877 operations (279 additions, 580 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 12 signs, 736 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3922,8 +5633,476 @@ impl Delta4 {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 55]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_platform_base_from_joints(pose, joints, twist, acceleration)
+        let t1 = pose[0] + 0.05;
+        let t2 = t1 - 0.2;
+        let t3 = t2 * t2;
+        let t4 = pose[2] * pose[2];
+        let t6 = 0.16 * (t3 + t4);
+        let t7 = 1.0 / t6;
+        let t8 = 0.4 * t2;
+        let t9 = pose[1] * pose[1];
+        let t11 = t3 + t9 + t4;
+        let t13 = t11 - 0.2809 + 0.04;
+        let t15 = 0.4 * pose[2];
+        let t17 = t6 - t13 * t13;
+        ::overact::guard::reach(t17, "leg1")?;
+        let t18 = ::overact::math::sqrt(t17);
+        ::overact::guard::leg(t18, 0.20079840636817814, "leg1")?;
+        let c_arm_leg1 = t7 * (t8 * t13 - t15 * t18);
+        let t22 = 0.2 * c_arm_leg1;
+        let t24 = t1 - (0.2 + t22);
+        let t25 = 1.0 / t18;
+        let t26 = 2.0 * t25;
+        let garm_vx_leg1 = t24 * t26;
+        let t28 = 0.4 * t25;
+        let minus_s_arm_leg1 = t7 * (t15 * t13 + t8 * t18);
+        let s_rod_leg1 = 1.8867924528301887 * pose[1];
+        let t36 = 1.0 - 3.5599857600569598 * t9;
+        ::overact::guard::reach(t36, "leg1")?;
+        ::overact::guard::reach(t36, "leg3")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t36);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let t38 = 0.53 * c_rod_leg1;
+        let s_cross_leg1 = 2.5 * t18 / t38;
+        let t41 = 0.04 + t9;
+        let t43 = 0.2809 * t36;
+        let t45 = 0.212 * c_rod_leg1;
+        let c_cross_leg1 = (t11 - t41 - t43) / t45;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t50 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t28
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t50)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t50));
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t28;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t28;
+        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
+            - minus_gcross_vz_leg1 * twist[2];
+        let grod_vy_leg1 = 1.8867924528301887 * t50;
+        let rate_rod_leg1 = grod_vy_leg1 * twist[1];
+        let t70 = s_armcross_leg1 * rate_rod_leg1;
+        let t72 = pose[1] * (rate_cross_leg1 * t70);
+        let garm_vy_leg1 = pose[1] * t26;
+        let t77 = 0.2 * minus_s_arm_leg1;
+        let t78 = pose[2] - t77;
+        let garm_vz_leg1 = t78 * t26;
+        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
+            + garm_vz_leg1 * twist[2];
+        let t82 = rate_arm_leg1 * rate_arm_leg1;
+        let t85 = rate_cross_leg1 * rate_cross_leg1;
+        let t87 = c_armcross_leg1 * rate_rod_leg1;
+        let t89 = t70 * t70 + t85 + t87 * t87;
+        let t94 = acceleration[0] - (t72 - (t22 * t82 + t24 * t89) + t72);
+        let t96 = pose[1] * rate_cross_leg1;
+        let t97 = rate_cross_leg1 * t96;
+        let t100 = acceleration[1] - (t97 - pose[1] * t89);
+        let t104 = pose[1] * (rate_cross_leg1 * t87);
+        let t110 = acceleration[2] - (t104 - (t77 * t82 + t78 * t89) + t104);
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t94 + garm_vy_leg1 * t100
+            + garm_vz_leg1 * t110;
+        let t116 = pose[1] + 0.05;
+        let t117 = t116 - 0.2;
+        let t118 = t117 * t117;
+        let t120 = 0.16 * (t118 + t4);
+        let t121 = pose[0] * pose[0];
+        let t123 = t121 + t118 + t4;
+        let t125 = t123 - 0.2809 + 0.04;
+        let t127 = t120 - t125 * t125;
+        ::overact::guard::reach(t127, "leg2")?;
+        let t128 = ::overact::math::sqrt(t127);
+        ::overact::guard::leg(t128, 0.20079840636817814, "leg2")?;
+        let t129 = 1.0 / t128;
+        let t130 = 2.0 * t129;
+        let garm_vx_leg2 = pose[0] * t130;
+        let t132 = 0.4 * t129;
+        let t133 = 1.0 / t120;
+        let t135 = 0.4 * t117;
+        let minus_s_arm_leg2 = t133 * (t15 * t125 + t135 * t128);
+        let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
+        let c_arm_leg2 = t133 * (t135 * t125 - t15 * t128);
+        let t146 = 1.0 - 3.5599857600569598 * t121;
+        ::overact::guard::reach(t146, "leg2")?;
+        ::overact::guard::reach(t146, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t146);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t148 = 0.53 * c_rod_leg2;
+        let s_cross_leg2 = 2.5 * t128 / t148;
+        let t151 = 0.04 + t121;
+        let t153 = 0.2809 * t146;
+        let t155 = 0.212 * c_rod_leg2;
+        let c_cross_leg2 = (t123 - t151 - t153) / t155;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t160 = 1.0 / c_rod_leg2;
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let gcross_vx_leg2 = t132
+            * (minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t160)
+                - c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t160));
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t132;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t132;
+        let rate_cross_leg2 = gcross_vx_leg2 * twist[0] - minus_gcross_vy_leg2 * twist[1]
+            - minus_gcross_vz_leg2 * twist[2];
+        let t178 = pose[0] * rate_cross_leg2;
+        let t179 = rate_cross_leg2 * t178;
+        let t180 = rate_cross_leg2 * rate_cross_leg2;
+        let minus_grod_vx_leg2 = 1.8867924528301887 * t160;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * twist[0];
+        let t183 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t186 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t188 = t180 + t183 * t183 + t186 * t186;
+        let t191 = acceleration[0] - (t179 - pose[0] * t188);
+        let t193 = 0.2 * c_arm_leg2;
+        let t195 = t116 - (0.2 + t193);
+        let garm_vy_leg2 = t195 * t130;
+        let t198 = pose[0] * (rate_cross_leg2 * t183);
+        let t202 = 0.2 * minus_s_arm_leg2;
+        let t203 = pose[2] - t202;
+        let garm_vz_leg2 = t203 * t130;
+        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
+            + garm_vz_leg2 * twist[2];
+        let t207 = rate_arm_leg2 * rate_arm_leg2;
+        let t213 = acceleration[1] - (t198 - (t193 * t207 + t195 * t188) + t198);
+        let t217 = pose[0] * (rate_cross_leg2 * t186);
+        let t223 = acceleration[2] - (t217 - (t202 * t207 + t203 * t188) + t217);
+        let rate_dot_arm_leg2 = garm_vx_leg2 * t191 + garm_vy_leg2 * t213
+            + garm_vz_leg2 * t223;
+        let t229 = pose[0] - 0.05;
+        let t230 = t229 + 0.2;
+        let t231 = t230 * t230;
+        let t233 = 0.16 * (t231 + t4);
+        let t234 = 1.0 / t233;
+        let t235 = 0.4 * t230;
+        let t237 = t231 + t9 + t4;
+        let t239 = t237 - 0.2809 + 0.04;
+        let t242 = t233 - t239 * t239;
+        ::overact::guard::reach(t242, "leg3")?;
+        let t243 = ::overact::math::sqrt(t242);
+        ::overact::guard::leg(t243, 0.20079840636817814, "leg3")?;
+        let minus_c_arm_leg3 = t234 * (t235 * t239 + t15 * t243);
+        let t247 = 0.2 * minus_c_arm_leg3;
+        let t249 = t229 - (t247 - 0.2);
+        let t250 = 1.0 / t243;
+        let t251 = 2.0 * t250;
+        let garm_vx_leg3 = t249 * t251;
+        let garm_vy_leg3 = pose[1] * t251;
+        let s_arm_leg3 = t234 * (t235 * t243 - t15 * t239);
+        let t261 = 0.2 * s_arm_leg3;
+        let t262 = pose[2] + t261;
+        let garm_vz_leg3 = t262 * t251;
+        let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
+            + garm_vz_leg3 * twist[2];
+        let t266 = rate_arm_leg3 * rate_arm_leg3;
+        let c_cross_leg3 = (t237 - t41 - t43) / t45;
+        let s_cross_leg3 = 2.5 * t243 / t38;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t276 = s_armcross_leg3 * rate_rod_leg1;
+        let t278 = 0.4 * t250;
+        let gcross_vz_leg3 = s_arm_leg3 * t278;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t278;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t278
+            * (s_arm_leg3 * (t50 * (s_rod_leg1 * s_armcross_leg3))
+                + minus_c_arm_leg3 * (t50 * (s_rod_leg1 * minus_c_armcross_leg3)));
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
+        let t297 = rate_cross_leg3 * rate_cross_leg3;
+        let t299 = minus_c_armcross_leg3 * rate_rod_leg1;
+        let t301 = t276 * t276 + t297 + t299 * t299;
+        let t305 = pose[1] * (rate_cross_leg3 * t276);
+        let t308 = acceleration[0] + t247 * t266 + t249 * t301 + t305 + t305;
+        let t316 = pose[1] * (rate_cross_leg3 * t299);
+        let t319 = acceleration[2] - (t261 * t266 - t262 * t301 - t316 - t316);
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t308 + garm_vy_leg3 * t100
+            + garm_vz_leg3 * t319;
+        let t325 = pose[1] - 0.05;
+        let t326 = t325 + 0.2;
+        let t327 = t326 * t326;
+        let t329 = 0.16 * (t327 + t4);
+        let t331 = t121 + t327 + t4;
+        let t333 = t331 - 0.2809 + 0.04;
+        let t335 = t329 - t333 * t333;
+        ::overact::guard::reach(t335, "leg4")?;
+        let t336 = ::overact::math::sqrt(t335);
+        ::overact::guard::leg(t336, 0.20079840636817814, "leg4")?;
+        let t337 = 1.0 / t336;
+        let t338 = 2.0 * t337;
+        let garm_vx_leg4 = pose[0] * t338;
+        let t341 = 1.0 / t329;
+        let t342 = 0.4 * t326;
+        let minus_c_arm_leg4 = t341 * (t342 * t333 + t15 * t336);
+        let t347 = 0.2 * minus_c_arm_leg4;
+        let t349 = t325 - (t347 - 0.2);
+        let garm_vy_leg4 = t349 * t338;
+        let s_arm_leg4 = t341 * (t342 * t336 - t15 * t333);
+        let t358 = 0.2 * s_arm_leg4;
+        let t359 = pose[2] + t358;
+        let garm_vz_leg4 = t359 * t338;
+        let rate_arm_leg4 = garm_vx_leg4 * twist[0] + garm_vy_leg4 * twist[1]
+            + garm_vz_leg4 * twist[2];
+        let t363 = rate_arm_leg4 * rate_arm_leg4;
+        let t365 = 0.4 * t337;
+        let gcross_vz_leg4 = s_arm_leg4 * t365;
+        let c_cross_leg4 = (t331 - t151 - t153) / t155;
+        let s_cross_leg4 = 2.5 * t336 / t148;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t365
+            * (s_arm_leg4 * (t160 * (minus_s_rod_leg2 * s_armcross_leg4))
+                + minus_c_arm_leg4
+                    * (t160 * (minus_s_rod_leg2 * minus_c_armcross_leg4)));
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t365;
+        let rate_cross_leg4 = gcross_vz_leg4 * twist[2]
+            - (minus_gcross_vx_leg4 * twist[0] + minus_gcross_vy_leg4 * twist[1]);
+        let t392 = rate_cross_leg4 * rate_cross_leg4;
+        let t393 = s_armcross_leg4 * minus_rate_rod_leg2;
+        let t396 = minus_c_armcross_leg4 * minus_rate_rod_leg2;
+        let t398 = t392 + t393 * t393 + t396 * t396;
+        let t402 = pose[0] * (rate_cross_leg4 * t393);
+        let t405 = acceleration[1] + t347 * t363 + t349 * t398 + t402 + t402;
+        let t412 = pose[0] * (rate_cross_leg4 * t396);
+        let t415 = acceleration[2] - (t358 * t363 - t359 * t398 - t412 - t412);
+        let rate_dot_arm_leg4 = garm_vx_leg4 * t191 + garm_vy_leg4 * t405
+            + garm_vz_leg4 * t415;
+        let t421 = 9.81 * c_arm_leg1;
+        let t425 = 9.81 * c_arm_leg2;
+        let t429 = 9.81 * minus_c_arm_leg3;
+        let t433 = 9.81 * minus_c_arm_leg4;
+        let t437 = 9.81 * minus_s_arm_leg1;
+        let t441 = 9.81 * minus_s_arm_leg2;
+        let t445 = 9.81 * s_arm_leg3;
+        let t449 = 9.81 * s_arm_leg4;
+        let rate_dot_cross_leg1 = gcross_vy_leg1 * t100 - minus_gcross_vx_leg1 * t94
+            - minus_gcross_vz_leg1 * t110;
+        let t482 = s_rod_leg1 * rate_dot_cross_leg1;
+        let t483 = c_rod_leg1 * rate_cross_leg1;
+        let t484 = rate_rod_leg1 * t483;
+        let t485 = t482 + t484;
+        let t487 = 1.8867924528301887 * t96;
+        let t488 = rate_rod_leg1 * t487;
+        let t489 = c_rod_leg1 * t488;
+        let t490 = s_rod_leg1 * t485 + t489;
+        let t493 = 3.5599857600569598 * t97;
+        let rate_dot_cross_leg2 = gcross_vx_leg2 * t191 - minus_gcross_vy_leg2 * t213
+            - minus_gcross_vz_leg2 * t223;
+        let t501 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t502 = c_rod_leg2 * rate_cross_leg2;
+        let t503 = minus_rate_rod_leg2 * t502;
+        let t504 = t501 + t503;
+        let t506 = 1.8867924528301887 * t178;
+        let t507 = minus_rate_rod_leg2 * t506;
+        let t508 = c_rod_leg2 * t507;
+        let t509 = minus_s_rod_leg2 * t504 + t508;
+        let t511 = 3.5599857600569598 * t179;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * t319
+            - (minus_gcross_vx_leg3 * t308 + minus_gcross_vy_leg3 * t100);
+        let t520 = s_rod_leg1 * rate_dot_cross_leg3;
+        let t521 = c_rod_leg1 * rate_cross_leg3;
+        let t522 = rate_rod_leg1 * t521;
+        let t523 = t520 + t522;
+        let t525 = pose[1] * rate_cross_leg3;
+        let t526 = 1.8867924528301887 * t525;
+        let t527 = rate_rod_leg1 * t526;
+        let t528 = c_rod_leg1 * t527;
+        let t529 = s_rod_leg1 * t523 + t528;
+        let t533 = 3.5599857600569598 * (rate_cross_leg3 * t525);
+        let rate_dot_cross_leg4 = gcross_vz_leg4 * t415
+            - (minus_gcross_vx_leg4 * t191 + minus_gcross_vy_leg4 * t405);
+        let t541 = minus_s_rod_leg2 * rate_dot_cross_leg4;
+        let t542 = c_rod_leg2 * rate_cross_leg4;
+        let t543 = minus_rate_rod_leg2 * t542;
+        let t544 = t541 + t543;
+        let t546 = pose[0] * rate_cross_leg4;
+        let t547 = 1.8867924528301887 * t546;
+        let t548 = minus_rate_rod_leg2 * t547;
+        let t549 = c_rod_leg2 * t548;
+        let t550 = minus_s_rod_leg2 * t544 + t549;
+        let t553 = 3.5599857600569598 * (rate_cross_leg4 * t546);
+        let t557 = t484 + t485;
+        let t559 = c_rod_leg1 * rate_dot_cross_leg1;
+        let t560 = t559 - t488;
+        let t563 = c_rod_leg1 * t557 - s_rod_leg1 * (t488 - t560);
+        let t567 = 3.5599857600569598 * (t96 * t96);
+        let t573 = c_rod_leg2 * rate_dot_cross_leg2;
+        let t574 = t573 - t507;
+        let t577 = t503 + t504;
+        let t579 = minus_s_rod_leg2 * (t507 - t574) - c_rod_leg2 * t577;
+        let t582 = 3.5599857600569598 * (t178 * t178);
+        let t589 = c_rod_leg1 * rate_dot_cross_leg3;
+        let t590 = t589 - t527;
+        let t593 = t522 + t523;
+        let t595 = s_rod_leg1 * (t527 - t590) - c_rod_leg1 * t593;
+        let t599 = 3.5599857600569598 * (t525 * t525);
+        let t606 = 3.5599857600569598 * (t546 * t546);
+        let t610 = t543 + t544;
+        let t612 = c_rod_leg2 * rate_dot_cross_leg4;
+        let t613 = t612 - t548;
+        let t616 = c_rod_leg2 * t610 - minus_s_rod_leg2 * (t548 - t613);
+        let t621 = t487 * t483;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t100;
+        let t625 = rate_rod_leg1 * rate_rod_leg1;
+        let t628 = s_rod_leg1 * (t621 + rate_dot_rod_leg1) + c_rod_leg1 * (t625 - t567);
+        let t634 = t506 * t502;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t191;
+        let t638 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t641 = minus_s_rod_leg2 * (t634 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t638 - t582);
+        let t658 = c_rod_leg1 * t560 - t489;
+        let t664 = c_rod_leg2 * t574 - t508;
+        let t670 = c_rod_leg1 * t590 - t528;
+        let t676 = c_rod_leg2 * t613 - t549;
+        let t681 = 1.8867924528301887 * acceleration[1];
+        let t687 = 1.8867924528301887 * acceleration[0];
+        let t705 = 0.9433962264150944 * t18;
+        let t709 = 0.37735849056603776 * (pose[1] * s_cross_leg1);
+        let t713 = 0.2 * c_cross_leg1;
+        let t715 = t705 * (t621 - rate_dot_rod_leg1) + t709 * (t567 + t625)
+            - t713 * t557;
+        let t718 = 0.2 * rate_dot_arm_leg1 - t421;
+        let t721 = t437 - 0.2 * t82;
+        let t724 = s_rod_leg1 * (c_cross_leg1 * t718 - s_cross_leg1 * t721);
+        let t732 = c_cross_leg1 * t721 + s_cross_leg1 * t718;
+        let t738 = 0.9433962264150944 * t128;
+        let t742 = 0.37735849056603776 * (pose[0] * s_cross_leg2);
+        let t746 = 0.2 * c_cross_leg2;
+        let t748 = t738 * (minus_rate_dot_rod_leg2 - t634) - t742 * (t582 + t638)
+            + t746 * t577;
+        let t751 = 0.2 * rate_dot_arm_leg2 - t425;
+        let t754 = t441 - 0.2 * t207;
+        let t757 = minus_s_rod_leg2 * (c_cross_leg2 * t751 - s_cross_leg2 * t754);
+        let t762 = c_cross_leg2 * t754 + s_cross_leg2 * t751;
+        let t771 = 0.9433962264150944 * t243;
+        let t776 = 0.37735849056603776 * (pose[1] * s_cross_leg3);
+        let t780 = 0.2 * c_cross_leg3;
+        let t782 = t771 * (rate_dot_rod_leg1 - t526 * t521) - t776 * (t599 + t625)
+            + t780 * t593;
+        let t785 = t445 + 0.2 * t266;
+        let t788 = t429 + 0.2 * rate_dot_arm_leg3;
+        let t791 = s_rod_leg1 * (s_cross_leg3 * t785 + c_cross_leg3 * t788);
+        let t799 = s_cross_leg3 * t788 - c_cross_leg3 * t785;
+        let t805 = 0.9433962264150944 * t336;
+        let t810 = 0.37735849056603776 * (pose[0] * s_cross_leg4);
+        let t814 = 0.2 * c_cross_leg4;
+        let t816 = t805 * (t547 * t542 - minus_rate_dot_rod_leg2) + t810 * (t606 + t638)
+            - t814 * t610;
+        let t819 = t449 + 0.2 * t363;
+        let t822 = t433 + 0.2 * rate_dot_arm_leg4;
+        let t825 = minus_s_rod_leg2 * (s_cross_leg4 * t819 + c_cross_leg4 * t822);
+        let t830 = s_cross_leg4 * t822 - c_cross_leg4 * t819;
+        let t843 = t559 * t705 + t482 * t709 + t85 * t713;
+        let t857 = t573 * t738 + t501 * t742 + t180 * t746;
+        let t871 = t589 * t771 + t520 * t776 + t297 * t780;
+        let t885 = t612 * t805 + t541 * t810 + t392 * t814;
+        Ok([
+            [
+                acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1, garm_vx_leg2 * rate_dot_arm_leg2,
+                garm_vx_leg3 * rate_dot_arm_leg3, garm_vx_leg4 * rate_dot_arm_leg4,
+                -(garm_vx_leg1 * t421), -(garm_vx_leg2 * t425), garm_vx_leg3 * t429,
+                garm_vx_leg4 * t433, -(garm_vx_leg1 * t437), -(garm_vx_leg2 * t441),
+                garm_vx_leg3 * t445, garm_vx_leg4 * t449, garm_vx_leg1 * rate_arm_leg1,
+                garm_vx_leg2 * rate_arm_leg2, garm_vx_leg3 * rate_arm_leg3,
+                garm_vx_leg4 * rate_arm_leg4, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
+                ::overact::math::signed(garm_vx_leg2, rate_arm_leg2),
+                ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
+                ::overact::math::signed(garm_vx_leg4, rate_arm_leg4), garm_vx_leg1, garm_vx_leg2,
+                garm_vx_leg3, garm_vx_leg4, -(minus_gcross_vx_leg1 * t490),
+                gcross_vx_leg2 * t509 - t511, -(minus_gcross_vx_leg3 * t529),
+                -(minus_gcross_vx_leg4 * t550 + t553), -(minus_gcross_vx_leg1 * t563),
+                gcross_vx_leg2 * t579 - minus_grod_vx_leg2 * (t582 - t502 * t502),
+                -(minus_gcross_vx_leg3 * t595),
+                minus_grod_vx_leg2 * (t606 - t542 * t542) - minus_gcross_vx_leg4 * t616,
+                -(minus_gcross_vx_leg1 * t628), gcross_vx_leg2 * t641 + minus_grod_vx_leg2 * t501,
+                -(minus_gcross_vx_leg3 * t628),
+                minus_grod_vx_leg2 * t541 - minus_gcross_vx_leg4 * t641,
+                -(minus_gcross_vx_leg1 * t658), gcross_vx_leg2 * t664 + t511,
+                -(minus_gcross_vx_leg3 * t670), t553 - minus_gcross_vx_leg4 * t676,
+                -(minus_gcross_vx_leg1 * t681),
+                -(gcross_vx_leg2 * t687 + 1.8867924528301887 * rate_dot_cross_leg2),
+                minus_gcross_vx_leg3 * t681,
+                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t687, 0.0,
+                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
+                garm_vx_leg1 * t715 + minus_gcross_vx_leg1 * t724,
+                garm_vx_leg2 * t748 + gcross_vx_leg2 * t757 + 1.8867924528301887 * t762,
+                garm_vx_leg3 * t782 - minus_gcross_vx_leg3 * t791,
+                garm_vx_leg4 * t816 + minus_gcross_vx_leg4 * t825
+                    - 1.8867924528301887 * t830,
+                garm_vx_leg1 * t843 - minus_gcross_vx_leg1 * t732,
+                garm_vx_leg2 * t857 + gcross_vx_leg2 * t762,
+                garm_vx_leg3 * t871 - minus_gcross_vx_leg3 * t799,
+                garm_vx_leg4 * t885 - minus_gcross_vx_leg4 * t830,
+            ],
+            [
+                acceleration[1], garm_vy_leg1 * rate_dot_arm_leg1, garm_vy_leg2 * rate_dot_arm_leg2,
+                garm_vy_leg3 * rate_dot_arm_leg3, garm_vy_leg4 * rate_dot_arm_leg4,
+                -(garm_vy_leg1 * t421), -(garm_vy_leg2 * t425), garm_vy_leg3 * t429,
+                garm_vy_leg4 * t433, -(garm_vy_leg1 * t437), -(garm_vy_leg2 * t441),
+                garm_vy_leg3 * t445, garm_vy_leg4 * t449, garm_vy_leg1 * rate_arm_leg1,
+                garm_vy_leg2 * rate_arm_leg2, garm_vy_leg3 * rate_arm_leg3,
+                garm_vy_leg4 * rate_arm_leg4, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
+                ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
+                ::overact::math::signed(garm_vy_leg3, rate_arm_leg3),
+                ::overact::math::signed(garm_vy_leg4, rate_arm_leg4), garm_vy_leg1, garm_vy_leg2,
+                garm_vy_leg3, garm_vy_leg4, gcross_vy_leg1 * t490 - t493,
+                -(minus_gcross_vy_leg2 * t509), -(minus_gcross_vy_leg3 * t529 + t533),
+                -(minus_gcross_vy_leg4 * t550),
+                gcross_vy_leg1 * t563 + grod_vy_leg1 * (t567 - t483 * t483),
+                -(minus_gcross_vy_leg2 * t579),
+                -(minus_gcross_vy_leg3 * t595 + grod_vy_leg1 * (t599 - t521 * t521)),
+                -(minus_gcross_vy_leg4 * t616), gcross_vy_leg1 * t628 + grod_vy_leg1 * t482,
+                -(minus_gcross_vy_leg2 * t641), grod_vy_leg1 * t520 - minus_gcross_vy_leg3 * t628,
+                -(minus_gcross_vy_leg4 * t641), gcross_vy_leg1 * t658 + t493,
+                -(minus_gcross_vy_leg2 * t664), t533 - minus_gcross_vy_leg3 * t670,
+                -(minus_gcross_vy_leg4 * t676),
+                gcross_vy_leg1 * t681 + 1.8867924528301887 * rate_dot_cross_leg1,
+                minus_gcross_vy_leg2 * t687,
+                minus_gcross_vy_leg3 * t681 - 1.8867924528301887 * rate_dot_cross_leg3,
+                -(minus_gcross_vy_leg4 * t687), grod_vy_leg1 * rate_dot_rod_leg1, 0.0,
+                garm_vy_leg1 * t715 - gcross_vy_leg1 * t724 - 1.8867924528301887 * t732,
+                garm_vy_leg2 * t748 - minus_gcross_vy_leg2 * t757,
+                garm_vy_leg3 * t782 - minus_gcross_vy_leg3 * t791
+                    + 1.8867924528301887 * t799,
+                garm_vy_leg4 * t816 + minus_gcross_vy_leg4 * t825,
+                garm_vy_leg1 * t843 + gcross_vy_leg1 * t732,
+                garm_vy_leg2 * t857 - minus_gcross_vy_leg2 * t762,
+                garm_vy_leg3 * t871 - minus_gcross_vy_leg3 * t799,
+                garm_vy_leg4 * t885 - minus_gcross_vy_leg4 * t830,
+            ],
+            [
+                acceleration[2] + 9.81, garm_vz_leg1 * rate_dot_arm_leg1,
+                garm_vz_leg2 * rate_dot_arm_leg2, garm_vz_leg3 * rate_dot_arm_leg3,
+                garm_vz_leg4 * rate_dot_arm_leg4, -(garm_vz_leg1 * t421), -(garm_vz_leg2 * t425),
+                garm_vz_leg3 * t429, garm_vz_leg4 * t433, -(garm_vz_leg1 * t437),
+                -(garm_vz_leg2 * t441), garm_vz_leg3 * t445, garm_vz_leg4 * t449,
+                garm_vz_leg1 * rate_arm_leg1, garm_vz_leg2 * rate_arm_leg2,
+                garm_vz_leg3 * rate_arm_leg3, garm_vz_leg4 * rate_arm_leg4,
+                ::overact::math::signed(garm_vz_leg1, rate_arm_leg1),
+                ::overact::math::signed(garm_vz_leg2, rate_arm_leg2),
+                ::overact::math::signed(garm_vz_leg3, rate_arm_leg3),
+                ::overact::math::signed(garm_vz_leg4, rate_arm_leg4), garm_vz_leg1, garm_vz_leg2,
+                garm_vz_leg3, garm_vz_leg4, -(minus_gcross_vz_leg1 * t490),
+                -(minus_gcross_vz_leg2 * t509), gcross_vz_leg3 * t529, gcross_vz_leg4 * t550,
+                -(minus_gcross_vz_leg1 * t563), -(minus_gcross_vz_leg2 * t579),
+                gcross_vz_leg3 * t595, gcross_vz_leg4 * t616, -(minus_gcross_vz_leg1 * t628),
+                -(minus_gcross_vz_leg2 * t641), gcross_vz_leg3 * t628, gcross_vz_leg4 * t641,
+                -(minus_gcross_vz_leg1 * t658), -(minus_gcross_vz_leg2 * t664),
+                gcross_vz_leg3 * t670, gcross_vz_leg4 * t676, -(minus_gcross_vz_leg1 * t681),
+                minus_gcross_vz_leg2 * t687, -(gcross_vz_leg3 * t681), gcross_vz_leg4 * t687, 0.0,
+                0.0, garm_vz_leg1 * t715 + minus_gcross_vz_leg1 * t724,
+                garm_vz_leg2 * t748 - minus_gcross_vz_leg2 * t757,
+                garm_vz_leg3 * t782 + gcross_vz_leg3 * t791,
+                garm_vz_leg4 * t816 - gcross_vz_leg4 * t825,
+                garm_vz_leg1 * t843 - minus_gcross_vz_leg1 * t732,
+                garm_vz_leg2 * t857 - minus_gcross_vz_leg2 * t762,
+                garm_vz_leg3 * t871 + gcross_vz_leg3 * t799,
+                garm_vz_leg4 * t885 + gcross_vz_leg4 * t830,
+            ],
+        ])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -4392,7 +6571,7 @@ impl Delta4 {
     /// Output: 3 x 55.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 953 operations (293 additions, 649 multiplications, 11 divisions), 0 square roots, 12 trigonometric pairs, 12 signs, 828 intermediates.
+    /// 1029 operations (343 additions, 665 multiplications, 21 divisions), 6 square roots, 0 trigonometric pairs, 12 signs, 886 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4403,507 +6582,544 @@ impl Delta4 {
         start: &[f64; 3],
     ) -> Result<[[f64; 55]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
-        let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.2809 + 0.04;
+        let t14 = 0.4 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.20079840636817814, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t21 = 0.2 * c_arm_leg1;
+        let t23 = t0 - (0.2 + t21);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = t23 * t25;
+        let t28 = pose[1] + 0.05;
+        let t29 = t28 - 0.2;
+        let t30 = t29 * t29;
+        let t32 = 0.16 * (t30 + t3);
+        let t33 = pose[0] * pose[0];
+        let t35 = t33 + t30 + t3;
+        let t37 = t35 - 0.2809 + 0.04;
+        let t39 = t32 - t37 * t37;
+        ::overact::guard::reach(t39, "leg2")?;
+        let t40 = ::overact::math::sqrt(t39);
+        ::overact::guard::leg(t40, 0.20079840636817814, "leg2")?;
+        let t41 = 1.0 / t40;
+        let t42 = 2.0 * t41;
+        let garm_vx_leg2 = pose[0] * t42;
+        let t46 = pose[0] - 0.05;
+        let t47 = t46 + 0.2;
+        let t48 = t47 * t47;
+        let t50 = 0.16 * (t48 + t3);
+        let t51 = 1.0 / t50;
+        let t52 = 0.4 * t47;
+        let t54 = t48 + t8 + t3;
+        let t56 = t54 - 0.2809 + 0.04;
+        let t59 = t50 - t56 * t56;
+        ::overact::guard::reach(t59, "leg3")?;
+        let t60 = ::overact::math::sqrt(t59);
+        ::overact::guard::leg(t60, 0.20079840636817814, "leg3")?;
+        let minus_c_arm_leg3 = t51 * (t52 * t56 + t14 * t60);
+        let t64 = 0.2 * minus_c_arm_leg3;
+        let t66 = t46 - (t64 - 0.2);
+        let t67 = 1.0 / t60;
+        let t68 = 2.0 * t67;
+        let garm_vx_leg3 = t66 * t68;
+        let t72 = pose[1] - 0.05;
+        let t73 = t72 + 0.2;
+        let t74 = t73 * t73;
+        let t76 = 0.16 * (t74 + t3);
+        let t78 = t33 + t74 + t3;
+        let t80 = t78 - 0.2809 + 0.04;
+        let t82 = t76 - t80 * t80;
+        ::overact::guard::reach(t82, "leg4")?;
+        let t83 = ::overact::math::sqrt(t82);
+        ::overact::guard::leg(t83, 0.20079840636817814, "leg4")?;
+        let t84 = 1.0 / t83;
+        let t85 = 2.0 * t84;
+        let garm_vx_leg4 = pose[0] * t85;
+        let t88 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t88, 22.533170865545554, "actuators")?;
+        ::overact::guard::platform(t88, 22.533170865545554, "actuators")?;
+        let t89 = 1.0 / t88;
+        let t90 = 0.4 * t24;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let s_rod_leg1 = 1.8867924528301887 * pose[1];
+        let t98 = 1.0 - 3.5599857600569598 * t8;
+        ::overact::guard::reach(t98, "leg1")?;
+        ::overact::guard::reach(t98, "leg3")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t98);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t12 = c_armcross_leg1 * c_rod_leg1;
-        let t13 = s_armcross_leg1 * c_rod_leg1;
-        let t16 = c_arm_leg1 * t13 - s_arm_leg1 * t12;
-        ::overact::guard::leg(t16, 0.9471622941895192, "leg1")?;
-        let t17 = 1.0 / t16;
-        let t18 = 5.0 * t17;
-        let garm_vx_leg1 = t12 * t18;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
-        let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t33 = s_armcross_leg2 * c_rod_leg2;
-        let t35 = c_armcross_leg2 * c_rod_leg2;
-        let t37 = c_arm_leg2 * t33 - s_arm_leg2 * t35;
-        ::overact::guard::leg(t37, 0.9471622941895197, "leg2")?;
-        let t38 = 1.0 / t37;
-        let t39 = 5.0 * t38;
-        let minus_garm_vx_leg2 = s_rod_leg2 * t39;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
-        let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t55 = c_armcross_leg3 * c_rod_leg3;
-        let t57 = s_armcross_leg3 * c_rod_leg3;
-        let t59 = s_arm_leg3 * t55 - c_arm_leg3 * t57;
-        ::overact::guard::leg(t59, 0.9471622941895192, "leg3")?;
-        let t60 = 1.0 / t59;
-        let t61 = 5.0 * t60;
-        let garm_vx_leg3 = t55 * t61;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        ::overact::guard::leg(c_rod_leg4, 1.0, "leg4")?;
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let (s_cross_leg4, c_cross_leg4) = ::overact::math::sin_cos(joints[10]);
-        let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
-        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let t77 = c_armcross_leg4 * c_rod_leg4;
-        let t79 = s_armcross_leg4 * c_rod_leg4;
-        let t81 = s_arm_leg4 * t77 - c_arm_leg4 * t79;
-        ::overact::guard::leg(t81, 0.9471622941895192, "leg4")?;
-        let t82 = 1.0 / t81;
-        let t83 = 5.0 * t82;
-        let minus_garm_vx_leg4 = s_rod_leg4 * t83;
-        let t86 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3 + minus_garm_vx_leg4 * minus_garm_vx_leg4;
-        ::overact::guard::platform(t86, 22.53317086554555, "actuators")?;
-        ::overact::guard::platform(t86, 22.53317086554555, "actuators")?;
-        let t87 = 1.0 / t86;
-        let minus_garm_vz_leg1 = t13 * t18;
-        let t96 = garm_vx_leg1 * actuator_velocities[0]
-            - minus_garm_vx_leg2 * actuator_velocities[1]
+        let t100 = 0.53 * c_rod_leg1;
+        let s_cross_leg1 = 2.5 * t17 / t100;
+        let t103 = 0.04 + t8;
+        let t105 = 0.2809 * t98;
+        let t107 = 0.212 * c_rod_leg1;
+        let c_cross_leg1 = (t10 - t103 - t105) / t107;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t112 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t90
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t112)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t112));
+        let garm_vy_leg1 = pose[1] * t25;
+        let t125 = 1.0 / t32;
+        let t126 = 0.4 * t29;
+        let c_arm_leg2 = t125 * (t126 * t37 - t14 * t40);
+        let t131 = 0.2 * c_arm_leg2;
+        let t133 = t28 - (0.2 + t131);
+        let garm_vy_leg2 = t133 * t42;
+        let garm_vy_leg3 = pose[1] * t68;
+        let t140 = 1.0 / t76;
+        let t141 = 0.4 * t73;
+        let minus_c_arm_leg4 = t140 * (t141 * t80 + t14 * t83);
+        let t146 = 0.2 * minus_c_arm_leg4;
+        let t148 = t72 - (t146 - 0.2);
+        let garm_vy_leg4 = t148 * t85;
+        let t158 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3 + garm_vx_leg4 * garm_vy_leg4;
+        let t159 = t158 * t89;
+        let t161 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t158 * t159;
+        ::overact::guard::platform(t161, 22.533170865545554, "actuators")?;
+        ::overact::guard::platform(t161, 22.533170865545554, "actuators")?;
+        let t162 = 1.0 / t161;
+        let t176 = garm_vx_leg1 * actuator_velocities[0]
+            + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2]
-            - minus_garm_vx_leg4 * actuator_velocities[3];
-        let garm_vy_leg1 = s_rod_leg1 * t18;
-        let garm_vy_leg2 = t35 * t39;
-        let garm_vy_leg3 = s_rod_leg3 * t61;
-        let garm_vy_leg4 = t77 * t83;
-        let t108 = garm_vx_leg1 * garm_vy_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
-            + garm_vx_leg3 * garm_vy_leg3 - minus_garm_vx_leg4 * garm_vy_leg4;
-        let t109 = t108 * t87;
-        let t118 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t108 * t109;
-        ::overact::guard::platform(t118, 22.533170865545543, "actuators")?;
-        ::overact::guard::platform(t118, 22.533170865545543, "actuators")?;
-        let t119 = 1.0 / t118;
-        let t128 = garm_vy_leg1 * actuator_velocities[0]
+            + garm_vx_leg4 * actuator_velocities[3];
+        let t178 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
             + garm_vy_leg3 * actuator_velocities[2]
-            + garm_vy_leg4 * actuator_velocities[3] - t96 * t109;
-        let garm_vz_leg3 = t57 * t61;
-        let minus_garm_vz_leg2 = t33 * t39;
-        let garm_vz_leg4 = t79 * t83;
-        let t146 = minus_garm_vx_leg2 * minus_garm_vz_leg2
-            - garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg3 * garm_vz_leg3
-            - minus_garm_vx_leg4 * garm_vz_leg4;
-        let t147 = t146 * t87;
-        let t149 = garm_vy_leg3 * garm_vz_leg3
-            - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2)
-            + garm_vy_leg4 * garm_vz_leg4 - t108 * t147;
-        let t150 = t149 * t119;
-        let t161 = minus_garm_vz_leg1 * minus_garm_vz_leg1
-            + minus_garm_vz_leg2 * minus_garm_vz_leg2 + garm_vz_leg3 * garm_vz_leg3
-            + garm_vz_leg4 * garm_vz_leg4 - t146 * t147 - t149 * t150;
-        ::overact::guard::platform(t161, 66.4019122371629, "actuators")?;
-        ::overact::guard::platform(t161, 66.4019122371629, "actuators")?;
-        let t162 = 1.0 / t161;
-        let t173 = garm_vz_leg3 * actuator_velocities[2]
-            - (minus_garm_vz_leg1 * actuator_velocities[0]
-                + minus_garm_vz_leg2 * actuator_velocities[1])
-            + garm_vz_leg4 * actuator_velocities[3] - t96 * t147 - t150 * t128;
-        let t174 = t162 * t173;
-        let t176 = t119 * t128 - t150 * t174;
-        let t180 = t96 * t87 - t109 * t176 - t147 * t174;
-        let rate_arm_leg1 = garm_vx_leg1 * t180 + garm_vy_leg1 * t176
-            - minus_garm_vz_leg1 * t174;
-        let t186 = rate_arm_leg1 * rate_arm_leg1;
-        let t189 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.8867924528301887 * t189;
-        let rate_rod_leg1 = grod_vy_leg1 * t176;
-        let t192 = s_armcross_leg1 * rate_rod_leg1;
-        let t194 = 1.8867924528301887 * t17;
-        let gcross_vz_leg1 = s_arm_leg1 * t194;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t194;
-        let minus_gcross_vy_leg1 = t194
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t189)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t189));
-        let rate_cross_leg1 = gcross_vz_leg1 * t174
-            - (minus_gcross_vx_leg1 * t180 + minus_gcross_vy_leg1 * t176);
-        let t210 = rate_cross_leg1 * rate_cross_leg1;
-        let t212 = c_armcross_leg1 * rate_rod_leg1;
-        let t214 = t192 * t192 + t210 + t212 * t212;
-        let t217 = 0.53 * s_rod_leg1;
-        let t219 = t217 * (rate_cross_leg1 * t212);
-        let t221 = 0.2 * s_arm_leg1 * t186 + 0.53 * t13 * t214 + t219 + t219;
-        let t224 = t217 * (rate_cross_leg1 * t192);
-        let t231 = t224 - (0.2 * c_arm_leg1 * t186 + 0.53 * t12 * t214) + t224;
-        let t233 = t217 * rate_cross_leg1;
-        let t234 = rate_cross_leg1 * t233;
-        let t236 = t234 - t217 * t214;
-        let rate_dot_arm_leg1 = minus_garm_vz_leg1 * t221
-            - (garm_vx_leg1 * t231 + garm_vy_leg1 * t236);
-        let t240 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t242 = 0.53 * s_rod_leg2;
-        let t243 = 1.8867924528301887 * t38;
-        let t245 = 1.0 / c_rod_leg2;
-        let gcross_vx_leg2 = t243
-            * (s_arm_leg2 * (s_armcross_leg2 * s_rod_leg2 * t245)
-                + c_arm_leg2 * (c_armcross_leg2 * s_rod_leg2 * t245));
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t243;
-        let gcross_vz_leg2 = s_arm_leg2 * t243;
-        let rate_cross_leg2 = gcross_vx_leg2 * t180 - minus_gcross_vy_leg2 * t176
-            + gcross_vz_leg2 * t174;
-        let t260 = rate_cross_leg2 * rate_cross_leg2;
-        let minus_grod_vx_leg2 = 1.8867924528301887 * t245;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t180;
-        let t263 = s_armcross_leg2 * minus_rate_rod_leg2;
-        let t266 = c_armcross_leg2 * minus_rate_rod_leg2;
-        let t268 = t260 + t263 * t263 + t266 * t266;
-        let t270 = t242 * rate_cross_leg2;
-        let t271 = rate_cross_leg2 * t270;
-        let t272 = t242 * t268 - t271;
-        let rate_arm_leg2 = garm_vy_leg2 * t176 - minus_garm_vx_leg2 * t180
-            - minus_garm_vz_leg2 * t174;
-        let t280 = rate_arm_leg2 * rate_arm_leg2;
-        let t286 = t242 * (rate_cross_leg2 * t263);
-        let t288 = 0.2 * c_arm_leg2 * t280 + 0.53 * t35 * t268 + t286 + t286;
-        let t297 = t242 * (rate_cross_leg2 * t266);
-        let t299 = 0.2 * s_arm_leg2 * t280 + 0.53 * t33 * t268 - t297 - t297;
-        let rate_dot_arm_leg2 = minus_garm_vx_leg2 * t272 + garm_vy_leg2 * t288
-            + minus_garm_vz_leg2 * t299;
-        let t302 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let rate_arm_leg3 = garm_vx_leg3 * t180 + garm_vy_leg3 * t176
-            + garm_vz_leg3 * t174;
-        let t311 = rate_arm_leg3 * rate_arm_leg3;
-        let t314 = 1.0 / c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.8867924528301887 * t314;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t176;
-        let t317 = s_armcross_leg3 * minus_rate_rod_leg3;
-        let t319 = 1.8867924528301887 * t60;
-        let minus_gcross_vx_leg3 = c_arm_leg3 * t319;
-        let minus_gcross_vy_leg3 = t319
-            * (s_arm_leg3 * (s_armcross_leg3 * s_rod_leg3 * t314)
-                + c_arm_leg3 * (c_armcross_leg3 * s_rod_leg3 * t314));
-        let minus_gcross_vz_leg3 = s_arm_leg3 * t319;
-        let minus_rate_cross_leg3 = minus_gcross_vx_leg3 * t180
-            + minus_gcross_vy_leg3 * t176 + minus_gcross_vz_leg3 * t174;
-        let t335 = minus_rate_cross_leg3 * minus_rate_cross_leg3;
-        let t337 = c_armcross_leg3 * minus_rate_rod_leg3;
-        let t339 = t317 * t317 + t335 + t337 * t337;
-        let t342 = 0.53 * s_rod_leg3;
-        let t344 = t342 * (minus_rate_cross_leg3 * t317);
-        let t346 = 0.2 * c_arm_leg3 * t311 + 0.53 * t55 * t339 - t344 - t344;
-        let t349 = t342 * minus_rate_cross_leg3;
-        let t350 = minus_rate_cross_leg3 * t349;
-        let t351 = t342 * t339 - t350;
-        let t360 = t342 * (minus_rate_cross_leg3 * t337);
-        let t362 = 0.2 * s_arm_leg3 * t311 + 0.53 * t57 * t339 + t360 + t360;
-        let minus_rate_dot_arm_leg3 = garm_vx_leg3 * t346 + garm_vy_leg3 * t351
-            + garm_vz_leg3 * t362;
-        let t365 = actuator_accelerations[2] + minus_rate_dot_arm_leg3;
-        let t368 = 1.8867924528301887 * t82;
-        let t370 = 1.0 / c_rod_leg4;
-        let gcross_vx_leg4 = t368
-            * (s_arm_leg4 * (s_armcross_leg4 * s_rod_leg4 * t370)
-                + c_arm_leg4 * (c_armcross_leg4 * s_rod_leg4 * t370));
-        let minus_gcross_vy_leg4 = c_arm_leg4 * t368;
-        let minus_gcross_vz_leg4 = s_arm_leg4 * t368;
-        let rate_cross_leg4 = gcross_vx_leg4 * t180 - minus_gcross_vy_leg4 * t176
-            - minus_gcross_vz_leg4 * t174;
-        let t385 = 0.53 * s_rod_leg4;
-        let t386 = t385 * rate_cross_leg4;
-        let t387 = rate_cross_leg4 * t386;
-        let t388 = rate_cross_leg4 * rate_cross_leg4;
-        let grod_vx_leg4 = 1.8867924528301887 * t370;
-        let rate_rod_leg4 = grod_vx_leg4 * t180;
-        let t391 = s_armcross_leg4 * rate_rod_leg4;
-        let t394 = c_armcross_leg4 * rate_rod_leg4;
-        let t396 = t388 + t391 * t391 + t394 * t394;
-        let t398 = t387 - t385 * t396;
-        let rate_arm_leg4 = garm_vy_leg4 * t176 - minus_garm_vx_leg4 * t180
-            + garm_vz_leg4 * t174;
-        let t406 = rate_arm_leg4 * rate_arm_leg4;
-        let t412 = t385 * (rate_cross_leg4 * t391);
-        let t414 = 0.2 * c_arm_leg4 * t406 + 0.53 * t77 * t396 - t412 - t412;
-        let t423 = t385 * (rate_cross_leg4 * t394);
-        let t425 = 0.2 * s_arm_leg4 * t406 + 0.53 * t79 * t396 + t423 + t423;
-        let rate_dot_arm_leg4 = minus_garm_vx_leg4 * t398 - garm_vy_leg4 * t414
-            - garm_vz_leg4 * t425;
-        let t428 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t430 = garm_vx_leg1 * t240 - minus_garm_vx_leg2 * t302 + garm_vx_leg3 * t365
-            - minus_garm_vx_leg4 * t428;
-        let t440 = garm_vy_leg1 * t240 + garm_vy_leg2 * t302 + garm_vy_leg3 * t365
-            + garm_vy_leg4 * t428 - t109 * t430;
-        let t452 = garm_vz_leg3 * t365
-            - (minus_garm_vz_leg1 * t240 + minus_garm_vz_leg2 * t302)
-            + garm_vz_leg4 * t428 - t147 * t430 - t150 * t440;
-        let t453 = t162 * t452;
-        let t455 = t119 * t440 - t150 * t453;
-        let t459 = t87 * t430 - t109 * t455 - t147 * t453;
-        let t461 = t459 - t231;
-        let t463 = t455 - t236;
-        let t466 = t453 - t221;
-        let rate_dot_arm_leg1_2 = garm_vx_leg1 * t461 + garm_vy_leg1 * t463
-            - minus_garm_vz_leg1 * t466;
-        let t472 = t455 + t288;
-        let t474 = t459 - t272;
-        let t477 = t453 - t299;
-        let rate_dot_arm_leg2_2 = garm_vy_leg2 * t472 - minus_garm_vx_leg2 * t474
-            - minus_garm_vz_leg2 * t477;
-        let t483 = t459 - t346;
-        let t485 = t455 - t351;
-        let t488 = t453 - t362;
-        let rate_dot_arm_leg3 = garm_vx_leg3 * t483 + garm_vy_leg3 * t485
-            + garm_vz_leg3 * t488;
-        let t494 = t455 - t414;
-        let t496 = t459 - t398;
-        let t499 = t453 - t425;
-        let rate_dot_arm_leg4_2 = garm_vy_leg4 * t494 - minus_garm_vx_leg4 * t496
-            + garm_vz_leg4 * t499;
-        let t505 = 9.81 * c_arm_leg1;
-        let t509 = 9.81 * c_arm_leg2;
-        let t513 = 9.81 * c_arm_leg3;
-        let t517 = 9.81 * c_arm_leg4;
-        let t521 = 9.81 * s_arm_leg1;
-        let t525 = 9.81 * s_arm_leg2;
-        let t529 = 9.81 * s_arm_leg3;
-        let t533 = 9.81 * s_arm_leg4;
-        let rate_dot_cross_leg1 = gcross_vz_leg1 * t466
-            - (minus_gcross_vx_leg1 * t461 + minus_gcross_vy_leg1 * t463);
-        let t566 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t567 = c_rod_leg1 * rate_cross_leg1;
-        let t568 = rate_rod_leg1 * t567;
-        let t569 = t566 + t568;
-        let t571 = 1.8867924528301887 * t233;
-        let t572 = rate_rod_leg1 * t571;
-        let t573 = c_rod_leg1 * t572;
-        let t574 = s_rod_leg1 * t569 + t573;
-        let t577 = 3.5599857600569598 * t234;
-        let rate_dot_cross_leg2 = gcross_vx_leg2 * t474 - minus_gcross_vy_leg2 * t472
-            + gcross_vz_leg2 * t477;
-        let t585 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t586 = c_rod_leg2 * rate_cross_leg2;
-        let t587 = minus_rate_rod_leg2 * t586;
-        let t588 = t585 - t587;
-        let t590 = 1.8867924528301887 * t270;
-        let t591 = minus_rate_rod_leg2 * t590;
-        let t592 = c_rod_leg2 * t591;
-        let t593 = s_rod_leg2 * t588 - t592;
-        let t595 = 3.5599857600569598 * t271;
-        let t599 = c_rod_leg3 * minus_rate_cross_leg3;
-        let t600 = minus_rate_rod_leg3 * t599;
-        let minus_rate_dot_cross_leg3 = minus_gcross_vx_leg3 * t483
-            + minus_gcross_vy_leg3 * t485 + minus_gcross_vz_leg3 * t488;
-        let t606 = s_rod_leg3 * minus_rate_dot_cross_leg3;
-        let t607 = t600 - t606;
-        let t609 = 1.8867924528301887 * t349;
-        let t610 = minus_rate_rod_leg3 * t609;
-        let t611 = c_rod_leg3 * t610;
-        let t612 = s_rod_leg3 * t607 + t611;
-        let t614 = 3.5599857600569598 * t350;
-        let rate_dot_cross_leg4 = gcross_vx_leg4 * t496 - minus_gcross_vy_leg4 * t494
-            - minus_gcross_vz_leg4 * t499;
-        let t623 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t624 = c_rod_leg4 * rate_cross_leg4;
-        let t625 = rate_rod_leg4 * t624;
-        let t626 = t623 + t625;
-        let t628 = 1.8867924528301887 * t386;
-        let t629 = rate_rod_leg4 * t628;
-        let t630 = c_rod_leg4 * t629;
-        let t631 = s_rod_leg4 * t626 + t630;
-        let t633 = 3.5599857600569598 * t387;
-        let t637 = t568 + t569;
-        let t639 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t640 = t639 - t572;
-        let t643 = c_rod_leg1 * t637 - s_rod_leg1 * (t572 - t640);
-        let t646 = 3.5599857600569598 * (t233 * t233);
-        let t653 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t654 = t653 + t591;
-        let t657 = t588 - t587;
-        let t659 = s_rod_leg2 * (t591 + t654) + c_rod_leg2 * t657;
-        let t662 = 3.5599857600569598 * (t270 * t270);
-        let t669 = t600 + t607;
-        let t671 = c_rod_leg3 * minus_rate_dot_cross_leg3;
-        let t672 = t671 + t610;
-        let t675 = c_rod_leg3 * t669 - s_rod_leg3 * (t610 + t672);
-        let t679 = 3.5599857600569598 * (t349 * t349);
-        let t685 = t625 + t626;
-        let t687 = c_rod_leg4 * rate_dot_cross_leg4;
-        let t688 = t687 - t629;
-        let t691 = c_rod_leg4 * t685 - s_rod_leg4 * (t629 - t688);
-        let t694 = 3.5599857600569598 * (t386 * t386);
-        let t701 = t571 * t567;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t463;
-        let t705 = rate_rod_leg1 * rate_rod_leg1;
-        let t708 = s_rod_leg1 * (t701 + rate_dot_rod_leg1) + c_rod_leg1 * (t705 - t646);
-        let t714 = t590 * t586;
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t474;
-        let t718 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t721 = s_rod_leg2 * (t714 - minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t718 - t662);
-        let t727 = t609 * t599;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t485;
-        let t731 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t734 = s_rod_leg3 * (t727 - minus_rate_dot_rod_leg3)
-            + c_rod_leg3 * (t731 - t679);
-        let t740 = t628 * t624;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t496;
-        let t744 = rate_rod_leg4 * rate_rod_leg4;
-        let t747 = s_rod_leg4 * (t740 + rate_dot_rod_leg4) + c_rod_leg4 * (t744 - t694);
-        let t754 = c_rod_leg1 * t640 - t573;
-        let t760 = t592 + c_rod_leg2 * t654;
-        let t766 = t611 + c_rod_leg3 * t672;
-        let t772 = c_rod_leg4 * t688 - t630;
-        let t777 = 1.8867924528301887 * t455;
-        let t783 = 1.8867924528301887 * t459;
-        let t801 = 0.2 * t16;
-        let t805 = s_rod_leg1 * (0.2 * s_cross_leg1);
-        let t809 = 0.2 * c_cross_leg1;
-        let t811 = t801 * (t701 - rate_dot_rod_leg1) + t805 * (t646 + t705)
-            - t809 * t637;
-        let t814 = t521 + 0.2 * t186;
-        let t817 = 0.2 * rate_dot_arm_leg1_2 - t505;
-        let t820 = s_rod_leg1 * (s_cross_leg1 * t814 + c_cross_leg1 * t817);
-        let t828 = s_cross_leg1 * t817 - c_cross_leg1 * t814;
-        let t835 = 0.2 * rate_dot_arm_leg2_2 - t509;
-        let t838 = t525 + 0.2 * t280;
-        let t840 = s_cross_leg2 * t835 - c_cross_leg2 * t838;
-        let t842 = 0.2 * t37;
-        let t846 = s_rod_leg2 * (0.2 * s_cross_leg2);
-        let t850 = 0.2 * c_cross_leg2;
-        let t852 = t842 * (t714 + minus_rate_dot_rod_leg2) + t846 * (t662 + t718)
-            - t850 * t657;
-        let t857 = s_rod_leg2 * (s_cross_leg2 * t838 + c_cross_leg2 * t835);
-        let t868 = s_rod_leg3 * (0.2 * s_cross_leg3);
-        let t871 = 0.2 * t59;
-        let t875 = 0.2 * c_cross_leg3;
-        let t877 = t868 * (t679 + t731) - t871 * (t727 + minus_rate_dot_rod_leg3)
-            - t875 * t669;
-        let t880 = t529 + 0.2 * t311;
-        let t883 = 0.2 * rate_dot_arm_leg3 - t513;
-        let t886 = s_rod_leg3 * (s_cross_leg3 * t880 + c_cross_leg3 * t883);
-        let t894 = s_cross_leg3 * t883 - c_cross_leg3 * t880;
-        let t901 = s_rod_leg4 * (0.2 * s_cross_leg4);
-        let t904 = 0.2 * t81;
-        let t908 = 0.2 * c_cross_leg4;
-        let t910 = t901 * (t694 + t744) - t904 * (t740 - rate_dot_rod_leg4)
-            - t908 * t685;
-        let t913 = t533 + 0.2 * t406;
-        let t916 = 0.2 * rate_dot_arm_leg4_2 - t517;
-        let t919 = s_rod_leg4 * (s_cross_leg4 * t913 + c_cross_leg4 * t916);
-        let t924 = s_cross_leg4 * t916 - c_cross_leg4 * t913;
-        let t937 = t801 * t639 + t805 * t566 + t210 * t809;
-        let t952 = t842 * t653 + t846 * t585 + t260 * t850;
-        let t965 = t871 * t671 - t868 * t606 + t335 * t875;
-        let t980 = t901 * t623 - t904 * t687 + t388 * t908;
+            + garm_vy_leg4 * actuator_velocities[3] - t176 * t159;
+        let t180 = 0.2 * minus_s_arm_leg1;
+        let t181 = pose[2] - t180;
+        let garm_vz_leg1 = t181 * t25;
+        let minus_s_arm_leg2 = t125 * (t14 * t37 + t126 * t40);
+        let t188 = 0.2 * minus_s_arm_leg2;
+        let t189 = pose[2] - t188;
+        let garm_vz_leg2 = t189 * t42;
+        let s_arm_leg3 = t51 * (t52 * t60 - t14 * t56);
+        let t197 = 0.2 * s_arm_leg3;
+        let t198 = pose[2] + t197;
+        let garm_vz_leg3 = t198 * t68;
+        let s_arm_leg4 = t140 * (t141 * t83 - t14 * t80);
+        let t206 = 0.2 * s_arm_leg4;
+        let t207 = pose[2] + t206;
+        let garm_vz_leg4 = t207 * t85;
+        let t217 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3 + garm_vx_leg4 * garm_vz_leg4;
+        let t218 = t217 * t89;
+        let t220 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 + garm_vy_leg4 * garm_vz_leg4 - t158 * t218;
+        let t221 = t220 * t162;
+        let t232 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 + garm_vz_leg4 * garm_vz_leg4 - t217 * t218
+            - t220 * t221;
+        ::overact::guard::platform(t232, 66.40191223716288, "actuators")?;
+        ::overact::guard::platform(t232, 66.40191223716288, "actuators")?;
+        let t233 = 1.0 / t232;
+        let t244 = garm_vz_leg1 * actuator_velocities[0]
+            + garm_vz_leg2 * actuator_velocities[1]
+            + garm_vz_leg3 * actuator_velocities[2]
+            + garm_vz_leg4 * actuator_velocities[3] - t176 * t218 - t221 * t178;
+        let t245 = t233 * t244;
+        let t247 = t162 * t178 - t221 * t245;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t90;
+        let t254 = t176 * t89 - t159 * t247 - t218 * t245;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t90;
+        let rate_cross_leg1 = gcross_vy_leg1 * t247 - minus_gcross_vx_leg1 * t254
+            - minus_gcross_vz_leg1 * t245;
+        let grod_vy_leg1 = 1.8867924528301887 * t112;
+        let rate_rod_leg1 = grod_vy_leg1 * t247;
+        let t262 = s_armcross_leg1 * rate_rod_leg1;
+        let t264 = pose[1] * (rate_cross_leg1 * t262);
+        let rate_arm_leg1 = garm_vx_leg1 * t254 + garm_vy_leg1 * t247
+            + garm_vz_leg1 * t245;
+        let t270 = rate_arm_leg1 * rate_arm_leg1;
+        let t273 = rate_cross_leg1 * rate_cross_leg1;
+        let t275 = c_armcross_leg1 * rate_rod_leg1;
+        let t277 = t262 * t262 + t273 + t275 * t275;
+        let t281 = t264 - (t21 * t270 + t23 * t277) + t264;
+        let t283 = pose[1] * rate_cross_leg1;
+        let t284 = rate_cross_leg1 * t283;
+        let t286 = t284 - pose[1] * t277;
+        let t290 = pose[1] * (rate_cross_leg1 * t275);
+        let t295 = t290 - (t180 * t270 + t181 * t277) + t290;
+        let minus_rate_dot_arm_leg1 = garm_vx_leg1 * t281 + garm_vy_leg1 * t286
+            + garm_vz_leg1 * t295;
+        let t298 = actuator_accelerations[0] + minus_rate_dot_arm_leg1;
+        let t300 = 0.4 * t41;
+        let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
+        let t304 = 1.0 - 3.5599857600569598 * t33;
+        ::overact::guard::reach(t304, "leg2")?;
+        ::overact::guard::reach(t304, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t304);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t306 = 0.53 * c_rod_leg2;
+        let s_cross_leg2 = 2.5 * t40 / t306;
+        let t309 = 0.04 + t33;
+        let t311 = 0.2809 * t304;
+        let t313 = 0.212 * c_rod_leg2;
+        let c_cross_leg2 = (t35 - t309 - t311) / t313;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t318 = 1.0 / c_rod_leg2;
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let gcross_vx_leg2 = t300
+            * (minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t318)
+                - c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t318));
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t300;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t300;
+        let rate_cross_leg2 = gcross_vx_leg2 * t254 - minus_gcross_vy_leg2 * t247
+            - minus_gcross_vz_leg2 * t245;
+        let t336 = pose[0] * rate_cross_leg2;
+        let t337 = rate_cross_leg2 * t336;
+        let t338 = rate_cross_leg2 * rate_cross_leg2;
+        let minus_grod_vx_leg2 = 1.8867924528301887 * t318;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t254;
+        let t341 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t344 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t346 = t338 + t341 * t341 + t344 * t344;
+        let t348 = t337 - pose[0] * t346;
+        let t351 = pose[0] * (rate_cross_leg2 * t341);
+        let rate_arm_leg2 = garm_vx_leg2 * t254 + garm_vy_leg2 * t247
+            + garm_vz_leg2 * t245;
+        let t357 = rate_arm_leg2 * rate_arm_leg2;
+        let t362 = t351 - (t131 * t357 + t133 * t346) + t351;
+        let t366 = pose[0] * (rate_cross_leg2 * t344);
+        let t371 = t366 - (t188 * t357 + t189 * t346) + t366;
+        let minus_rate_dot_arm_leg2 = garm_vx_leg2 * t348 + garm_vy_leg2 * t362
+            + garm_vz_leg2 * t371;
+        let t374 = actuator_accelerations[1] + minus_rate_dot_arm_leg2;
+        let rate_arm_leg3 = garm_vx_leg3 * t254 + garm_vy_leg3 * t247
+            + garm_vz_leg3 * t245;
+        let t382 = rate_arm_leg3 * rate_arm_leg3;
+        let c_cross_leg3 = (t54 - t103 - t105) / t107;
+        let s_cross_leg3 = 2.5 * t60 / t100;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t392 = s_armcross_leg3 * rate_rod_leg1;
+        let t394 = 0.4 * t67;
+        let gcross_vz_leg3 = s_arm_leg3 * t394;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t394;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t394
+            * (s_arm_leg3 * (t112 * (s_rod_leg1 * s_armcross_leg3))
+                + minus_c_arm_leg3 * (t112 * (s_rod_leg1 * minus_c_armcross_leg3)));
+        let rate_cross_leg3 = gcross_vz_leg3 * t245
+            - (minus_gcross_vx_leg3 * t254 + minus_gcross_vy_leg3 * t247);
+        let t413 = rate_cross_leg3 * rate_cross_leg3;
+        let t415 = minus_c_armcross_leg3 * rate_rod_leg1;
+        let t417 = t392 * t392 + t413 + t415 * t415;
+        let t421 = pose[1] * (rate_cross_leg3 * t392);
+        let t423 = t64 * t382 + t66 * t417 + t421 + t421;
+        let t431 = pose[1] * (rate_cross_leg3 * t415);
+        let t433 = t197 * t382 - t198 * t417 - t431 - t431;
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t423 - garm_vy_leg3 * t286
+            - garm_vz_leg3 * t433;
+        let t436 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let rate_arm_leg4 = garm_vx_leg4 * t254 + garm_vy_leg4 * t247
+            + garm_vz_leg4 * t245;
+        let t444 = rate_arm_leg4 * rate_arm_leg4;
+        let t446 = 0.4 * t84;
+        let gcross_vz_leg4 = s_arm_leg4 * t446;
+        let c_cross_leg4 = (t78 - t309 - t311) / t313;
+        let s_cross_leg4 = 2.5 * t83 / t306;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t446
+            * (s_arm_leg4 * (t318 * (minus_s_rod_leg2 * s_armcross_leg4))
+                + minus_c_arm_leg4
+                    * (t318 * (minus_s_rod_leg2 * minus_c_armcross_leg4)));
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t446;
+        let rate_cross_leg4 = gcross_vz_leg4 * t245
+            - (minus_gcross_vx_leg4 * t254 + minus_gcross_vy_leg4 * t247);
+        let t473 = rate_cross_leg4 * rate_cross_leg4;
+        let t474 = s_armcross_leg4 * minus_rate_rod_leg2;
+        let t477 = minus_c_armcross_leg4 * minus_rate_rod_leg2;
+        let t479 = t473 + t474 * t474 + t477 * t477;
+        let t483 = pose[0] * (rate_cross_leg4 * t474);
+        let t485 = t146 * t444 + t148 * t479 + t483 + t483;
+        let t493 = pose[0] * (rate_cross_leg4 * t477);
+        let t495 = t206 * t444 - t207 * t479 - t493 - t493;
+        let rate_dot_arm_leg4 = garm_vy_leg4 * t485 - garm_vx_leg4 * t348
+            - garm_vz_leg4 * t495;
+        let t498 = actuator_accelerations[3] - rate_dot_arm_leg4;
+        let t500 = garm_vx_leg1 * t298 + garm_vx_leg2 * t374 + garm_vx_leg3 * t436
+            + garm_vx_leg4 * t498;
+        let t510 = garm_vy_leg1 * t298 + garm_vy_leg2 * t374 + garm_vy_leg3 * t436
+            + garm_vy_leg4 * t498 - t159 * t500;
+        let t522 = garm_vz_leg1 * t298 + garm_vz_leg2 * t374 + garm_vz_leg3 * t436
+            + garm_vz_leg4 * t498 - t218 * t500 - t221 * t510;
+        let t523 = t233 * t522;
+        let t525 = t162 * t510 - t221 * t523;
+        let t529 = t89 * t500 - t159 * t525 - t218 * t523;
+        let t531 = t529 - t281;
+        let t533 = t525 - t286;
+        let t536 = t523 - t295;
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t531 + garm_vy_leg1 * t533
+            + garm_vz_leg1 * t536;
+        let t542 = t529 - t348;
+        let t544 = t525 - t362;
+        let t547 = t523 - t371;
+        let rate_dot_arm_leg2 = garm_vx_leg2 * t542 + garm_vy_leg2 * t544
+            + garm_vz_leg2 * t547;
+        let t553 = t529 + t423;
+        let t557 = t523 - t433;
+        let rate_dot_arm_leg3_2 = garm_vx_leg3 * t553 + garm_vy_leg3 * t533
+            + garm_vz_leg3 * t557;
+        let t564 = t525 + t485;
+        let t567 = t523 - t495;
+        let rate_dot_arm_leg4_2 = garm_vx_leg4 * t542 + garm_vy_leg4 * t564
+            + garm_vz_leg4 * t567;
+        let t573 = 9.81 * c_arm_leg1;
+        let t577 = 9.81 * c_arm_leg2;
+        let t581 = 9.81 * minus_c_arm_leg3;
+        let t585 = 9.81 * minus_c_arm_leg4;
+        let t589 = 9.81 * minus_s_arm_leg1;
+        let t593 = 9.81 * minus_s_arm_leg2;
+        let t597 = 9.81 * s_arm_leg3;
+        let t601 = 9.81 * s_arm_leg4;
+        let rate_dot_cross_leg1 = gcross_vy_leg1 * t533 - minus_gcross_vx_leg1 * t531
+            - minus_gcross_vz_leg1 * t536;
+        let t634 = s_rod_leg1 * rate_dot_cross_leg1;
+        let t635 = c_rod_leg1 * rate_cross_leg1;
+        let t636 = rate_rod_leg1 * t635;
+        let t637 = t634 + t636;
+        let t639 = 1.8867924528301887 * t283;
+        let t640 = rate_rod_leg1 * t639;
+        let t641 = c_rod_leg1 * t640;
+        let t642 = s_rod_leg1 * t637 + t641;
+        let t645 = 3.5599857600569598 * t284;
+        let rate_dot_cross_leg2 = gcross_vx_leg2 * t542 - minus_gcross_vy_leg2 * t544
+            - minus_gcross_vz_leg2 * t547;
+        let t653 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t654 = c_rod_leg2 * rate_cross_leg2;
+        let t655 = minus_rate_rod_leg2 * t654;
+        let t656 = t653 + t655;
+        let t658 = 1.8867924528301887 * t336;
+        let t659 = minus_rate_rod_leg2 * t658;
+        let t660 = c_rod_leg2 * t659;
+        let t661 = minus_s_rod_leg2 * t656 + t660;
+        let t663 = 3.5599857600569598 * t337;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * t557
+            - (minus_gcross_vx_leg3 * t553 + minus_gcross_vy_leg3 * t533);
+        let t672 = s_rod_leg1 * rate_dot_cross_leg3;
+        let t673 = c_rod_leg1 * rate_cross_leg3;
+        let t674 = rate_rod_leg1 * t673;
+        let t675 = t672 + t674;
+        let t677 = pose[1] * rate_cross_leg3;
+        let t678 = 1.8867924528301887 * t677;
+        let t679 = rate_rod_leg1 * t678;
+        let t680 = c_rod_leg1 * t679;
+        let t681 = s_rod_leg1 * t675 + t680;
+        let t685 = 3.5599857600569598 * (rate_cross_leg3 * t677);
+        let rate_dot_cross_leg4 = gcross_vz_leg4 * t567
+            - (minus_gcross_vx_leg4 * t542 + minus_gcross_vy_leg4 * t564);
+        let t693 = minus_s_rod_leg2 * rate_dot_cross_leg4;
+        let t694 = c_rod_leg2 * rate_cross_leg4;
+        let t695 = minus_rate_rod_leg2 * t694;
+        let t696 = t693 + t695;
+        let t698 = pose[0] * rate_cross_leg4;
+        let t699 = 1.8867924528301887 * t698;
+        let t700 = minus_rate_rod_leg2 * t699;
+        let t701 = c_rod_leg2 * t700;
+        let t702 = minus_s_rod_leg2 * t696 + t701;
+        let t705 = 3.5599857600569598 * (rate_cross_leg4 * t698);
+        let t709 = t636 + t637;
+        let t711 = c_rod_leg1 * rate_dot_cross_leg1;
+        let t712 = t711 - t640;
+        let t715 = c_rod_leg1 * t709 - s_rod_leg1 * (t640 - t712);
+        let t719 = 3.5599857600569598 * (t283 * t283);
+        let t725 = c_rod_leg2 * rate_dot_cross_leg2;
+        let t726 = t725 - t659;
+        let t729 = t655 + t656;
+        let t731 = minus_s_rod_leg2 * (t659 - t726) - c_rod_leg2 * t729;
+        let t734 = 3.5599857600569598 * (t336 * t336);
+        let t741 = c_rod_leg1 * rate_dot_cross_leg3;
+        let t742 = t741 - t679;
+        let t745 = t674 + t675;
+        let t747 = s_rod_leg1 * (t679 - t742) - c_rod_leg1 * t745;
+        let t751 = 3.5599857600569598 * (t677 * t677);
+        let t758 = 3.5599857600569598 * (t698 * t698);
+        let t762 = t695 + t696;
+        let t764 = c_rod_leg2 * rate_dot_cross_leg4;
+        let t765 = t764 - t700;
+        let t768 = c_rod_leg2 * t762 - minus_s_rod_leg2 * (t700 - t765);
+        let t773 = t639 * t635;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t533;
+        let t777 = rate_rod_leg1 * rate_rod_leg1;
+        let t780 = s_rod_leg1 * (t773 + rate_dot_rod_leg1) + c_rod_leg1 * (t777 - t719);
+        let t786 = t658 * t654;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t542;
+        let t790 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t793 = minus_s_rod_leg2 * (t786 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t790 - t734);
+        let t810 = c_rod_leg1 * t712 - t641;
+        let t816 = c_rod_leg2 * t726 - t660;
+        let t822 = c_rod_leg1 * t742 - t680;
+        let t828 = c_rod_leg2 * t765 - t701;
+        let t833 = 1.8867924528301887 * t525;
+        let t839 = 1.8867924528301887 * t529;
+        let t857 = 0.9433962264150944 * t17;
+        let t861 = 0.37735849056603776 * (pose[1] * s_cross_leg1);
+        let t865 = 0.2 * c_cross_leg1;
+        let t867 = t857 * (t773 - rate_dot_rod_leg1) + t861 * (t719 + t777)
+            - t865 * t709;
+        let t870 = 0.2 * rate_dot_arm_leg1 - t573;
+        let t873 = t589 - 0.2 * t270;
+        let t876 = s_rod_leg1 * (c_cross_leg1 * t870 - s_cross_leg1 * t873);
+        let t884 = c_cross_leg1 * t873 + s_cross_leg1 * t870;
+        let t890 = 0.9433962264150944 * t40;
+        let t894 = 0.37735849056603776 * (pose[0] * s_cross_leg2);
+        let t898 = 0.2 * c_cross_leg2;
+        let t900 = t890 * (minus_rate_dot_rod_leg2 - t786) - t894 * (t734 + t790)
+            + t898 * t729;
+        let t903 = 0.2 * rate_dot_arm_leg2 - t577;
+        let t906 = t593 - 0.2 * t357;
+        let t909 = minus_s_rod_leg2 * (c_cross_leg2 * t903 - s_cross_leg2 * t906);
+        let t914 = c_cross_leg2 * t906 + s_cross_leg2 * t903;
+        let t923 = 0.9433962264150944 * t60;
+        let t928 = 0.37735849056603776 * (pose[1] * s_cross_leg3);
+        let t932 = 0.2 * c_cross_leg3;
+        let t934 = t923 * (rate_dot_rod_leg1 - t678 * t673) - t928 * (t751 + t777)
+            + t932 * t745;
+        let t937 = t597 + 0.2 * t382;
+        let t940 = t581 + 0.2 * rate_dot_arm_leg3_2;
+        let t943 = s_rod_leg1 * (s_cross_leg3 * t937 + c_cross_leg3 * t940);
+        let t951 = s_cross_leg3 * t940 - c_cross_leg3 * t937;
+        let t957 = 0.9433962264150944 * t83;
+        let t962 = 0.37735849056603776 * (pose[0] * s_cross_leg4);
+        let t966 = 0.2 * c_cross_leg4;
+        let t968 = t957 * (t699 * t694 - minus_rate_dot_rod_leg2) + t962 * (t758 + t790)
+            - t966 * t762;
+        let t971 = t601 + 0.2 * t444;
+        let t974 = t585 + 0.2 * rate_dot_arm_leg4_2;
+        let t977 = minus_s_rod_leg2 * (s_cross_leg4 * t971 + c_cross_leg4 * t974);
+        let t982 = s_cross_leg4 * t974 - c_cross_leg4 * t971;
+        let t995 = t857 * t711 + t861 * t634 + t273 * t865;
+        let t1009 = t890 * t725 + t894 * t653 + t338 * t898;
+        let t1023 = t923 * t741 + t928 * t672 + t413 * t932;
+        let t1037 = t957 * t764 + t962 * t693 + t473 * t966;
         Ok([
             [
-                t459, garm_vx_leg1 * rate_dot_arm_leg1_2,
-                -(minus_garm_vx_leg2 * rate_dot_arm_leg2_2), garm_vx_leg3 * rate_dot_arm_leg3,
-                -(minus_garm_vx_leg4 * rate_dot_arm_leg4_2), -(garm_vx_leg1 * t505),
-                minus_garm_vx_leg2 * t509, -(garm_vx_leg3 * t513), minus_garm_vx_leg4 * t517,
-                garm_vx_leg1 * t521, -(minus_garm_vx_leg2 * t525), garm_vx_leg3 * t529,
-                -(minus_garm_vx_leg4 * t533), garm_vx_leg1 * rate_arm_leg1,
-                -(minus_garm_vx_leg2 * rate_arm_leg2), garm_vx_leg3 * rate_arm_leg3,
-                -(minus_garm_vx_leg4 * rate_arm_leg4),
-                ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
-                -::overact::math::signed(minus_garm_vx_leg2, rate_arm_leg2),
+                t529, garm_vx_leg1 * rate_dot_arm_leg1, garm_vx_leg2 * rate_dot_arm_leg2,
+                garm_vx_leg3 * rate_dot_arm_leg3_2, garm_vx_leg4 * rate_dot_arm_leg4_2,
+                -(garm_vx_leg1 * t573), -(garm_vx_leg2 * t577), garm_vx_leg3 * t581,
+                garm_vx_leg4 * t585, -(garm_vx_leg1 * t589), -(garm_vx_leg2 * t593),
+                garm_vx_leg3 * t597, garm_vx_leg4 * t601, garm_vx_leg1 * rate_arm_leg1,
+                garm_vx_leg2 * rate_arm_leg2, garm_vx_leg3 * rate_arm_leg3,
+                garm_vx_leg4 * rate_arm_leg4, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
+                ::overact::math::signed(garm_vx_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
-                -::overact::math::signed(minus_garm_vx_leg4, rate_arm_leg4), garm_vx_leg1,
-                -minus_garm_vx_leg2, garm_vx_leg3, -minus_garm_vx_leg4,
-                -(minus_gcross_vx_leg1 * t574), gcross_vx_leg2 * t593 + t595,
-                -(minus_gcross_vx_leg3 * t612), gcross_vx_leg4 * t631 - t633,
-                -(minus_gcross_vx_leg1 * t643),
-                gcross_vx_leg2 * t659 - minus_grod_vx_leg2 * (t662 - t586 * t586),
-                -(minus_gcross_vx_leg3 * t675),
-                gcross_vx_leg4 * t691 + grod_vx_leg4 * (t694 - t624 * t624),
-                -(minus_gcross_vx_leg1 * t708), gcross_vx_leg2 * t721 - minus_grod_vx_leg2 * t585,
-                -(minus_gcross_vx_leg3 * t734), gcross_vx_leg4 * t747 + grod_vx_leg4 * t623,
-                -(minus_gcross_vx_leg1 * t754), gcross_vx_leg2 * t760 - t595,
-                minus_gcross_vx_leg3 * t766, gcross_vx_leg4 * t772 + t633,
-                -(minus_gcross_vx_leg1 * t777),
-                -(gcross_vx_leg2 * t783 + 1.8867924528301887 * rate_dot_cross_leg2),
-                minus_gcross_vx_leg3 * t777,
-                gcross_vx_leg4 * t783 + 1.8867924528301887 * rate_dot_cross_leg4, 0.0,
+                ::overact::math::signed(garm_vx_leg4, rate_arm_leg4), garm_vx_leg1, garm_vx_leg2,
+                garm_vx_leg3, garm_vx_leg4, -(minus_gcross_vx_leg1 * t642),
+                gcross_vx_leg2 * t661 - t663, -(minus_gcross_vx_leg3 * t681),
+                -(minus_gcross_vx_leg4 * t702 + t705), -(minus_gcross_vx_leg1 * t715),
+                gcross_vx_leg2 * t731 - minus_grod_vx_leg2 * (t734 - t654 * t654),
+                -(minus_gcross_vx_leg3 * t747),
+                minus_grod_vx_leg2 * (t758 - t694 * t694) - minus_gcross_vx_leg4 * t768,
+                -(minus_gcross_vx_leg1 * t780), gcross_vx_leg2 * t793 + minus_grod_vx_leg2 * t653,
+                -(minus_gcross_vx_leg3 * t780),
+                minus_grod_vx_leg2 * t693 - minus_gcross_vx_leg4 * t793,
+                -(minus_gcross_vx_leg1 * t810), gcross_vx_leg2 * t816 + t663,
+                -(minus_gcross_vx_leg3 * t822), t705 - minus_gcross_vx_leg4 * t828,
+                -(minus_gcross_vx_leg1 * t833),
+                -(gcross_vx_leg2 * t839 + 1.8867924528301887 * rate_dot_cross_leg2),
+                minus_gcross_vx_leg3 * t833,
+                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t839, 0.0,
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
-                garm_vx_leg1 * t811 + minus_gcross_vx_leg1 * t820,
-                1.8867924528301887 * t840
-                    - (minus_garm_vx_leg2 * t852 + gcross_vx_leg2 * t857),
-                garm_vx_leg3 * t877 + minus_gcross_vx_leg3 * t886,
-                -(minus_garm_vx_leg4 * t910 + gcross_vx_leg4 * t919
-                    + 1.8867924528301887 * t924),
-                garm_vx_leg1 * t937 - minus_gcross_vx_leg1 * t828,
-                gcross_vx_leg2 * t840 - minus_garm_vx_leg2 * t952,
-                garm_vx_leg3 * t965 - minus_gcross_vx_leg3 * t894,
-                gcross_vx_leg4 * t924 - minus_garm_vx_leg4 * t980,
+                garm_vx_leg1 * t867 + minus_gcross_vx_leg1 * t876,
+                garm_vx_leg2 * t900 + gcross_vx_leg2 * t909 + 1.8867924528301887 * t914,
+                garm_vx_leg3 * t934 - minus_gcross_vx_leg3 * t943,
+                garm_vx_leg4 * t968 + minus_gcross_vx_leg4 * t977
+                    - 1.8867924528301887 * t982,
+                garm_vx_leg1 * t995 - minus_gcross_vx_leg1 * t884,
+                garm_vx_leg2 * t1009 + gcross_vx_leg2 * t914,
+                garm_vx_leg3 * t1023 - minus_gcross_vx_leg3 * t951,
+                garm_vx_leg4 * t1037 - minus_gcross_vx_leg4 * t982,
             ],
             [
-                t455, garm_vy_leg1 * rate_dot_arm_leg1_2, garm_vy_leg2 * rate_dot_arm_leg2_2,
-                garm_vy_leg3 * rate_dot_arm_leg3, garm_vy_leg4 * rate_dot_arm_leg4_2,
-                -(garm_vy_leg1 * t505), -(garm_vy_leg2 * t509), -(garm_vy_leg3 * t513),
-                -(garm_vy_leg4 * t517), garm_vy_leg1 * t521, garm_vy_leg2 * t525,
-                garm_vy_leg3 * t529, garm_vy_leg4 * t533, garm_vy_leg1 * rate_arm_leg1,
+                t525, garm_vy_leg1 * rate_dot_arm_leg1, garm_vy_leg2 * rate_dot_arm_leg2,
+                garm_vy_leg3 * rate_dot_arm_leg3_2, garm_vy_leg4 * rate_dot_arm_leg4_2,
+                -(garm_vy_leg1 * t573), -(garm_vy_leg2 * t577), garm_vy_leg3 * t581,
+                garm_vy_leg4 * t585, -(garm_vy_leg1 * t589), -(garm_vy_leg2 * t593),
+                garm_vy_leg3 * t597, garm_vy_leg4 * t601, garm_vy_leg1 * rate_arm_leg1,
                 garm_vy_leg2 * rate_arm_leg2, garm_vy_leg3 * rate_arm_leg3,
                 garm_vy_leg4 * rate_arm_leg4, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_vy_leg3, rate_arm_leg3),
                 ::overact::math::signed(garm_vy_leg4, rate_arm_leg4), garm_vy_leg1, garm_vy_leg2,
-                garm_vy_leg3, garm_vy_leg4, -(minus_gcross_vy_leg1 * t574 + t577),
-                -(minus_gcross_vy_leg2 * t593), t614 - minus_gcross_vy_leg3 * t612,
-                -(minus_gcross_vy_leg4 * t631),
-                grod_vy_leg1 * (t646 - t567 * t567) - minus_gcross_vy_leg1 * t643,
-                -(minus_gcross_vy_leg2 * t659),
-                -(minus_gcross_vy_leg3 * t675
-                    + minus_grod_vy_leg3 * (t679 - t599 * t599)),
-                -(minus_gcross_vy_leg4 * t691),
-                grod_vy_leg1 * t566 - minus_gcross_vy_leg1 * t708,
-                -(minus_gcross_vy_leg2 * t721),
-                minus_grod_vy_leg3 * t606 - minus_gcross_vy_leg3 * t734,
-                -(minus_gcross_vy_leg4 * t747),
-                t577 - minus_gcross_vy_leg1 * t754,
-                -(minus_gcross_vy_leg2 * t760),
-                minus_gcross_vy_leg3 * t766 - t614,
-                -(minus_gcross_vy_leg4 * t772),
-                1.8867924528301887 * rate_dot_cross_leg1 - minus_gcross_vy_leg1 * t777,
-                minus_gcross_vy_leg2 * t783,
-                minus_gcross_vy_leg3 * t777
-                    + 1.8867924528301887 * minus_rate_dot_cross_leg3,
-                -(minus_gcross_vy_leg4 * t783),
-                grod_vy_leg1 * rate_dot_rod_leg1,
-                0.0,
-                garm_vy_leg1 * t811 + minus_gcross_vy_leg1 * t820
-                    - 1.8867924528301887 * t828,
-                garm_vy_leg2 * t852 + minus_gcross_vy_leg2 * t857,
-                garm_vy_leg3 * t877 + minus_gcross_vy_leg3 * t886
-                    + 1.8867924528301887 * t894,
-                garm_vy_leg4 * t910 + minus_gcross_vy_leg4 * t919,
-                garm_vy_leg1 * t937 - minus_gcross_vy_leg1 * t828,
-                garm_vy_leg2 * t952 - minus_gcross_vy_leg2 * t840,
-                garm_vy_leg3 * t965 - minus_gcross_vy_leg3 * t894,
-                garm_vy_leg4 * t980 - minus_gcross_vy_leg4 * t924,
+                garm_vy_leg3, garm_vy_leg4, gcross_vy_leg1 * t642 - t645,
+                -(minus_gcross_vy_leg2 * t661), -(minus_gcross_vy_leg3 * t681 + t685),
+                -(minus_gcross_vy_leg4 * t702),
+                gcross_vy_leg1 * t715 + grod_vy_leg1 * (t719 - t635 * t635),
+                -(minus_gcross_vy_leg2 * t731),
+                -(minus_gcross_vy_leg3 * t747 + grod_vy_leg1 * (t751 - t673 * t673)),
+                -(minus_gcross_vy_leg4 * t768), gcross_vy_leg1 * t780 + grod_vy_leg1 * t634,
+                -(minus_gcross_vy_leg2 * t793), grod_vy_leg1 * t672 - minus_gcross_vy_leg3 * t780,
+                -(minus_gcross_vy_leg4 * t793), gcross_vy_leg1 * t810 + t645,
+                -(minus_gcross_vy_leg2 * t816), t685 - minus_gcross_vy_leg3 * t822,
+                -(minus_gcross_vy_leg4 * t828),
+                gcross_vy_leg1 * t833 + 1.8867924528301887 * rate_dot_cross_leg1,
+                minus_gcross_vy_leg2 * t839,
+                minus_gcross_vy_leg3 * t833 - 1.8867924528301887 * rate_dot_cross_leg3,
+                -(minus_gcross_vy_leg4 * t839), grod_vy_leg1 * rate_dot_rod_leg1, 0.0,
+                garm_vy_leg1 * t867 - gcross_vy_leg1 * t876 - 1.8867924528301887 * t884,
+                garm_vy_leg2 * t900 - minus_gcross_vy_leg2 * t909,
+                garm_vy_leg3 * t934 - minus_gcross_vy_leg3 * t943
+                    + 1.8867924528301887 * t951,
+                garm_vy_leg4 * t968 + minus_gcross_vy_leg4 * t977,
+                garm_vy_leg1 * t995 + gcross_vy_leg1 * t884,
+                garm_vy_leg2 * t1009 - minus_gcross_vy_leg2 * t914,
+                garm_vy_leg3 * t1023 - minus_gcross_vy_leg3 * t951,
+                garm_vy_leg4 * t1037 - minus_gcross_vy_leg4 * t982,
             ],
             [
-                t453 + 9.81, -(minus_garm_vz_leg1 * rate_dot_arm_leg1_2),
-                -(minus_garm_vz_leg2 * rate_dot_arm_leg2_2), garm_vz_leg3 * rate_dot_arm_leg3,
-                garm_vz_leg4 * rate_dot_arm_leg4_2, minus_garm_vz_leg1 * t505,
-                minus_garm_vz_leg2 * t509, -(garm_vz_leg3 * t513), -(garm_vz_leg4 * t517),
-                -(minus_garm_vz_leg1 * t521), -(minus_garm_vz_leg2 * t525), garm_vz_leg3 * t529,
-                garm_vz_leg4 * t533, -(minus_garm_vz_leg1 * rate_arm_leg1),
-                -(minus_garm_vz_leg2 * rate_arm_leg2), garm_vz_leg3 * rate_arm_leg3,
-                garm_vz_leg4 * rate_arm_leg4,
-                -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1),
-                -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2),
+                t523 + 9.81, garm_vz_leg1 * rate_dot_arm_leg1, garm_vz_leg2 * rate_dot_arm_leg2,
+                garm_vz_leg3 * rate_dot_arm_leg3_2, garm_vz_leg4 * rate_dot_arm_leg4_2,
+                -(garm_vz_leg1 * t573), -(garm_vz_leg2 * t577), garm_vz_leg3 * t581,
+                garm_vz_leg4 * t585, -(garm_vz_leg1 * t589), -(garm_vz_leg2 * t593),
+                garm_vz_leg3 * t597, garm_vz_leg4 * t601, garm_vz_leg1 * rate_arm_leg1,
+                garm_vz_leg2 * rate_arm_leg2, garm_vz_leg3 * rate_arm_leg3,
+                garm_vz_leg4 * rate_arm_leg4, ::overact::math::signed(garm_vz_leg1, rate_arm_leg1),
+                ::overact::math::signed(garm_vz_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_vz_leg3, rate_arm_leg3),
-                ::overact::math::signed(garm_vz_leg4, rate_arm_leg4), -minus_garm_vz_leg1,
-                -minus_garm_vz_leg2, garm_vz_leg3, garm_vz_leg4, gcross_vz_leg1 * t574,
-                gcross_vz_leg2 * t593, -(minus_gcross_vz_leg3 * t612),
-                -(minus_gcross_vz_leg4 * t631), gcross_vz_leg1 * t643, gcross_vz_leg2 * t659,
-                -(minus_gcross_vz_leg3 * t675), -(minus_gcross_vz_leg4 * t691),
-                gcross_vz_leg1 * t708, gcross_vz_leg2 * t721, -(minus_gcross_vz_leg3 * t734),
-                -(minus_gcross_vz_leg4 * t747), gcross_vz_leg1 * t754, gcross_vz_leg2 * t760,
-                minus_gcross_vz_leg3 * t766, -(minus_gcross_vz_leg4 * t772), gcross_vz_leg1 * t777,
-                -(gcross_vz_leg2 * t783), minus_gcross_vz_leg3 * t777,
-                -(minus_gcross_vz_leg4 * t783), 0.0, 0.0,
-                -(minus_garm_vz_leg1 * t811 + gcross_vz_leg1 * t820),
-                -(minus_garm_vz_leg2 * t852 + gcross_vz_leg2 * t857),
-                garm_vz_leg3 * t877 + minus_gcross_vz_leg3 * t886,
-                garm_vz_leg4 * t910 + minus_gcross_vz_leg4 * t919,
-                gcross_vz_leg1 * t828 - minus_garm_vz_leg1 * t937,
-                gcross_vz_leg2 * t840 - minus_garm_vz_leg2 * t952,
-                garm_vz_leg3 * t965 - minus_gcross_vz_leg3 * t894,
-                garm_vz_leg4 * t980 - minus_gcross_vz_leg4 * t924,
+                ::overact::math::signed(garm_vz_leg4, rate_arm_leg4), garm_vz_leg1, garm_vz_leg2,
+                garm_vz_leg3, garm_vz_leg4, -(minus_gcross_vz_leg1 * t642),
+                -(minus_gcross_vz_leg2 * t661), gcross_vz_leg3 * t681, gcross_vz_leg4 * t702,
+                -(minus_gcross_vz_leg1 * t715), -(minus_gcross_vz_leg2 * t731),
+                gcross_vz_leg3 * t747, gcross_vz_leg4 * t768, -(minus_gcross_vz_leg1 * t780),
+                -(minus_gcross_vz_leg2 * t793), gcross_vz_leg3 * t780, gcross_vz_leg4 * t793,
+                -(minus_gcross_vz_leg1 * t810), -(minus_gcross_vz_leg2 * t816),
+                gcross_vz_leg3 * t822, gcross_vz_leg4 * t828, -(minus_gcross_vz_leg1 * t833),
+                minus_gcross_vz_leg2 * t839, -(gcross_vz_leg3 * t833), gcross_vz_leg4 * t839, 0.0,
+                0.0, garm_vz_leg1 * t867 + minus_gcross_vz_leg1 * t876,
+                garm_vz_leg2 * t900 - minus_gcross_vz_leg2 * t909,
+                garm_vz_leg3 * t934 + gcross_vz_leg3 * t943,
+                garm_vz_leg4 * t968 - gcross_vz_leg4 * t977,
+                garm_vz_leg1 * t995 - minus_gcross_vz_leg1 * t884,
+                garm_vz_leg2 * t1009 - minus_gcross_vz_leg2 * t914,
+                garm_vz_leg3 * t1023 + gcross_vz_leg3 * t951,
+                garm_vz_leg4 * t1037 + gcross_vz_leg4 * t982,
             ],
         ])
     }
@@ -4917,7 +7133,7 @@ impl Delta4 {
     /// Output: 3 x 55.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 975 operations (312 additions, 654 multiplications, 9 divisions), 0 square roots, 12 trigonometric pairs, 6 signs, 879 intermediates.
+    /// 1036 operations (360 additions, 657 multiplications, 19 divisions), 6 square roots, 0 trigonometric pairs, 6 signs, 922 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4926,8 +7142,491 @@ impl Delta4 {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 55]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_actuators_base_from_joints(pose, joints, twist, acceleration)
+        let t0 = pose[1] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * pose[2];
+        let t8 = pose[0] * pose[0];
+        let t10 = t8 + t2 + t3;
+        let t12 = t10 - 0.2809 + 0.04;
+        let t14 = 0.4 * t1;
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg2")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.20079840636817814, "leg2")?;
+        let minus_s_arm_leg2 = t6 * (t7 * t12 + t14 * t17);
+        let t21 = 0.2 * minus_s_arm_leg2;
+        let t22 = pose[2] - t21;
+        let t23 = 1.0 / t17;
+        let t24 = 2.0 * t23;
+        let garm_vz_leg2 = t22 * t24;
+        let t26 = pose[0] - 0.05;
+        let t27 = t26 + 0.2;
+        let t28 = t27 * t27;
+        let t30 = 0.16 * (t28 + t3);
+        let t31 = pose[1] * pose[1];
+        let t33 = t28 + t31 + t3;
+        let t35 = t33 - 0.2809 + 0.04;
+        let t37 = t30 - t35 * t35;
+        ::overact::guard::reach(t37, "leg3")?;
+        let t38 = ::overact::math::sqrt(t37);
+        ::overact::guard::leg(t38, 0.20079840636817814, "leg3")?;
+        let t39 = 1.0 / t38;
+        let t40 = 2.0 * t39;
+        let garm_vy_leg3 = pose[1] * t40;
+        let c_arm_leg2 = t6 * (t14 * t12 - t7 * t17);
+        let t47 = 0.2 * c_arm_leg2;
+        let t49 = t0 - (0.2 + t47);
+        let garm_vy_leg2 = t49 * t24;
+        let t51 = 1.0 / t30;
+        let t52 = 0.4 * t27;
+        let s_arm_leg3 = t51 * (t52 * t38 - t7 * t35);
+        let t57 = 0.2 * s_arm_leg3;
+        let t58 = pose[2] + t57;
+        let garm_vz_leg3 = t58 * t40;
+        let minus_c_arm_leg3 = t51 * (t52 * t35 + t7 * t38);
+        let t66 = 0.2 * minus_c_arm_leg3;
+        let t68 = t26 - (t66 - 0.2);
+        let garm_vx_leg3 = t68 * t40;
+        let t70 = pose[0] + 0.05;
+        let t71 = t70 - 0.2;
+        let t72 = t71 * t71;
+        let t74 = 0.16 * (t72 + t3);
+        let t75 = 1.0 / t74;
+        let t77 = t72 + t31 + t3;
+        let t79 = t77 - 0.2809 + 0.04;
+        let t81 = 0.4 * t71;
+        let t83 = t74 - t79 * t79;
+        ::overact::guard::reach(t83, "leg1")?;
+        let t84 = ::overact::math::sqrt(t83);
+        ::overact::guard::leg(t84, 0.20079840636817814, "leg1")?;
+        let minus_s_arm_leg1 = t75 * (t7 * t79 + t81 * t84);
+        let t88 = 0.2 * minus_s_arm_leg1;
+        let t89 = pose[2] - t88;
+        let t90 = 1.0 / t84;
+        let t91 = 2.0 * t90;
+        let garm_vz_leg1 = t89 * t91;
+        let garm_vy_leg1 = pose[1] * t91;
+        let t96 = garm_vz_leg1 * garm_vy_leg2 - garm_vy_leg1 * garm_vz_leg2;
+        let garm_vx_leg2 = pose[0] * t24;
+        let c_arm_leg1 = t75 * (t81 * t79 - t7 * t84);
+        let t104 = 0.2 * c_arm_leg1;
+        let t106 = t70 - (0.2 + t104);
+        let garm_vx_leg1 = t106 * t91;
+        let t109 = garm_vz_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vz_leg2;
+        let t114 = garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2;
+        let t116 = garm_vx_leg3 * t96 - garm_vy_leg3 * t109 + garm_vz_leg3 * t114;
+        ::overact::guard::platform(t116, 91.80843988045552, "kept actuators")?;
+        ::overact::guard::platform(t116, 91.80843988045552, "kept actuators")?;
+        ::overact::guard::platform(t116, 91.80843988045552, "kept actuators")?;
+        let t117 = 1.0 / t116;
+        let t118 = (garm_vz_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vz_leg3) * t117;
+        let t123 = (garm_vz_leg2 * garm_vx_leg3 - garm_vx_leg2 * garm_vz_leg3) * t117;
+        let t129 = (garm_vy_leg2 * garm_vx_leg3 - garm_vx_leg2 * garm_vy_leg3) * t117;
+        let t130 = acceleration[2] + 9.81;
+        let t136 = (garm_vz_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vz_leg3) * t117;
+        let t141 = (garm_vz_leg1 * garm_vy_leg3 - garm_vy_leg1 * garm_vz_leg3) * t117;
+        let t147 = (garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3) * t117;
+        let t150 = t96 * t117;
+        let t152 = t109 * t117;
+        let t155 = t114 * t117;
+        let t158 = 0.4 * t90;
+        let s_rod_leg1 = 1.8867924528301887 * pose[1];
+        let t162 = 1.0 - 3.5599857600569598 * t31;
+        ::overact::guard::reach(t162, "leg1")?;
+        ::overact::guard::reach(t162, "leg3")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t162);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let t164 = 0.53 * c_rod_leg1;
+        let s_cross_leg1 = 2.5 * t84 / t164;
+        let t167 = 0.04 + t31;
+        let t169 = 0.2809 * t162;
+        let t171 = 0.212 * c_rod_leg1;
+        let c_cross_leg1 = (t77 - t167 - t169) / t171;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t176 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t158
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t176)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t176));
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t158;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t158;
+        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
+            - minus_gcross_vz_leg1 * twist[2];
+        let grod_vy_leg1 = 1.8867924528301887 * t176;
+        let rate_rod_leg1 = grod_vy_leg1 * twist[1];
+        let t196 = s_armcross_leg1 * rate_rod_leg1;
+        let t198 = pose[1] * (rate_cross_leg1 * t196);
+        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
+            + garm_vz_leg1 * twist[2];
+        let t204 = rate_arm_leg1 * rate_arm_leg1;
+        let t207 = rate_cross_leg1 * rate_cross_leg1;
+        let t209 = c_armcross_leg1 * rate_rod_leg1;
+        let t211 = t196 * t196 + t207 + t209 * t209;
+        let t216 = acceleration[0] - (t198 - (t104 * t204 + t106 * t211) + t198);
+        let t218 = pose[1] * rate_cross_leg1;
+        let t222 = acceleration[1] - (rate_cross_leg1 * t218 - pose[1] * t211);
+        let t226 = pose[1] * (rate_cross_leg1 * t209);
+        let t232 = acceleration[2] - (t226 - (t88 * t204 + t89 * t211) + t226);
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t216 + garm_vy_leg1 * t222
+            + garm_vz_leg1 * t232;
+        let t235 = 0.4 * t23;
+        let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
+        let t239 = 1.0 - 3.5599857600569598 * t8;
+        ::overact::guard::reach(t239, "leg2")?;
+        ::overact::guard::reach(t239, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t239);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t241 = 0.53 * c_rod_leg2;
+        let s_cross_leg2 = 2.5 * t17 / t241;
+        let t244 = 0.04 + t8;
+        let t246 = 0.2809 * t239;
+        let t248 = 0.212 * c_rod_leg2;
+        let c_cross_leg2 = (t10 - t244 - t246) / t248;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t253 = 1.0 / c_rod_leg2;
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let gcross_vx_leg2 = t235
+            * (minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t253)
+                - c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t253));
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t235;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t235;
+        let rate_cross_leg2 = gcross_vx_leg2 * twist[0] - minus_gcross_vy_leg2 * twist[1]
+            - minus_gcross_vz_leg2 * twist[2];
+        let t271 = pose[0] * rate_cross_leg2;
+        let t273 = rate_cross_leg2 * rate_cross_leg2;
+        let minus_grod_vx_leg2 = 1.8867924528301887 * t253;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * twist[0];
+        let t276 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t279 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t281 = t273 + t276 * t276 + t279 * t279;
+        let t284 = acceleration[0] - (rate_cross_leg2 * t271 - pose[0] * t281);
+        let t287 = pose[0] * (rate_cross_leg2 * t276);
+        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
+            + garm_vz_leg2 * twist[2];
+        let t293 = rate_arm_leg2 * rate_arm_leg2;
+        let t299 = acceleration[1] - (t287 - (t47 * t293 + t49 * t281) + t287);
+        let t303 = pose[0] * (rate_cross_leg2 * t279);
+        let t309 = acceleration[2] - (t303 - (t21 * t293 + t22 * t281) + t303);
+        let rate_dot_arm_leg2 = garm_vx_leg2 * t284 + garm_vy_leg2 * t299
+            + garm_vz_leg2 * t309;
+        let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
+            + garm_vz_leg3 * twist[2];
+        let t317 = rate_arm_leg3 * rate_arm_leg3;
+        let c_cross_leg3 = (t33 - t167 - t169) / t171;
+        let s_cross_leg3 = 2.5 * t38 / t164;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t327 = s_armcross_leg3 * rate_rod_leg1;
+        let t329 = 0.4 * t39;
+        let gcross_vz_leg3 = s_arm_leg3 * t329;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t329;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t329
+            * (s_arm_leg3 * (t176 * (s_rod_leg1 * s_armcross_leg3))
+                + minus_c_arm_leg3 * (t176 * (s_rod_leg1 * minus_c_armcross_leg3)));
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
+        let t348 = rate_cross_leg3 * rate_cross_leg3;
+        let t350 = minus_c_armcross_leg3 * rate_rod_leg1;
+        let t352 = t327 * t327 + t348 + t350 * t350;
+        let t356 = pose[1] * (rate_cross_leg3 * t327);
+        let t359 = acceleration[0] + t66 * t317 + t68 * t352 + t356 + t356;
+        let t367 = pose[1] * (rate_cross_leg3 * t350);
+        let t370 = acceleration[2] - (t57 * t317 - t58 * t352 - t367 - t367);
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t359 + garm_vy_leg3 * t222
+            + garm_vz_leg3 * t370;
+        let t373 = pose[1] - 0.05;
+        let t374 = t373 + 0.2;
+        let t375 = t374 * t374;
+        let t377 = 0.16 * (t375 + t3);
+        let t379 = t8 + t375 + t3;
+        let t381 = t379 - 0.2809 + 0.04;
+        let t383 = t377 - t381 * t381;
+        ::overact::guard::reach(t383, "leg4")?;
+        let t384 = ::overact::math::sqrt(t383);
+        ::overact::guard::leg(t384, 0.20079840636817814, "leg4")?;
+        let t385 = 1.0 / t384;
+        let t386 = 2.0 * t385;
+        let garm_vx_leg4 = pose[0] * t386;
+        let t389 = 1.0 / t377;
+        let t390 = 0.4 * t374;
+        let minus_c_arm_leg4 = t389 * (t390 * t381 + t7 * t384);
+        let t395 = 0.2 * minus_c_arm_leg4;
+        let t397 = t373 - (t395 - 0.2);
+        let garm_vy_leg4 = t397 * t386;
+        let s_arm_leg4 = t389 * (t390 * t384 - t7 * t381);
+        let t405 = 0.2 * s_arm_leg4;
+        let t406 = pose[2] + t405;
+        let garm_vz_leg4 = t406 * t386;
+        let t409 = garm_vx_leg4 * t118 - garm_vy_leg4 * t123 + garm_vz_leg4 * t129;
+        let rate_arm_leg4 = garm_vx_leg4 * twist[0] + garm_vy_leg4 * twist[1]
+            + garm_vz_leg4 * twist[2];
+        let t416 = rate_arm_leg4 * rate_arm_leg4;
+        let t418 = 0.4 * t385;
+        let gcross_vz_leg4 = s_arm_leg4 * t418;
+        let c_cross_leg4 = (t379 - t244 - t246) / t248;
+        let s_cross_leg4 = 2.5 * t384 / t241;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t418
+            * (s_arm_leg4 * (t253 * (minus_s_rod_leg2 * s_armcross_leg4))
+                + minus_c_arm_leg4
+                    * (t253 * (minus_s_rod_leg2 * minus_c_armcross_leg4)));
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t418;
+        let rate_cross_leg4 = gcross_vz_leg4 * twist[2]
+            - (minus_gcross_vx_leg4 * twist[0] + minus_gcross_vy_leg4 * twist[1]);
+        let t445 = rate_cross_leg4 * rate_cross_leg4;
+        let t446 = s_armcross_leg4 * minus_rate_rod_leg2;
+        let t449 = minus_c_armcross_leg4 * minus_rate_rod_leg2;
+        let t451 = t445 + t446 * t446 + t449 * t449;
+        let t455 = pose[0] * (rate_cross_leg4 * t446);
+        let t458 = acceleration[1] + t395 * t416 + t397 * t451 + t455 + t455;
+        let t465 = pose[0] * (rate_cross_leg4 * t449);
+        let t468 = acceleration[2] - (t405 * t416 - t406 * t451 - t465 - t465);
+        let rate_dot_arm_leg4 = garm_vx_leg4 * t284 + garm_vy_leg4 * t458
+            + garm_vz_leg4 * t468;
+        let t476 = garm_vy_leg4 * t136 - garm_vx_leg4 * t141 - garm_vz_leg4 * t147;
+        let t482 = garm_vx_leg4 * t150 - garm_vy_leg4 * t152 + garm_vz_leg4 * t155;
+        let t484 = 9.81 * c_arm_leg1;
+        let t485 = 9.81 * c_arm_leg2;
+        let t486 = 9.81 * minus_c_arm_leg3;
+        let t487 = 9.81 * minus_c_arm_leg4;
+        let t491 = 9.81 * minus_s_arm_leg1;
+        let t492 = 9.81 * minus_s_arm_leg2;
+        let t493 = 9.81 * s_arm_leg3;
+        let t494 = 9.81 * s_arm_leg4;
+        let t507 = grod_vy_leg1 * t123;
+        let t508 = 1.8867924528301887 * t218;
+        let t509 = c_rod_leg1 * rate_cross_leg1;
+        let t510 = t508 * t509;
+        let t511 = t507 * t510;
+        let t516 = minus_gcross_vx_leg1 * t118 + gcross_vy_leg1 * t123
+            + minus_gcross_vz_leg1 * t129;
+        let rate_dot_cross_leg1 = gcross_vy_leg1 * t222 - minus_gcross_vx_leg1 * t216
+            - minus_gcross_vz_leg1 * t232;
+        let t522 = s_rod_leg1 * rate_dot_cross_leg1;
+        let t523 = rate_rod_leg1 * t509;
+        let t524 = t522 + t523;
+        let t526 = rate_rod_leg1 * t508;
+        let t527 = c_rod_leg1 * t526;
+        let t528 = s_rod_leg1 * t524 + t527;
+        let t535 = minus_gcross_vx_leg1 * t141 + gcross_vy_leg1 * t136
+            + minus_gcross_vz_leg1 * t147;
+        let t537 = grod_vy_leg1 * t136;
+        let t538 = t537 * t510;
+        let t540 = grod_vy_leg1 * t152;
+        let t541 = t540 * t510;
+        let t546 = minus_gcross_vx_leg1 * t150 + gcross_vy_leg1 * t152
+            + minus_gcross_vz_leg1 * t155;
+        let t553 = gcross_vx_leg2 * t118 + minus_gcross_vy_leg2 * t123
+            - minus_gcross_vz_leg2 * t129;
+        let rate_dot_cross_leg2 = gcross_vx_leg2 * t284 - minus_gcross_vy_leg2 * t299
+            - minus_gcross_vz_leg2 * t309;
+        let t559 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t560 = c_rod_leg2 * rate_cross_leg2;
+        let t561 = minus_rate_rod_leg2 * t560;
+        let t562 = t559 + t561;
+        let t564 = 1.8867924528301887 * t271;
+        let t565 = minus_rate_rod_leg2 * t564;
+        let t566 = c_rod_leg2 * t565;
+        let t567 = minus_s_rod_leg2 * t562 + t566;
+        let t569 = minus_grod_vx_leg2 * t118;
+        let t570 = t564 * t560;
+        let t571 = t569 * t570;
+        let t577 = minus_gcross_vz_leg2 * t147
+            - (gcross_vx_leg2 * t141 + minus_gcross_vy_leg2 * t136);
+        let t579 = minus_grod_vx_leg2 * t141;
+        let t580 = t579 * t570;
+        let t586 = gcross_vx_leg2 * t150 + minus_gcross_vy_leg2 * t152
+            - minus_gcross_vz_leg2 * t155;
+        let t588 = minus_grod_vx_leg2 * t150;
+        let t589 = t588 * t570;
+        let t595 = minus_gcross_vy_leg3 * t123 - minus_gcross_vx_leg3 * t118
+            + gcross_vz_leg3 * t129;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * t370
+            - (minus_gcross_vx_leg3 * t359 + minus_gcross_vy_leg3 * t222);
+        let t601 = s_rod_leg1 * rate_dot_cross_leg3;
+        let t602 = c_rod_leg1 * rate_cross_leg3;
+        let t603 = rate_rod_leg1 * t602;
+        let t604 = t601 + t603;
+        let t606 = pose[1] * rate_cross_leg3;
+        let t607 = 1.8867924528301887 * t606;
+        let t608 = rate_rod_leg1 * t607;
+        let t609 = c_rod_leg1 * t608;
+        let t610 = s_rod_leg1 * t604 + t609;
+        let t612 = t607 * t602;
+        let t613 = t507 * t612;
+        let t616 = t537 * t612;
+        let t622 = minus_gcross_vy_leg3 * t152 - minus_gcross_vx_leg3 * t150
+            + gcross_vz_leg3 * t155;
+        let t624 = t540 * t612;
+        let t630 = minus_gcross_vy_leg4 * t123 - minus_gcross_vx_leg4 * t118
+            + gcross_vz_leg4 * t129;
+        let rate_dot_cross_leg4 = gcross_vz_leg4 * t468
+            - (minus_gcross_vx_leg4 * t284 + minus_gcross_vy_leg4 * t458);
+        let t636 = minus_s_rod_leg2 * rate_dot_cross_leg4;
+        let t637 = c_rod_leg2 * rate_cross_leg4;
+        let t638 = minus_rate_rod_leg2 * t637;
+        let t639 = t636 + t638;
+        let t641 = pose[0] * rate_cross_leg4;
+        let t642 = 1.8867924528301887 * t641;
+        let t643 = minus_rate_rod_leg2 * t642;
+        let t644 = c_rod_leg2 * t643;
+        let t645 = minus_s_rod_leg2 * t639 + t644;
+        let t647 = t642 * t637;
+        let t648 = t569 * t647;
+        let t654 = minus_gcross_vx_leg4 * t141 - minus_gcross_vy_leg4 * t136
+            - gcross_vz_leg4 * t147;
+        let t656 = t579 * t647;
+        let t662 = minus_gcross_vy_leg4 * t152 - minus_gcross_vx_leg4 * t150
+            + gcross_vz_leg4 * t155;
+        let t664 = t588 * t647;
+        let t666 = t523 + t524;
+        let t668 = c_rod_leg1 * rate_dot_cross_leg1;
+        let t669 = t668 - t526;
+        let t672 = c_rod_leg1 * t666 - s_rod_leg1 * (t526 - t669);
+        let t675 = 3.5599857600569598 * (t218 * t218);
+        let t677 = t675 - t509 * t509;
+        let t686 = c_rod_leg2 * rate_dot_cross_leg2;
+        let t687 = t686 - t565;
+        let t690 = t561 + t562;
+        let t692 = minus_s_rod_leg2 * (t565 - t687) - c_rod_leg2 * t690;
+        let t695 = 3.5599857600569598 * (t271 * t271);
+        let t697 = t695 - t560 * t560;
+        let t706 = c_rod_leg1 * rate_dot_cross_leg3;
+        let t707 = t706 - t608;
+        let t710 = t603 + t604;
+        let t712 = s_rod_leg1 * (t608 - t707) - c_rod_leg1 * t710;
+        let t715 = 3.5599857600569598 * (t606 * t606);
+        let t717 = t715 - t602 * t602;
+        let t726 = t638 + t639;
+        let t728 = c_rod_leg2 * rate_dot_cross_leg4;
+        let t729 = t728 - t643;
+        let t732 = c_rod_leg2 * t726 - minus_s_rod_leg2 * (t643 - t729);
+        let t735 = 3.5599857600569598 * (t641 * t641);
+        let t737 = t735 - t637 * t637;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t222;
+        let t749 = rate_rod_leg1 * rate_rod_leg1;
+        let t752 = s_rod_leg1 * (t510 + rate_dot_rod_leg1) + c_rod_leg1 * (t749 - t675);
+        let t756 = t535 * t752;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t284;
+        let t765 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t768 = minus_s_rod_leg2 * (t570 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t765 - t695);
+        let t796 = c_rod_leg1 * t669 - t527;
+        let t804 = c_rod_leg2 * t687 - t566;
+        let t812 = c_rod_leg1 * t707 - t609;
+        let t820 = c_rod_leg2 * t729 - t644;
+        let t827 = 1.8867924528301887 * acceleration[1];
+        let t831 = t535 * t827;
+        let t837 = 1.8867924528301887 * acceleration[0];
+        let t870 = 0.9433962264150944 * t84;
+        let t874 = 0.37735849056603776 * (pose[1] * s_cross_leg1);
+        let t878 = 0.2 * c_cross_leg1;
+        let t882 = 0.2 * rate_dot_arm_leg1 - t484;
+        let t885 = t491 - 0.2 * t204;
+        let t888 = s_rod_leg1 * (c_cross_leg1 * t882 - s_cross_leg1 * t885);
+        let t893 = c_cross_leg1 * t885 + s_cross_leg1 * t882;
+        let t894 = c_rod_leg1 * t893;
+        let t896 = t870 * (t510 - rate_dot_rod_leg1) + t874 * (t675 + t749) - t878 * t666
+            + t516 * t888 + t507 * t894;
+        let t904 = 0.2 * rate_dot_arm_leg2 - t485;
+        let t907 = t492 - 0.2 * t293;
+        let t910 = minus_s_rod_leg2 * (c_cross_leg2 * t904 - s_cross_leg2 * t907);
+        let t914 = c_cross_leg2 * t907 + s_cross_leg2 * t904;
+        let t915 = c_rod_leg2 * t914;
+        let t918 = 0.9433962264150944 * t17;
+        let t922 = 0.37735849056603776 * (pose[0] * s_cross_leg2);
+        let t926 = 0.2 * c_cross_leg2;
+        let t932 = t918 * (minus_rate_dot_rod_leg2 - t570) - t922 * (t695 + t765)
+            + t926 * t690 + t577 * t910 - t579 * t915;
+        let t937 = t493 + 0.2 * t317;
+        let t940 = t486 + 0.2 * rate_dot_arm_leg3;
+        let t943 = s_rod_leg1 * (s_cross_leg3 * t937 + c_cross_leg3 * t940);
+        let t947 = s_cross_leg3 * t940 - c_cross_leg3 * t937;
+        let t948 = c_rod_leg1 * t947;
+        let t954 = 0.9433962264150944 * t38;
+        let t958 = 0.37735849056603776 * (pose[1] * s_cross_leg3);
+        let t962 = 0.2 * c_cross_leg3;
+        let t968 = t954 * (rate_dot_rod_leg1 - t612) - t958 * (t715 + t749) + t962 * t710
+            + t622 * t943 - t540 * t948;
+        let t969 = 0.9433962264150944 * t384;
+        let t973 = 0.37735849056603776 * (pose[0] * s_cross_leg4);
+        let t977 = 0.2 * c_cross_leg4;
+        let t979 = t969 * (t647 - minus_rate_dot_rod_leg2) + t973 * (t735 + t765)
+            - t977 * t726;
+        let t982 = t494 + 0.2 * t416;
+        let t985 = t487 + 0.2 * rate_dot_arm_leg4;
+        let t988 = minus_s_rod_leg2 * (s_cross_leg4 * t982 + c_cross_leg4 * t985);
+        let t993 = s_cross_leg4 * t985 - c_cross_leg4 * t982;
+        let t994 = c_rod_leg2 * t993;
+        let t1038 = t728 * t969 + t636 * t973 + t445 * t977;
+        Ok([
+            [
+                t118 * acceleration[0] - t123 * acceleration[1] + t129 * t130, rate_dot_arm_leg1,
+                0.0, 0.0, t409 * rate_dot_arm_leg4, -t484, 0.0, 0.0, t409 * t487, -t491, 0.0, 0.0,
+                t409 * t494, rate_arm_leg1, 0.0, 0.0, t409 * rate_arm_leg4,
+                ::overact::math::sign(rate_arm_leg1), 0.0, 0.0,
+                ::overact::math::signed(t409, rate_arm_leg4), 1.0, 0.0, 0.0, t409,
+                t511 - t516 * t528, t553 * t567 - t571, t595 * t610 + t613, t630 * t645 - t648,
+                -(t516 * t672 + t507 * t677), t553 * t692 - t569 * t697, t595 * t712 + t507 * t717,
+                t630 * t732 + t569 * t737, -(t516 * t752 + t507 * t522), t553 * t768 + t569 * t559,
+                t595 * t752 - t507 * t601, t630 * t768 + t569 * t636, -(t516 * t796 + t511),
+                t553 * t804 + t571, t595 * t812 - t613, t630 * t820 + t648,
+                -(t516 * t827 + t507 * t668), -(t553 * t837 + t569 * t686),
+                t507 * t706 - t595 * t827, t630 * t837 + t569 * t728, -(t507 * rate_dot_rod_leg1),
+                t569 * minus_rate_dot_rod_leg2, t896, t553 * t910 + t569 * t915,
+                t595 * t943 - t507 * t948, t409 * t979 - t630 * t988 - t569 * t994,
+                t668 * t870 + t522 * t874 + t207 * t878 - t516 * t893, t553 * t914, t595 * t947,
+                t409 * t1038 + t630 * t993,
+            ],
+            [
+                t136 * acceleration[1] - t141 * acceleration[0] - t147 * t130, 0.0,
+                rate_dot_arm_leg2, 0.0, t476 * rate_dot_arm_leg4, 0.0, -t485, 0.0, t476 * t487, 0.0,
+                -t492, 0.0, t476 * t494, 0.0, rate_arm_leg2, 0.0, t476 * rate_arm_leg4, 0.0,
+                ::overact::math::sign(rate_arm_leg2), 0.0,
+                ::overact::math::signed(t476, rate_arm_leg4), 0.0, 1.0, 0.0, t476,
+                t535 * t528 - t538, t577 * t567 + t580, t535 * t610 - t616, t654 * t645 + t656,
+                t535 * t672 + t537 * t677, t577 * t692 + t579 * t697, t535 * t712 - t537 * t717,
+                t654 * t732 - t579 * t737, t756 + t537 * t522, t577 * t768 - t579 * t559,
+                t756 + t537 * t601, t654 * t768 - t579 * t636, t535 * t796 + t538,
+                t577 * t804 - t580, t535 * t812 + t616, t654 * t820 - t656, t831 + t537 * t668,
+                t579 * t686 - t577 * t837, -(t831 + t537 * t706), t654 * t837 - t579 * t728,
+                t537 * rate_dot_rod_leg1, -(t579 * minus_rate_dot_rod_leg2),
+                -(t535 * t888 + t537 * t894), t932, t535 * t943 + t537 * t948,
+                t476 * t979 - t654 * t988 + t579 * t994, t535 * t893,
+                t686 * t918 + t559 * t922 + t273 * t926 + t577 * t914, t535 * t947,
+                t476 * t1038 + t654 * t993,
+            ],
+            [
+                t150 * acceleration[0] - t152 * acceleration[1] + t155 * t130, 0.0, 0.0,
+                rate_dot_arm_leg3, t482 * rate_dot_arm_leg4, 0.0, 0.0, t486, t482 * t487, 0.0, 0.0,
+                t493, t482 * t494, 0.0, 0.0, rate_arm_leg3, t482 * rate_arm_leg4, 0.0, 0.0,
+                ::overact::math::sign(rate_arm_leg3), ::overact::math::signed(t482, rate_arm_leg4),
+                0.0, 0.0, 1.0, t482, t541 - t546 * t528, t586 * t567 - t589, t622 * t610 + t624,
+                t662 * t645 - t664, -(t546 * t672 + t540 * t677), t586 * t692 - t588 * t697,
+                t622 * t712 + t540 * t717, t662 * t732 + t588 * t737, -(t546 * t752 + t540 * t522),
+                t586 * t768 + t588 * t559, t622 * t752 - t540 * t601, t662 * t768 + t588 * t636,
+                -(t546 * t796 + t541), t586 * t804 + t589, t622 * t812 - t624, t662 * t820 + t664,
+                -(t546 * t827 + t540 * t668), -(t586 * t837 + t588 * t686),
+                t540 * t706 - t622 * t827, t662 * t837 + t588 * t728, -(t540 * rate_dot_rod_leg1),
+                t588 * minus_rate_dot_rod_leg2, t546 * t888 + t540 * t894,
+                t586 * t910 + t588 * t915, t968, t482 * t979 - t662 * t988 - t588 * t994,
+                -(t546 * t893), t586 * t914, t706 * t954 + t601 * t958 + t348 * t962 + t622 * t947,
+                t482 * t1038 + t662 * t993,
+            ],
+        ])
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -5407,7 +8106,7 @@ impl Delta4 {
     /// Output: 3 x 55.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 1127 operations (376 additions, 739 multiplications, 12 divisions), 0 square roots, 12 trigonometric pairs, 6 signs, 1031 intermediates.
+    /// 1188 operations (424 additions, 742 multiplications, 22 divisions), 6 square roots, 0 trigonometric pairs, 6 signs, 1074 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5418,518 +8117,561 @@ impl Delta4 {
         start: &[f64; 3],
     ) -> Result<[[f64; 55]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
-        let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t12 = c_armcross_leg2 * c_rod_leg2;
-        let t13 = s_armcross_leg2 * c_rod_leg2;
-        let t16 = c_arm_leg2 * t13 - s_arm_leg2 * t12;
-        ::overact::guard::leg(t16, 0.9471622941895197, "leg2")?;
-        let t17 = 1.0 / t16;
-        let t18 = 5.0 * t17;
-        let garm_vy_leg2 = t12 * t18;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
-        let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t32 = c_armcross_leg3 * c_rod_leg3;
-        let t34 = s_armcross_leg3 * c_rod_leg3;
-        let t36 = s_arm_leg3 * t32 - c_arm_leg3 * t34;
-        ::overact::guard::leg(t36, 0.9471622941895192, "leg3")?;
-        let t37 = 1.0 / t36;
-        let t38 = 5.0 * t37;
-        let garm_vx_leg3 = t32 * t38;
-        let minus_garm_vx_leg2 = s_rod_leg2 * t18;
-        let garm_vy_leg3 = s_rod_leg3 * t38;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
+        let t0 = pose[1] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * pose[2];
+        let t8 = pose[0] * pose[0];
+        let t10 = t8 + t2 + t3;
+        let t12 = t10 - 0.2809 + 0.04;
+        let t14 = 0.4 * t1;
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg2")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.20079840636817814, "leg2")?;
+        let minus_s_arm_leg2 = t6 * (t7 * t12 + t14 * t17);
+        let t21 = 0.2 * minus_s_arm_leg2;
+        let t22 = pose[2] - t21;
+        let t23 = 1.0 / t17;
+        let t24 = 2.0 * t23;
+        let garm_vz_leg2 = t22 * t24;
+        let t26 = pose[0] - 0.05;
+        let t27 = t26 + 0.2;
+        let t28 = t27 * t27;
+        let t30 = 0.16 * (t28 + t3);
+        let t31 = pose[1] * pose[1];
+        let t33 = t28 + t31 + t3;
+        let t35 = t33 - 0.2809 + 0.04;
+        let t37 = t30 - t35 * t35;
+        ::overact::guard::reach(t37, "leg3")?;
+        let t38 = ::overact::math::sqrt(t37);
+        ::overact::guard::leg(t38, 0.20079840636817814, "leg3")?;
+        let t39 = 1.0 / t38;
+        let t40 = 2.0 * t39;
+        let garm_vy_leg3 = pose[1] * t40;
+        let c_arm_leg2 = t6 * (t14 * t12 - t7 * t17);
+        let t47 = 0.2 * c_arm_leg2;
+        let t49 = t0 - (0.2 + t47);
+        let garm_vy_leg2 = t49 * t24;
+        let t51 = 1.0 / t30;
+        let t52 = 0.4 * t27;
+        let s_arm_leg3 = t51 * (t52 * t38 - t7 * t35);
+        let t57 = 0.2 * s_arm_leg3;
+        let t58 = pose[2] + t57;
+        let garm_vz_leg3 = t58 * t40;
+        let minus_c_arm_leg3 = t51 * (t52 * t35 + t7 * t38);
+        let t66 = 0.2 * minus_c_arm_leg3;
+        let t68 = t26 - (t66 - 0.2);
+        let garm_vx_leg3 = t68 * t40;
+        let t70 = pose[0] + 0.05;
+        let t71 = t70 - 0.2;
+        let t72 = t71 * t71;
+        let t74 = 0.16 * (t72 + t3);
+        let t75 = 1.0 / t74;
+        let t77 = t72 + t31 + t3;
+        let t79 = t77 - 0.2809 + 0.04;
+        let t81 = 0.4 * t71;
+        let t83 = t74 - t79 * t79;
+        ::overact::guard::reach(t83, "leg1")?;
+        let t84 = ::overact::math::sqrt(t83);
+        ::overact::guard::leg(t84, 0.20079840636817814, "leg1")?;
+        let minus_s_arm_leg1 = t75 * (t7 * t79 + t81 * t84);
+        let t88 = 0.2 * minus_s_arm_leg1;
+        let t89 = pose[2] - t88;
+        let t90 = 1.0 / t84;
+        let t91 = 2.0 * t90;
+        let garm_vz_leg1 = t89 * t91;
+        let garm_vy_leg1 = pose[1] * t91;
+        let t96 = garm_vz_leg1 * garm_vy_leg2 - garm_vy_leg1 * garm_vz_leg2;
+        let garm_vx_leg2 = pose[0] * t24;
+        let c_arm_leg1 = t75 * (t81 * t79 - t7 * t84);
+        let t104 = 0.2 * c_arm_leg1;
+        let t106 = t70 - (0.2 + t104);
+        let garm_vx_leg1 = t106 * t91;
+        let t109 = garm_vz_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vz_leg2;
+        let t114 = garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2;
+        let t116 = garm_vx_leg3 * t96 - garm_vy_leg3 * t109 + garm_vz_leg3 * t114;
+        ::overact::guard::platform(t116, 91.80843988045552, "kept actuators")?;
+        ::overact::guard::platform(t116, 91.80843988045552, "kept actuators")?;
+        ::overact::guard::platform(t116, 91.80843988045552, "kept actuators")?;
+        let t117 = 1.0 / t116;
+        let t118 = (garm_vz_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vz_leg3) * t117;
+        let t124 = pose[1] - 0.05;
+        let t125 = t124 + 0.2;
+        let t126 = t125 * t125;
+        let t128 = 0.16 * (t126 + t3);
+        let t130 = t8 + t126 + t3;
+        let t132 = t130 - 0.2809 + 0.04;
+        let t134 = t128 - t132 * t132;
+        ::overact::guard::reach(t134, "leg4")?;
+        let t135 = ::overact::math::sqrt(t134);
+        ::overact::guard::leg(t135, 0.20079840636817814, "leg4")?;
+        let t136 = 1.0 / t135;
+        let t137 = 2.0 * t136;
+        let garm_vx_leg4 = pose[0] * t137;
+        let t140 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t140, 22.533170865545554, "actuators")?;
+        ::overact::guard::platform(t140, 22.533170865545554, "actuators")?;
+        let t141 = 1.0 / t140;
+        let t142 = 0.4 * t90;
+        let s_rod_leg1 = 1.8867924528301887 * pose[1];
+        let t146 = 1.0 - 3.5599857600569598 * t31;
+        ::overact::guard::reach(t146, "leg1")?;
+        ::overact::guard::reach(t146, "leg3")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t146);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
-        let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let t57 = s_armcross_leg1 * c_rod_leg1;
-        let t59 = c_armcross_leg1 * c_rod_leg1;
-        let t61 = c_arm_leg1 * t57 - s_arm_leg1 * t59;
-        ::overact::guard::leg(t61, 0.9471622941895192, "leg1")?;
-        let t62 = 1.0 / t61;
-        let t63 = 5.0 * t62;
-        let garm_vy_leg1 = s_rod_leg1 * t63;
-        let minus_garm_vz_leg2 = t13 * t18;
-        let minus_garm_vz_leg1 = t57 * t63;
-        let t69 = garm_vy_leg1 * minus_garm_vz_leg2 - minus_garm_vz_leg1 * garm_vy_leg2;
-        let garm_vx_leg1 = t59 * t63;
-        let t74 = minus_garm_vz_leg1 * minus_garm_vx_leg2
-            + garm_vx_leg1 * minus_garm_vz_leg2;
-        let garm_vz_leg3 = t34 * t38;
-        let t80 = garm_vy_leg1 * minus_garm_vx_leg2 + garm_vx_leg1 * garm_vy_leg2;
-        let t82 = garm_vx_leg3 * t69 - garm_vy_leg3 * t74 - garm_vz_leg3 * t80;
-        ::overact::guard::platform(t82, 91.80843988045547, "kept actuators")?;
-        ::overact::guard::platform(t82, 91.80843988045547, "kept actuators")?;
-        ::overact::guard::platform(t82, 91.80843988045547, "kept actuators")?;
-        let t83 = 1.0 / t82;
-        let t84 = (garm_vy_leg2 * garm_vx_leg3 + minus_garm_vx_leg2 * garm_vy_leg3)
-            * t83;
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let (s_cross_leg4, c_cross_leg4) = ::overact::math::sin_cos(joints[10]);
-        let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
-        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        ::overact::guard::leg(c_rod_leg4, 1.0, "leg4")?;
-        let t102 = s_armcross_leg4 * c_rod_leg4;
-        let t103 = c_armcross_leg4 * c_rod_leg4;
-        let t106 = s_arm_leg4 * t103 - c_arm_leg4 * t102;
-        ::overact::guard::leg(t106, 0.9471622941895192, "leg4")?;
-        let t107 = 1.0 / t106;
-        let t108 = 5.0 * t107;
-        let garm_vz_leg4 = t102 * t108;
-        let minus_garm_vx_leg4 = s_rod_leg4 * t108;
-        let t119 = minus_garm_vx_leg2 * minus_garm_vz_leg2
-            - garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg3 * garm_vz_leg3
-            - minus_garm_vx_leg4 * garm_vz_leg4;
-        let t126 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3 + minus_garm_vx_leg4 * minus_garm_vx_leg4;
-        ::overact::guard::platform(t126, 22.53317086554555, "actuators")?;
-        ::overact::guard::platform(t126, 22.53317086554555, "actuators")?;
-        let t127 = 1.0 / t126;
-        let t128 = t119 * t127;
-        let garm_vy_leg4 = t103 * t108;
-        let t145 = garm_vx_leg1 * garm_vy_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
-            + garm_vx_leg3 * garm_vy_leg3 - minus_garm_vx_leg4 * garm_vy_leg4;
-        let t147 = garm_vy_leg3 * garm_vz_leg3
-            - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2)
-            + garm_vy_leg4 * garm_vz_leg4 - t145 * t128;
-        let t155 = t145 * t127;
-        let t157 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t145 * t155;
-        ::overact::guard::platform(t157, 22.533170865545543, "actuators")?;
-        ::overact::guard::platform(t157, 22.533170865545543, "actuators")?;
-        let t158 = 1.0 / t157;
-        let t159 = t147 * t158;
-        let t161 = minus_garm_vz_leg1 * minus_garm_vz_leg1
-            + minus_garm_vz_leg2 * minus_garm_vz_leg2 + garm_vz_leg3 * garm_vz_leg3
-            + garm_vz_leg4 * garm_vz_leg4 - t119 * t128 - t147 * t159;
-        ::overact::guard::platform(t161, 66.4019122371629, "actuators")?;
-        ::overact::guard::platform(t161, 66.4019122371629, "actuators")?;
-        let t162 = 1.0 / t161;
-        let t170 = garm_vx_leg1 * actuator_velocities[0]
-            - minus_garm_vx_leg2 * actuator_velocities[1]
+        let t148 = 0.53 * c_rod_leg1;
+        let s_cross_leg1 = 2.5 * t84 / t148;
+        let t151 = 0.04 + t31;
+        let t153 = 0.2809 * t146;
+        let t155 = 0.212 * c_rod_leg1;
+        let c_cross_leg1 = (t77 - t151 - t153) / t155;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t160 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t142
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t160)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t160));
+        let t176 = 1.0 / t128;
+        let t177 = 0.4 * t125;
+        let minus_c_arm_leg4 = t176 * (t177 * t132 + t7 * t135);
+        let t182 = 0.2 * minus_c_arm_leg4;
+        let t184 = t124 - (t182 - 0.2);
+        let garm_vy_leg4 = t184 * t137;
+        let t194 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3 + garm_vx_leg4 * garm_vy_leg4;
+        let t195 = t194 * t141;
+        let t197 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t194 * t195;
+        ::overact::guard::platform(t197, 22.533170865545554, "actuators")?;
+        ::overact::guard::platform(t197, 22.533170865545554, "actuators")?;
+        let t198 = 1.0 / t197;
+        let t212 = garm_vx_leg1 * actuator_velocities[0]
+            + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2]
-            - minus_garm_vx_leg4 * actuator_velocities[3];
-        let t180 = garm_vy_leg1 * actuator_velocities[0]
+            + garm_vx_leg4 * actuator_velocities[3];
+        let t214 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
             + garm_vy_leg3 * actuator_velocities[2]
-            + garm_vy_leg4 * actuator_velocities[3] - t170 * t155;
-        let t192 = garm_vz_leg3 * actuator_velocities[2]
-            - (minus_garm_vz_leg1 * actuator_velocities[0]
-                + minus_garm_vz_leg2 * actuator_velocities[1])
-            + garm_vz_leg4 * actuator_velocities[3] - t170 * t128 - t159 * t180;
-        let t193 = t162 * t192;
-        let t195 = t158 * t180 - t159 * t193;
-        let t199 = t170 * t127 - t155 * t195 - t128 * t193;
-        let rate_arm_leg3 = garm_vx_leg3 * t199 + garm_vy_leg3 * t195
-            + garm_vz_leg3 * t193;
-        let t205 = rate_arm_leg3 * rate_arm_leg3;
-        let t208 = 1.0 / c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.8867924528301887 * t208;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t195;
-        let t211 = s_armcross_leg3 * minus_rate_rod_leg3;
-        let t213 = 1.8867924528301887 * t37;
-        let minus_gcross_vx_leg3 = c_arm_leg3 * t213;
-        let minus_gcross_vy_leg3 = t213
-            * (s_arm_leg3 * (s_armcross_leg3 * s_rod_leg3 * t208)
-                + c_arm_leg3 * (c_armcross_leg3 * s_rod_leg3 * t208));
-        let minus_gcross_vz_leg3 = s_arm_leg3 * t213;
-        let minus_rate_cross_leg3 = minus_gcross_vx_leg3 * t199
-            + minus_gcross_vy_leg3 * t195 + minus_gcross_vz_leg3 * t193;
-        let t229 = minus_rate_cross_leg3 * minus_rate_cross_leg3;
-        let t231 = c_armcross_leg3 * minus_rate_rod_leg3;
-        let t233 = t211 * t211 + t229 + t231 * t231;
-        let t236 = 0.53 * s_rod_leg3;
-        let t238 = t236 * (minus_rate_cross_leg3 * t211);
-        let t240 = 0.2 * c_arm_leg3 * t205 + 0.53 * t32 * t233 - t238 - t238;
-        let t243 = t236 * minus_rate_cross_leg3;
-        let t245 = t236 * t233 - minus_rate_cross_leg3 * t243;
-        let t254 = t236 * (minus_rate_cross_leg3 * t231);
-        let t256 = 0.2 * s_arm_leg3 * t205 + 0.53 * t34 * t233 + t254 + t254;
-        let minus_rate_dot_arm_leg3 = garm_vx_leg3 * t240 + garm_vy_leg3 * t245
-            + garm_vz_leg3 * t256;
-        let t259 = actuator_accelerations[2] + minus_rate_dot_arm_leg3;
-        let rate_arm_leg1 = garm_vx_leg1 * t199 + garm_vy_leg1 * t195
-            - minus_garm_vz_leg1 * t193;
-        let t267 = rate_arm_leg1 * rate_arm_leg1;
-        let t270 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.8867924528301887 * t270;
-        let rate_rod_leg1 = grod_vy_leg1 * t195;
-        let t273 = s_armcross_leg1 * rate_rod_leg1;
-        let t275 = 1.8867924528301887 * t62;
-        let gcross_vz_leg1 = s_arm_leg1 * t275;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t275;
-        let minus_gcross_vy_leg1 = t275
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t270)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t270));
-        let rate_cross_leg1 = gcross_vz_leg1 * t193
-            - (minus_gcross_vx_leg1 * t199 + minus_gcross_vy_leg1 * t195);
-        let t291 = rate_cross_leg1 * rate_cross_leg1;
-        let t293 = c_armcross_leg1 * rate_rod_leg1;
-        let t295 = t273 * t273 + t291 + t293 * t293;
-        let t298 = 0.53 * s_rod_leg1;
-        let t300 = t298 * (rate_cross_leg1 * t293);
-        let t302 = 0.2 * s_arm_leg1 * t267 + 0.53 * t57 * t295 + t300 + t300;
-        let t305 = t298 * (rate_cross_leg1 * t273);
-        let t312 = t305 - (0.2 * c_arm_leg1 * t267 + 0.53 * t59 * t295) + t305;
-        let t314 = t298 * rate_cross_leg1;
-        let t317 = rate_cross_leg1 * t314 - t298 * t295;
-        let rate_dot_arm_leg1 = minus_garm_vz_leg1 * t302
-            - (garm_vx_leg1 * t312 + garm_vy_leg1 * t317);
-        let t321 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t323 = 0.53 * s_rod_leg2;
-        let t324 = 1.8867924528301887 * t17;
-        let t326 = 1.0 / c_rod_leg2;
-        let gcross_vx_leg2 = t324
-            * (s_arm_leg2 * (s_armcross_leg2 * s_rod_leg2 * t326)
-                + c_arm_leg2 * (c_armcross_leg2 * s_rod_leg2 * t326));
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t324;
-        let gcross_vz_leg2 = s_arm_leg2 * t324;
-        let rate_cross_leg2 = gcross_vx_leg2 * t199 - minus_gcross_vy_leg2 * t195
-            + gcross_vz_leg2 * t193;
-        let t341 = rate_cross_leg2 * rate_cross_leg2;
-        let minus_grod_vx_leg2 = 1.8867924528301887 * t326;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t199;
-        let t344 = s_armcross_leg2 * minus_rate_rod_leg2;
-        let t347 = c_armcross_leg2 * minus_rate_rod_leg2;
-        let t349 = t341 + t344 * t344 + t347 * t347;
-        let t351 = t323 * rate_cross_leg2;
-        let t353 = t323 * t349 - rate_cross_leg2 * t351;
-        let rate_arm_leg2 = garm_vy_leg2 * t195 - minus_garm_vx_leg2 * t199
-            - minus_garm_vz_leg2 * t193;
-        let t361 = rate_arm_leg2 * rate_arm_leg2;
-        let t367 = t323 * (rate_cross_leg2 * t344);
-        let t369 = 0.2 * c_arm_leg2 * t361 + 0.53 * t12 * t349 + t367 + t367;
-        let t378 = t323 * (rate_cross_leg2 * t347);
-        let t380 = 0.2 * s_arm_leg2 * t361 + 0.53 * t13 * t349 - t378 - t378;
-        let rate_dot_arm_leg2 = minus_garm_vx_leg2 * t353 + garm_vy_leg2 * t369
-            + minus_garm_vz_leg2 * t380;
-        let t383 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t387 = 1.8867924528301887 * t107;
-        let t389 = 1.0 / c_rod_leg4;
-        let gcross_vx_leg4 = t387
-            * (s_arm_leg4 * (s_armcross_leg4 * s_rod_leg4 * t389)
-                + c_arm_leg4 * (c_armcross_leg4 * s_rod_leg4 * t389));
-        let minus_gcross_vy_leg4 = c_arm_leg4 * t387;
-        let minus_gcross_vz_leg4 = s_arm_leg4 * t387;
-        let rate_cross_leg4 = gcross_vx_leg4 * t199 - minus_gcross_vy_leg4 * t195
-            - minus_gcross_vz_leg4 * t193;
-        let t404 = 0.53 * s_rod_leg4;
-        let t405 = t404 * rate_cross_leg4;
-        let t407 = rate_cross_leg4 * rate_cross_leg4;
-        let grod_vx_leg4 = 1.8867924528301887 * t389;
-        let rate_rod_leg4 = grod_vx_leg4 * t199;
-        let t410 = s_armcross_leg4 * rate_rod_leg4;
-        let t413 = c_armcross_leg4 * rate_rod_leg4;
-        let t415 = t407 + t410 * t410 + t413 * t413;
-        let t417 = rate_cross_leg4 * t405 - t404 * t415;
-        let rate_arm_leg4 = garm_vy_leg4 * t195 - minus_garm_vx_leg4 * t199
-            + garm_vz_leg4 * t193;
-        let t425 = rate_arm_leg4 * rate_arm_leg4;
-        let t431 = t404 * (rate_cross_leg4 * t410);
-        let t433 = 0.2 * c_arm_leg4 * t425 + 0.53 * t103 * t415 - t431 - t431;
-        let t442 = t404 * (rate_cross_leg4 * t413);
-        let t444 = 0.2 * s_arm_leg4 * t425 + 0.53 * t102 * t415 + t442 + t442;
-        let rate_dot_arm_leg4 = minus_garm_vx_leg4 * t417 - garm_vy_leg4 * t433
-            - garm_vz_leg4 * t444;
-        let t447 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t456 = garm_vx_leg1 * t321 - minus_garm_vx_leg2 * t383 + garm_vx_leg3 * t259
-            - minus_garm_vx_leg4 * t447;
-        let t467 = garm_vy_leg1 * t321 + garm_vy_leg2 * t383 + garm_vy_leg3 * t259
-            + garm_vy_leg4 * t447 - t155 * t456;
-        let t469 = garm_vz_leg3 * t259
-            - (minus_garm_vz_leg1 * t321 + minus_garm_vz_leg2 * t383)
-            + garm_vz_leg4 * t447 - t128 * t456 - t159 * t467;
-        let t470 = t162 * t469;
-        let t471 = t470 + 9.81;
-        let t476 = (minus_garm_vz_leg2 * garm_vy_leg3 + garm_vy_leg2 * garm_vz_leg3)
-            * t83;
-        let t480 = t158 * t467 - t159 * t470;
-        let t484 = t127 * t456 - t155 * t480 - t128 * t470;
-        let t489 = (minus_garm_vx_leg2 * garm_vz_leg3
-            - minus_garm_vz_leg2 * garm_vx_leg3) * t83;
-        let t496 = (minus_garm_vz_leg1 * garm_vy_leg3 + garm_vy_leg1 * garm_vz_leg3)
-            * t83;
-        let t501 = (minus_garm_vz_leg1 * garm_vx_leg3 + garm_vx_leg1 * garm_vz_leg3)
-            * t83;
-        let t507 = (garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3) * t83;
-        let t510 = t69 * t83;
-        let t512 = t74 * t83;
-        let t515 = t80 * t83;
-        let t518 = t484 - t312;
-        let t520 = t480 - t317;
-        let t523 = t470 - t302;
-        let rate_dot_arm_leg1_2 = garm_vx_leg1 * t518 + garm_vy_leg1 * t520
-            - minus_garm_vz_leg1 * t523;
-        let t526 = t480 + t369;
-        let t528 = t484 - t353;
-        let t531 = t470 - t380;
-        let rate_dot_arm_leg2_2 = garm_vy_leg2 * t526 - minus_garm_vx_leg2 * t528
-            - minus_garm_vz_leg2 * t531;
-        let t534 = t484 - t240;
-        let t536 = t480 - t245;
-        let t539 = t470 - t256;
-        let rate_dot_arm_leg3 = garm_vx_leg3 * t534 + garm_vy_leg3 * t536
-            + garm_vz_leg3 * t539;
-        let t546 = minus_garm_vx_leg4 * t476 - garm_vy_leg4 * t489 + garm_vz_leg4 * t84;
-        let t547 = t480 - t433;
-        let t549 = t484 - t417;
-        let t552 = t470 - t444;
-        let rate_dot_arm_leg4_2 = garm_vy_leg4 * t547 - minus_garm_vx_leg4 * t549
-            + garm_vz_leg4 * t552;
-        let t560 = minus_garm_vx_leg4 * t496 + garm_vy_leg4 * t501 + garm_vz_leg4 * t507;
-        let t566 = minus_garm_vx_leg4 * t510 + garm_vy_leg4 * t512 + garm_vz_leg4 * t515;
-        let t568 = 9.81 * c_arm_leg1;
-        let t569 = 9.81 * c_arm_leg2;
-        let t570 = 9.81 * c_arm_leg3;
-        let t571 = 9.81 * c_arm_leg4;
-        let t575 = 9.81 * s_arm_leg1;
-        let t576 = 9.81 * s_arm_leg2;
-        let t577 = 9.81 * s_arm_leg3;
-        let t578 = 9.81 * s_arm_leg4;
-        let t595 = minus_gcross_vx_leg1 * t476 + minus_gcross_vy_leg1 * t489
-            + gcross_vz_leg1 * t84;
-        let rate_dot_cross_leg1 = gcross_vz_leg1 * t523
-            - (minus_gcross_vx_leg1 * t518 + minus_gcross_vy_leg1 * t520);
-        let t601 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t602 = c_rod_leg1 * rate_cross_leg1;
-        let t603 = rate_rod_leg1 * t602;
-        let t604 = t601 + t603;
-        let t606 = 1.8867924528301887 * t314;
-        let t607 = rate_rod_leg1 * t606;
-        let t608 = c_rod_leg1 * t607;
-        let t609 = s_rod_leg1 * t604 + t608;
-        let t611 = grod_vy_leg1 * t489;
-        let t612 = t606 * t602;
-        let t613 = t611 * t612;
-        let t619 = minus_gcross_vy_leg1 * t501 - minus_gcross_vx_leg1 * t496
-            - gcross_vz_leg1 * t507;
-        let t621 = grod_vy_leg1 * t501;
-        let t622 = t621 * t612;
-        let t628 = minus_gcross_vy_leg1 * t512 - minus_gcross_vx_leg1 * t510
-            - gcross_vz_leg1 * t515;
-        let t630 = grod_vy_leg1 * t512;
-        let t631 = t630 * t612;
-        let t637 = minus_gcross_vy_leg2 * t489 - gcross_vx_leg2 * t476
-            + gcross_vz_leg2 * t84;
-        let rate_dot_cross_leg2 = gcross_vx_leg2 * t528 - minus_gcross_vy_leg2 * t526
-            + gcross_vz_leg2 * t531;
-        let t643 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t644 = c_rod_leg2 * rate_cross_leg2;
-        let t645 = minus_rate_rod_leg2 * t644;
-        let t646 = t643 - t645;
-        let t648 = 1.8867924528301887 * t351;
-        let t649 = minus_rate_rod_leg2 * t648;
-        let t650 = c_rod_leg2 * t649;
-        let t651 = s_rod_leg2 * t646 - t650;
-        let t653 = minus_grod_vx_leg2 * t476;
-        let t654 = t648 * t644;
-        let t655 = t653 * t654;
-        let t661 = gcross_vx_leg2 * t496 + minus_gcross_vy_leg2 * t501
-            - gcross_vz_leg2 * t507;
-        let t663 = minus_grod_vx_leg2 * t496;
-        let t664 = t663 * t654;
-        let t670 = gcross_vx_leg2 * t510 + minus_gcross_vy_leg2 * t512
-            - gcross_vz_leg2 * t515;
-        let t672 = minus_grod_vx_leg2 * t510;
-        let t673 = t672 * t654;
-        let t679 = minus_gcross_vx_leg3 * t476 + minus_gcross_vy_leg3 * t489
-            - minus_gcross_vz_leg3 * t84;
-        let t680 = c_rod_leg3 * minus_rate_cross_leg3;
-        let t681 = minus_rate_rod_leg3 * t680;
-        let minus_rate_dot_cross_leg3 = minus_gcross_vx_leg3 * t534
-            + minus_gcross_vy_leg3 * t536 + minus_gcross_vz_leg3 * t539;
-        let t687 = s_rod_leg3 * minus_rate_dot_cross_leg3;
-        let t688 = t681 - t687;
-        let t690 = 1.8867924528301887 * t243;
-        let t691 = minus_rate_rod_leg3 * t690;
-        let t692 = c_rod_leg3 * t691;
-        let t693 = s_rod_leg3 * t688 + t692;
-        let t695 = minus_grod_vy_leg3 * t489;
-        let t696 = t690 * t680;
-        let t697 = t695 * t696;
-        let t703 = minus_gcross_vy_leg3 * t501 - minus_gcross_vx_leg3 * t496
-            + minus_gcross_vz_leg3 * t507;
-        let t705 = minus_grod_vy_leg3 * t501;
-        let t706 = t705 * t696;
-        let t712 = minus_gcross_vy_leg3 * t512 - minus_gcross_vx_leg3 * t510
-            + minus_gcross_vz_leg3 * t515;
-        let t714 = minus_grod_vy_leg3 * t512;
-        let t715 = t714 * t696;
-        let t721 = minus_gcross_vy_leg4 * t489 - gcross_vx_leg4 * t476
-            - minus_gcross_vz_leg4 * t84;
-        let rate_dot_cross_leg4 = gcross_vx_leg4 * t549 - minus_gcross_vy_leg4 * t547
-            - minus_gcross_vz_leg4 * t552;
-        let t727 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t728 = c_rod_leg4 * rate_cross_leg4;
-        let t729 = rate_rod_leg4 * t728;
-        let t730 = t727 + t729;
-        let t732 = 1.8867924528301887 * t405;
-        let t733 = rate_rod_leg4 * t732;
-        let t734 = c_rod_leg4 * t733;
-        let t735 = s_rod_leg4 * t730 + t734;
-        let t737 = grod_vx_leg4 * t476;
-        let t738 = t732 * t728;
-        let t739 = t737 * t738;
-        let t745 = gcross_vx_leg4 * t496 + minus_gcross_vy_leg4 * t501
-            + minus_gcross_vz_leg4 * t507;
-        let t747 = grod_vx_leg4 * t496;
-        let t748 = t747 * t738;
-        let t754 = gcross_vx_leg4 * t510 + minus_gcross_vy_leg4 * t512
-            + minus_gcross_vz_leg4 * t515;
-        let t756 = grod_vx_leg4 * t510;
-        let t757 = t756 * t738;
-        let t759 = t603 + t604;
-        let t761 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t762 = t761 - t607;
-        let t765 = c_rod_leg1 * t759 - s_rod_leg1 * (t607 - t762);
-        let t768 = 3.5599857600569598 * (t314 * t314);
-        let t770 = t768 - t602 * t602;
-        let t779 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t780 = t779 + t649;
-        let t783 = t646 - t645;
-        let t785 = s_rod_leg2 * (t649 + t780) + c_rod_leg2 * t783;
-        let t788 = 3.5599857600569598 * (t351 * t351);
-        let t790 = t788 - t644 * t644;
-        let t799 = t681 + t688;
-        let t801 = c_rod_leg3 * minus_rate_dot_cross_leg3;
-        let t802 = t801 + t691;
-        let t805 = c_rod_leg3 * t799 - s_rod_leg3 * (t691 + t802);
-        let t808 = 3.5599857600569598 * (t243 * t243);
-        let t810 = t808 - t680 * t680;
-        let t819 = t729 + t730;
-        let t821 = c_rod_leg4 * rate_dot_cross_leg4;
-        let t822 = t821 - t733;
-        let t825 = c_rod_leg4 * t819 - s_rod_leg4 * (t733 - t822);
-        let t828 = 3.5599857600569598 * (t405 * t405);
-        let t830 = t828 - t728 * t728;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t520;
-        let t842 = rate_rod_leg1 * rate_rod_leg1;
-        let t845 = s_rod_leg1 * (t612 + rate_dot_rod_leg1) + c_rod_leg1 * (t842 - t768);
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t528;
-        let t858 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t861 = s_rod_leg2 * (t654 - minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t858 - t788);
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t536;
-        let t874 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t877 = s_rod_leg3 * (t696 - minus_rate_dot_rod_leg3)
-            + c_rod_leg3 * (t874 - t808);
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t549;
-        let t890 = rate_rod_leg4 * rate_rod_leg4;
-        let t893 = s_rod_leg4 * (t738 + rate_dot_rod_leg4) + c_rod_leg4 * (t890 - t828);
-        let t904 = c_rod_leg1 * t762 - t608;
-        let t912 = t650 + c_rod_leg2 * t780;
-        let t920 = t692 + c_rod_leg3 * t802;
-        let t928 = c_rod_leg4 * t822 - t734;
-        let t935 = 1.8867924528301887 * t480;
-        let t946 = 1.8867924528301887 * t484;
-        let t979 = 0.2 * t61;
-        let t983 = s_rod_leg1 * (0.2 * s_cross_leg1);
-        let t987 = 0.2 * c_cross_leg1;
-        let t991 = t575 + 0.2 * t267;
-        let t994 = 0.2 * rate_dot_arm_leg1_2 - t568;
-        let t997 = s_rod_leg1 * (s_cross_leg1 * t991 + c_cross_leg1 * t994);
-        let t1002 = s_cross_leg1 * t994 - c_cross_leg1 * t991;
-        let t1003 = c_rod_leg1 * t1002;
-        let t1005 = t979 * (t612 - rate_dot_rod_leg1) + t983 * (t768 + t842)
-            - t987 * t759 - t595 * t997 + t611 * t1003;
-        let t1013 = t576 + 0.2 * t361;
-        let t1016 = 0.2 * rate_dot_arm_leg2_2 - t569;
-        let t1019 = s_rod_leg2 * (s_cross_leg2 * t1013 + c_cross_leg2 * t1016);
-        let t1023 = s_cross_leg2 * t1016 - c_cross_leg2 * t1013;
-        let t1024 = c_rod_leg2 * t1023;
-        let t1027 = 0.2 * t16;
-        let t1031 = s_rod_leg2 * (0.2 * s_cross_leg2);
-        let t1035 = 0.2 * c_cross_leg2;
-        let t1041 = t1027 * (t654 + minus_rate_dot_rod_leg2) + t1031 * (t788 + t858)
-            - t1035 * t783 - t661 * t1019 + t663 * t1024;
-        let t1046 = t577 + 0.2 * t205;
-        let t1049 = 0.2 * rate_dot_arm_leg3 - t570;
-        let t1052 = s_rod_leg3 * (s_cross_leg3 * t1046 + c_cross_leg3 * t1049);
-        let t1056 = s_cross_leg3 * t1049 - c_cross_leg3 * t1046;
-        let t1057 = c_rod_leg3 * t1056;
-        let t1064 = s_rod_leg3 * (0.2 * s_cross_leg3);
-        let t1067 = 0.2 * t36;
-        let t1071 = 0.2 * c_cross_leg3;
-        let t1077 = t1064 * (t808 + t874) - t1067 * (t696 + minus_rate_dot_rod_leg3)
-            - t1071 * t799 - t712 * t1052 - t714 * t1057;
-        let t1079 = s_rod_leg4 * (0.2 * s_cross_leg4);
-        let t1082 = 0.2 * t106;
-        let t1086 = 0.2 * c_cross_leg4;
-        let t1088 = t1079 * (t828 + t890) - t1082 * (t738 - rate_dot_rod_leg4)
-            - t1086 * t819;
-        let t1091 = t578 + 0.2 * t425;
-        let t1094 = 0.2 * rate_dot_arm_leg4_2 - t571;
-        let t1097 = s_rod_leg4 * (s_cross_leg4 * t1091 + c_cross_leg4 * t1094);
-        let t1102 = s_cross_leg4 * t1094 - c_cross_leg4 * t1091;
-        let t1103 = c_rod_leg4 * t1102;
-        let t1147 = t1079 * t727 - t1082 * t821 + t407 * t1086;
+            + garm_vy_leg4 * actuator_velocities[3] - t212 * t195;
+        let s_arm_leg4 = t176 * (t177 * t135 - t7 * t132);
+        let t225 = 0.2 * s_arm_leg4;
+        let t226 = pose[2] + t225;
+        let garm_vz_leg4 = t226 * t137;
+        let t236 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3 + garm_vx_leg4 * garm_vz_leg4;
+        let t237 = t236 * t141;
+        let t239 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 + garm_vy_leg4 * garm_vz_leg4 - t194 * t237;
+        let t240 = t239 * t198;
+        let t251 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 + garm_vz_leg4 * garm_vz_leg4 - t236 * t237
+            - t239 * t240;
+        ::overact::guard::platform(t251, 66.40191223716288, "actuators")?;
+        ::overact::guard::platform(t251, 66.40191223716288, "actuators")?;
+        let t252 = 1.0 / t251;
+        let t263 = garm_vz_leg1 * actuator_velocities[0]
+            + garm_vz_leg2 * actuator_velocities[1]
+            + garm_vz_leg3 * actuator_velocities[2]
+            + garm_vz_leg4 * actuator_velocities[3] - t212 * t237 - t240 * t214;
+        let t264 = t252 * t263;
+        let t266 = t198 * t214 - t240 * t264;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t142;
+        let t273 = t212 * t141 - t195 * t266 - t237 * t264;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t142;
+        let rate_cross_leg1 = gcross_vy_leg1 * t266 - minus_gcross_vx_leg1 * t273
+            - minus_gcross_vz_leg1 * t264;
+        let grod_vy_leg1 = 1.8867924528301887 * t160;
+        let rate_rod_leg1 = grod_vy_leg1 * t266;
+        let t281 = s_armcross_leg1 * rate_rod_leg1;
+        let t283 = pose[1] * (rate_cross_leg1 * t281);
+        let rate_arm_leg1 = garm_vx_leg1 * t273 + garm_vy_leg1 * t266
+            + garm_vz_leg1 * t264;
+        let t289 = rate_arm_leg1 * rate_arm_leg1;
+        let t292 = rate_cross_leg1 * rate_cross_leg1;
+        let t294 = c_armcross_leg1 * rate_rod_leg1;
+        let t296 = t281 * t281 + t292 + t294 * t294;
+        let t300 = t283 - (t104 * t289 + t106 * t296) + t283;
+        let t302 = pose[1] * rate_cross_leg1;
+        let t305 = rate_cross_leg1 * t302 - pose[1] * t296;
+        let t309 = pose[1] * (rate_cross_leg1 * t294);
+        let t314 = t309 - (t88 * t289 + t89 * t296) + t309;
+        let minus_rate_dot_arm_leg1 = garm_vx_leg1 * t300 + garm_vy_leg1 * t305
+            + garm_vz_leg1 * t314;
+        let t317 = actuator_accelerations[0] + minus_rate_dot_arm_leg1;
+        let t319 = 0.4 * t23;
+        let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
+        let t323 = 1.0 - 3.5599857600569598 * t8;
+        ::overact::guard::reach(t323, "leg2")?;
+        ::overact::guard::reach(t323, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t323);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t325 = 0.53 * c_rod_leg2;
+        let s_cross_leg2 = 2.5 * t17 / t325;
+        let t328 = 0.04 + t8;
+        let t330 = 0.2809 * t323;
+        let t332 = 0.212 * c_rod_leg2;
+        let c_cross_leg2 = (t10 - t328 - t330) / t332;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t337 = 1.0 / c_rod_leg2;
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let gcross_vx_leg2 = t319
+            * (minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t337)
+                - c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t337));
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t319;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t319;
+        let rate_cross_leg2 = gcross_vx_leg2 * t273 - minus_gcross_vy_leg2 * t266
+            - minus_gcross_vz_leg2 * t264;
+        let t355 = pose[0] * rate_cross_leg2;
+        let t357 = rate_cross_leg2 * rate_cross_leg2;
+        let minus_grod_vx_leg2 = 1.8867924528301887 * t337;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t273;
+        let t360 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t363 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t365 = t357 + t360 * t360 + t363 * t363;
+        let t367 = rate_cross_leg2 * t355 - pose[0] * t365;
+        let t370 = pose[0] * (rate_cross_leg2 * t360);
+        let rate_arm_leg2 = garm_vx_leg2 * t273 + garm_vy_leg2 * t266
+            + garm_vz_leg2 * t264;
+        let t376 = rate_arm_leg2 * rate_arm_leg2;
+        let t381 = t370 - (t47 * t376 + t49 * t365) + t370;
+        let t385 = pose[0] * (rate_cross_leg2 * t363);
+        let t390 = t385 - (t21 * t376 + t22 * t365) + t385;
+        let minus_rate_dot_arm_leg2 = garm_vx_leg2 * t367 + garm_vy_leg2 * t381
+            + garm_vz_leg2 * t390;
+        let t393 = actuator_accelerations[1] + minus_rate_dot_arm_leg2;
+        let rate_arm_leg3 = garm_vx_leg3 * t273 + garm_vy_leg3 * t266
+            + garm_vz_leg3 * t264;
+        let t401 = rate_arm_leg3 * rate_arm_leg3;
+        let c_cross_leg3 = (t33 - t151 - t153) / t155;
+        let s_cross_leg3 = 2.5 * t38 / t148;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t411 = s_armcross_leg3 * rate_rod_leg1;
+        let t413 = 0.4 * t39;
+        let gcross_vz_leg3 = s_arm_leg3 * t413;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t413;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t413
+            * (s_arm_leg3 * (t160 * (s_rod_leg1 * s_armcross_leg3))
+                + minus_c_arm_leg3 * (t160 * (s_rod_leg1 * minus_c_armcross_leg3)));
+        let rate_cross_leg3 = gcross_vz_leg3 * t264
+            - (minus_gcross_vx_leg3 * t273 + minus_gcross_vy_leg3 * t266);
+        let t432 = rate_cross_leg3 * rate_cross_leg3;
+        let t434 = minus_c_armcross_leg3 * rate_rod_leg1;
+        let t436 = t411 * t411 + t432 + t434 * t434;
+        let t440 = pose[1] * (rate_cross_leg3 * t411);
+        let t442 = t66 * t401 + t68 * t436 + t440 + t440;
+        let t450 = pose[1] * (rate_cross_leg3 * t434);
+        let t452 = t57 * t401 - t58 * t436 - t450 - t450;
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t442 - garm_vy_leg3 * t305
+            - garm_vz_leg3 * t452;
+        let t455 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let rate_arm_leg4 = garm_vx_leg4 * t273 + garm_vy_leg4 * t266
+            + garm_vz_leg4 * t264;
+        let t463 = rate_arm_leg4 * rate_arm_leg4;
+        let t465 = 0.4 * t136;
+        let gcross_vz_leg4 = s_arm_leg4 * t465;
+        let c_cross_leg4 = (t130 - t328 - t330) / t332;
+        let s_cross_leg4 = 2.5 * t135 / t325;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t465
+            * (s_arm_leg4 * (t337 * (minus_s_rod_leg2 * s_armcross_leg4))
+                + minus_c_arm_leg4
+                    * (t337 * (minus_s_rod_leg2 * minus_c_armcross_leg4)));
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t465;
+        let rate_cross_leg4 = gcross_vz_leg4 * t264
+            - (minus_gcross_vx_leg4 * t273 + minus_gcross_vy_leg4 * t266);
+        let t492 = rate_cross_leg4 * rate_cross_leg4;
+        let t493 = s_armcross_leg4 * minus_rate_rod_leg2;
+        let t496 = minus_c_armcross_leg4 * minus_rate_rod_leg2;
+        let t498 = t492 + t493 * t493 + t496 * t496;
+        let t502 = pose[0] * (rate_cross_leg4 * t493);
+        let t504 = t182 * t463 + t184 * t498 + t502 + t502;
+        let t512 = pose[0] * (rate_cross_leg4 * t496);
+        let t514 = t225 * t463 - t226 * t498 - t512 - t512;
+        let rate_dot_arm_leg4 = garm_vy_leg4 * t504 - garm_vx_leg4 * t367
+            - garm_vz_leg4 * t514;
+        let t517 = actuator_accelerations[3] - rate_dot_arm_leg4;
+        let t519 = garm_vx_leg1 * t317 + garm_vx_leg2 * t393 + garm_vx_leg3 * t455
+            + garm_vx_leg4 * t517;
+        let t529 = garm_vy_leg1 * t317 + garm_vy_leg2 * t393 + garm_vy_leg3 * t455
+            + garm_vy_leg4 * t517 - t195 * t519;
+        let t541 = garm_vz_leg1 * t317 + garm_vz_leg2 * t393 + garm_vz_leg3 * t455
+            + garm_vz_leg4 * t517 - t237 * t519 - t240 * t529;
+        let t542 = t252 * t541;
+        let t544 = t198 * t529 - t240 * t542;
+        let t548 = t141 * t519 - t195 * t544 - t237 * t542;
+        let t553 = (garm_vz_leg2 * garm_vx_leg3 - garm_vx_leg2 * garm_vz_leg3) * t117;
+        let t559 = (garm_vy_leg2 * garm_vx_leg3 - garm_vx_leg2 * garm_vy_leg3) * t117;
+        let t560 = t542 + 9.81;
+        let t566 = (garm_vz_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vz_leg3) * t117;
+        let t571 = (garm_vz_leg1 * garm_vy_leg3 - garm_vy_leg1 * garm_vz_leg3) * t117;
+        let t577 = (garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3) * t117;
+        let t580 = t96 * t117;
+        let t582 = t109 * t117;
+        let t585 = t114 * t117;
+        let t588 = t548 - t300;
+        let t590 = t544 - t305;
+        let t593 = t542 - t314;
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t588 + garm_vy_leg1 * t590
+            + garm_vz_leg1 * t593;
+        let t596 = t548 - t367;
+        let t598 = t544 - t381;
+        let t601 = t542 - t390;
+        let rate_dot_arm_leg2 = garm_vx_leg2 * t596 + garm_vy_leg2 * t598
+            + garm_vz_leg2 * t601;
+        let t604 = t548 + t442;
+        let t608 = t542 - t452;
+        let rate_dot_arm_leg3_2 = garm_vx_leg3 * t604 + garm_vy_leg3 * t590
+            + garm_vz_leg3 * t608;
+        let t615 = garm_vx_leg4 * t118 - garm_vy_leg4 * t553 + garm_vz_leg4 * t559;
+        let t617 = t544 + t504;
+        let t620 = t542 - t514;
+        let rate_dot_arm_leg4_2 = garm_vx_leg4 * t596 + garm_vy_leg4 * t617
+            + garm_vz_leg4 * t620;
+        let t628 = garm_vy_leg4 * t566 - garm_vx_leg4 * t571 - garm_vz_leg4 * t577;
+        let t634 = garm_vx_leg4 * t580 - garm_vy_leg4 * t582 + garm_vz_leg4 * t585;
+        let t636 = 9.81 * c_arm_leg1;
+        let t637 = 9.81 * c_arm_leg2;
+        let t638 = 9.81 * minus_c_arm_leg3;
+        let t639 = 9.81 * minus_c_arm_leg4;
+        let t643 = 9.81 * minus_s_arm_leg1;
+        let t644 = 9.81 * minus_s_arm_leg2;
+        let t645 = 9.81 * s_arm_leg3;
+        let t646 = 9.81 * s_arm_leg4;
+        let t659 = grod_vy_leg1 * t553;
+        let t660 = 1.8867924528301887 * t302;
+        let t661 = c_rod_leg1 * rate_cross_leg1;
+        let t662 = t660 * t661;
+        let t663 = t659 * t662;
+        let t668 = minus_gcross_vx_leg1 * t118 + gcross_vy_leg1 * t553
+            + minus_gcross_vz_leg1 * t559;
+        let rate_dot_cross_leg1 = gcross_vy_leg1 * t590 - minus_gcross_vx_leg1 * t588
+            - minus_gcross_vz_leg1 * t593;
+        let t674 = s_rod_leg1 * rate_dot_cross_leg1;
+        let t675 = rate_rod_leg1 * t661;
+        let t676 = t674 + t675;
+        let t678 = rate_rod_leg1 * t660;
+        let t679 = c_rod_leg1 * t678;
+        let t680 = s_rod_leg1 * t676 + t679;
+        let t687 = minus_gcross_vx_leg1 * t571 + gcross_vy_leg1 * t566
+            + minus_gcross_vz_leg1 * t577;
+        let t689 = grod_vy_leg1 * t566;
+        let t690 = t689 * t662;
+        let t692 = grod_vy_leg1 * t582;
+        let t693 = t692 * t662;
+        let t698 = minus_gcross_vx_leg1 * t580 + gcross_vy_leg1 * t582
+            + minus_gcross_vz_leg1 * t585;
+        let t705 = gcross_vx_leg2 * t118 + minus_gcross_vy_leg2 * t553
+            - minus_gcross_vz_leg2 * t559;
+        let rate_dot_cross_leg2 = gcross_vx_leg2 * t596 - minus_gcross_vy_leg2 * t598
+            - minus_gcross_vz_leg2 * t601;
+        let t711 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t712 = c_rod_leg2 * rate_cross_leg2;
+        let t713 = minus_rate_rod_leg2 * t712;
+        let t714 = t711 + t713;
+        let t716 = 1.8867924528301887 * t355;
+        let t717 = minus_rate_rod_leg2 * t716;
+        let t718 = c_rod_leg2 * t717;
+        let t719 = minus_s_rod_leg2 * t714 + t718;
+        let t721 = minus_grod_vx_leg2 * t118;
+        let t722 = t716 * t712;
+        let t723 = t721 * t722;
+        let t729 = minus_gcross_vz_leg2 * t577
+            - (gcross_vx_leg2 * t571 + minus_gcross_vy_leg2 * t566);
+        let t731 = minus_grod_vx_leg2 * t571;
+        let t732 = t731 * t722;
+        let t738 = gcross_vx_leg2 * t580 + minus_gcross_vy_leg2 * t582
+            - minus_gcross_vz_leg2 * t585;
+        let t740 = minus_grod_vx_leg2 * t580;
+        let t741 = t740 * t722;
+        let t747 = minus_gcross_vy_leg3 * t553 - minus_gcross_vx_leg3 * t118
+            + gcross_vz_leg3 * t559;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * t608
+            - (minus_gcross_vx_leg3 * t604 + minus_gcross_vy_leg3 * t590);
+        let t753 = s_rod_leg1 * rate_dot_cross_leg3;
+        let t754 = c_rod_leg1 * rate_cross_leg3;
+        let t755 = rate_rod_leg1 * t754;
+        let t756 = t753 + t755;
+        let t758 = pose[1] * rate_cross_leg3;
+        let t759 = 1.8867924528301887 * t758;
+        let t760 = rate_rod_leg1 * t759;
+        let t761 = c_rod_leg1 * t760;
+        let t762 = s_rod_leg1 * t756 + t761;
+        let t764 = t759 * t754;
+        let t765 = t659 * t764;
+        let t768 = t689 * t764;
+        let t774 = minus_gcross_vy_leg3 * t582 - minus_gcross_vx_leg3 * t580
+            + gcross_vz_leg3 * t585;
+        let t776 = t692 * t764;
+        let t782 = minus_gcross_vy_leg4 * t553 - minus_gcross_vx_leg4 * t118
+            + gcross_vz_leg4 * t559;
+        let rate_dot_cross_leg4 = gcross_vz_leg4 * t620
+            - (minus_gcross_vx_leg4 * t596 + minus_gcross_vy_leg4 * t617);
+        let t788 = minus_s_rod_leg2 * rate_dot_cross_leg4;
+        let t789 = c_rod_leg2 * rate_cross_leg4;
+        let t790 = minus_rate_rod_leg2 * t789;
+        let t791 = t788 + t790;
+        let t793 = pose[0] * rate_cross_leg4;
+        let t794 = 1.8867924528301887 * t793;
+        let t795 = minus_rate_rod_leg2 * t794;
+        let t796 = c_rod_leg2 * t795;
+        let t797 = minus_s_rod_leg2 * t791 + t796;
+        let t799 = t794 * t789;
+        let t800 = t721 * t799;
+        let t806 = minus_gcross_vx_leg4 * t571 - minus_gcross_vy_leg4 * t566
+            - gcross_vz_leg4 * t577;
+        let t808 = t731 * t799;
+        let t814 = minus_gcross_vy_leg4 * t582 - minus_gcross_vx_leg4 * t580
+            + gcross_vz_leg4 * t585;
+        let t816 = t740 * t799;
+        let t818 = t675 + t676;
+        let t820 = c_rod_leg1 * rate_dot_cross_leg1;
+        let t821 = t820 - t678;
+        let t824 = c_rod_leg1 * t818 - s_rod_leg1 * (t678 - t821);
+        let t827 = 3.5599857600569598 * (t302 * t302);
+        let t829 = t827 - t661 * t661;
+        let t838 = c_rod_leg2 * rate_dot_cross_leg2;
+        let t839 = t838 - t717;
+        let t842 = t713 + t714;
+        let t844 = minus_s_rod_leg2 * (t717 - t839) - c_rod_leg2 * t842;
+        let t847 = 3.5599857600569598 * (t355 * t355);
+        let t849 = t847 - t712 * t712;
+        let t858 = c_rod_leg1 * rate_dot_cross_leg3;
+        let t859 = t858 - t760;
+        let t862 = t755 + t756;
+        let t864 = s_rod_leg1 * (t760 - t859) - c_rod_leg1 * t862;
+        let t867 = 3.5599857600569598 * (t758 * t758);
+        let t869 = t867 - t754 * t754;
+        let t878 = t790 + t791;
+        let t880 = c_rod_leg2 * rate_dot_cross_leg4;
+        let t881 = t880 - t795;
+        let t884 = c_rod_leg2 * t878 - minus_s_rod_leg2 * (t795 - t881);
+        let t887 = 3.5599857600569598 * (t793 * t793);
+        let t889 = t887 - t789 * t789;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t590;
+        let t901 = rate_rod_leg1 * rate_rod_leg1;
+        let t904 = s_rod_leg1 * (t662 + rate_dot_rod_leg1) + c_rod_leg1 * (t901 - t827);
+        let t908 = t687 * t904;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t596;
+        let t917 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t920 = minus_s_rod_leg2 * (t722 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t917 - t847);
+        let t948 = c_rod_leg1 * t821 - t679;
+        let t956 = c_rod_leg2 * t839 - t718;
+        let t964 = c_rod_leg1 * t859 - t761;
+        let t972 = c_rod_leg2 * t881 - t796;
+        let t979 = 1.8867924528301887 * t544;
+        let t983 = t687 * t979;
+        let t989 = 1.8867924528301887 * t548;
+        let t1022 = 0.9433962264150944 * t84;
+        let t1026 = 0.37735849056603776 * (pose[1] * s_cross_leg1);
+        let t1030 = 0.2 * c_cross_leg1;
+        let t1034 = 0.2 * rate_dot_arm_leg1 - t636;
+        let t1037 = t643 - 0.2 * t289;
+        let t1040 = s_rod_leg1 * (c_cross_leg1 * t1034 - s_cross_leg1 * t1037);
+        let t1045 = c_cross_leg1 * t1037 + s_cross_leg1 * t1034;
+        let t1046 = c_rod_leg1 * t1045;
+        let t1048 = t1022 * (t662 - rate_dot_rod_leg1) + t1026 * (t827 + t901)
+            - t1030 * t818 + t668 * t1040 + t659 * t1046;
+        let t1056 = 0.2 * rate_dot_arm_leg2 - t637;
+        let t1059 = t644 - 0.2 * t376;
+        let t1062 = minus_s_rod_leg2 * (c_cross_leg2 * t1056 - s_cross_leg2 * t1059);
+        let t1066 = c_cross_leg2 * t1059 + s_cross_leg2 * t1056;
+        let t1067 = c_rod_leg2 * t1066;
+        let t1070 = 0.9433962264150944 * t17;
+        let t1074 = 0.37735849056603776 * (pose[0] * s_cross_leg2);
+        let t1078 = 0.2 * c_cross_leg2;
+        let t1084 = t1070 * (minus_rate_dot_rod_leg2 - t722) - t1074 * (t847 + t917)
+            + t1078 * t842 + t729 * t1062 - t731 * t1067;
+        let t1089 = t645 + 0.2 * t401;
+        let t1092 = t638 + 0.2 * rate_dot_arm_leg3_2;
+        let t1095 = s_rod_leg1 * (s_cross_leg3 * t1089 + c_cross_leg3 * t1092);
+        let t1099 = s_cross_leg3 * t1092 - c_cross_leg3 * t1089;
+        let t1100 = c_rod_leg1 * t1099;
+        let t1106 = 0.9433962264150944 * t38;
+        let t1110 = 0.37735849056603776 * (pose[1] * s_cross_leg3);
+        let t1114 = 0.2 * c_cross_leg3;
+        let t1120 = t1106 * (rate_dot_rod_leg1 - t764) - t1110 * (t867 + t901)
+            + t1114 * t862 + t774 * t1095 - t692 * t1100;
+        let t1121 = 0.9433962264150944 * t135;
+        let t1125 = 0.37735849056603776 * (pose[0] * s_cross_leg4);
+        let t1129 = 0.2 * c_cross_leg4;
+        let t1131 = t1121 * (t799 - minus_rate_dot_rod_leg2) + t1125 * (t887 + t917)
+            - t1129 * t878;
+        let t1134 = t646 + 0.2 * t463;
+        let t1137 = t639 + 0.2 * rate_dot_arm_leg4_2;
+        let t1140 = minus_s_rod_leg2 * (s_cross_leg4 * t1134 + c_cross_leg4 * t1137);
+        let t1145 = s_cross_leg4 * t1137 - c_cross_leg4 * t1134;
+        let t1146 = c_rod_leg2 * t1145;
+        let t1190 = t1121 * t880 + t1125 * t788 + t492 * t1129;
         Ok([
             [
-                t84 * t471 - (t476 * t484 + t489 * t480), rate_dot_arm_leg1_2, 0.0, 0.0,
-                t546 * rate_dot_arm_leg4_2, -t568, 0.0, 0.0, -(t546 * t571), t575, 0.0, 0.0,
-                t546 * t578, rate_arm_leg1, 0.0, 0.0, t546 * rate_arm_leg4,
+                t118 * t548 - t553 * t544 + t559 * t560, rate_dot_arm_leg1, 0.0, 0.0,
+                t615 * rate_dot_arm_leg4_2, -t636, 0.0, 0.0, t615 * t639, -t643, 0.0, 0.0,
+                t615 * t646, rate_arm_leg1, 0.0, 0.0, t615 * rate_arm_leg4,
                 ::overact::math::sign(rate_arm_leg1), 0.0, 0.0,
-                ::overact::math::signed(t546, rate_arm_leg4), 1.0, 0.0, 0.0, t546,
-                t595 * t609 + t613, t637 * t651 - t655, t679 * t693 - t697, t721 * t735 + t739,
-                t595 * t765 - t611 * t770, t637 * t785 + t653 * t790, t679 * t805 + t695 * t810,
-                t721 * t825 - t737 * t830, t595 * t845 - t611 * t601, t637 * t861 + t653 * t643,
-                t679 * t877 - t695 * t687, t721 * t893 - t737 * t727, t595 * t904 - t613,
-                t637 * t912 + t655, t697 - t679 * t920, t721 * t928 - t739,
-                t595 * t935 - t611 * t761, t653 * t779 - t637 * t946, -(t679 * t935 + t695 * t801),
-                t721 * t946 - t737 * t821, -(t611 * rate_dot_rod_leg1),
-                -(t653 * minus_rate_dot_rod_leg2), t1005, -(t637 * t1019 + t653 * t1024),
-                -(t679 * t1052 + t695 * t1057), t546 * t1088 - t721 * t1097 + t737 * t1103,
-                t979 * t761 + t983 * t601 + t291 * t987 + t595 * t1002, t637 * t1023, t679 * t1056,
-                t546 * t1147 + t721 * t1102,
+                ::overact::math::signed(t615, rate_arm_leg4), 1.0, 0.0, 0.0, t615,
+                t663 - t668 * t680, t705 * t719 - t723, t747 * t762 + t765, t782 * t797 - t800,
+                -(t668 * t824 + t659 * t829), t705 * t844 - t721 * t849, t747 * t864 + t659 * t869,
+                t782 * t884 + t721 * t889, -(t668 * t904 + t659 * t674), t705 * t920 + t721 * t711,
+                t747 * t904 - t659 * t753, t782 * t920 + t721 * t788, -(t668 * t948 + t663),
+                t705 * t956 + t723, t747 * t964 - t765, t782 * t972 + t800,
+                -(t668 * t979 + t659 * t820), -(t705 * t989 + t721 * t838),
+                t659 * t858 - t747 * t979, t782 * t989 + t721 * t880, -(t659 * rate_dot_rod_leg1),
+                t721 * minus_rate_dot_rod_leg2, t1048, t705 * t1062 + t721 * t1067,
+                t747 * t1095 - t659 * t1100, t615 * t1131 - t782 * t1140 - t721 * t1146,
+                t1022 * t820 + t1026 * t674 + t292 * t1030 - t668 * t1045, t705 * t1066,
+                t747 * t1099, t615 * t1190 + t782 * t1145,
             ],
             [
-                t496 * t484 - t501 * t480 - t507 * t471, 0.0, rate_dot_arm_leg2_2, 0.0,
-                -(t560 * rate_dot_arm_leg4_2), 0.0, -t569, 0.0, t560 * t571, 0.0, t576, 0.0,
-                -(t560 * t578), 0.0, rate_arm_leg2, 0.0, -(t560 * rate_arm_leg4), 0.0,
+                t566 * t544 - t571 * t548 - t577 * t560, 0.0, rate_dot_arm_leg2, 0.0,
+                t628 * rate_dot_arm_leg4_2, 0.0, -t637, 0.0, t628 * t639, 0.0, -t644, 0.0,
+                t628 * t646, 0.0, rate_arm_leg2, 0.0, t628 * rate_arm_leg4, 0.0,
                 ::overact::math::sign(rate_arm_leg2), 0.0,
-                -::overact::math::signed(t560, rate_arm_leg4), 0.0, 1.0, 0.0, -t560,
-                t619 * t609 + t622, t661 * t651 + t664, t703 * t693 - t706, t745 * t735 - t748,
-                t619 * t765 - t621 * t770, t661 * t785 - t663 * t790, t703 * t805 + t705 * t810,
-                t745 * t825 + t747 * t830, t619 * t845 - t621 * t601, t661 * t861 - t663 * t643,
-                t703 * t877 - t705 * t687, t745 * t893 + t747 * t727, t619 * t904 - t622,
-                t661 * t912 - t664, t706 - t703 * t920, t745 * t928 + t748,
-                t619 * t935 - t621 * t761, -(t661 * t946 + t663 * t779),
-                -(t703 * t935 + t705 * t801), t745 * t946 + t747 * t821,
-                -(t621 * rate_dot_rod_leg1), t663 * minus_rate_dot_rod_leg2,
-                t621 * t1003 - t619 * t997, t1041, -(t703 * t1052 + t705 * t1057),
-                -(t560 * t1088 + t745 * t1097 + t747 * t1103), t619 * t1002,
-                t1027 * t779 + t1031 * t643 + t341 * t1035 + t661 * t1023, t703 * t1056,
-                t745 * t1102 - t560 * t1147,
+                ::overact::math::signed(t628, rate_arm_leg4), 0.0, 1.0, 0.0, t628,
+                t687 * t680 - t690, t729 * t719 + t732, t687 * t762 - t768, t806 * t797 + t808,
+                t687 * t824 + t689 * t829, t729 * t844 + t731 * t849, t687 * t864 - t689 * t869,
+                t806 * t884 - t731 * t889, t908 + t689 * t674, t729 * t920 - t731 * t711,
+                t908 + t689 * t753, t806 * t920 - t731 * t788, t687 * t948 + t690,
+                t729 * t956 - t732, t687 * t964 + t768, t806 * t972 - t808, t983 + t689 * t820,
+                t731 * t838 - t729 * t989, -(t983 + t689 * t858), t806 * t989 - t731 * t880,
+                t689 * rate_dot_rod_leg1, -(t731 * minus_rate_dot_rod_leg2),
+                -(t687 * t1040 + t689 * t1046), t1084, t687 * t1095 + t689 * t1100,
+                t628 * t1131 - t806 * t1140 + t731 * t1146, t687 * t1045,
+                t1070 * t838 + t1074 * t711 + t357 * t1078 + t729 * t1066, t687 * t1099,
+                t628 * t1190 + t806 * t1145,
             ],
             [
-                t510 * t484 - t512 * t480 - t515 * t471, 0.0, 0.0, rate_dot_arm_leg3,
-                -(t566 * rate_dot_arm_leg4_2), 0.0, 0.0, -t570, t566 * t571, 0.0, 0.0, t577,
-                -(t566 * t578), 0.0, 0.0, rate_arm_leg3, -(t566 * rate_arm_leg4), 0.0, 0.0,
-                ::overact::math::sign(rate_arm_leg3), -::overact::math::signed(t566, rate_arm_leg4),
-                0.0, 0.0, 1.0, -t566, t628 * t609 + t631, t670 * t651 + t673, t712 * t693 - t715,
-                t754 * t735 - t757, t628 * t765 - t630 * t770, t670 * t785 - t672 * t790,
-                t712 * t805 + t714 * t810, t754 * t825 + t756 * t830, t628 * t845 - t630 * t601,
-                t670 * t861 - t672 * t643, t712 * t877 - t714 * t687, t754 * t893 + t756 * t727,
-                t628 * t904 - t631, t670 * t912 - t673, t715 - t712 * t920, t754 * t928 + t757,
-                t628 * t935 - t630 * t761, -(t670 * t946 + t672 * t779),
-                -(t712 * t935 + t714 * t801), t754 * t946 + t756 * t821,
-                -(t630 * rate_dot_rod_leg1), t672 * minus_rate_dot_rod_leg2,
-                t630 * t1003 - t628 * t997, t672 * t1024 - t670 * t1019, t1077,
-                -(t566 * t1088 + t754 * t1097 + t756 * t1103), t628 * t1002, t670 * t1023,
-                t1067 * t801 - t1064 * t687 + t229 * t1071 + t712 * t1056,
-                t754 * t1102 - t566 * t1147,
+                t580 * t548 - t582 * t544 + t585 * t560, 0.0, 0.0, rate_dot_arm_leg3_2,
+                t634 * rate_dot_arm_leg4_2, 0.0, 0.0, t638, t634 * t639, 0.0, 0.0, t645,
+                t634 * t646, 0.0, 0.0, rate_arm_leg3, t634 * rate_arm_leg4, 0.0, 0.0,
+                ::overact::math::sign(rate_arm_leg3), ::overact::math::signed(t634, rate_arm_leg4),
+                0.0, 0.0, 1.0, t634, t693 - t698 * t680, t738 * t719 - t741, t774 * t762 + t776,
+                t814 * t797 - t816, -(t698 * t824 + t692 * t829), t738 * t844 - t740 * t849,
+                t774 * t864 + t692 * t869, t814 * t884 + t740 * t889, -(t698 * t904 + t692 * t674),
+                t738 * t920 + t740 * t711, t774 * t904 - t692 * t753, t814 * t920 + t740 * t788,
+                -(t698 * t948 + t693), t738 * t956 + t741, t774 * t964 - t776, t814 * t972 + t816,
+                -(t698 * t979 + t692 * t820), -(t738 * t989 + t740 * t838),
+                t692 * t858 - t774 * t979, t814 * t989 + t740 * t880, -(t692 * rate_dot_rod_leg1),
+                t740 * minus_rate_dot_rod_leg2, t698 * t1040 + t692 * t1046,
+                t738 * t1062 + t740 * t1067, t1120, t634 * t1131 - t814 * t1140 - t740 * t1146,
+                -(t698 * t1045), t738 * t1066,
+                t1106 * t858 + t1110 * t753 + t432 * t1114 + t774 * t1099,
+                t634 * t1190 + t814 * t1145,
             ],
         ])
     }
@@ -5984,7 +8726,7 @@ impl Delta4 {
     /// Output: 3 x 1.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 417 operations (129 additions, 277 multiplications, 11 divisions), 0 square roots, 12 trigonometric pairs, 0 signs, 438 intermediates.
+    /// 525 operations (191 additions, 313 multiplications, 21 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 528 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5995,222 +8737,284 @@ impl Delta4 {
         start: &[f64; 3],
     ) -> Result<[[f64; 1]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let t0 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t0);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.2809 + 0.04;
+        let t14 = 0.4 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.20079840636817814, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t21 = 0.2 * c_arm_leg1;
+        let t23 = t0 - (0.2 + t21);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = t23 * t25;
+        let t28 = pose[1] + 0.05;
+        let t29 = t28 - 0.2;
+        let t30 = t29 * t29;
+        let t32 = 0.16 * (t30 + t3);
+        let t33 = pose[0] * pose[0];
+        let t35 = t33 + t30 + t3;
+        let t37 = t35 - 0.2809 + 0.04;
+        let t39 = t32 - t37 * t37;
+        ::overact::guard::reach(t39, "leg2")?;
+        let t40 = ::overact::math::sqrt(t39);
+        ::overact::guard::leg(t40, 0.20079840636817814, "leg2")?;
+        let t41 = 1.0 / t40;
+        let t42 = 2.0 * t41;
+        let garm_vx_leg2 = pose[0] * t42;
+        let t46 = pose[0] - 0.05;
+        let t47 = t46 + 0.2;
+        let t48 = t47 * t47;
+        let t50 = 0.16 * (t48 + t3);
+        let t51 = 1.0 / t50;
+        let t52 = 0.4 * t47;
+        let t54 = t48 + t8 + t3;
+        let t56 = t54 - 0.2809 + 0.04;
+        let t59 = t50 - t56 * t56;
+        ::overact::guard::reach(t59, "leg3")?;
+        let t60 = ::overact::math::sqrt(t59);
+        ::overact::guard::leg(t60, 0.20079840636817814, "leg3")?;
+        let minus_c_arm_leg3 = t51 * (t52 * t56 + t14 * t60);
+        let t64 = 0.2 * minus_c_arm_leg3;
+        let t66 = t46 - (t64 - 0.2);
+        let t67 = 1.0 / t60;
+        let t68 = 2.0 * t67;
+        let garm_vx_leg3 = t66 * t68;
+        let t72 = pose[1] - 0.05;
+        let t73 = t72 + 0.2;
+        let t74 = t73 * t73;
+        let t76 = 0.16 * (t74 + t3);
+        let t78 = t33 + t74 + t3;
+        let t80 = t78 - 0.2809 + 0.04;
+        let t82 = t76 - t80 * t80;
+        ::overact::guard::reach(t82, "leg4")?;
+        let t83 = ::overact::math::sqrt(t82);
+        ::overact::guard::leg(t83, 0.20079840636817814, "leg4")?;
+        let t84 = 1.0 / t83;
+        let t85 = 2.0 * t84;
+        let garm_vx_leg4 = pose[0] * t85;
+        let t88 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t88, 22.533170865545554, "actuators")?;
+        ::overact::guard::platform(t88, 22.533170865545554, "actuators")?;
+        let t89 = 1.0 / t88;
+        let t90 = 0.4 * t24;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let s_rod_leg1 = 1.8867924528301887 * pose[1];
+        let t98 = 1.0 - 3.5599857600569598 * t8;
+        ::overact::guard::reach(t98, "leg1")?;
+        ::overact::guard::reach(t98, "leg3")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t98);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t5 = c_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t8 = s_armcross_leg1 * c_rod_leg1;
-        let t11 = c_arm_leg1 * t8 - s_arm_leg1 * t5;
-        ::overact::guard::leg(t11, 0.9471622941895192, "leg1")?;
-        let t12 = 1.0 / t11;
-        let t13 = 5.0 * t12;
-        let garm_vx_leg1 = t5 * t13;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t20 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t20);
-        let t23 = s_armcross_leg2 * c_rod_leg2;
-        let t25 = c_armcross_leg2 * c_rod_leg2;
-        let t27 = c_arm_leg2 * t23 - s_arm_leg2 * t25;
-        ::overact::guard::leg(t27, 0.9471622941895197, "leg2")?;
-        let t28 = 1.0 / t27;
-        let t29 = 5.0 * t28;
-        let minus_garm_vx_leg2 = s_rod_leg2 * t29;
-        let t33 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t33);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t38 = c_armcross_leg3 * c_rod_leg3;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t42 = s_armcross_leg3 * c_rod_leg3;
-        let t44 = s_arm_leg3 * t38 - c_arm_leg3 * t42;
-        ::overact::guard::leg(t44, 0.9471622941895192, "leg3")?;
-        let t45 = 1.0 / t44;
-        let t46 = 5.0 * t45;
-        let garm_vx_leg3 = t38 * t46;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        ::overact::guard::leg(c_rod_leg4, 1.0, "leg4")?;
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let t54 = joints[9] + joints[10];
-        let (s_armcross_leg4, c_armcross_leg4) = ::overact::math::sin_cos(t54);
-        let t57 = c_armcross_leg4 * c_rod_leg4;
-        let t59 = s_armcross_leg4 * c_rod_leg4;
-        let t61 = s_arm_leg4 * t57 - c_arm_leg4 * t59;
-        ::overact::guard::leg(t61, 0.9471622941895192, "leg4")?;
-        let t62 = 1.0 / t61;
-        let t63 = 5.0 * t62;
-        let minus_garm_vx_leg4 = s_rod_leg4 * t63;
-        let t66 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3 + minus_garm_vx_leg4 * minus_garm_vx_leg4;
-        ::overact::guard::platform(t66, 22.53317086554555, "actuators")?;
-        ::overact::guard::platform(t66, 22.53317086554555, "actuators")?;
-        let t67 = 1.0 / t66;
-        let minus_garm_vz_leg1 = t8 * t13;
-        let t76 = garm_vx_leg1 * actuator_velocities[0]
-            - minus_garm_vx_leg2 * actuator_velocities[1]
+        let t100 = 0.53 * c_rod_leg1;
+        let s_cross_leg1 = 2.5 * t17 / t100;
+        let t103 = 0.04 + t8;
+        let t105 = 0.2809 * t98;
+        let t107 = 0.212 * c_rod_leg1;
+        let c_cross_leg1 = (t10 - t103 - t105) / t107;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t112 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t90
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t112)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t112));
+        let garm_vy_leg1 = pose[1] * t25;
+        let t125 = 1.0 / t32;
+        let t126 = 0.4 * t29;
+        let c_arm_leg2 = t125 * (t126 * t37 - t14 * t40);
+        let t131 = 0.2 * c_arm_leg2;
+        let t133 = t28 - (0.2 + t131);
+        let garm_vy_leg2 = t133 * t42;
+        let garm_vy_leg3 = pose[1] * t68;
+        let t140 = 1.0 / t76;
+        let t141 = 0.4 * t73;
+        let minus_c_arm_leg4 = t140 * (t141 * t80 + t14 * t83);
+        let t146 = 0.2 * minus_c_arm_leg4;
+        let t148 = t72 - (t146 - 0.2);
+        let garm_vy_leg4 = t148 * t85;
+        let t158 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3 + garm_vx_leg4 * garm_vy_leg4;
+        let t159 = t158 * t89;
+        let t161 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t158 * t159;
+        ::overact::guard::platform(t161, 22.533170865545554, "actuators")?;
+        ::overact::guard::platform(t161, 22.533170865545554, "actuators")?;
+        let t162 = 1.0 / t161;
+        let t176 = garm_vx_leg1 * actuator_velocities[0]
+            + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2]
-            - minus_garm_vx_leg4 * actuator_velocities[3];
-        let garm_vy_leg1 = s_rod_leg1 * t13;
-        let garm_vy_leg2 = t25 * t29;
-        let garm_vy_leg3 = s_rod_leg3 * t46;
-        let garm_vy_leg4 = t57 * t63;
-        let t88 = garm_vx_leg1 * garm_vy_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
-            + garm_vx_leg3 * garm_vy_leg3 - minus_garm_vx_leg4 * garm_vy_leg4;
-        let t89 = t88 * t67;
-        let t98 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t88 * t89;
-        ::overact::guard::platform(t98, 22.533170865545543, "actuators")?;
-        ::overact::guard::platform(t98, 22.533170865545543, "actuators")?;
-        let t99 = 1.0 / t98;
-        let t108 = garm_vy_leg1 * actuator_velocities[0]
+            + garm_vx_leg4 * actuator_velocities[3];
+        let t178 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
             + garm_vy_leg3 * actuator_velocities[2]
-            + garm_vy_leg4 * actuator_velocities[3] - t76 * t89;
-        let garm_vz_leg3 = t42 * t46;
-        let minus_garm_vz_leg2 = t23 * t29;
-        let garm_vz_leg4 = t59 * t63;
-        let t126 = minus_garm_vx_leg2 * minus_garm_vz_leg2
-            - garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg3 * garm_vz_leg3
-            - minus_garm_vx_leg4 * garm_vz_leg4;
-        let t127 = t126 * t67;
-        let t129 = garm_vy_leg3 * garm_vz_leg3
-            - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2)
-            + garm_vy_leg4 * garm_vz_leg4 - t88 * t127;
-        let t130 = t129 * t99;
-        let t141 = minus_garm_vz_leg1 * minus_garm_vz_leg1
-            + minus_garm_vz_leg2 * minus_garm_vz_leg2 + garm_vz_leg3 * garm_vz_leg3
-            + garm_vz_leg4 * garm_vz_leg4 - t126 * t127 - t129 * t130;
-        ::overact::guard::platform(t141, 66.4019122371629, "actuators")?;
-        ::overact::guard::platform(t141, 66.4019122371629, "actuators")?;
-        let t142 = 1.0 / t141;
-        let t153 = garm_vz_leg3 * actuator_velocities[2]
-            - (minus_garm_vz_leg1 * actuator_velocities[0]
-                + minus_garm_vz_leg2 * actuator_velocities[1])
-            + garm_vz_leg4 * actuator_velocities[3] - t76 * t127 - t130 * t108;
-        let t154 = t142 * t153;
-        let t156 = t99 * t108 - t130 * t154;
-        let t160 = t76 * t67 - t89 * t156 - t127 * t154;
-        let rate_arm_leg1 = garm_vx_leg1 * t160 + garm_vy_leg1 * t156
-            - minus_garm_vz_leg1 * t154;
-        let t166 = rate_arm_leg1 * rate_arm_leg1;
-        let t169 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.8867924528301887 * t169;
-        let rate_rod_leg1 = grod_vy_leg1 * t156;
-        let t172 = s_armcross_leg1 * rate_rod_leg1;
-        let t174 = 1.8867924528301887 * t12;
-        let gcross_vz_leg1 = s_arm_leg1 * t174;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t174;
-        let minus_gcross_vy_leg1 = t174
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t169)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t169));
-        let rate_cross_leg1 = gcross_vz_leg1 * t154
-            - (minus_gcross_vx_leg1 * t160 + minus_gcross_vy_leg1 * t156);
-        let t192 = c_armcross_leg1 * rate_rod_leg1;
-        let t194 = t172 * t172 + rate_cross_leg1 * rate_cross_leg1 + t192 * t192;
-        let t197 = 0.53 * s_rod_leg1;
-        let t199 = t197 * (rate_cross_leg1 * t192);
-        let t204 = t197 * (rate_cross_leg1 * t172);
-        let t218 = garm_vx_leg1
-            * (t204 - (0.2 * c_arm_leg1 * t166 + 0.53 * t5 * t194) + t204)
-            + garm_vy_leg1 * (rate_cross_leg1 * (t197 * rate_cross_leg1) - t197 * t194);
-        let rate_dot_arm_leg1 = minus_garm_vz_leg1
-            * (0.2 * s_arm_leg1 * t166 + 0.53 * t8 * t194 + t199 + t199) - t218;
-        let t220 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t222 = 0.53 * s_rod_leg2;
-        let t223 = 1.8867924528301887 * t28;
-        let t225 = 1.0 / c_rod_leg2;
-        let gcross_vx_leg2 = t223
-            * (s_arm_leg2 * (s_armcross_leg2 * s_rod_leg2 * t225)
-                + c_arm_leg2 * (c_armcross_leg2 * s_rod_leg2 * t225));
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t223;
-        let gcross_vz_leg2 = s_arm_leg2 * t223;
-        let rate_cross_leg2 = gcross_vx_leg2 * t160 - minus_gcross_vy_leg2 * t156
-            + gcross_vz_leg2 * t154;
-        let minus_grod_vx_leg2 = 1.8867924528301887 * t225;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t160;
-        let t243 = s_armcross_leg2 * minus_rate_rod_leg2;
-        let t246 = c_armcross_leg2 * minus_rate_rod_leg2;
-        let t248 = rate_cross_leg2 * rate_cross_leg2 + t243 * t243 + t246 * t246;
-        let rate_arm_leg2 = garm_vy_leg2 * t156 - minus_garm_vx_leg2 * t160
-            - minus_garm_vz_leg2 * t154;
-        let t260 = rate_arm_leg2 * rate_arm_leg2;
-        let t266 = t222 * (rate_cross_leg2 * t243);
-        let t270 = minus_garm_vx_leg2
-            * (t222 * t248 - rate_cross_leg2 * (t222 * rate_cross_leg2))
-            + garm_vy_leg2 * (0.2 * c_arm_leg2 * t260 + 0.53 * t25 * t248 + t266 + t266);
-        let t277 = t222 * (rate_cross_leg2 * t246);
-        let rate_dot_arm_leg2 = t270
-            + minus_garm_vz_leg2
-                * (0.2 * s_arm_leg2 * t260 + 0.53 * t23 * t248 - t277 - t277);
-        let t282 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let rate_arm_leg3 = garm_vx_leg3 * t160 + garm_vy_leg3 * t156
-            + garm_vz_leg3 * t154;
-        let t291 = rate_arm_leg3 * rate_arm_leg3;
-        let t294 = 1.0 / c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.8867924528301887 * t294;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t156;
-        let t297 = s_armcross_leg3 * minus_rate_rod_leg3;
-        let t299 = 1.8867924528301887 * t45;
-        let minus_gcross_vx_leg3 = c_arm_leg3 * t299;
-        let minus_gcross_vy_leg3 = t299
-            * (s_arm_leg3 * (s_armcross_leg3 * s_rod_leg3 * t294)
-                + c_arm_leg3 * (c_armcross_leg3 * s_rod_leg3 * t294));
-        let minus_gcross_vz_leg3 = s_arm_leg3 * t299;
-        let minus_rate_cross_leg3 = minus_gcross_vx_leg3 * t160
-            + minus_gcross_vy_leg3 * t156 + minus_gcross_vz_leg3 * t154;
-        let t317 = c_armcross_leg3 * minus_rate_rod_leg3;
-        let t319 = t297 * t297 + minus_rate_cross_leg3 * minus_rate_cross_leg3
-            + t317 * t317;
-        let t322 = 0.53 * s_rod_leg3;
-        let t324 = t322 * (minus_rate_cross_leg3 * t297);
-        let t333 = garm_vx_leg3
-            * (0.2 * c_arm_leg3 * t291 + 0.53 * t38 * t319 - t324 - t324)
-            + garm_vy_leg3
-                * (t322 * t319 - minus_rate_cross_leg3 * (t322 * minus_rate_cross_leg3));
-        let t340 = t322 * (minus_rate_cross_leg3 * t317);
-        let minus_rate_dot_arm_leg3 = t333
-            + garm_vz_leg3 * (0.2 * s_arm_leg3 * t291 + 0.53 * t42 * t319 + t340 + t340);
-        let t345 = actuator_accelerations[2] + minus_rate_dot_arm_leg3;
-        let t348 = 1.8867924528301887 * t62;
-        let t350 = 1.0 / c_rod_leg4;
-        let gcross_vx_leg4 = t348
-            * (s_arm_leg4 * (s_armcross_leg4 * s_rod_leg4 * t350)
-                + c_arm_leg4 * (c_armcross_leg4 * s_rod_leg4 * t350));
-        let minus_gcross_vy_leg4 = c_arm_leg4 * t348;
-        let minus_gcross_vz_leg4 = s_arm_leg4 * t348;
-        let rate_cross_leg4 = gcross_vx_leg4 * t160 - minus_gcross_vy_leg4 * t156
-            - minus_gcross_vz_leg4 * t154;
-        let t365 = 0.53 * s_rod_leg4;
-        let grod_vx_leg4 = 1.8867924528301887 * t350;
-        let rate_rod_leg4 = grod_vx_leg4 * t160;
-        let t371 = s_armcross_leg4 * rate_rod_leg4;
-        let t374 = c_armcross_leg4 * rate_rod_leg4;
-        let t376 = rate_cross_leg4 * rate_cross_leg4 + t371 * t371 + t374 * t374;
-        let rate_arm_leg4 = garm_vy_leg4 * t156 - minus_garm_vx_leg4 * t160
-            + garm_vz_leg4 * t154;
-        let t386 = rate_arm_leg4 * rate_arm_leg4;
-        let t392 = t365 * (rate_cross_leg4 * t371);
-        let t396 = minus_garm_vx_leg4
-            * (rate_cross_leg4 * (t365 * rate_cross_leg4) - t365 * t376)
-            - garm_vy_leg4 * (0.2 * c_arm_leg4 * t386 + 0.53 * t57 * t376 - t392 - t392);
-        let t403 = t365 * (rate_cross_leg4 * t374);
-        let rate_dot_arm_leg4 = t396
-            - garm_vz_leg4 * (0.2 * s_arm_leg4 * t386 + 0.53 * t59 * t376 + t403 + t403);
-        let t408 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t410 = garm_vx_leg1 * t220 - minus_garm_vx_leg2 * t282 + garm_vx_leg3 * t345
-            - minus_garm_vx_leg4 * t408;
-        let t420 = garm_vy_leg1 * t220 + garm_vy_leg2 * t282 + garm_vy_leg3 * t345
-            + garm_vy_leg4 * t408 - t89 * t410;
-        let t432 = garm_vz_leg3 * t345
-            - (minus_garm_vz_leg1 * t220 + minus_garm_vz_leg2 * t282)
-            + garm_vz_leg4 * t408 - t127 * t410 - t130 * t420;
-        let t433 = t142 * t432;
-        let t435 = t99 * t420 - t130 * t433;
-        Ok([[t67 * t410 - t89 * t435 - t127 * t433], [t435], [t433 + 9.81]])
+            + garm_vy_leg4 * actuator_velocities[3] - t176 * t159;
+        let t180 = 0.2 * minus_s_arm_leg1;
+        let t181 = pose[2] - t180;
+        let garm_vz_leg1 = t181 * t25;
+        let minus_s_arm_leg2 = t125 * (t14 * t37 + t126 * t40);
+        let t188 = 0.2 * minus_s_arm_leg2;
+        let t189 = pose[2] - t188;
+        let garm_vz_leg2 = t189 * t42;
+        let s_arm_leg3 = t51 * (t52 * t60 - t14 * t56);
+        let t197 = 0.2 * s_arm_leg3;
+        let t198 = pose[2] + t197;
+        let garm_vz_leg3 = t198 * t68;
+        let s_arm_leg4 = t140 * (t141 * t83 - t14 * t80);
+        let t206 = 0.2 * s_arm_leg4;
+        let t207 = pose[2] + t206;
+        let garm_vz_leg4 = t207 * t85;
+        let t217 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3 + garm_vx_leg4 * garm_vz_leg4;
+        let t218 = t217 * t89;
+        let t220 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 + garm_vy_leg4 * garm_vz_leg4 - t158 * t218;
+        let t221 = t220 * t162;
+        let t232 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 + garm_vz_leg4 * garm_vz_leg4 - t217 * t218
+            - t220 * t221;
+        ::overact::guard::platform(t232, 66.40191223716288, "actuators")?;
+        ::overact::guard::platform(t232, 66.40191223716288, "actuators")?;
+        let t233 = 1.0 / t232;
+        let t244 = garm_vz_leg1 * actuator_velocities[0]
+            + garm_vz_leg2 * actuator_velocities[1]
+            + garm_vz_leg3 * actuator_velocities[2]
+            + garm_vz_leg4 * actuator_velocities[3] - t176 * t218 - t221 * t178;
+        let t245 = t233 * t244;
+        let t247 = t162 * t178 - t221 * t245;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t90;
+        let t254 = t176 * t89 - t159 * t247 - t218 * t245;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t90;
+        let rate_cross_leg1 = gcross_vy_leg1 * t247 - minus_gcross_vx_leg1 * t254
+            - minus_gcross_vz_leg1 * t245;
+        let grod_vy_leg1 = 1.8867924528301887 * t112;
+        let rate_rod_leg1 = grod_vy_leg1 * t247;
+        let t262 = s_armcross_leg1 * rate_rod_leg1;
+        let t264 = pose[1] * (rate_cross_leg1 * t262);
+        let rate_arm_leg1 = garm_vx_leg1 * t254 + garm_vy_leg1 * t247
+            + garm_vz_leg1 * t245;
+        let t270 = rate_arm_leg1 * rate_arm_leg1;
+        let t275 = c_armcross_leg1 * rate_rod_leg1;
+        let t277 = t262 * t262 + rate_cross_leg1 * rate_cross_leg1 + t275 * t275;
+        let t286 = rate_cross_leg1 * (pose[1] * rate_cross_leg1) - pose[1] * t277;
+        let t290 = pose[1] * (rate_cross_leg1 * t275);
+        let minus_rate_dot_arm_leg1 = garm_vx_leg1
+            * (t264 - (t21 * t270 + t23 * t277) + t264) + garm_vy_leg1 * t286
+            + garm_vz_leg1 * (t290 - (t180 * t270 + t181 * t277) + t290);
+        let t298 = actuator_accelerations[0] + minus_rate_dot_arm_leg1;
+        let t300 = 0.4 * t41;
+        let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
+        let t304 = 1.0 - 3.5599857600569598 * t33;
+        ::overact::guard::reach(t304, "leg2")?;
+        ::overact::guard::reach(t304, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t304);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t306 = 0.53 * c_rod_leg2;
+        let s_cross_leg2 = 2.5 * t40 / t306;
+        let t309 = 0.04 + t33;
+        let t311 = 0.2809 * t304;
+        let t313 = 0.212 * c_rod_leg2;
+        let c_cross_leg2 = (t35 - t309 - t311) / t313;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t318 = 1.0 / c_rod_leg2;
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let gcross_vx_leg2 = t300
+            * (minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t318)
+                - c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t318));
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t300;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t300;
+        let rate_cross_leg2 = gcross_vx_leg2 * t254 - minus_gcross_vy_leg2 * t247
+            - minus_gcross_vz_leg2 * t245;
+        let minus_grod_vx_leg2 = 1.8867924528301887 * t318;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t254;
+        let t341 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t344 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t346 = rate_cross_leg2 * rate_cross_leg2 + t341 * t341 + t344 * t344;
+        let t348 = rate_cross_leg2 * (pose[0] * rate_cross_leg2) - pose[0] * t346;
+        let t351 = pose[0] * (rate_cross_leg2 * t341);
+        let rate_arm_leg2 = garm_vx_leg2 * t254 + garm_vy_leg2 * t247
+            + garm_vz_leg2 * t245;
+        let t357 = rate_arm_leg2 * rate_arm_leg2;
+        let t366 = pose[0] * (rate_cross_leg2 * t344);
+        let minus_rate_dot_arm_leg2 = garm_vx_leg2 * t348
+            + garm_vy_leg2 * (t351 - (t131 * t357 + t133 * t346) + t351)
+            + garm_vz_leg2 * (t366 - (t188 * t357 + t189 * t346) + t366);
+        let t374 = actuator_accelerations[1] + minus_rate_dot_arm_leg2;
+        let rate_arm_leg3 = garm_vx_leg3 * t254 + garm_vy_leg3 * t247
+            + garm_vz_leg3 * t245;
+        let t382 = rate_arm_leg3 * rate_arm_leg3;
+        let c_cross_leg3 = (t54 - t103 - t105) / t107;
+        let s_cross_leg3 = 2.5 * t60 / t100;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t392 = s_armcross_leg3 * rate_rod_leg1;
+        let t394 = 0.4 * t67;
+        let gcross_vz_leg3 = s_arm_leg3 * t394;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t394;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t394
+            * (s_arm_leg3 * (t112 * (s_rod_leg1 * s_armcross_leg3))
+                + minus_c_arm_leg3 * (t112 * (s_rod_leg1 * minus_c_armcross_leg3)));
+        let rate_cross_leg3 = gcross_vz_leg3 * t245
+            - (minus_gcross_vx_leg3 * t254 + minus_gcross_vy_leg3 * t247);
+        let t415 = minus_c_armcross_leg3 * rate_rod_leg1;
+        let t417 = t392 * t392 + rate_cross_leg3 * rate_cross_leg3 + t415 * t415;
+        let t421 = pose[1] * (rate_cross_leg3 * t392);
+        let t431 = pose[1] * (rate_cross_leg3 * t415);
+        let rate_dot_arm_leg3 = garm_vx_leg3 * (t64 * t382 + t66 * t417 + t421 + t421)
+            - garm_vy_leg3 * t286
+            - garm_vz_leg3 * (t197 * t382 - t198 * t417 - t431 - t431);
+        let t436 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let rate_arm_leg4 = garm_vx_leg4 * t254 + garm_vy_leg4 * t247
+            + garm_vz_leg4 * t245;
+        let t444 = rate_arm_leg4 * rate_arm_leg4;
+        let t446 = 0.4 * t84;
+        let gcross_vz_leg4 = s_arm_leg4 * t446;
+        let c_cross_leg4 = (t78 - t309 - t311) / t313;
+        let s_cross_leg4 = 2.5 * t83 / t306;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t446
+            * (s_arm_leg4 * (t318 * (minus_s_rod_leg2 * s_armcross_leg4))
+                + minus_c_arm_leg4
+                    * (t318 * (minus_s_rod_leg2 * minus_c_armcross_leg4)));
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t446;
+        let rate_cross_leg4 = gcross_vz_leg4 * t245
+            - (minus_gcross_vx_leg4 * t254 + minus_gcross_vy_leg4 * t247);
+        let t474 = s_armcross_leg4 * minus_rate_rod_leg2;
+        let t477 = minus_c_armcross_leg4 * minus_rate_rod_leg2;
+        let t479 = rate_cross_leg4 * rate_cross_leg4 + t474 * t474 + t477 * t477;
+        let t483 = pose[0] * (rate_cross_leg4 * t474);
+        let t493 = pose[0] * (rate_cross_leg4 * t477);
+        let rate_dot_arm_leg4 = garm_vy_leg4 * (t146 * t444 + t148 * t479 + t483 + t483)
+            - garm_vx_leg4 * t348
+            - garm_vz_leg4 * (t206 * t444 - t207 * t479 - t493 - t493);
+        let t498 = actuator_accelerations[3] - rate_dot_arm_leg4;
+        let t500 = garm_vx_leg1 * t298 + garm_vx_leg2 * t374 + garm_vx_leg3 * t436
+            + garm_vx_leg4 * t498;
+        let t510 = garm_vy_leg1 * t298 + garm_vy_leg2 * t374 + garm_vy_leg3 * t436
+            + garm_vy_leg4 * t498 - t159 * t500;
+        let t522 = garm_vz_leg1 * t298 + garm_vz_leg2 * t374 + garm_vz_leg3 * t436
+            + garm_vz_leg4 * t498 - t218 * t500 - t221 * t510;
+        let t523 = t233 * t522;
+        let t525 = t162 * t510 - t221 * t523;
+        Ok([[t89 * t500 - t159 * t525 - t218 * t523], [t525], [t523 + 9.81]])
     }
     /// The payload's columns of case 2, eq. (38).
     ///
@@ -6222,7 +9026,7 @@ impl Delta4 {
     /// Output: 3 x 1.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 88 operations (24 additions, 60 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 103 intermediates.
+    /// 152 operations (57 additions, 88 multiplications, 7 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 152 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6231,72 +9035,92 @@ impl Delta4 {
         _twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 1]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let t0 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t0);
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t5 = c_armcross_leg2 * c_rod_leg2;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t8 = s_armcross_leg2 * c_rod_leg2;
-        let t11 = c_arm_leg2 * t8 - s_arm_leg2 * t5;
-        ::overact::guard::leg(t11, 0.9471622941895197, "leg2")?;
-        let t12 = 5.0 / t11;
-        let garm_vy_leg2 = t5 * t12;
-        let t14 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t14);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t19 = c_armcross_leg3 * c_rod_leg3;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t23 = s_armcross_leg3 * c_rod_leg3;
-        let t25 = s_arm_leg3 * t19 - c_arm_leg3 * t23;
-        ::overact::guard::leg(t25, 0.9471622941895192, "leg3")?;
-        let t26 = 5.0 / t25;
-        let garm_vx_leg3 = t19 * t26;
-        let minus_garm_vx_leg2 = s_rod_leg2 * t12;
-        let garm_vy_leg3 = s_rod_leg3 * t26;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t37 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t37);
-        let t40 = s_armcross_leg1 * c_rod_leg1;
-        let t42 = c_armcross_leg1 * c_rod_leg1;
-        let t44 = c_arm_leg1 * t40 - s_arm_leg1 * t42;
-        ::overact::guard::leg(t44, 0.9471622941895192, "leg1")?;
-        let t45 = 5.0 / t44;
-        let garm_vy_leg1 = s_rod_leg1 * t45;
-        let minus_garm_vz_leg2 = t8 * t12;
-        let minus_garm_vz_leg1 = t40 * t45;
-        let t51 = garm_vy_leg1 * minus_garm_vz_leg2 - minus_garm_vz_leg1 * garm_vy_leg2;
-        let garm_vx_leg1 = t42 * t45;
-        let t56 = minus_garm_vz_leg1 * minus_garm_vx_leg2
-            + garm_vx_leg1 * minus_garm_vz_leg2;
-        let garm_vz_leg3 = t23 * t26;
-        let t62 = garm_vy_leg1 * minus_garm_vx_leg2 + garm_vx_leg1 * garm_vy_leg2;
-        let t64 = garm_vx_leg3 * t51 - garm_vy_leg3 * t56 - garm_vz_leg3 * t62;
-        ::overact::guard::platform(t64, 91.80843988045547, "kept actuators")?;
-        ::overact::guard::platform(t64, 91.80843988045547, "kept actuators")?;
-        ::overact::guard::platform(t64, 91.80843988045547, "kept actuators")?;
-        let t65 = 1.0 / t64;
-        let t67 = acceleration[2] + 9.81;
-        let t79 = (minus_garm_vz_leg2 * garm_vy_leg3 + garm_vy_leg2 * garm_vz_leg3) * t65
+        let t0 = pose[1] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * pose[2];
+        let t12 = pose[0] * pose[0] + t2 + t3 - 0.2809 + 0.04;
+        let t14 = 0.4 * t1;
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg2")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.20079840636817814, "leg2")?;
+        let minus_s_arm_leg2 = t6 * (t7 * t12 + t14 * t17);
+        let t23 = 2.0 / t17;
+        let garm_vz_leg2 = (pose[2] - 0.2 * minus_s_arm_leg2) * t23;
+        let t25 = pose[0] - 0.05;
+        let t26 = t25 + 0.2;
+        let t27 = t26 * t26;
+        let t29 = 0.16 * (t27 + t3);
+        let t30 = pose[1] * pose[1];
+        let t34 = t27 + t30 + t3 - 0.2809 + 0.04;
+        let t36 = t29 - t34 * t34;
+        ::overact::guard::reach(t36, "leg3")?;
+        let t37 = ::overact::math::sqrt(t36);
+        ::overact::guard::leg(t37, 0.20079840636817814, "leg3")?;
+        let t38 = 2.0 / t37;
+        let garm_vy_leg3 = pose[1] * t38;
+        let c_arm_leg2 = t6 * (t14 * t12 - t7 * t17);
+        let garm_vy_leg2 = (t0 - (0.2 + 0.2 * c_arm_leg2)) * t23;
+        let t49 = 1.0 / t29;
+        let t50 = 0.4 * t26;
+        let s_arm_leg3 = t49 * (t50 * t37 - t7 * t34);
+        let garm_vz_leg3 = (pose[2] + 0.2 * s_arm_leg3) * t38;
+        let minus_c_arm_leg3 = t49 * (t50 * t34 + t7 * t37);
+        let garm_vx_leg3 = (t25 - (0.2 * minus_c_arm_leg3 - 0.2)) * t38;
+        let t68 = pose[0] + 0.05;
+        let t69 = t68 - 0.2;
+        let t70 = t69 * t69;
+        let t72 = 0.16 * (t70 + t3);
+        let t73 = 1.0 / t72;
+        let t77 = t70 + t30 + t3 - 0.2809 + 0.04;
+        let t79 = 0.4 * t69;
+        let t81 = t72 - t77 * t77;
+        ::overact::guard::reach(t81, "leg1")?;
+        let t82 = ::overact::math::sqrt(t81);
+        ::overact::guard::leg(t82, 0.20079840636817814, "leg1")?;
+        let minus_s_arm_leg1 = t73 * (t7 * t77 + t79 * t82);
+        let t88 = 2.0 / t82;
+        let garm_vz_leg1 = (pose[2] - 0.2 * minus_s_arm_leg1) * t88;
+        let garm_vy_leg1 = pose[1] * t88;
+        let t93 = garm_vz_leg1 * garm_vy_leg2 - garm_vy_leg1 * garm_vz_leg2;
+        let garm_vx_leg2 = pose[0] * t23;
+        let c_arm_leg1 = t73 * (t79 * t77 - t7 * t82);
+        let garm_vx_leg1 = (t68 - (0.2 + 0.2 * c_arm_leg1)) * t88;
+        let t106 = garm_vz_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vz_leg2;
+        let t111 = garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2;
+        let t113 = garm_vx_leg3 * t93 - garm_vy_leg3 * t106 + garm_vz_leg3 * t111;
+        ::overact::guard::platform(t113, 91.80843988045552, "kept actuators")?;
+        ::overact::guard::platform(t113, 91.80843988045552, "kept actuators")?;
+        ::overact::guard::platform(t113, 91.80843988045552, "kept actuators")?;
+        let t114 = 1.0 / t113;
+        let t122 = (garm_vz_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vz_leg3) * t114
             * acceleration[0]
-            + (minus_garm_vx_leg2 * garm_vz_leg3 - minus_garm_vz_leg2 * garm_vx_leg3)
-                * t65 * acceleration[1];
-        let t91 = (minus_garm_vz_leg1 * garm_vy_leg3 + garm_vy_leg1 * garm_vz_leg3) * t65
-            * acceleration[0]
-            - (minus_garm_vz_leg1 * garm_vx_leg3 + garm_vx_leg1 * garm_vz_leg3) * t65
+            - (garm_vz_leg2 * garm_vx_leg3 - garm_vx_leg2 * garm_vz_leg3) * t114
                 * acceleration[1];
+        let t127 = acceleration[2] + 9.81;
+        let t140 = (garm_vz_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vz_leg3) * t114
+            * acceleration[1]
+            - (garm_vz_leg1 * garm_vy_leg3 - garm_vy_leg1 * garm_vz_leg3) * t114
+                * acceleration[0];
         Ok([
             [
-                (garm_vy_leg2 * garm_vx_leg3 + minus_garm_vx_leg2 * garm_vy_leg3) * t65
-                    * t67 - t79,
+                t122
+                    + (garm_vy_leg2 * garm_vx_leg3 - garm_vx_leg2 * garm_vy_leg3) * t114
+                        * t127,
             ],
             [
-                t91
-                    - (garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3) * t65
-                        * t67,
+                t140
+                    - (garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3) * t114
+                        * t127,
             ],
-            [t51 * t65 * acceleration[0] - t56 * t65 * acceleration[1] - t62 * t65 * t67],
+            [
+                t93 * t114 * acceleration[0] - t106 * t114 * acceleration[1]
+                    + t111 * t114 * t127,
+            ],
         ])
     }
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
@@ -6307,7 +9131,7 @@ impl Delta4 {
     ///
     /// Output: 3.
     ///
-    /// 61 operations (17 additions, 40 multiplications, 4 divisions), 0 square roots, 12 trigonometric pairs, 0 signs, 82 intermediates.
+    /// 145 operations (61 additions, 76 multiplications, 8 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 146 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6315,63 +9139,85 @@ impl Delta4 {
         pose: &[f64; 3],
         torques: &[f64; 4],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let t0 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t0);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        let t5 = c_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t8 = s_armcross_leg1 * c_rod_leg1;
-        let t11 = c_arm_leg1 * t8 - s_arm_leg1 * t5;
-        ::overact::guard::leg(t11, 0.9471622941895192, "leg1")?;
-        let t12 = 5.0 / t11;
-        let garm_vx_leg1 = t5 * t12;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t19 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t19);
-        let t22 = s_armcross_leg2 * c_rod_leg2;
-        let t24 = c_armcross_leg2 * c_rod_leg2;
-        let t26 = c_arm_leg2 * t22 - s_arm_leg2 * t24;
-        ::overact::guard::leg(t26, 0.9471622941895197, "leg2")?;
-        let t27 = 5.0 / t26;
-        let minus_garm_vx_leg2 = s_rod_leg2 * t27;
-        let t31 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t31);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t36 = c_armcross_leg3 * c_rod_leg3;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t40 = s_armcross_leg3 * c_rod_leg3;
-        let t42 = s_arm_leg3 * t36 - c_arm_leg3 * t40;
-        ::overact::guard::leg(t42, 0.9471622941895192, "leg3")?;
-        let t43 = 5.0 / t42;
-        let garm_vx_leg3 = t36 * t43;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let t51 = joints[9] + joints[10];
-        let (s_armcross_leg4, c_armcross_leg4) = ::overact::math::sin_cos(t51);
-        let t54 = c_armcross_leg4 * c_rod_leg4;
-        let t56 = s_armcross_leg4 * c_rod_leg4;
-        let t58 = s_arm_leg4 * t54 - c_arm_leg4 * t56;
-        ::overact::guard::leg(t58, 0.9471622941895192, "leg4")?;
-        let t59 = 5.0 / t58;
-        let minus_garm_vx_leg4 = s_rod_leg4 * t59;
-        let garm_vy_leg1 = s_rod_leg1 * t12;
-        let garm_vy_leg2 = t24 * t27;
-        let garm_vy_leg3 = s_rod_leg3 * t43;
-        let garm_vy_leg4 = t54 * t59;
-        let garm_vz_leg3 = t40 * t43;
-        let minus_garm_vz_leg1 = t8 * t12;
-        let minus_garm_vz_leg2 = t22 * t27;
-        let garm_vz_leg4 = t56 * t59;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * t1;
+        let t8 = pose[1] * pose[1];
+        let t12 = t2 + t8 + t3 - 0.2809 + 0.04;
+        let t14 = 0.4 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.20079840636817814, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t24 = 2.0 / t17;
+        let garm_vx_leg1 = (t0 - (0.2 + 0.2 * c_arm_leg1)) * t24;
+        let t27 = pose[1] + 0.05;
+        let t28 = t27 - 0.2;
+        let t29 = t28 * t28;
+        let t31 = 0.16 * (t29 + t3);
+        let t32 = pose[0] * pose[0];
+        let t36 = t32 + t29 + t3 - 0.2809 + 0.04;
+        let t38 = t31 - t36 * t36;
+        ::overact::guard::reach(t38, "leg2")?;
+        let t39 = ::overact::math::sqrt(t38);
+        ::overact::guard::leg(t39, 0.20079840636817814, "leg2")?;
+        let t40 = 2.0 / t39;
+        let garm_vx_leg2 = pose[0] * t40;
+        let t44 = pose[0] - 0.05;
+        let t45 = t44 + 0.2;
+        let t46 = t45 * t45;
+        let t48 = 0.16 * (t46 + t3);
+        let t49 = 1.0 / t48;
+        let t50 = 0.4 * t45;
+        let t54 = t46 + t8 + t3 - 0.2809 + 0.04;
+        let t57 = t48 - t54 * t54;
+        ::overact::guard::reach(t57, "leg3")?;
+        let t58 = ::overact::math::sqrt(t57);
+        ::overact::guard::leg(t58, 0.20079840636817814, "leg3")?;
+        let minus_c_arm_leg3 = t49 * (t50 * t54 + t14 * t58);
+        let t65 = 2.0 / t58;
+        let garm_vx_leg3 = (t44 - (0.2 * minus_c_arm_leg3 - 0.2)) * t65;
+        let t69 = pose[1] - 0.05;
+        let t70 = t69 + 0.2;
+        let t71 = t70 * t70;
+        let t73 = 0.16 * (t71 + t3);
+        let t77 = t32 + t71 + t3 - 0.2809 + 0.04;
+        let t79 = t73 - t77 * t77;
+        ::overact::guard::reach(t79, "leg4")?;
+        let t80 = ::overact::math::sqrt(t79);
+        ::overact::guard::leg(t80, 0.20079840636817814, "leg4")?;
+        let t81 = 2.0 / t80;
+        let garm_vx_leg4 = pose[0] * t81;
+        let garm_vy_leg1 = pose[1] * t24;
+        let t87 = 1.0 / t31;
+        let t88 = 0.4 * t28;
+        let c_arm_leg2 = t87 * (t88 * t36 - t14 * t39);
+        let garm_vy_leg2 = (t27 - (0.2 + 0.2 * c_arm_leg2)) * t40;
+        let garm_vy_leg3 = pose[1] * t65;
+        let t102 = 1.0 / t73;
+        let t103 = 0.4 * t70;
+        let minus_c_arm_leg4 = t102 * (t103 * t77 + t14 * t80);
+        let garm_vy_leg4 = (t69 - (0.2 * minus_c_arm_leg4 - 0.2)) * t81;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let garm_vz_leg1 = (pose[2] - 0.2 * minus_s_arm_leg1) * t24;
+        let minus_s_arm_leg2 = t87 * (t14 * t36 + t88 * t39);
+        let garm_vz_leg2 = (pose[2] - 0.2 * minus_s_arm_leg2) * t40;
+        let s_arm_leg3 = t49 * (t50 * t58 - t14 * t54);
+        let garm_vz_leg3 = (pose[2] + 0.2 * s_arm_leg3) * t65;
+        let s_arm_leg4 = t102 * (t103 * t80 - t14 * t77);
+        let garm_vz_leg4 = (pose[2] + 0.2 * s_arm_leg4) * t81;
         Ok([
-            garm_vx_leg1 * torques[0] - minus_garm_vx_leg2 * torques[1]
-                + garm_vx_leg3 * torques[2] - minus_garm_vx_leg4 * torques[3],
+            garm_vx_leg1 * torques[0] + garm_vx_leg2 * torques[1]
+                + garm_vx_leg3 * torques[2] + garm_vx_leg4 * torques[3],
             garm_vy_leg1 * torques[0] + garm_vy_leg2 * torques[1]
                 + garm_vy_leg3 * torques[2] + garm_vy_leg4 * torques[3],
-            garm_vz_leg3 * torques[2]
-                - (minus_garm_vz_leg1 * torques[0] + minus_garm_vz_leg2 * torques[1])
-                + garm_vz_leg4 * torques[3],
+            garm_vz_leg1 * torques[0] + garm_vz_leg2 * torques[1]
+                + garm_vz_leg3 * torques[2] + garm_vz_leg4 * torques[3],
         ])
     }
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
@@ -6382,7 +9228,7 @@ impl Delta4 {
     ///
     /// Output: 3.
     ///
-    /// 103 operations (28 additions, 70 multiplications, 5 divisions), 0 square roots, 12 trigonometric pairs, 0 signs, 124 intermediates.
+    /// 187 operations (72 additions, 106 multiplications, 9 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 188 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6390,92 +9236,112 @@ impl Delta4 {
         pose: &[f64; 3],
         torques: &[f64; 4],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let t4 = joints[9] + joints[10];
-        let (s_armcross_leg4, c_armcross_leg4) = ::overact::math::sin_cos(t4);
-        let t7 = c_armcross_leg4 * c_rod_leg4;
-        let t9 = s_armcross_leg4 * c_rod_leg4;
-        let t11 = s_arm_leg4 * t7 - c_arm_leg4 * t9;
-        ::overact::guard::leg(t11, 0.9471622941895192, "leg4")?;
-        let t12 = 5.0 / t11;
-        let minus_garm_vx_leg4 = s_rod_leg4 * t12;
-        let t14 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t14);
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t19 = s_armcross_leg2 * c_rod_leg2;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t23 = c_armcross_leg2 * c_rod_leg2;
-        let t25 = c_arm_leg2 * t19 - s_arm_leg2 * t23;
-        ::overact::guard::leg(t25, 0.9471622941895197, "leg2")?;
-        let t26 = 5.0 / t25;
-        let minus_garm_vz_leg2 = t19 * t26;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t32 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t32);
-        let t35 = c_armcross_leg3 * c_rod_leg3;
-        let t37 = s_armcross_leg3 * c_rod_leg3;
-        let t39 = s_arm_leg3 * t35 - c_arm_leg3 * t37;
-        ::overact::guard::leg(t39, 0.9471622941895192, "leg3")?;
-        let t40 = 5.0 / t39;
-        let garm_vy_leg3 = s_rod_leg3 * t40;
-        let garm_vy_leg2 = t23 * t26;
-        let garm_vz_leg3 = t37 * t40;
-        let garm_vx_leg3 = t35 * t40;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t52 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t52);
-        let t55 = s_armcross_leg1 * c_rod_leg1;
-        let t57 = c_armcross_leg1 * c_rod_leg1;
-        let t59 = c_arm_leg1 * t55 - s_arm_leg1 * t57;
-        ::overact::guard::leg(t59, 0.9471622941895192, "leg1")?;
-        let t60 = 5.0 / t59;
-        let garm_vy_leg1 = s_rod_leg1 * t60;
-        let minus_garm_vz_leg1 = t55 * t60;
-        let t65 = garm_vy_leg1 * minus_garm_vz_leg2 - minus_garm_vz_leg1 * garm_vy_leg2;
-        let minus_garm_vx_leg2 = s_rod_leg2 * t26;
-        let garm_vx_leg1 = t57 * t60;
-        let t71 = minus_garm_vz_leg1 * minus_garm_vx_leg2
-            + garm_vx_leg1 * minus_garm_vz_leg2;
-        let t76 = garm_vy_leg1 * minus_garm_vx_leg2 + garm_vx_leg1 * garm_vy_leg2;
-        let t78 = garm_vx_leg3 * t65 - garm_vy_leg3 * t71 - garm_vz_leg3 * t76;
-        ::overact::guard::platform(t78, 91.80843988045547, "kept actuators")?;
-        ::overact::guard::platform(t78, 91.80843988045547, "kept actuators")?;
-        ::overact::guard::platform(t78, 91.80843988045547, "kept actuators")?;
-        let t79 = 1.0 / t78;
-        let garm_vy_leg4 = t7 * t12;
-        let t88 = minus_garm_vx_leg4
-            * ((minus_garm_vz_leg2 * garm_vy_leg3 + garm_vy_leg2 * garm_vz_leg3) * t79)
+        let t0 = pose[1] - 0.05;
+        let t1 = t0 + 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = pose[0] * pose[0];
+        let t10 = t6 + t2 + t3 - 0.2809 + 0.04;
+        let t12 = t5 - t10 * t10;
+        ::overact::guard::reach(t12, "leg4")?;
+        let t13 = ::overact::math::sqrt(t12);
+        ::overact::guard::leg(t13, 0.20079840636817814, "leg4")?;
+        let t14 = 2.0 / t13;
+        let garm_vx_leg4 = pose[0] * t14;
+        let t16 = pose[1] + 0.05;
+        let t17 = t16 - 0.2;
+        let t18 = t17 * t17;
+        let t20 = 0.16 * (t18 + t3);
+        let t21 = 1.0 / t20;
+        let t22 = 0.4 * pose[2];
+        let t26 = t6 + t18 + t3 - 0.2809 + 0.04;
+        let t28 = 0.4 * t17;
+        let t30 = t20 - t26 * t26;
+        ::overact::guard::reach(t30, "leg2")?;
+        let t31 = ::overact::math::sqrt(t30);
+        ::overact::guard::leg(t31, 0.20079840636817814, "leg2")?;
+        let minus_s_arm_leg2 = t21 * (t22 * t26 + t28 * t31);
+        let t37 = 2.0 / t31;
+        let garm_vz_leg2 = (pose[2] - 0.2 * minus_s_arm_leg2) * t37;
+        let t39 = pose[0] - 0.05;
+        let t40 = t39 + 0.2;
+        let t41 = t40 * t40;
+        let t43 = 0.16 * (t41 + t3);
+        let t44 = pose[1] * pose[1];
+        let t48 = t41 + t44 + t3 - 0.2809 + 0.04;
+        let t50 = t43 - t48 * t48;
+        ::overact::guard::reach(t50, "leg3")?;
+        let t51 = ::overact::math::sqrt(t50);
+        ::overact::guard::leg(t51, 0.20079840636817814, "leg3")?;
+        let t52 = 2.0 / t51;
+        let garm_vy_leg3 = pose[1] * t52;
+        let c_arm_leg2 = t21 * (t28 * t26 - t22 * t31);
+        let garm_vy_leg2 = (t16 - (0.2 + 0.2 * c_arm_leg2)) * t37;
+        let t63 = 1.0 / t43;
+        let t64 = 0.4 * t40;
+        let s_arm_leg3 = t63 * (t64 * t51 - t22 * t48);
+        let garm_vz_leg3 = (pose[2] + 0.2 * s_arm_leg3) * t52;
+        let minus_c_arm_leg3 = t63 * (t64 * t48 + t22 * t51);
+        let garm_vx_leg3 = (t39 - (0.2 * minus_c_arm_leg3 - 0.2)) * t52;
+        let t82 = pose[0] + 0.05;
+        let t83 = t82 - 0.2;
+        let t84 = t83 * t83;
+        let t86 = 0.16 * (t84 + t3);
+        let t87 = 1.0 / t86;
+        let t91 = t84 + t44 + t3 - 0.2809 + 0.04;
+        let t93 = 0.4 * t83;
+        let t95 = t86 - t91 * t91;
+        ::overact::guard::reach(t95, "leg1")?;
+        let t96 = ::overact::math::sqrt(t95);
+        ::overact::guard::leg(t96, 0.20079840636817814, "leg1")?;
+        let minus_s_arm_leg1 = t87 * (t22 * t91 + t93 * t96);
+        let t102 = 2.0 / t96;
+        let garm_vz_leg1 = (pose[2] - 0.2 * minus_s_arm_leg1) * t102;
+        let garm_vy_leg1 = pose[1] * t102;
+        let t107 = garm_vz_leg1 * garm_vy_leg2 - garm_vy_leg1 * garm_vz_leg2;
+        let garm_vx_leg2 = pose[0] * t37;
+        let c_arm_leg1 = t87 * (t93 * t91 - t22 * t96);
+        let garm_vx_leg1 = (t82 - (0.2 + 0.2 * c_arm_leg1)) * t102;
+        let t120 = garm_vz_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vz_leg2;
+        let t125 = garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2;
+        let t127 = garm_vx_leg3 * t107 - garm_vy_leg3 * t120 + garm_vz_leg3 * t125;
+        ::overact::guard::platform(t127, 91.80843988045552, "kept actuators")?;
+        ::overact::guard::platform(t127, 91.80843988045552, "kept actuators")?;
+        ::overact::guard::platform(t127, 91.80843988045552, "kept actuators")?;
+        let t128 = 1.0 / t127;
+        let t131 = 1.0 / t5;
+        let t132 = 0.4 * t1;
+        let minus_c_arm_leg4 = t131 * (t132 * t10 + t22 * t13);
+        let garm_vy_leg4 = (t0 - (0.2 * minus_c_arm_leg4 - 0.2)) * t14;
+        let t146 = garm_vx_leg4
+            * ((garm_vz_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vz_leg3) * t128)
             - garm_vy_leg4
-                * ((minus_garm_vx_leg2 * garm_vz_leg3
-                    - minus_garm_vz_leg2 * garm_vx_leg3) * t79);
-        let garm_vz_leg4 = t9 * t12;
-        let t108 = minus_garm_vx_leg4
-            * ((minus_garm_vz_leg1 * garm_vy_leg3 + garm_vy_leg1 * garm_vz_leg3) * t79)
-            + garm_vy_leg4
-                * ((minus_garm_vz_leg1 * garm_vx_leg3 + garm_vx_leg1 * garm_vz_leg3)
-                    * t79);
-        let t126 = torques[2]
-            - torques[3]
-                * (minus_garm_vx_leg4 * (t65 * t79) + garm_vy_leg4 * (t71 * t79)
-                    + garm_vz_leg4 * (t76 * t79));
+                * ((garm_vz_leg2 * garm_vx_leg3 - garm_vx_leg2 * garm_vz_leg3) * t128);
+        let s_arm_leg4 = t131 * (t132 * t13 - t22 * t10);
+        let garm_vz_leg4 = (pose[2] + 0.2 * s_arm_leg4) * t14;
+        let t172 = garm_vy_leg4
+            * ((garm_vz_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vz_leg3) * t128)
+            - garm_vx_leg4
+                * ((garm_vz_leg1 * garm_vy_leg3 - garm_vy_leg1 * garm_vz_leg3) * t128);
+        let t190 = torques[2]
+            + torques[3]
+                * (garm_vx_leg4 * (t107 * t128) - garm_vy_leg4 * (t120 * t128)
+                    + garm_vz_leg4 * (t125 * t128));
         Ok([
             torques[0]
                 + torques[3]
-                    * (t88
+                    * (t146
                         + garm_vz_leg4
                             * ((garm_vy_leg2 * garm_vx_leg3
-                                + minus_garm_vx_leg2 * garm_vy_leg3) * t79)),
+                                - garm_vx_leg2 * garm_vy_leg3) * t128)),
             torques[1]
-                - torques[3]
-                    * (t108
-                        + garm_vz_leg4
+                + torques[3]
+                    * (t172
+                        - garm_vz_leg4
                             * ((garm_vy_leg1 * garm_vx_leg3
-                                - garm_vx_leg1 * garm_vy_leg3) * t79)),
-            t126,
+                                - garm_vx_leg1 * garm_vy_leg3) * t128)),
+            t190,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -6488,7 +9354,7 @@ impl Delta4 {
     ///
     /// Output: 4.
     ///
-    /// 1000 operations (384 additions, 605 multiplications, 11 divisions), 0 square roots, 12 trigonometric pairs, 4 signs, 1024 intermediates.
+    /// 1084 operations (440 additions, 623 multiplications, 21 divisions), 6 square roots, 0 trigonometric pairs, 4 signs, 1090 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6498,8 +9364,522 @@ impl Delta4 {
         acceleration: &[f64; 3],
         parameters: &[f64; 70],
     ) -> Result<[f64; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::inverse_dynamics_from_joints(pose, joints, twist, acceleration, parameters)
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.2809 + 0.04;
+        let t14 = 0.4 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.20079840636817814, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t21 = 0.2 * c_arm_leg1;
+        let t23 = t0 - (0.2 + t21);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = t23 * t25;
+        let t27 = 0.4 * t24;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let s_rod_leg1 = 1.8867924528301887 * pose[1];
+        let t35 = 1.0 - 3.5599857600569598 * t8;
+        ::overact::guard::reach(t35, "leg1")?;
+        ::overact::guard::reach(t35, "leg3")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t35);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let t37 = 0.53 * c_rod_leg1;
+        let s_cross_leg1 = 2.5 * t17 / t37;
+        let t40 = 0.04 + t8;
+        let t42 = 0.2809 * t35;
+        let t44 = 0.212 * c_rod_leg1;
+        let c_cross_leg1 = (t10 - t40 - t42) / t44;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t49 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t27
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t49)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t49));
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t27;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t27;
+        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
+            - minus_gcross_vz_leg1 * twist[2];
+        let grod_vy_leg1 = 1.8867924528301887 * t49;
+        let rate_rod_leg1 = grod_vy_leg1 * twist[1];
+        let t69 = s_armcross_leg1 * rate_rod_leg1;
+        let t71 = pose[1] * (rate_cross_leg1 * t69);
+        let garm_vy_leg1 = pose[1] * t25;
+        let t76 = 0.2 * minus_s_arm_leg1;
+        let t77 = pose[2] - t76;
+        let garm_vz_leg1 = t77 * t25;
+        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
+            + garm_vz_leg1 * twist[2];
+        let t81 = rate_arm_leg1 * rate_arm_leg1;
+        let t84 = rate_cross_leg1 * rate_cross_leg1;
+        let t86 = c_armcross_leg1 * rate_rod_leg1;
+        let t88 = t69 * t69 + t84 + t86 * t86;
+        let t93 = acceleration[0] - (t71 - (t21 * t81 + t23 * t88) + t71);
+        let t95 = pose[1] * rate_cross_leg1;
+        let t99 = acceleration[1] - (rate_cross_leg1 * t95 - pose[1] * t88);
+        let t103 = pose[1] * (rate_cross_leg1 * t86);
+        let t109 = acceleration[2] - (t103 - (t76 * t81 + t77 * t88) + t103);
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t93 + garm_vy_leg1 * t99
+            + garm_vz_leg1 * t109;
+        let t113 = 9.81 * c_arm_leg1;
+        let t116 = 9.81 * minus_s_arm_leg1;
+        let t125 = parameters[0] * rate_dot_arm_leg1 - parameters[1] * t113
+            - parameters[2] * t116 + parameters[3] * rate_dot_arm_leg1
+            + parameters[4] * rate_arm_leg1
+            + ::overact::math::signed(parameters[5], rate_arm_leg1) + parameters[6];
+        let t127 = 1.8867924528301887 * t95;
+        let t128 = c_rod_leg1 * rate_cross_leg1;
+        let t129 = t127 * t128;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t99;
+        let t131 = t129 - rate_dot_rod_leg1;
+        let t133 = t128 * t128;
+        let t134 = rate_rod_leg1 * rate_rod_leg1;
+        let rate_dot_cross_leg1 = gcross_vy_leg1 * t99 - minus_gcross_vx_leg1 * t93
+            - minus_gcross_vz_leg1 * t109;
+        let t143 = c_rod_leg1 * rate_dot_cross_leg1;
+        let t147 = t116 - 0.2 * t81;
+        let t150 = 0.2 * rate_dot_arm_leg1 - t113;
+        let t152 = c_cross_leg1 * t147 + s_cross_leg1 * t150;
+        let t153 = c_rod_leg1 * t152;
+        let t156 = 0.9433962264150944 * t17
+            * (parameters[14] * t131 - parameters[13] * (t133 + t134)
+                + parameters[15] * t143 + parameters[16] * t153);
+        let t159 = t129 + rate_dot_rod_leg1;
+        let t162 = 3.5599857600569598 * (t95 * t95);
+        let t166 = s_rod_leg1 * rate_dot_cross_leg1;
+        let t169 = s_rod_leg1 * t152;
+        let t172 = 0.37735849056603776 * (pose[1] * s_cross_leg1)
+            * (parameters[13] * t159 - parameters[14] * (t162 + t134)
+                - parameters[15] * t166 - parameters[16] * t169);
+        let t175 = rate_rod_leg1 * t127;
+        let t176 = t143 - t175;
+        let t177 = t175 - t176;
+        let t179 = rate_rod_leg1 * t128;
+        let t180 = t166 + t179;
+        let t181 = t179 + t180;
+        let t188 = c_cross_leg1 * t150 - s_cross_leg1 * t147;
+        let t192 = t156 - t172
+            - 0.2 * c_cross_leg1
+                * (parameters[13] * t177 + parameters[14] * t181 - parameters[15] * t84
+                    - parameters[16] * t188);
+        let t193 = t125 + t192;
+        let t204 = parameters[7] * t180 - parameters[8] * t177 + parameters[9] * t159
+            - parameters[10] * t179 + parameters[11] * (t133 - t134);
+        let t221 = parameters[7] * t175 + parameters[8] * t181
+            + parameters[9] * (t134 - t162) + parameters[10] * t176
+            - parameters[11] * t131;
+        let t229 = s_rod_leg1
+            * (t204 + parameters[12] * t179 - parameters[14] * t188
+                + parameters[15] * t169)
+            + c_rod_leg1
+                * (t221 - parameters[12] * t175 + parameters[13] * t188
+                    + parameters[15] * t153);
+        let t232 = pose[1] + 0.05;
+        let t233 = t232 - 0.2;
+        let t234 = t233 * t233;
+        let t236 = 0.16 * (t234 + t3);
+        let t237 = pose[0] * pose[0];
+        let t239 = t237 + t234 + t3;
+        let t241 = t239 - 0.2809 + 0.04;
+        let t243 = t236 - t241 * t241;
+        ::overact::guard::reach(t243, "leg2")?;
+        let t244 = ::overact::math::sqrt(t243);
+        ::overact::guard::leg(t244, 0.20079840636817814, "leg2")?;
+        let t245 = 1.0 / t244;
+        let t246 = 2.0 * t245;
+        let garm_vx_leg2 = pose[0] * t246;
+        let t248 = 0.4 * t245;
+        let t249 = 1.0 / t236;
+        let t251 = 0.4 * t233;
+        let minus_s_arm_leg2 = t249 * (t14 * t241 + t251 * t244);
+        let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
+        let c_arm_leg2 = t249 * (t251 * t241 - t14 * t244);
+        let t262 = 1.0 - 3.5599857600569598 * t237;
+        ::overact::guard::reach(t262, "leg2")?;
+        ::overact::guard::reach(t262, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t262);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t264 = 0.53 * c_rod_leg2;
+        let s_cross_leg2 = 2.5 * t244 / t264;
+        let t267 = 0.04 + t237;
+        let t269 = 0.2809 * t262;
+        let t271 = 0.212 * c_rod_leg2;
+        let c_cross_leg2 = (t239 - t267 - t269) / t271;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t276 = 1.0 / c_rod_leg2;
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let gcross_vx_leg2 = t248
+            * (minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t276)
+                - c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t276));
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t248;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t248;
+        let rate_cross_leg2 = gcross_vx_leg2 * twist[0] - minus_gcross_vy_leg2 * twist[1]
+            - minus_gcross_vz_leg2 * twist[2];
+        let t294 = pose[0] * rate_cross_leg2;
+        let t296 = rate_cross_leg2 * rate_cross_leg2;
+        let minus_grod_vx_leg2 = 1.8867924528301887 * t276;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * twist[0];
+        let t299 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t302 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t304 = t296 + t299 * t299 + t302 * t302;
+        let t307 = acceleration[0] - (rate_cross_leg2 * t294 - pose[0] * t304);
+        let t309 = 0.2 * c_arm_leg2;
+        let t311 = t232 - (0.2 + t309);
+        let garm_vy_leg2 = t311 * t246;
+        let t314 = pose[0] * (rate_cross_leg2 * t299);
+        let t318 = 0.2 * minus_s_arm_leg2;
+        let t319 = pose[2] - t318;
+        let garm_vz_leg2 = t319 * t246;
+        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
+            + garm_vz_leg2 * twist[2];
+        let t323 = rate_arm_leg2 * rate_arm_leg2;
+        let t329 = acceleration[1] - (t314 - (t309 * t323 + t311 * t304) + t314);
+        let t333 = pose[0] * (rate_cross_leg2 * t302);
+        let t339 = acceleration[2] - (t333 - (t318 * t323 + t319 * t304) + t333);
+        let rate_dot_arm_leg2 = garm_vx_leg2 * t307 + garm_vy_leg2 * t329
+            + garm_vz_leg2 * t339;
+        let t343 = 9.81 * c_arm_leg2;
+        let t346 = 9.81 * minus_s_arm_leg2;
+        let t355 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t343
+            - parameters[19] * t346 + parameters[20] * rate_dot_arm_leg2
+            + parameters[21] * rate_arm_leg2
+            + ::overact::math::signed(parameters[22], rate_arm_leg2) + parameters[23];
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t307;
+        let t358 = 1.8867924528301887 * t294;
+        let t359 = c_rod_leg2 * rate_cross_leg2;
+        let t360 = t358 * t359;
+        let t361 = minus_rate_dot_rod_leg2 - t360;
+        let t363 = t359 * t359;
+        let t364 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let rate_dot_cross_leg2 = gcross_vx_leg2 * t307 - minus_gcross_vy_leg2 * t329
+            - minus_gcross_vz_leg2 * t339;
+        let t373 = c_rod_leg2 * rate_dot_cross_leg2;
+        let t377 = t346 - 0.2 * t323;
+        let t380 = 0.2 * rate_dot_arm_leg2 - t343;
+        let t382 = c_cross_leg2 * t377 + s_cross_leg2 * t380;
+        let t383 = c_rod_leg2 * t382;
+        let t386 = 0.9433962264150944 * t244
+            * (parameters[31] * t361 - parameters[30] * (t363 + t364)
+                + parameters[32] * t373 + parameters[33] * t383);
+        let t389 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t391 = t360 + minus_rate_dot_rod_leg2;
+        let t394 = 3.5599857600569598 * (t294 * t294);
+        let t399 = minus_s_rod_leg2 * t382;
+        let t402 = 0.37735849056603776 * (pose[0] * s_cross_leg2)
+            * (parameters[32] * t389
+                - (parameters[30] * t391 + parameters[31] * (t394 + t364))
+                + parameters[33] * t399);
+        let t405 = minus_rate_rod_leg2 * t358;
+        let t406 = t373 - t405;
+        let t407 = t405 - t406;
+        let t409 = minus_rate_rod_leg2 * t359;
+        let t410 = t389 + t409;
+        let t411 = t409 + t410;
+        let t418 = c_cross_leg2 * t380 - s_cross_leg2 * t377;
+        let t422 = t386 + t402
+            - 0.2 * c_cross_leg2
+                * (parameters[30] * t407 - parameters[31] * t411 - parameters[32] * t296
+                    - parameters[33] * t418);
+        let t423 = t355 + t422;
+        let t434 = parameters[24] * t405 - parameters[25] * t411
+            + parameters[26] * (t364 - t394) + parameters[27] * t406
+            - parameters[28] * t361;
+        let t451 = parameters[27] * t409
+            - (parameters[24] * t410 + parameters[25] * t407 + parameters[26] * t391)
+            + parameters[28] * (t363 - t364);
+        let t459 = c_rod_leg2
+            * (t434 - parameters[29] * t405 + parameters[30] * t418
+                + parameters[32] * t383)
+            - minus_s_rod_leg2
+                * (t451 - parameters[29] * t409 - parameters[31] * t418
+                    - parameters[32] * t399);
+        let t471 = parameters[24] * t360 + parameters[25] * (t394 - t363)
+            - parameters[26] * t389 - parameters[27] * t360 + parameters[28] * t373;
+        let t479 = garm_vx_leg2 * t423 + gcross_vx_leg2 * t459
+            - minus_grod_vx_leg2
+                * (t471 - parameters[29] * minus_rate_dot_rod_leg2
+                    + parameters[30] * t399 - parameters[31] * t383);
+        let t481 = pose[0] - 0.05;
+        let t482 = t481 + 0.2;
+        let t483 = t482 * t482;
+        let t485 = 0.16 * (t483 + t3);
+        let t486 = 1.0 / t485;
+        let t487 = 0.4 * t482;
+        let t489 = t483 + t8 + t3;
+        let t491 = t489 - 0.2809 + 0.04;
+        let t494 = t485 - t491 * t491;
+        ::overact::guard::reach(t494, "leg3")?;
+        let t495 = ::overact::math::sqrt(t494);
+        ::overact::guard::leg(t495, 0.20079840636817814, "leg3")?;
+        let minus_c_arm_leg3 = t486 * (t487 * t491 + t14 * t495);
+        let t499 = 0.2 * minus_c_arm_leg3;
+        let t501 = t481 - (t499 - 0.2);
+        let t502 = 1.0 / t495;
+        let t503 = 2.0 * t502;
+        let garm_vx_leg3 = t501 * t503;
+        let garm_vy_leg3 = pose[1] * t503;
+        let s_arm_leg3 = t486 * (t487 * t495 - t14 * t491);
+        let t513 = 0.2 * s_arm_leg3;
+        let t514 = pose[2] + t513;
+        let garm_vz_leg3 = t514 * t503;
+        let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
+            + garm_vz_leg3 * twist[2];
+        let t518 = rate_arm_leg3 * rate_arm_leg3;
+        let c_cross_leg3 = (t489 - t40 - t42) / t44;
+        let s_cross_leg3 = 2.5 * t495 / t37;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t528 = s_armcross_leg3 * rate_rod_leg1;
+        let t530 = 0.4 * t502;
+        let gcross_vz_leg3 = s_arm_leg3 * t530;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t530;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t530
+            * (s_arm_leg3 * (t49 * (s_rod_leg1 * s_armcross_leg3))
+                + minus_c_arm_leg3 * (t49 * (s_rod_leg1 * minus_c_armcross_leg3)));
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
+        let t549 = rate_cross_leg3 * rate_cross_leg3;
+        let t551 = minus_c_armcross_leg3 * rate_rod_leg1;
+        let t553 = t528 * t528 + t549 + t551 * t551;
+        let t557 = pose[1] * (rate_cross_leg3 * t528);
+        let t560 = acceleration[0] + t499 * t518 + t501 * t553 + t557 + t557;
+        let t568 = pose[1] * (rate_cross_leg3 * t551);
+        let t571 = acceleration[2] - (t513 * t518 - t514 * t553 - t568 - t568);
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t560 + garm_vy_leg3 * t99
+            + garm_vz_leg3 * t571;
+        let t575 = 9.81 * minus_c_arm_leg3;
+        let t578 = 9.81 * s_arm_leg3;
+        let t587 = parameters[34] * rate_dot_arm_leg3 + parameters[35] * t575
+            + parameters[36] * t578 + parameters[37] * rate_dot_arm_leg3
+            + parameters[38] * rate_arm_leg3
+            + ::overact::math::signed(parameters[39], rate_arm_leg3) + parameters[40];
+        let t589 = pose[1] * rate_cross_leg3;
+        let t590 = 1.8867924528301887 * t589;
+        let t591 = c_rod_leg1 * rate_cross_leg3;
+        let t592 = t590 * t591;
+        let t593 = rate_dot_rod_leg1 - t592;
+        let t595 = t591 * t591;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * t571
+            - (minus_gcross_vx_leg3 * t560 + minus_gcross_vy_leg3 * t99);
+        let t604 = c_rod_leg1 * rate_dot_cross_leg3;
+        let t608 = t575 + 0.2 * rate_dot_arm_leg3;
+        let t611 = t578 + 0.2 * t518;
+        let t613 = s_cross_leg3 * t608 - c_cross_leg3 * t611;
+        let t614 = c_rod_leg1 * t613;
+        let t617 = 0.9433962264150944 * t495
+            * (parameters[48] * t593 - parameters[47] * (t595 + t134)
+                + parameters[49] * t604 + parameters[50] * t614);
+        let t620 = s_rod_leg1 * rate_dot_cross_leg3;
+        let t622 = t592 + rate_dot_rod_leg1;
+        let t625 = 3.5599857600569598 * (t589 * t589);
+        let t630 = s_rod_leg1 * t613;
+        let t633 = 0.37735849056603776 * (pose[1] * s_cross_leg3)
+            * (parameters[49] * t620
+                - (parameters[47] * t622 + parameters[48] * (t625 + t134))
+                + parameters[50] * t630);
+        let t636 = rate_rod_leg1 * t590;
+        let t637 = t604 - t636;
+        let t638 = t636 - t637;
+        let t640 = rate_rod_leg1 * t591;
+        let t641 = t620 + t640;
+        let t642 = t640 + t641;
+        let t649 = s_cross_leg3 * t611 + c_cross_leg3 * t608;
+        let t653 = t617 + t633
+            - 0.2 * c_cross_leg3
+                * (parameters[47] * t638 - parameters[48] * t642 - parameters[49] * t549
+                    - parameters[50] * t649);
+        let t654 = t587 + t653;
+        let t665 = parameters[41] * t636 - parameters[42] * t642
+            + parameters[43] * (t134 - t625) + parameters[44] * t637
+            - parameters[45] * t593;
+        let t682 = parameters[44] * t640
+            - (parameters[41] * t641 + parameters[42] * t638 + parameters[43] * t622)
+            + parameters[45] * (t595 - t134);
+        let t690 = c_rod_leg1
+            * (t665 - parameters[46] * t636 + parameters[47] * t649
+                + parameters[49] * t614)
+            - s_rod_leg1
+                * (t682 - parameters[46] * t640 - parameters[48] * t649
+                    - parameters[49] * t630);
+        let t694 = pose[1] - 0.05;
+        let t695 = t694 + 0.2;
+        let t696 = t695 * t695;
+        let t698 = 0.16 * (t696 + t3);
+        let t700 = t237 + t696 + t3;
+        let t702 = t700 - 0.2809 + 0.04;
+        let t704 = t698 - t702 * t702;
+        ::overact::guard::reach(t704, "leg4")?;
+        let t705 = ::overact::math::sqrt(t704);
+        ::overact::guard::leg(t705, 0.20079840636817814, "leg4")?;
+        let t706 = 1.0 / t705;
+        let t707 = 2.0 * t706;
+        let garm_vx_leg4 = pose[0] * t707;
+        let t710 = 1.0 / t698;
+        let t711 = 0.4 * t695;
+        let minus_c_arm_leg4 = t710 * (t711 * t702 + t14 * t705);
+        let t716 = 0.2 * minus_c_arm_leg4;
+        let t718 = t694 - (t716 - 0.2);
+        let garm_vy_leg4 = t718 * t707;
+        let s_arm_leg4 = t710 * (t711 * t705 - t14 * t702);
+        let t727 = 0.2 * s_arm_leg4;
+        let t728 = pose[2] + t727;
+        let garm_vz_leg4 = t728 * t707;
+        let rate_arm_leg4 = garm_vx_leg4 * twist[0] + garm_vy_leg4 * twist[1]
+            + garm_vz_leg4 * twist[2];
+        let t732 = rate_arm_leg4 * rate_arm_leg4;
+        let t734 = 0.4 * t706;
+        let gcross_vz_leg4 = s_arm_leg4 * t734;
+        let c_cross_leg4 = (t700 - t267 - t269) / t271;
+        let s_cross_leg4 = 2.5 * t705 / t264;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t734
+            * (s_arm_leg4 * (t276 * (minus_s_rod_leg2 * s_armcross_leg4))
+                + minus_c_arm_leg4
+                    * (t276 * (minus_s_rod_leg2 * minus_c_armcross_leg4)));
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t734;
+        let rate_cross_leg4 = gcross_vz_leg4 * twist[2]
+            - (minus_gcross_vx_leg4 * twist[0] + minus_gcross_vy_leg4 * twist[1]);
+        let t761 = rate_cross_leg4 * rate_cross_leg4;
+        let t762 = s_armcross_leg4 * minus_rate_rod_leg2;
+        let t765 = minus_c_armcross_leg4 * minus_rate_rod_leg2;
+        let t767 = t761 + t762 * t762 + t765 * t765;
+        let t771 = pose[0] * (rate_cross_leg4 * t762);
+        let t774 = acceleration[1] + t716 * t732 + t718 * t767 + t771 + t771;
+        let t781 = pose[0] * (rate_cross_leg4 * t765);
+        let t784 = acceleration[2] - (t727 * t732 - t728 * t767 - t781 - t781);
+        let rate_dot_arm_leg4 = garm_vx_leg4 * t307 + garm_vy_leg4 * t774
+            + garm_vz_leg4 * t784;
+        let t788 = 9.81 * minus_c_arm_leg4;
+        let t791 = 9.81 * s_arm_leg4;
+        let t800 = parameters[51] * rate_dot_arm_leg4 + parameters[52] * t788
+            + parameters[53] * t791 + parameters[54] * rate_dot_arm_leg4
+            + parameters[55] * rate_arm_leg4
+            + ::overact::math::signed(parameters[56], rate_arm_leg4) + parameters[57];
+        let t802 = pose[0] * rate_cross_leg4;
+        let t803 = 1.8867924528301887 * t802;
+        let t804 = c_rod_leg2 * rate_cross_leg4;
+        let t805 = t803 * t804;
+        let t806 = t805 - minus_rate_dot_rod_leg2;
+        let t808 = t804 * t804;
+        let rate_dot_cross_leg4 = gcross_vz_leg4 * t784
+            - (minus_gcross_vx_leg4 * t307 + minus_gcross_vy_leg4 * t774);
+        let t817 = c_rod_leg2 * rate_dot_cross_leg4;
+        let t821 = t788 + 0.2 * rate_dot_arm_leg4;
+        let t824 = t791 + 0.2 * t732;
+        let t826 = s_cross_leg4 * t821 - c_cross_leg4 * t824;
+        let t827 = c_rod_leg2 * t826;
+        let t830 = 0.9433962264150944 * t705
+            * (parameters[65] * t806 - parameters[64] * (t808 + t364)
+                + parameters[66] * t817 + parameters[67] * t827);
+        let t833 = t805 + minus_rate_dot_rod_leg2;
+        let t836 = 3.5599857600569598 * (t802 * t802);
+        let t840 = minus_s_rod_leg2 * rate_dot_cross_leg4;
+        let t843 = minus_s_rod_leg2 * t826;
+        let t846 = 0.37735849056603776 * (pose[0] * s_cross_leg4)
+            * (parameters[64] * t833 - parameters[65] * (t836 + t364)
+                - parameters[66] * t840 - parameters[67] * t843);
+        let t849 = minus_rate_rod_leg2 * t803;
+        let t850 = t817 - t849;
+        let t851 = t849 - t850;
+        let t853 = minus_rate_rod_leg2 * t804;
+        let t854 = t840 + t853;
+        let t855 = t853 + t854;
+        let t862 = s_cross_leg4 * t824 + c_cross_leg4 * t821;
+        let t866 = t830 - t846
+            - 0.2 * c_cross_leg4
+                * (parameters[64] * t851 + parameters[65] * t855 - parameters[66] * t761
+                    - parameters[67] * t862);
+        let t867 = t800 + t866;
+        let t878 = parameters[58] * t854 - parameters[59] * t851 + parameters[60] * t833
+            - parameters[61] * t853 + parameters[62] * (t808 - t364);
+        let t895 = parameters[58] * t849 + parameters[59] * t855
+            + parameters[60] * (t364 - t836) + parameters[61] * t850
+            - parameters[62] * t806;
+        let t903 = minus_s_rod_leg2
+            * (t878 + parameters[63] * t853 - parameters[65] * t862
+                + parameters[66] * t843)
+            + c_rod_leg2
+                * (t895 - parameters[63] * t849 + parameters[64] * t862
+                    + parameters[66] * t827);
+        let t915 = parameters[59] * (t836 - t808) - parameters[58] * t805
+            + parameters[60] * t840 + parameters[61] * t805 + parameters[62] * t817;
+        let t923 = garm_vx_leg4 * t867 - minus_gcross_vx_leg4 * t903
+            + minus_grod_vx_leg2
+                * (t915 + parameters[63] * minus_rate_dot_rod_leg2
+                    - parameters[64] * t843 - parameters[65] * t827);
+        let t928 = garm_vx_leg1 * t193 - minus_gcross_vx_leg1 * t229 + t479
+            + garm_vx_leg3 * t654 - minus_gcross_vx_leg3 * t690 + t923
+            + acceleration[0] * parameters[68] + acceleration[0] * parameters[69];
+        let t935 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t935, 22.533170865545554, "actuators")?;
+        let t936 = 1.0 / t935;
+        let t944 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3 + garm_vx_leg4 * garm_vy_leg4;
+        let t945 = t944 * t936;
+        let t954 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t944 * t945;
+        ::overact::guard::platform(t954, 22.533170865545554, "actuators")?;
+        let t955 = 1.0 / t954;
+        let t968 = parameters[8] * (t162 - t133) - parameters[7] * t129
+            + parameters[9] * t166 + parameters[10] * t129 + parameters[11] * t143;
+        let t976 = garm_vy_leg1 * t193 + gcross_vy_leg1 * t229
+            + grod_vy_leg1
+                * (t968 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t169
+                    - parameters[14] * t153);
+        let t993 = parameters[41] * t592 + parameters[42] * (t625 - t595)
+            - parameters[43] * t620 - parameters[44] * t592 + parameters[45] * t604;
+        let t1001 = garm_vy_leg3 * t654 - minus_gcross_vy_leg3 * t690
+            - grod_vy_leg1
+                * (t993 - parameters[46] * rate_dot_rod_leg1 + parameters[47] * t630
+                    - parameters[48] * t614);
+        let t1010 = t976 + garm_vy_leg2 * t423 - minus_gcross_vy_leg2 * t459 + t1001
+            + garm_vy_leg4 * t867 - minus_gcross_vy_leg4 * t903
+            + acceleration[1] * parameters[68] + acceleration[1] * parameters[69];
+        let t1012 = t1010 - t928 * t945;
+        let t1027 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3 + garm_vx_leg4 * garm_vz_leg4;
+        let t1028 = t1027 * t936;
+        let t1030 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 + garm_vy_leg4 * garm_vz_leg4 - t944 * t1028;
+        let t1031 = t1030 * t955;
+        let t1042 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 + garm_vz_leg4 * garm_vz_leg4 - t1027 * t1028
+            - t1030 * t1031;
+        ::overact::guard::platform(t1042, 66.40191223716288, "actuators")?;
+        let t1053 = garm_vz_leg1 * t193 - minus_gcross_vz_leg1 * t229
+            + garm_vz_leg2 * t423 - minus_gcross_vz_leg2 * t459 + garm_vz_leg3 * t654
+            + gcross_vz_leg3 * t690;
+        let t1058 = acceleration[2] + 9.81;
+        let t1064 = t1053 + garm_vz_leg4 * t867 + gcross_vz_leg4 * t903
+            + parameters[68] * t1058 + parameters[69] * t1058 - t928 * t1028;
+        let t1067 = (t1064 - t1031 * t1012) / t1042;
+        let t1069 = t955 * t1012 - t1031 * t1067;
+        let t1073 = t928 * t936 - t945 * t1069 - t1028 * t1067;
+        Ok([
+            garm_vx_leg1 * t1073 + garm_vy_leg1 * t1069 + garm_vz_leg1 * t1067,
+            garm_vx_leg2 * t1073 + garm_vy_leg2 * t1069 + garm_vz_leg2 * t1067,
+            garm_vx_leg3 * t1073 + garm_vy_leg3 * t1069 + garm_vz_leg3 * t1067,
+            garm_vx_leg4 * t1073 + garm_vy_leg4 * t1069 + garm_vz_leg4 * t1067,
+        ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -6993,7 +10373,7 @@ impl Delta4 {
     ///
     /// Output: 4.
     ///
-    /// 1097 operations (426 additions, 660 multiplications, 11 divisions), 0 square roots, 12 trigonometric pairs, 4 signs, 1121 intermediates.
+    /// 1181 operations (482 additions, 678 multiplications, 21 divisions), 6 square roots, 0 trigonometric pairs, 4 signs, 1187 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7005,512 +10385,575 @@ impl Delta4 {
         start: &[f64; 3],
     ) -> Result<[f64; 4], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
-        let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.2809 + 0.04;
+        let t14 = 0.4 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.20079840636817814, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t21 = 0.2 * c_arm_leg1;
+        let t23 = t0 - (0.2 + t21);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = t23 * t25;
+        let t28 = pose[1] + 0.05;
+        let t29 = t28 - 0.2;
+        let t30 = t29 * t29;
+        let t32 = 0.16 * (t30 + t3);
+        let t33 = pose[0] * pose[0];
+        let t35 = t33 + t30 + t3;
+        let t37 = t35 - 0.2809 + 0.04;
+        let t39 = t32 - t37 * t37;
+        ::overact::guard::reach(t39, "leg2")?;
+        let t40 = ::overact::math::sqrt(t39);
+        ::overact::guard::leg(t40, 0.20079840636817814, "leg2")?;
+        let t41 = 1.0 / t40;
+        let t42 = 2.0 * t41;
+        let garm_vx_leg2 = pose[0] * t42;
+        let t46 = pose[0] - 0.05;
+        let t47 = t46 + 0.2;
+        let t48 = t47 * t47;
+        let t50 = 0.16 * (t48 + t3);
+        let t51 = 1.0 / t50;
+        let t52 = 0.4 * t47;
+        let t54 = t48 + t8 + t3;
+        let t56 = t54 - 0.2809 + 0.04;
+        let t59 = t50 - t56 * t56;
+        ::overact::guard::reach(t59, "leg3")?;
+        let t60 = ::overact::math::sqrt(t59);
+        ::overact::guard::leg(t60, 0.20079840636817814, "leg3")?;
+        let minus_c_arm_leg3 = t51 * (t52 * t56 + t14 * t60);
+        let t64 = 0.2 * minus_c_arm_leg3;
+        let t66 = t46 - (t64 - 0.2);
+        let t67 = 1.0 / t60;
+        let t68 = 2.0 * t67;
+        let garm_vx_leg3 = t66 * t68;
+        let t72 = pose[1] - 0.05;
+        let t73 = t72 + 0.2;
+        let t74 = t73 * t73;
+        let t76 = 0.16 * (t74 + t3);
+        let t78 = t33 + t74 + t3;
+        let t80 = t78 - 0.2809 + 0.04;
+        let t82 = t76 - t80 * t80;
+        ::overact::guard::reach(t82, "leg4")?;
+        let t83 = ::overact::math::sqrt(t82);
+        ::overact::guard::leg(t83, 0.20079840636817814, "leg4")?;
+        let t84 = 1.0 / t83;
+        let t85 = 2.0 * t84;
+        let garm_vx_leg4 = pose[0] * t85;
+        let t88 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t88, 22.533170865545554, "actuators")?;
+        ::overact::guard::platform(t88, 22.533170865545554, "actuators")?;
+        ::overact::guard::platform(t88, 22.533170865545554, "actuators")?;
+        let t89 = 1.0 / t88;
+        let t90 = 0.4 * t24;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let s_rod_leg1 = 1.8867924528301887 * pose[1];
+        let t98 = 1.0 - 3.5599857600569598 * t8;
+        ::overact::guard::reach(t98, "leg1")?;
+        ::overact::guard::reach(t98, "leg3")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t98);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t12 = c_armcross_leg1 * c_rod_leg1;
-        let t13 = s_armcross_leg1 * c_rod_leg1;
-        let t16 = c_arm_leg1 * t13 - s_arm_leg1 * t12;
-        ::overact::guard::leg(t16, 0.9471622941895192, "leg1")?;
-        let t17 = 1.0 / t16;
-        let t18 = 5.0 * t17;
-        let garm_vx_leg1 = t12 * t18;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
-        let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t33 = s_armcross_leg2 * c_rod_leg2;
-        let t35 = c_armcross_leg2 * c_rod_leg2;
-        let t37 = c_arm_leg2 * t33 - s_arm_leg2 * t35;
-        ::overact::guard::leg(t37, 0.9471622941895197, "leg2")?;
-        let t38 = 1.0 / t37;
-        let t39 = 5.0 * t38;
-        let minus_garm_vx_leg2 = s_rod_leg2 * t39;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
-        let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t55 = c_armcross_leg3 * c_rod_leg3;
-        let t57 = s_armcross_leg3 * c_rod_leg3;
-        let t59 = s_arm_leg3 * t55 - c_arm_leg3 * t57;
-        ::overact::guard::leg(t59, 0.9471622941895192, "leg3")?;
-        let t60 = 1.0 / t59;
-        let t61 = 5.0 * t60;
-        let garm_vx_leg3 = t55 * t61;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        ::overact::guard::leg(c_rod_leg4, 1.0, "leg4")?;
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let (s_cross_leg4, c_cross_leg4) = ::overact::math::sin_cos(joints[10]);
-        let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
-        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let t77 = c_armcross_leg4 * c_rod_leg4;
-        let t79 = s_armcross_leg4 * c_rod_leg4;
-        let t81 = s_arm_leg4 * t77 - c_arm_leg4 * t79;
-        ::overact::guard::leg(t81, 0.9471622941895192, "leg4")?;
-        let t82 = 1.0 / t81;
-        let t83 = 5.0 * t82;
-        let minus_garm_vx_leg4 = s_rod_leg4 * t83;
-        let t86 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3 + minus_garm_vx_leg4 * minus_garm_vx_leg4;
-        ::overact::guard::platform(t86, 22.53317086554555, "actuators")?;
-        ::overact::guard::platform(t86, 22.53317086554555, "actuators")?;
-        ::overact::guard::platform(t86, 22.53317086554555, "actuators")?;
-        let t87 = 1.0 / t86;
-        let minus_garm_vz_leg1 = t13 * t18;
-        let t96 = garm_vx_leg1 * actuator_velocities[0]
-            - minus_garm_vx_leg2 * actuator_velocities[1]
+        let t100 = 0.53 * c_rod_leg1;
+        let s_cross_leg1 = 2.5 * t17 / t100;
+        let t103 = 0.04 + t8;
+        let t105 = 0.2809 * t98;
+        let t107 = 0.212 * c_rod_leg1;
+        let c_cross_leg1 = (t10 - t103 - t105) / t107;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t112 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t90
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t112)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t112));
+        let garm_vy_leg1 = pose[1] * t25;
+        let t125 = 1.0 / t32;
+        let t126 = 0.4 * t29;
+        let c_arm_leg2 = t125 * (t126 * t37 - t14 * t40);
+        let t131 = 0.2 * c_arm_leg2;
+        let t133 = t28 - (0.2 + t131);
+        let garm_vy_leg2 = t133 * t42;
+        let garm_vy_leg3 = pose[1] * t68;
+        let t140 = 1.0 / t76;
+        let t141 = 0.4 * t73;
+        let minus_c_arm_leg4 = t140 * (t141 * t80 + t14 * t83);
+        let t146 = 0.2 * minus_c_arm_leg4;
+        let t148 = t72 - (t146 - 0.2);
+        let garm_vy_leg4 = t148 * t85;
+        let t158 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3 + garm_vx_leg4 * garm_vy_leg4;
+        let t159 = t158 * t89;
+        let t161 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t158 * t159;
+        ::overact::guard::platform(t161, 22.533170865545554, "actuators")?;
+        ::overact::guard::platform(t161, 22.533170865545554, "actuators")?;
+        ::overact::guard::platform(t161, 22.533170865545554, "actuators")?;
+        let t162 = 1.0 / t161;
+        let t176 = garm_vx_leg1 * actuator_velocities[0]
+            + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2]
-            - minus_garm_vx_leg4 * actuator_velocities[3];
-        let garm_vy_leg1 = s_rod_leg1 * t18;
-        let garm_vy_leg2 = t35 * t39;
-        let garm_vy_leg3 = s_rod_leg3 * t61;
-        let garm_vy_leg4 = t77 * t83;
-        let t108 = garm_vx_leg1 * garm_vy_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
-            + garm_vx_leg3 * garm_vy_leg3 - minus_garm_vx_leg4 * garm_vy_leg4;
-        let t109 = t108 * t87;
-        let t118 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t108 * t109;
-        ::overact::guard::platform(t118, 22.533170865545543, "actuators")?;
-        ::overact::guard::platform(t118, 22.533170865545543, "actuators")?;
-        ::overact::guard::platform(t118, 22.533170865545543, "actuators")?;
-        let t119 = 1.0 / t118;
-        let t128 = garm_vy_leg1 * actuator_velocities[0]
+            + garm_vx_leg4 * actuator_velocities[3];
+        let t178 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
             + garm_vy_leg3 * actuator_velocities[2]
-            + garm_vy_leg4 * actuator_velocities[3] - t96 * t109;
-        let garm_vz_leg3 = t57 * t61;
-        let minus_garm_vz_leg2 = t33 * t39;
-        let garm_vz_leg4 = t79 * t83;
-        let t146 = minus_garm_vx_leg2 * minus_garm_vz_leg2
-            - garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg3 * garm_vz_leg3
-            - minus_garm_vx_leg4 * garm_vz_leg4;
-        let t147 = t146 * t87;
-        let t149 = garm_vy_leg3 * garm_vz_leg3
-            - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2)
-            + garm_vy_leg4 * garm_vz_leg4 - t108 * t147;
-        let t150 = t149 * t119;
-        let t161 = minus_garm_vz_leg1 * minus_garm_vz_leg1
-            + minus_garm_vz_leg2 * minus_garm_vz_leg2 + garm_vz_leg3 * garm_vz_leg3
-            + garm_vz_leg4 * garm_vz_leg4 - t146 * t147 - t149 * t150;
-        ::overact::guard::platform(t161, 66.4019122371629, "actuators")?;
-        ::overact::guard::platform(t161, 66.4019122371629, "actuators")?;
-        ::overact::guard::platform(t161, 66.4019122371629, "actuators")?;
-        let t162 = 1.0 / t161;
-        let t173 = garm_vz_leg3 * actuator_velocities[2]
-            - (minus_garm_vz_leg1 * actuator_velocities[0]
-                + minus_garm_vz_leg2 * actuator_velocities[1])
-            + garm_vz_leg4 * actuator_velocities[3] - t96 * t147 - t150 * t128;
-        let t174 = t162 * t173;
-        let t176 = t119 * t128 - t150 * t174;
-        let t180 = t96 * t87 - t109 * t176 - t147 * t174;
-        let rate_arm_leg1 = garm_vx_leg1 * t180 + garm_vy_leg1 * t176
-            - minus_garm_vz_leg1 * t174;
-        let t186 = rate_arm_leg1 * rate_arm_leg1;
-        let t189 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.8867924528301887 * t189;
-        let rate_rod_leg1 = grod_vy_leg1 * t176;
-        let t192 = s_armcross_leg1 * rate_rod_leg1;
-        let t194 = 1.8867924528301887 * t17;
-        let gcross_vz_leg1 = s_arm_leg1 * t194;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t194;
-        let minus_gcross_vy_leg1 = t194
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t189)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t189));
-        let rate_cross_leg1 = gcross_vz_leg1 * t174
-            - (minus_gcross_vx_leg1 * t180 + minus_gcross_vy_leg1 * t176);
-        let t210 = rate_cross_leg1 * rate_cross_leg1;
-        let t212 = c_armcross_leg1 * rate_rod_leg1;
-        let t214 = t192 * t192 + t210 + t212 * t212;
-        let t217 = 0.53 * s_rod_leg1;
-        let t219 = t217 * (rate_cross_leg1 * t212);
-        let t221 = 0.2 * s_arm_leg1 * t186 + 0.53 * t13 * t214 + t219 + t219;
-        let t224 = t217 * (rate_cross_leg1 * t192);
-        let t231 = t224 - (0.2 * c_arm_leg1 * t186 + 0.53 * t12 * t214) + t224;
-        let t233 = t217 * rate_cross_leg1;
-        let t236 = rate_cross_leg1 * t233 - t217 * t214;
-        let rate_dot_arm_leg1 = minus_garm_vz_leg1 * t221
-            - (garm_vx_leg1 * t231 + garm_vy_leg1 * t236);
-        let t240 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t242 = 0.53 * s_rod_leg2;
-        let t243 = 1.8867924528301887 * t38;
-        let t245 = 1.0 / c_rod_leg2;
-        let gcross_vx_leg2 = t243
-            * (s_arm_leg2 * (s_armcross_leg2 * s_rod_leg2 * t245)
-                + c_arm_leg2 * (c_armcross_leg2 * s_rod_leg2 * t245));
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t243;
-        let gcross_vz_leg2 = s_arm_leg2 * t243;
-        let rate_cross_leg2 = gcross_vx_leg2 * t180 - minus_gcross_vy_leg2 * t176
-            + gcross_vz_leg2 * t174;
-        let t260 = rate_cross_leg2 * rate_cross_leg2;
-        let minus_grod_vx_leg2 = 1.8867924528301887 * t245;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t180;
-        let t263 = s_armcross_leg2 * minus_rate_rod_leg2;
-        let t266 = c_armcross_leg2 * minus_rate_rod_leg2;
-        let t268 = t260 + t263 * t263 + t266 * t266;
-        let t270 = t242 * rate_cross_leg2;
-        let t272 = t242 * t268 - rate_cross_leg2 * t270;
-        let rate_arm_leg2 = garm_vy_leg2 * t176 - minus_garm_vx_leg2 * t180
-            - minus_garm_vz_leg2 * t174;
-        let t280 = rate_arm_leg2 * rate_arm_leg2;
-        let t286 = t242 * (rate_cross_leg2 * t263);
-        let t288 = 0.2 * c_arm_leg2 * t280 + 0.53 * t35 * t268 + t286 + t286;
-        let t297 = t242 * (rate_cross_leg2 * t266);
-        let t299 = 0.2 * s_arm_leg2 * t280 + 0.53 * t33 * t268 - t297 - t297;
-        let rate_dot_arm_leg2 = minus_garm_vx_leg2 * t272 + garm_vy_leg2 * t288
-            + minus_garm_vz_leg2 * t299;
-        let t302 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let rate_arm_leg3 = garm_vx_leg3 * t180 + garm_vy_leg3 * t176
-            + garm_vz_leg3 * t174;
-        let t311 = rate_arm_leg3 * rate_arm_leg3;
-        let t314 = 1.0 / c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.8867924528301887 * t314;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t176;
-        let t317 = s_armcross_leg3 * minus_rate_rod_leg3;
-        let t319 = 1.8867924528301887 * t60;
-        let minus_gcross_vx_leg3 = c_arm_leg3 * t319;
-        let minus_gcross_vy_leg3 = t319
-            * (s_arm_leg3 * (s_armcross_leg3 * s_rod_leg3 * t314)
-                + c_arm_leg3 * (c_armcross_leg3 * s_rod_leg3 * t314));
-        let minus_gcross_vz_leg3 = s_arm_leg3 * t319;
-        let minus_rate_cross_leg3 = minus_gcross_vx_leg3 * t180
-            + minus_gcross_vy_leg3 * t176 + minus_gcross_vz_leg3 * t174;
-        let t335 = minus_rate_cross_leg3 * minus_rate_cross_leg3;
-        let t337 = c_armcross_leg3 * minus_rate_rod_leg3;
-        let t339 = t317 * t317 + t335 + t337 * t337;
-        let t342 = 0.53 * s_rod_leg3;
-        let t344 = t342 * (minus_rate_cross_leg3 * t317);
-        let t346 = 0.2 * c_arm_leg3 * t311 + 0.53 * t55 * t339 - t344 - t344;
-        let t349 = t342 * minus_rate_cross_leg3;
-        let t351 = t342 * t339 - minus_rate_cross_leg3 * t349;
-        let t360 = t342 * (minus_rate_cross_leg3 * t337);
-        let t362 = 0.2 * s_arm_leg3 * t311 + 0.53 * t57 * t339 + t360 + t360;
-        let minus_rate_dot_arm_leg3 = garm_vx_leg3 * t346 + garm_vy_leg3 * t351
-            + garm_vz_leg3 * t362;
-        let t365 = actuator_accelerations[2] + minus_rate_dot_arm_leg3;
-        let t368 = 1.8867924528301887 * t82;
-        let t370 = 1.0 / c_rod_leg4;
-        let gcross_vx_leg4 = t368
-            * (s_arm_leg4 * (s_armcross_leg4 * s_rod_leg4 * t370)
-                + c_arm_leg4 * (c_armcross_leg4 * s_rod_leg4 * t370));
-        let minus_gcross_vy_leg4 = c_arm_leg4 * t368;
-        let minus_gcross_vz_leg4 = s_arm_leg4 * t368;
-        let rate_cross_leg4 = gcross_vx_leg4 * t180 - minus_gcross_vy_leg4 * t176
-            - minus_gcross_vz_leg4 * t174;
-        let t385 = 0.53 * s_rod_leg4;
-        let t386 = t385 * rate_cross_leg4;
-        let t388 = rate_cross_leg4 * rate_cross_leg4;
-        let grod_vx_leg4 = 1.8867924528301887 * t370;
-        let rate_rod_leg4 = grod_vx_leg4 * t180;
-        let t391 = s_armcross_leg4 * rate_rod_leg4;
-        let t394 = c_armcross_leg4 * rate_rod_leg4;
-        let t396 = t388 + t391 * t391 + t394 * t394;
-        let t398 = rate_cross_leg4 * t386 - t385 * t396;
-        let rate_arm_leg4 = garm_vy_leg4 * t176 - minus_garm_vx_leg4 * t180
-            + garm_vz_leg4 * t174;
-        let t406 = rate_arm_leg4 * rate_arm_leg4;
-        let t412 = t385 * (rate_cross_leg4 * t391);
-        let t414 = 0.2 * c_arm_leg4 * t406 + 0.53 * t77 * t396 - t412 - t412;
-        let t423 = t385 * (rate_cross_leg4 * t394);
-        let t425 = 0.2 * s_arm_leg4 * t406 + 0.53 * t79 * t396 + t423 + t423;
-        let rate_dot_arm_leg4 = minus_garm_vx_leg4 * t398 - garm_vy_leg4 * t414
-            - garm_vz_leg4 * t425;
-        let t428 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t430 = garm_vx_leg1 * t240 - minus_garm_vx_leg2 * t302 + garm_vx_leg3 * t365
-            - minus_garm_vx_leg4 * t428;
-        let t440 = garm_vy_leg1 * t240 + garm_vy_leg2 * t302 + garm_vy_leg3 * t365
-            + garm_vy_leg4 * t428 - t109 * t430;
-        let t452 = garm_vz_leg3 * t365
-            - (minus_garm_vz_leg1 * t240 + minus_garm_vz_leg2 * t302)
-            + garm_vz_leg4 * t428 - t147 * t430 - t150 * t440;
-        let t453 = t162 * t452;
-        let t455 = t119 * t440 - t150 * t453;
-        let t459 = t87 * t430 - t109 * t455 - t147 * t453;
-        let t460 = t459 - t231;
-        let t462 = t455 - t236;
-        let t465 = t453 - t221;
-        let rate_dot_arm_leg1_2 = garm_vx_leg1 * t460 + garm_vy_leg1 * t462
-            - minus_garm_vz_leg1 * t465;
-        let t469 = 9.81 * c_arm_leg1;
-        let t472 = 9.81 * s_arm_leg1;
-        let t481 = parameters[0] * rate_dot_arm_leg1_2 - t469 * parameters[1]
-            + t472 * parameters[2] + parameters[3] * rate_dot_arm_leg1_2
+            + garm_vy_leg4 * actuator_velocities[3] - t176 * t159;
+        let t180 = 0.2 * minus_s_arm_leg1;
+        let t181 = pose[2] - t180;
+        let garm_vz_leg1 = t181 * t25;
+        let minus_s_arm_leg2 = t125 * (t14 * t37 + t126 * t40);
+        let t188 = 0.2 * minus_s_arm_leg2;
+        let t189 = pose[2] - t188;
+        let garm_vz_leg2 = t189 * t42;
+        let s_arm_leg3 = t51 * (t52 * t60 - t14 * t56);
+        let t197 = 0.2 * s_arm_leg3;
+        let t198 = pose[2] + t197;
+        let garm_vz_leg3 = t198 * t68;
+        let s_arm_leg4 = t140 * (t141 * t83 - t14 * t80);
+        let t206 = 0.2 * s_arm_leg4;
+        let t207 = pose[2] + t206;
+        let garm_vz_leg4 = t207 * t85;
+        let t217 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3 + garm_vx_leg4 * garm_vz_leg4;
+        let t218 = t217 * t89;
+        let t220 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 + garm_vy_leg4 * garm_vz_leg4 - t158 * t218;
+        let t221 = t220 * t162;
+        let t232 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 + garm_vz_leg4 * garm_vz_leg4 - t217 * t218
+            - t220 * t221;
+        ::overact::guard::platform(t232, 66.40191223716288, "actuators")?;
+        ::overact::guard::platform(t232, 66.40191223716288, "actuators")?;
+        ::overact::guard::platform(t232, 66.40191223716288, "actuators")?;
+        let t233 = 1.0 / t232;
+        let t244 = garm_vz_leg1 * actuator_velocities[0]
+            + garm_vz_leg2 * actuator_velocities[1]
+            + garm_vz_leg3 * actuator_velocities[2]
+            + garm_vz_leg4 * actuator_velocities[3] - t176 * t218 - t221 * t178;
+        let t245 = t233 * t244;
+        let t247 = t162 * t178 - t221 * t245;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t90;
+        let t254 = t176 * t89 - t159 * t247 - t218 * t245;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t90;
+        let rate_cross_leg1 = gcross_vy_leg1 * t247 - minus_gcross_vx_leg1 * t254
+            - minus_gcross_vz_leg1 * t245;
+        let grod_vy_leg1 = 1.8867924528301887 * t112;
+        let rate_rod_leg1 = grod_vy_leg1 * t247;
+        let t262 = s_armcross_leg1 * rate_rod_leg1;
+        let t264 = pose[1] * (rate_cross_leg1 * t262);
+        let rate_arm_leg1 = garm_vx_leg1 * t254 + garm_vy_leg1 * t247
+            + garm_vz_leg1 * t245;
+        let t270 = rate_arm_leg1 * rate_arm_leg1;
+        let t273 = rate_cross_leg1 * rate_cross_leg1;
+        let t275 = c_armcross_leg1 * rate_rod_leg1;
+        let t277 = t262 * t262 + t273 + t275 * t275;
+        let t281 = t264 - (t21 * t270 + t23 * t277) + t264;
+        let t283 = pose[1] * rate_cross_leg1;
+        let t286 = rate_cross_leg1 * t283 - pose[1] * t277;
+        let t290 = pose[1] * (rate_cross_leg1 * t275);
+        let t295 = t290 - (t180 * t270 + t181 * t277) + t290;
+        let minus_rate_dot_arm_leg1 = garm_vx_leg1 * t281 + garm_vy_leg1 * t286
+            + garm_vz_leg1 * t295;
+        let t298 = actuator_accelerations[0] + minus_rate_dot_arm_leg1;
+        let t300 = 0.4 * t41;
+        let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
+        let t304 = 1.0 - 3.5599857600569598 * t33;
+        ::overact::guard::reach(t304, "leg2")?;
+        ::overact::guard::reach(t304, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t304);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t306 = 0.53 * c_rod_leg2;
+        let s_cross_leg2 = 2.5 * t40 / t306;
+        let t309 = 0.04 + t33;
+        let t311 = 0.2809 * t304;
+        let t313 = 0.212 * c_rod_leg2;
+        let c_cross_leg2 = (t35 - t309 - t311) / t313;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t318 = 1.0 / c_rod_leg2;
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let gcross_vx_leg2 = t300
+            * (minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t318)
+                - c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t318));
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t300;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t300;
+        let rate_cross_leg2 = gcross_vx_leg2 * t254 - minus_gcross_vy_leg2 * t247
+            - minus_gcross_vz_leg2 * t245;
+        let t336 = pose[0] * rate_cross_leg2;
+        let t338 = rate_cross_leg2 * rate_cross_leg2;
+        let minus_grod_vx_leg2 = 1.8867924528301887 * t318;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t254;
+        let t341 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t344 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t346 = t338 + t341 * t341 + t344 * t344;
+        let t348 = rate_cross_leg2 * t336 - pose[0] * t346;
+        let t351 = pose[0] * (rate_cross_leg2 * t341);
+        let rate_arm_leg2 = garm_vx_leg2 * t254 + garm_vy_leg2 * t247
+            + garm_vz_leg2 * t245;
+        let t357 = rate_arm_leg2 * rate_arm_leg2;
+        let t362 = t351 - (t131 * t357 + t133 * t346) + t351;
+        let t366 = pose[0] * (rate_cross_leg2 * t344);
+        let t371 = t366 - (t188 * t357 + t189 * t346) + t366;
+        let minus_rate_dot_arm_leg2 = garm_vx_leg2 * t348 + garm_vy_leg2 * t362
+            + garm_vz_leg2 * t371;
+        let t374 = actuator_accelerations[1] + minus_rate_dot_arm_leg2;
+        let rate_arm_leg3 = garm_vx_leg3 * t254 + garm_vy_leg3 * t247
+            + garm_vz_leg3 * t245;
+        let t382 = rate_arm_leg3 * rate_arm_leg3;
+        let c_cross_leg3 = (t54 - t103 - t105) / t107;
+        let s_cross_leg3 = 2.5 * t60 / t100;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t392 = s_armcross_leg3 * rate_rod_leg1;
+        let t394 = 0.4 * t67;
+        let gcross_vz_leg3 = s_arm_leg3 * t394;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t394;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t394
+            * (s_arm_leg3 * (t112 * (s_rod_leg1 * s_armcross_leg3))
+                + minus_c_arm_leg3 * (t112 * (s_rod_leg1 * minus_c_armcross_leg3)));
+        let rate_cross_leg3 = gcross_vz_leg3 * t245
+            - (minus_gcross_vx_leg3 * t254 + minus_gcross_vy_leg3 * t247);
+        let t413 = rate_cross_leg3 * rate_cross_leg3;
+        let t415 = minus_c_armcross_leg3 * rate_rod_leg1;
+        let t417 = t392 * t392 + t413 + t415 * t415;
+        let t421 = pose[1] * (rate_cross_leg3 * t392);
+        let t423 = t64 * t382 + t66 * t417 + t421 + t421;
+        let t431 = pose[1] * (rate_cross_leg3 * t415);
+        let t433 = t197 * t382 - t198 * t417 - t431 - t431;
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t423 - garm_vy_leg3 * t286
+            - garm_vz_leg3 * t433;
+        let t436 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let rate_arm_leg4 = garm_vx_leg4 * t254 + garm_vy_leg4 * t247
+            + garm_vz_leg4 * t245;
+        let t444 = rate_arm_leg4 * rate_arm_leg4;
+        let t446 = 0.4 * t84;
+        let gcross_vz_leg4 = s_arm_leg4 * t446;
+        let c_cross_leg4 = (t78 - t309 - t311) / t313;
+        let s_cross_leg4 = 2.5 * t83 / t306;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t446
+            * (s_arm_leg4 * (t318 * (minus_s_rod_leg2 * s_armcross_leg4))
+                + minus_c_arm_leg4
+                    * (t318 * (minus_s_rod_leg2 * minus_c_armcross_leg4)));
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t446;
+        let rate_cross_leg4 = gcross_vz_leg4 * t245
+            - (minus_gcross_vx_leg4 * t254 + minus_gcross_vy_leg4 * t247);
+        let t473 = rate_cross_leg4 * rate_cross_leg4;
+        let t474 = s_armcross_leg4 * minus_rate_rod_leg2;
+        let t477 = minus_c_armcross_leg4 * minus_rate_rod_leg2;
+        let t479 = t473 + t474 * t474 + t477 * t477;
+        let t483 = pose[0] * (rate_cross_leg4 * t474);
+        let t485 = t146 * t444 + t148 * t479 + t483 + t483;
+        let t493 = pose[0] * (rate_cross_leg4 * t477);
+        let t495 = t206 * t444 - t207 * t479 - t493 - t493;
+        let rate_dot_arm_leg4 = garm_vy_leg4 * t485 - garm_vx_leg4 * t348
+            - garm_vz_leg4 * t495;
+        let t498 = actuator_accelerations[3] - rate_dot_arm_leg4;
+        let t500 = garm_vx_leg1 * t298 + garm_vx_leg2 * t374 + garm_vx_leg3 * t436
+            + garm_vx_leg4 * t498;
+        let t510 = garm_vy_leg1 * t298 + garm_vy_leg2 * t374 + garm_vy_leg3 * t436
+            + garm_vy_leg4 * t498 - t159 * t500;
+        let t522 = garm_vz_leg1 * t298 + garm_vz_leg2 * t374 + garm_vz_leg3 * t436
+            + garm_vz_leg4 * t498 - t218 * t500 - t221 * t510;
+        let t523 = t233 * t522;
+        let t525 = t162 * t510 - t221 * t523;
+        let t529 = t89 * t500 - t159 * t525 - t218 * t523;
+        let t530 = t529 - t281;
+        let t532 = t525 - t286;
+        let t535 = t523 - t295;
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t530 + garm_vy_leg1 * t532
+            + garm_vz_leg1 * t535;
+        let t539 = 9.81 * c_arm_leg1;
+        let t542 = 9.81 * minus_s_arm_leg1;
+        let t551 = parameters[0] * rate_dot_arm_leg1 - t539 * parameters[1]
+            - t542 * parameters[2] + parameters[3] * rate_dot_arm_leg1
             + rate_arm_leg1 * parameters[4]
             + ::overact::math::signed(parameters[5], rate_arm_leg1) + parameters[6];
-        let t483 = 1.8867924528301887 * t233;
-        let t484 = c_rod_leg1 * rate_cross_leg1;
-        let t485 = t483 * t484;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t462;
-        let t487 = t485 - rate_dot_rod_leg1;
-        let t489 = t484 * t484;
-        let t490 = rate_rod_leg1 * rate_rod_leg1;
-        let rate_dot_cross_leg1 = gcross_vz_leg1 * t465
-            - (minus_gcross_vx_leg1 * t460 + minus_gcross_vy_leg1 * t462);
-        let t499 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t503 = 0.2 * rate_dot_arm_leg1_2 - t469;
-        let t506 = t472 + 0.2 * t186;
-        let t508 = s_cross_leg1 * t503 - c_cross_leg1 * t506;
-        let t509 = c_rod_leg1 * t508;
-        let t512 = 0.2 * t16
-            * (parameters[14] * t487 - (t489 + t490) * parameters[13]
-                + parameters[15] * t499 + parameters[16] * t509);
-        let t515 = t485 + rate_dot_rod_leg1;
-        let t518 = 3.5599857600569598 * (t233 * t233);
-        let t522 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t525 = s_rod_leg1 * t508;
-        let t528 = s_rod_leg1 * (0.2 * s_cross_leg1)
-            * (parameters[13] * t515 - (t518 + t490) * parameters[14]
-                - parameters[15] * t522 - parameters[16] * t525);
-        let t531 = rate_rod_leg1 * t483;
-        let t532 = t499 - t531;
-        let t533 = t531 - t532;
-        let t535 = rate_rod_leg1 * t484;
-        let t536 = t522 + t535;
-        let t537 = t535 + t536;
-        let t544 = s_cross_leg1 * t506 + c_cross_leg1 * t503;
-        let t548 = t512 - t528
+        let t553 = 1.8867924528301887 * t283;
+        let t554 = c_rod_leg1 * rate_cross_leg1;
+        let t555 = t553 * t554;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t532;
+        let t557 = t555 - rate_dot_rod_leg1;
+        let t559 = t554 * t554;
+        let t560 = rate_rod_leg1 * rate_rod_leg1;
+        let rate_dot_cross_leg1 = gcross_vy_leg1 * t532 - minus_gcross_vx_leg1 * t530
+            - minus_gcross_vz_leg1 * t535;
+        let t569 = c_rod_leg1 * rate_dot_cross_leg1;
+        let t573 = t542 - 0.2 * t270;
+        let t576 = 0.2 * rate_dot_arm_leg1 - t539;
+        let t578 = c_cross_leg1 * t573 + s_cross_leg1 * t576;
+        let t579 = c_rod_leg1 * t578;
+        let t582 = 0.9433962264150944 * t17
+            * (parameters[14] * t557 - (t559 + t560) * parameters[13]
+                + parameters[15] * t569 + parameters[16] * t579);
+        let t585 = t555 + rate_dot_rod_leg1;
+        let t588 = 3.5599857600569598 * (t283 * t283);
+        let t592 = s_rod_leg1 * rate_dot_cross_leg1;
+        let t595 = s_rod_leg1 * t578;
+        let t598 = 0.37735849056603776 * (pose[1] * s_cross_leg1)
+            * (parameters[13] * t585 - (t588 + t560) * parameters[14]
+                - parameters[15] * t592 - parameters[16] * t595);
+        let t601 = rate_rod_leg1 * t553;
+        let t602 = t569 - t601;
+        let t603 = t601 - t602;
+        let t605 = rate_rod_leg1 * t554;
+        let t606 = t592 + t605;
+        let t607 = t605 + t606;
+        let t614 = c_cross_leg1 * t576 - s_cross_leg1 * t573;
+        let t618 = t582 - t598
             - 0.2 * c_cross_leg1
-                * (parameters[13] * t533 + parameters[14] * t537 - t210 * parameters[15]
-                    - parameters[16] * t544);
-        let t549 = t481 + t548;
-        let t560 = parameters[7] * t536 - parameters[8] * t533 + parameters[9] * t515
-            - t535 * parameters[10] + parameters[11] * (t489 - t490);
-        let t577 = t531 * parameters[7] + parameters[8] * t537
-            + parameters[9] * (t490 - t518) + parameters[10] * t532
-            - parameters[11] * t487;
-        let t585 = s_rod_leg1
-            * (t560 + t535 * parameters[12] - parameters[14] * t544
-                + parameters[15] * t525)
+                * (parameters[13] * t603 + parameters[14] * t607 - t273 * parameters[15]
+                    - parameters[16] * t614);
+        let t619 = t551 + t618;
+        let t630 = parameters[7] * t606 - parameters[8] * t603 + parameters[9] * t585
+            - t605 * parameters[10] + parameters[11] * (t559 - t560);
+        let t647 = t601 * parameters[7] + parameters[8] * t607
+            + parameters[9] * (t560 - t588) + parameters[10] * t602
+            - parameters[11] * t557;
+        let t655 = s_rod_leg1
+            * (t630 + t605 * parameters[12] - parameters[14] * t614
+                + parameters[15] * t595)
             + c_rod_leg1
-                * (t577 - t531 * parameters[12] + parameters[13] * t544
-                    + parameters[15] * t509);
-        let t588 = t459 - t272;
-        let t590 = t455 + t288;
-        let t593 = t453 - t299;
-        let rate_dot_cross_leg2 = gcross_vx_leg2 * t588 - minus_gcross_vy_leg2 * t590
-            + gcross_vz_leg2 * t593;
-        let t596 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t597 = c_rod_leg2 * rate_cross_leg2;
-        let t598 = minus_rate_rod_leg2 * t597;
-        let t599 = t596 - t598;
-        let t601 = 1.8867924528301887 * t270;
-        let t602 = minus_rate_rod_leg2 * t601;
-        let t603 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t604 = t603 + t602;
-        let t605 = t602 + t604;
-        let t608 = t601 * t597;
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t588;
-        let t610 = t608 - minus_rate_dot_rod_leg2;
-        let t615 = t597 * t597;
-        let t616 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t619 = parameters[24] * t599 + parameters[25] * t605 + parameters[26] * t610
-            + t598 * parameters[27] + parameters[28] * (t615 - t616);
-        let t622 = 9.81 * s_arm_leg2;
-        let t624 = t622 + 0.2 * t280;
-        let rate_dot_arm_leg2_2 = garm_vy_leg2 * t590 - minus_garm_vx_leg2 * t588
-            - minus_garm_vz_leg2 * t593;
-        let t632 = 9.81 * c_arm_leg2;
-        let t633 = 0.2 * rate_dot_arm_leg2_2 - t632;
-        let t635 = s_cross_leg2 * t624 + c_cross_leg2 * t633;
-        let t640 = s_cross_leg2 * t633 - c_cross_leg2 * t624;
-        let t641 = s_rod_leg2 * t640;
-        let t645 = t599 - t598;
-        let t650 = 3.5599857600569598 * (t270 * t270);
-        let t656 = t608 + minus_rate_dot_rod_leg2;
-        let t658 = parameters[25] * t645 - t602 * parameters[24]
-            + parameters[26] * (t616 - t650) + parameters[27] * t604
-            - parameters[28] * t656;
-        let t663 = c_rod_leg2 * t640;
-        let t667 = s_rod_leg2
-            * (t619 - t598 * parameters[29] - parameters[31] * t635
-                + parameters[32] * t641)
-            + c_rod_leg2
-                * (t658 + t602 * parameters[29] + parameters[30] * t635
-                    + parameters[32] * t663);
-        let t680 = parameters[17] * rate_dot_arm_leg2_2 - t632 * parameters[18]
-            + t622 * parameters[19] + parameters[20] * rate_dot_arm_leg2_2
+                * (t647 - t601 * parameters[12] + parameters[13] * t614
+                    + parameters[15] * t579);
+        let t658 = t529 - t348;
+        let t660 = t525 - t362;
+        let t663 = t523 - t371;
+        let rate_dot_arm_leg2 = garm_vx_leg2 * t658 + garm_vy_leg2 * t660
+            + garm_vz_leg2 * t663;
+        let t667 = 9.81 * c_arm_leg2;
+        let t670 = 9.81 * minus_s_arm_leg2;
+        let t679 = parameters[17] * rate_dot_arm_leg2 - t667 * parameters[18]
+            - t670 * parameters[19] + parameters[20] * rate_dot_arm_leg2
             + rate_arm_leg2 * parameters[21]
             + ::overact::math::signed(parameters[22], rate_arm_leg2) + parameters[23];
-        let t690 = 0.2 * t37
-            * (parameters[31] * t656 - (t615 + t616) * parameters[30]
-                + parameters[32] * t603 + parameters[33] * t663);
-        let t701 = s_rod_leg2 * (0.2 * s_cross_leg2)
-            * (parameters[30] * t610 - (t650 + t616) * parameters[31]
-                - parameters[32] * t596 - parameters[33] * t641);
-        let t712 = t690 - t701
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t658;
+        let t682 = 1.8867924528301887 * t336;
+        let t683 = c_rod_leg2 * rate_cross_leg2;
+        let t684 = t682 * t683;
+        let t685 = minus_rate_dot_rod_leg2 - t684;
+        let t687 = t683 * t683;
+        let t688 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let rate_dot_cross_leg2 = gcross_vx_leg2 * t658 - minus_gcross_vy_leg2 * t660
+            - minus_gcross_vz_leg2 * t663;
+        let t697 = c_rod_leg2 * rate_dot_cross_leg2;
+        let t701 = t670 - 0.2 * t357;
+        let t704 = 0.2 * rate_dot_arm_leg2 - t667;
+        let t706 = c_cross_leg2 * t701 + s_cross_leg2 * t704;
+        let t707 = c_rod_leg2 * t706;
+        let t710 = 0.9433962264150944 * t40
+            * (parameters[31] * t685 - (t687 + t688) * parameters[30]
+                + parameters[32] * t697 + parameters[33] * t707);
+        let t713 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t715 = t684 + minus_rate_dot_rod_leg2;
+        let t718 = 3.5599857600569598 * (t336 * t336);
+        let t723 = minus_s_rod_leg2 * t706;
+        let t726 = 0.37735849056603776 * (pose[0] * s_cross_leg2)
+            * (parameters[32] * t713
+                - (parameters[30] * t715 + (t718 + t688) * parameters[31])
+                + parameters[33] * t723);
+        let t729 = minus_rate_rod_leg2 * t682;
+        let t730 = t697 - t729;
+        let t731 = t729 - t730;
+        let t733 = minus_rate_rod_leg2 * t683;
+        let t734 = t713 + t733;
+        let t735 = t733 + t734;
+        let t742 = c_cross_leg2 * t704 - s_cross_leg2 * t701;
+        let t746 = t710 + t726
             - 0.2 * c_cross_leg2
-                * (parameters[31] * t645 - parameters[30] * t605 - t260 * parameters[32]
-                    - parameters[33] * t635);
-        let t713 = t680 + t712;
-        let t725 = parameters[25] * (t650 - t615) - t608 * parameters[24]
-            + parameters[26] * t596 + t608 * parameters[27] + parameters[28] * t603;
-        let t733 = gcross_vx_leg2 * t667 - minus_garm_vx_leg2 * t713
+                * (parameters[30] * t731 - parameters[31] * t735 - t338 * parameters[32]
+                    - parameters[33] * t742);
+        let t747 = t679 + t746;
+        let t758 = t729 * parameters[24] - parameters[25] * t735
+            + parameters[26] * (t688 - t718) + parameters[27] * t730
+            - parameters[28] * t685;
+        let t775 = t733 * parameters[27]
+            - (parameters[24] * t734 + parameters[25] * t731 + parameters[26] * t715)
+            + parameters[28] * (t687 - t688);
+        let t783 = c_rod_leg2
+            * (t758 - t729 * parameters[29] + parameters[30] * t742
+                + parameters[32] * t707)
+            - minus_s_rod_leg2
+                * (t775 - t733 * parameters[29] - parameters[31] * t742
+                    - parameters[32] * t723);
+        let t795 = t684 * parameters[24] + parameters[25] * (t718 - t687)
+            - parameters[26] * t713 - t684 * parameters[27] + parameters[28] * t697;
+        let t803 = garm_vx_leg2 * t747 + gcross_vx_leg2 * t783
             - minus_grod_vx_leg2
-                * (t725 - parameters[29] * minus_rate_dot_rod_leg2
-                    - parameters[30] * t641 - parameters[31] * t663);
-        let t735 = t459 - t346;
-        let t737 = t455 - t351;
-        let t740 = t453 - t362;
-        let rate_dot_arm_leg3 = garm_vx_leg3 * t735 + garm_vy_leg3 * t737
-            + garm_vz_leg3 * t740;
-        let t744 = 9.81 * c_arm_leg3;
-        let t747 = 9.81 * s_arm_leg3;
-        let t756 = parameters[34] * rate_dot_arm_leg3 - t744 * parameters[35]
-            + t747 * parameters[36] + parameters[37] * rate_dot_arm_leg3
+                * (t795 - parameters[29] * minus_rate_dot_rod_leg2
+                    + parameters[30] * t723 - parameters[31] * t707);
+        let t805 = t529 + t423;
+        let t809 = t523 - t433;
+        let rate_dot_arm_leg3_2 = garm_vx_leg3 * t805 + garm_vy_leg3 * t532
+            + garm_vz_leg3 * t809;
+        let t813 = 9.81 * minus_c_arm_leg3;
+        let t816 = 9.81 * s_arm_leg3;
+        let t825 = parameters[34] * rate_dot_arm_leg3_2 + t813 * parameters[35]
+            + t816 * parameters[36] + parameters[37] * rate_dot_arm_leg3_2
             + rate_arm_leg3 * parameters[38]
             + ::overact::math::signed(parameters[39], rate_arm_leg3) + parameters[40];
-        let t758 = 1.8867924528301887 * t349;
-        let t759 = c_rod_leg3 * minus_rate_cross_leg3;
-        let t760 = t758 * t759;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t737;
-        let t762 = t760 + minus_rate_dot_rod_leg3;
-        let t764 = t759 * t759;
-        let t765 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let minus_rate_dot_cross_leg3 = minus_gcross_vx_leg3 * t735
-            + minus_gcross_vy_leg3 * t737 + minus_gcross_vz_leg3 * t740;
-        let t774 = c_rod_leg3 * minus_rate_dot_cross_leg3;
-        let t778 = 0.2 * rate_dot_arm_leg3 - t744;
-        let t781 = t747 + 0.2 * t311;
-        let t783 = s_cross_leg3 * t778 - c_cross_leg3 * t781;
-        let t784 = c_rod_leg3 * t783;
-        let t787 = 0.2 * t59
-            * (parameters[48] * t762 - (t764 + t765) * parameters[47]
-                - parameters[49] * t774 + parameters[50] * t784);
-        let t790 = t760 - minus_rate_dot_rod_leg3;
-        let t793 = 3.5599857600569598 * (t349 * t349);
-        let t797 = s_rod_leg3 * minus_rate_dot_cross_leg3;
-        let t800 = s_rod_leg3 * t783;
-        let t803 = s_rod_leg3 * (0.2 * s_cross_leg3)
-            * (parameters[47] * t790 - (t793 + t765) * parameters[48]
-                + parameters[49] * t797 - parameters[50] * t800);
-        let t806 = minus_rate_rod_leg3 * t758;
-        let t807 = t774 + t806;
-        let t808 = t806 + t807;
-        let t810 = minus_rate_rod_leg3 * t759;
-        let t811 = t810 - t797;
-        let t812 = t810 + t811;
-        let t819 = s_cross_leg3 * t781 + c_cross_leg3 * t778;
-        let t823 = t787 + t803
-            + 0.2 * c_cross_leg3
-                * (parameters[47] * t808 + parameters[48] * t812 - t335 * parameters[49]
-                    - parameters[50] * t819);
-        let t824 = t756 - t823;
-        let t835 = parameters[41] * t811 - parameters[42] * t808 + parameters[43] * t790
-            - t810 * parameters[44] + parameters[45] * (t764 - t765);
-        let t852 = t806 * parameters[41] + parameters[42] * t812
-            + parameters[43] * (t765 - t793) - parameters[44] * t807
-            - parameters[45] * t762;
-        let t860 = s_rod_leg3
-            * (t835 + t810 * parameters[46] - parameters[48] * t819
-                + parameters[49] * t800)
-            + c_rod_leg3
-                * (t852 - t806 * parameters[46] + parameters[47] * t819
-                    + parameters[49] * t784);
-        let t864 = t459 - t398;
-        let t866 = t455 - t414;
-        let t869 = t453 - t425;
-        let rate_dot_cross_leg4 = gcross_vx_leg4 * t864 - minus_gcross_vy_leg4 * t866
-            - minus_gcross_vz_leg4 * t869;
-        let t872 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t873 = c_rod_leg4 * rate_cross_leg4;
-        let t874 = rate_rod_leg4 * t873;
-        let t875 = t872 + t874;
-        let t877 = 1.8867924528301887 * t386;
-        let t878 = rate_rod_leg4 * t877;
-        let t879 = c_rod_leg4 * rate_dot_cross_leg4;
-        let t880 = t879 - t878;
-        let t881 = t878 - t880;
-        let t884 = t877 * t873;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t864;
-        let t886 = t884 + rate_dot_rod_leg4;
-        let t891 = t873 * t873;
-        let t892 = rate_rod_leg4 * rate_rod_leg4;
-        let t895 = parameters[58] * t875 - parameters[59] * t881 + parameters[60] * t886
-            - t874 * parameters[61] + parameters[62] * (t891 - t892);
-        let t898 = 9.81 * s_arm_leg4;
-        let t900 = t898 + 0.2 * t406;
-        let rate_dot_arm_leg4_2 = garm_vy_leg4 * t866 - minus_garm_vx_leg4 * t864
-            + garm_vz_leg4 * t869;
-        let t908 = 9.81 * c_arm_leg4;
-        let t909 = 0.2 * rate_dot_arm_leg4_2 - t908;
-        let t911 = s_cross_leg4 * t900 + c_cross_leg4 * t909;
-        let t916 = s_cross_leg4 * t909 - c_cross_leg4 * t900;
-        let t917 = s_rod_leg4 * t916;
-        let t922 = t874 + t875;
-        let t926 = 3.5599857600569598 * (t386 * t386);
-        let t932 = t884 - rate_dot_rod_leg4;
-        let t934 = t878 * parameters[58] + parameters[59] * t922
-            + parameters[60] * (t892 - t926) + parameters[61] * t880
-            - parameters[62] * t932;
-        let t939 = c_rod_leg4 * t916;
-        let t943 = s_rod_leg4
-            * (t895 + t874 * parameters[63] - parameters[65] * t911
-                + parameters[66] * t917)
-            + c_rod_leg4
-                * (t934 - t878 * parameters[63] + parameters[64] * t911
-                    + parameters[66] * t939);
-        let t956 = parameters[51] * rate_dot_arm_leg4_2 - t908 * parameters[52]
-            + t898 * parameters[53] + parameters[54] * rate_dot_arm_leg4_2
+        let t827 = pose[1] * rate_cross_leg3;
+        let t828 = 1.8867924528301887 * t827;
+        let t829 = c_rod_leg1 * rate_cross_leg3;
+        let t830 = t828 * t829;
+        let t831 = rate_dot_rod_leg1 - t830;
+        let t833 = t829 * t829;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * t809
+            - (minus_gcross_vx_leg3 * t805 + minus_gcross_vy_leg3 * t532);
+        let t842 = c_rod_leg1 * rate_dot_cross_leg3;
+        let t846 = t813 + 0.2 * rate_dot_arm_leg3_2;
+        let t849 = t816 + 0.2 * t382;
+        let t851 = s_cross_leg3 * t846 - c_cross_leg3 * t849;
+        let t852 = c_rod_leg1 * t851;
+        let t855 = 0.9433962264150944 * t60
+            * (parameters[48] * t831 - (t833 + t560) * parameters[47]
+                + parameters[49] * t842 + parameters[50] * t852);
+        let t858 = s_rod_leg1 * rate_dot_cross_leg3;
+        let t860 = t830 + rate_dot_rod_leg1;
+        let t863 = 3.5599857600569598 * (t827 * t827);
+        let t868 = s_rod_leg1 * t851;
+        let t871 = 0.37735849056603776 * (pose[1] * s_cross_leg3)
+            * (parameters[49] * t858
+                - (parameters[47] * t860 + (t863 + t560) * parameters[48])
+                + parameters[50] * t868);
+        let t874 = rate_rod_leg1 * t828;
+        let t875 = t842 - t874;
+        let t876 = t874 - t875;
+        let t878 = rate_rod_leg1 * t829;
+        let t879 = t858 + t878;
+        let t880 = t878 + t879;
+        let t887 = s_cross_leg3 * t849 + c_cross_leg3 * t846;
+        let t891 = t855 + t871
+            - 0.2 * c_cross_leg3
+                * (parameters[47] * t876 - parameters[48] * t880 - t413 * parameters[49]
+                    - parameters[50] * t887);
+        let t892 = t825 + t891;
+        let t903 = t874 * parameters[41] - parameters[42] * t880
+            + parameters[43] * (t560 - t863) + parameters[44] * t875
+            - parameters[45] * t831;
+        let t920 = t878 * parameters[44]
+            - (parameters[41] * t879 + parameters[42] * t876 + parameters[43] * t860)
+            + parameters[45] * (t833 - t560);
+        let t928 = c_rod_leg1
+            * (t903 - t874 * parameters[46] + parameters[47] * t887
+                + parameters[49] * t852)
+            - s_rod_leg1
+                * (t920 - t878 * parameters[46] - parameters[48] * t887
+                    - parameters[49] * t868);
+        let t933 = t525 + t485;
+        let t936 = t523 - t495;
+        let rate_dot_arm_leg4_2 = garm_vx_leg4 * t658 + garm_vy_leg4 * t933
+            + garm_vz_leg4 * t936;
+        let t940 = 9.81 * minus_c_arm_leg4;
+        let t943 = 9.81 * s_arm_leg4;
+        let t952 = parameters[51] * rate_dot_arm_leg4_2 + t940 * parameters[52]
+            + t943 * parameters[53] + parameters[54] * rate_dot_arm_leg4_2
             + rate_arm_leg4 * parameters[55]
             + ::overact::math::signed(parameters[56], rate_arm_leg4) + parameters[57];
-        let t966 = 0.2 * t81
-            * (parameters[65] * t932 - (t891 + t892) * parameters[64]
-                + parameters[66] * t879 + parameters[67] * t939);
-        let t977 = s_rod_leg4 * (0.2 * s_cross_leg4)
-            * (parameters[64] * t886 - (t926 + t892) * parameters[65]
-                - parameters[66] * t872 - parameters[67] * t917);
-        let t988 = t966 + t977
-            + 0.2 * c_cross_leg4
-                * (parameters[64] * t881 + parameters[65] * t922 - t388 * parameters[66]
-                    - parameters[67] * t911);
-        let t989 = t956 - t988;
-        let t1001 = parameters[59] * (t926 - t891) - t884 * parameters[58]
-            + parameters[60] * t872 + t884 * parameters[61] + parameters[62] * t879;
-        let t1009 = gcross_vx_leg4 * t943 - minus_garm_vx_leg4 * t989
-            + grod_vx_leg4
-                * (t1001 + parameters[63] * rate_dot_rod_leg4 - parameters[64] * t917
-                    - parameters[65] * t939);
-        let t1014 = garm_vx_leg1 * t549 - minus_gcross_vx_leg1 * t585 + t733
-            + garm_vx_leg3 * t824 - minus_gcross_vx_leg3 * t860 + t1009
-            + t459 * parameters[68] + t459 * parameters[69];
-        let t1028 = parameters[8] * (t518 - t489) - t485 * parameters[7]
-            + parameters[9] * t522 + t485 * parameters[10] + parameters[11] * t499;
-        let t1036 = garm_vy_leg1 * t549 - minus_gcross_vy_leg1 * t585
+        let t954 = pose[0] * rate_cross_leg4;
+        let t955 = 1.8867924528301887 * t954;
+        let t956 = c_rod_leg2 * rate_cross_leg4;
+        let t957 = t955 * t956;
+        let t958 = t957 - minus_rate_dot_rod_leg2;
+        let t960 = t956 * t956;
+        let rate_dot_cross_leg4 = gcross_vz_leg4 * t936
+            - (minus_gcross_vx_leg4 * t658 + minus_gcross_vy_leg4 * t933);
+        let t969 = c_rod_leg2 * rate_dot_cross_leg4;
+        let t973 = t940 + 0.2 * rate_dot_arm_leg4_2;
+        let t976 = t943 + 0.2 * t444;
+        let t978 = s_cross_leg4 * t973 - c_cross_leg4 * t976;
+        let t979 = c_rod_leg2 * t978;
+        let t982 = 0.9433962264150944 * t83
+            * (parameters[65] * t958 - (t960 + t688) * parameters[64]
+                + parameters[66] * t969 + parameters[67] * t979);
+        let t985 = t957 + minus_rate_dot_rod_leg2;
+        let t988 = 3.5599857600569598 * (t954 * t954);
+        let t992 = minus_s_rod_leg2 * rate_dot_cross_leg4;
+        let t995 = minus_s_rod_leg2 * t978;
+        let t998 = 0.37735849056603776 * (pose[0] * s_cross_leg4)
+            * (parameters[64] * t985 - (t988 + t688) * parameters[65]
+                - parameters[66] * t992 - parameters[67] * t995);
+        let t1001 = minus_rate_rod_leg2 * t955;
+        let t1002 = t969 - t1001;
+        let t1003 = t1001 - t1002;
+        let t1005 = minus_rate_rod_leg2 * t956;
+        let t1006 = t992 + t1005;
+        let t1007 = t1005 + t1006;
+        let t1014 = s_cross_leg4 * t976 + c_cross_leg4 * t973;
+        let t1018 = t982 - t998
+            - 0.2 * c_cross_leg4
+                * (parameters[64] * t1003 + parameters[65] * t1007
+                    - t473 * parameters[66] - parameters[67] * t1014);
+        let t1019 = t952 + t1018;
+        let t1030 = parameters[58] * t1006 - parameters[59] * t1003
+            + parameters[60] * t985 - t1005 * parameters[61]
+            + parameters[62] * (t960 - t688);
+        let t1047 = t1001 * parameters[58] + parameters[59] * t1007
+            + parameters[60] * (t688 - t988) + parameters[61] * t1002
+            - parameters[62] * t958;
+        let t1055 = minus_s_rod_leg2
+            * (t1030 + t1005 * parameters[63] - parameters[65] * t1014
+                + parameters[66] * t995)
+            + c_rod_leg2
+                * (t1047 - t1001 * parameters[63] + parameters[64] * t1014
+                    + parameters[66] * t979);
+        let t1067 = parameters[59] * (t988 - t960) - t957 * parameters[58]
+            + parameters[60] * t992 + t957 * parameters[61] + parameters[62] * t969;
+        let t1075 = garm_vx_leg4 * t1019 - minus_gcross_vx_leg4 * t1055
+            + minus_grod_vx_leg2
+                * (t1067 + parameters[63] * minus_rate_dot_rod_leg2
+                    - parameters[64] * t995 - parameters[65] * t979);
+        let t1080 = garm_vx_leg1 * t619 - minus_gcross_vx_leg1 * t655 + t803
+            + garm_vx_leg3 * t892 - minus_gcross_vx_leg3 * t928 + t1075
+            + t529 * parameters[68] + t529 * parameters[69];
+        let t1094 = parameters[8] * (t588 - t559) - t555 * parameters[7]
+            + parameters[9] * t592 + t555 * parameters[10] + parameters[11] * t569;
+        let t1102 = garm_vy_leg1 * t619 + gcross_vy_leg1 * t655
             + grod_vy_leg1
-                * (t1028 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t525
-                    - parameters[14] * t509);
-        let t1053 = parameters[42] * (t793 - t764) - t760 * parameters[41]
-            - parameters[43] * t797 + t760 * parameters[44] - parameters[45] * t774;
-        let t1061 = garm_vy_leg3 * t824 - minus_gcross_vy_leg3 * t860
-            - minus_grod_vy_leg3
-                * (t1053 - parameters[46] * minus_rate_dot_rod_leg3
-                    - parameters[47] * t800 - parameters[48] * t784);
-        let t1070 = t1036 + garm_vy_leg2 * t713 - minus_gcross_vy_leg2 * t667 + t1061
-            + garm_vy_leg4 * t989 - minus_gcross_vy_leg4 * t943 + t455 * parameters[68]
-            + t455 * parameters[69];
-        let t1072 = t1070 - t109 * t1014;
-        let t1084 = gcross_vz_leg1 * t585 - minus_garm_vz_leg1 * t549
-            + gcross_vz_leg2 * t667 - minus_garm_vz_leg2 * t713 + garm_vz_leg3 * t824
-            - minus_gcross_vz_leg3 * t860;
-        let t1089 = t453 + 9.81;
-        let t1095 = t1084 + garm_vz_leg4 * t989 - minus_gcross_vz_leg4 * t943
-            + parameters[68] * t1089 + parameters[69] * t1089 - t147 * t1014;
-        let t1098 = t162 * (t1095 - t150 * t1072);
-        let t1100 = t119 * t1072 - t150 * t1098;
-        let t1104 = t87 * t1014 - t109 * t1100 - t147 * t1098;
+                * (t1094 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t595
+                    - parameters[14] * t579);
+        let t1119 = t830 * parameters[41] + parameters[42] * (t863 - t833)
+            - parameters[43] * t858 - t830 * parameters[44] + parameters[45] * t842;
+        let t1127 = garm_vy_leg3 * t892 - minus_gcross_vy_leg3 * t928
+            - grod_vy_leg1
+                * (t1119 - parameters[46] * rate_dot_rod_leg1 + parameters[47] * t868
+                    - parameters[48] * t852);
+        let t1136 = t1102 + garm_vy_leg2 * t747 - minus_gcross_vy_leg2 * t783 + t1127
+            + garm_vy_leg4 * t1019 - minus_gcross_vy_leg4 * t1055 + t525 * parameters[68]
+            + t525 * parameters[69];
+        let t1138 = t1136 - t159 * t1080;
+        let t1150 = garm_vz_leg1 * t619 - minus_gcross_vz_leg1 * t655
+            + garm_vz_leg2 * t747 - minus_gcross_vz_leg2 * t783 + garm_vz_leg3 * t892
+            + gcross_vz_leg3 * t928;
+        let t1155 = t523 + 9.81;
+        let t1161 = t1150 + garm_vz_leg4 * t1019 + gcross_vz_leg4 * t1055
+            + parameters[68] * t1155 + parameters[69] * t1155 - t218 * t1080;
+        let t1164 = t233 * (t1161 - t221 * t1138);
+        let t1166 = t162 * t1138 - t221 * t1164;
+        let t1170 = t89 * t1080 - t159 * t1166 - t218 * t1164;
         Ok([
-            garm_vx_leg1 * t1104 + garm_vy_leg1 * t1100 - minus_garm_vz_leg1 * t1098,
-            garm_vy_leg2 * t1100 - minus_garm_vx_leg2 * t1104
-                - minus_garm_vz_leg2 * t1098,
-            garm_vx_leg3 * t1104 + garm_vy_leg3 * t1100 + garm_vz_leg3 * t1098,
-            garm_vy_leg4 * t1100 - minus_garm_vx_leg4 * t1104 + garm_vz_leg4 * t1098,
+            garm_vx_leg1 * t1170 + garm_vy_leg1 * t1166 + garm_vz_leg1 * t1164,
+            garm_vx_leg2 * t1170 + garm_vy_leg2 * t1166 + garm_vz_leg2 * t1164,
+            garm_vx_leg3 * t1170 + garm_vy_leg3 * t1166 + garm_vz_leg3 * t1164,
+            garm_vx_leg4 * t1170 + garm_vy_leg4 * t1166 + garm_vz_leg4 * t1164,
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -7521,7 +10964,7 @@ impl Delta4 {
     ///
     /// Output: 3 x 3.
     ///
-    /// 856 operations (302 additions, 546 multiplications, 8 divisions), 0 square roots, 12 trigonometric pairs, 0 signs, 874 intermediates.
+    /// 976 operations (362 additions, 596 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 976 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7529,401 +10972,459 @@ impl Delta4 {
         pose: &[f64; 3],
         parameters: &[f64; 70],
     ) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
-        let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.2809 + 0.04;
+        let t14 = 0.4 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.20079840636817814, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t23 = t0 - (0.2 + 0.2 * c_arm_leg1);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = t23 * t25;
+        let t30 = 0.9433962264150944 * t17;
+        let t31 = 1.8867924528301887 * t23;
+        let t34 = 1.0 - 3.5599857600569598 * t8;
+        ::overact::guard::reach(t34, "leg1")?;
+        ::overact::guard::reach(t34, "leg3")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t34);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t12 = c_armcross_leg1 * c_rod_leg1;
-        let t13 = s_armcross_leg1 * c_rod_leg1;
-        let t16 = c_arm_leg1 * t13 - s_arm_leg1 * t12;
-        ::overact::guard::leg(t16, 0.9471622941895192, "leg1")?;
-        let t17 = 1.0 / t16;
-        let t18 = 5.0 * t17;
-        let garm_vx_leg1 = t12 * t18;
-        let t23 = 0.2 * t16;
-        let t25 = 1.8867924528301887 * t17;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t25;
-        let t27 = c_rod_leg1 * minus_gcross_vx_leg1;
-        let t32 = s_rod_leg1 * (0.2 * s_cross_leg1);
-        let t33 = s_rod_leg1 * minus_gcross_vx_leg1;
-        let t35 = c_armcross_leg1 * s_rod_leg1;
-        let t40 = 0.2 * c_cross_leg1;
-        let t45 = c_cross_leg1 * (0.2 * garm_vx_leg1);
-        let t49 = t23 * (t12 * parameters[16] - parameters[15] * t27)
-            - t32 * (parameters[15] * t33 - t35 * parameters[16])
-            - t40 * (parameters[13] * t27 - parameters[14] * t33 - parameters[16] * t45);
-        let t68 = s_rod_leg1
-            * (t35 * parameters[15]
-                - (parameters[7] * t33 + parameters[8] * t27 + parameters[14] * t45))
+        let t36 = 0.4 * t24;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t36;
+        let t38 = c_rod_leg1 * minus_gcross_vx_leg1;
+        let t43 = 0.53 * c_rod_leg1;
+        let s_cross_leg1 = 2.5 * t17 / t43;
+        let t46 = 0.37735849056603776 * (pose[1] * s_cross_leg1);
+        let s_rod_leg1 = 1.8867924528301887 * pose[1];
+        let t48 = s_rod_leg1 * minus_gcross_vx_leg1;
+        let t50 = 0.04 + t8;
+        let t52 = 0.2809 * t34;
+        let t54 = 0.212 * c_rod_leg1;
+        let c_cross_leg1 = (t10 - t50 - t52) / t54;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let t63 = s_rod_leg1 * c_armcross_leg1;
+        let t68 = 0.2 * c_cross_leg1;
+        let t73 = c_cross_leg1 * (0.2 * garm_vx_leg1);
+        let t77 = t30 * (t31 * parameters[16] - parameters[15] * t38)
+            - t46 * (parameters[15] * t48 - t63 * parameters[16])
+            - t68 * (parameters[13] * t38 - parameters[14] * t48 - parameters[16] * t73);
+        let t96 = s_rod_leg1
+            * (t63 * parameters[15]
+                - (parameters[7] * t48 + parameters[8] * t38 + parameters[14] * t73))
             + c_rod_leg1
-                * (parameters[13] * t45 - (parameters[8] * t33 + parameters[10] * t27)
-                    + t12 * parameters[15]);
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
-        let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
+                * (parameters[13] * t73 - (parameters[8] * t48 + parameters[10] * t38)
+                    + t31 * parameters[15]);
+        let t99 = pose[1] + 0.05;
+        let t100 = t99 - 0.2;
+        let t101 = t100 * t100;
+        let t103 = 0.16 * (t101 + t3);
+        let t104 = pose[0] * pose[0];
+        let t106 = t104 + t101 + t3;
+        let t108 = t106 - 0.2809 + 0.04;
+        let t110 = t103 - t108 * t108;
+        ::overact::guard::reach(t110, "leg2")?;
+        let t111 = ::overact::math::sqrt(t110);
+        ::overact::guard::leg(t111, 0.20079840636817814, "leg2")?;
+        let t112 = 1.0 / t111;
+        let t113 = 2.0 * t112;
+        let garm_vx_leg2 = pose[0] * t113;
+        let t118 = 0.9433962264150944 * t111;
+        let t120 = 1.0 - 3.5599857600569598 * t104;
+        ::overact::guard::reach(t120, "leg2")?;
+        ::overact::guard::reach(t120, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t120);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t83 = s_armcross_leg2 * c_rod_leg2;
-        let t85 = c_armcross_leg2 * c_rod_leg2;
-        let t87 = c_arm_leg2 * t83 - s_arm_leg2 * t85;
-        ::overact::guard::leg(t87, 0.9471622941895197, "leg2")?;
-        let t88 = 1.0 / t87;
-        let t89 = 1.8867924528301887 * t88;
-        let t90 = s_armcross_leg2 * s_rod_leg2;
-        let t91 = 1.0 / c_rod_leg2;
-        let t94 = c_armcross_leg2 * s_rod_leg2;
-        let gcross_vx_leg2 = t89 * (s_arm_leg2 * (t90 * t91) + c_arm_leg2 * (t94 * t91));
-        let t99 = s_rod_leg2 * gcross_vx_leg2;
-        let t101 = c_rod_leg2 * gcross_vx_leg2;
-        let minus_grod_vx_leg2 = 1.8867924528301887 * t91;
-        let t107 = 0.53 * t101;
-        let t110 = 5.0 * t88;
-        let minus_garm_vx_leg2 = s_rod_leg2 * t110;
-        let t114 = s_rod_leg2 * (s_cross_leg2 * (0.2 * minus_garm_vx_leg2));
-        let t117 = s_rod_leg2
-            * (parameters[24] * t99 + parameters[25] * t101
-                - minus_grod_vx_leg2 * parameters[26] + parameters[31] * t107
-                - parameters[32] * t114);
-        let t123 = parameters[30] * t107;
-        let t128 = t117
-            + c_rod_leg2
-                * (parameters[25] * t99 + parameters[27] * t101
-                    - minus_grod_vx_leg2 * parameters[28] - t123
-                    - s_rod_leg2 * parameters[32]);
-        let t130 = 0.2 * t87;
-        let t138 = s_rod_leg2 * (0.2 * s_cross_leg2);
-        let t145 = t130
-            * (minus_grod_vx_leg2 * parameters[31] + parameters[32] * t101
-                - s_rod_leg2 * parameters[33])
-            + t138
-                * (minus_grod_vx_leg2 * parameters[30] + parameters[32] * t99
-                    - parameters[33] * t114);
-        let t146 = 0.2 * c_cross_leg2;
-        let t157 = t145
-            - t146
-                * (parameters[31] * t99 - 1.8867924528301887 * t123
-                    + parameters[33] * t107)
-            - (minus_garm_vx_leg2 * parameters[17]
-                + minus_garm_vx_leg2 * parameters[20]);
-        let t169 = minus_grod_vx_leg2
-            * (parameters[26] * t99 + parameters[28] * t101
-                - minus_grod_vx_leg2 * parameters[29] + parameters[30] * t114
-                + s_rod_leg2 * parameters[31]);
-        let t171 = garm_vx_leg1
-            * (garm_vx_leg1 * parameters[0] + garm_vx_leg1 * parameters[3] + t49)
-            - minus_gcross_vx_leg1 * t68 + gcross_vx_leg2 * t128
-            - minus_garm_vx_leg2 * t157 - t169;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
-        let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t184 = c_armcross_leg3 * c_rod_leg3;
-        let t186 = s_armcross_leg3 * c_rod_leg3;
-        let t188 = s_arm_leg3 * t184 - c_arm_leg3 * t186;
-        ::overact::guard::leg(t188, 0.9471622941895192, "leg3")?;
-        let t189 = 1.0 / t188;
-        let t190 = 5.0 * t189;
-        let garm_vx_leg3 = t184 * t190;
-        let t196 = s_rod_leg3 * (0.2 * s_cross_leg3);
-        let t197 = 1.8867924528301887 * t189;
-        let minus_gcross_vx_leg3 = c_arm_leg3 * t197;
-        let t199 = s_rod_leg3 * minus_gcross_vx_leg3;
-        let t201 = c_armcross_leg3 * s_rod_leg3;
-        let t205 = 0.2 * t188;
-        let t206 = c_rod_leg3 * minus_gcross_vx_leg3;
-        let t212 = 0.2 * c_cross_leg3;
-        let t217 = c_cross_leg3 * (0.2 * garm_vx_leg3);
-        let t221 = t196 * (parameters[49] * t199 + t201 * parameters[50])
-            - t205 * (parameters[49] * t206 + t184 * parameters[50])
-            + t212
-                * (parameters[47] * t206 - parameters[48] * t199
-                    - parameters[50] * t217);
-        let t240 = c_rod_leg3
-            * (parameters[47] * t217 - (parameters[42] * t199 + parameters[44] * t206)
-                - t184 * parameters[49])
-            - s_rod_leg3
-                * (t201 * parameters[49] + parameters[41] * t199 + parameters[42] * t206
-                    + parameters[48] * t217);
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let (s_cross_leg4, c_cross_leg4) = ::overact::math::sin_cos(joints[10]);
-        let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
-        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        ::overact::guard::leg(c_rod_leg4, 1.0, "leg4")?;
-        let t256 = c_armcross_leg4 * c_rod_leg4;
-        let t258 = s_armcross_leg4 * c_rod_leg4;
-        let t260 = s_arm_leg4 * t256 - c_arm_leg4 * t258;
-        ::overact::guard::leg(t260, 0.9471622941895192, "leg4")?;
-        let t261 = 1.0 / t260;
-        let t262 = 1.8867924528301887 * t261;
-        let t263 = s_armcross_leg4 * s_rod_leg4;
-        let t264 = 1.0 / c_rod_leg4;
-        let t267 = c_armcross_leg4 * s_rod_leg4;
-        let gcross_vx_leg4 = t262
-            * (s_arm_leg4 * (t263 * t264) + c_arm_leg4 * (t267 * t264));
-        let t272 = s_rod_leg4 * gcross_vx_leg4;
-        let t274 = c_rod_leg4 * gcross_vx_leg4;
-        let grod_vx_leg4 = 1.8867924528301887 * t264;
-        let t280 = 0.53 * t274;
-        let t283 = 5.0 * t261;
-        let minus_garm_vx_leg4 = s_rod_leg4 * t283;
-        let t287 = s_rod_leg4 * (s_cross_leg4 * (0.2 * minus_garm_vx_leg4));
-        let t290 = s_rod_leg4
-            * (parameters[58] * t272 + parameters[59] * t274
-                + grod_vx_leg4 * parameters[60] + parameters[65] * t280
-                - parameters[66] * t287);
-        let t296 = parameters[64] * t280;
-        let t301 = t290
-            + c_rod_leg4
-                * (parameters[59] * t272 + parameters[61] * t274
-                    + grod_vx_leg4 * parameters[62] - t296
-                    + s_rod_leg4 * parameters[66]);
-        let t306 = 0.2 * t260;
-        let t314 = s_rod_leg4 * (0.2 * s_cross_leg4);
-        let t321 = t306
-            * (parameters[66] * t274 - grod_vx_leg4 * parameters[65]
-                + s_rod_leg4 * parameters[67])
-            + t314
-                * (grod_vx_leg4 * parameters[64] - parameters[66] * t272
-                    + parameters[67] * t287);
-        let t322 = 0.2 * c_cross_leg4;
-        let t330 = minus_garm_vx_leg4 * parameters[51]
-            + minus_garm_vx_leg4 * parameters[54] + t321
-            + t322
-                * (parameters[65] * t272 - 1.8867924528301887 * t296
-                    + parameters[67] * t280);
-        let t342 = grod_vx_leg4
-            * (parameters[60] * t272 + parameters[62] * t274
-                + grod_vx_leg4 * parameters[63] + parameters[64] * t287
-                - s_rod_leg4 * parameters[65]);
-        let t344 = t171
+        let t122 = 1.0 / c_rod_leg2;
+        let minus_grod_vx_leg2 = 1.8867924528301887 * t122;
+        let t125 = 0.4 * t112;
+        let t126 = 1.0 / t103;
+        let t128 = 0.4 * t100;
+        let minus_s_arm_leg2 = t126 * (t14 * t108 + t128 * t111);
+        let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
+        let c_arm_leg2 = t126 * (t128 * t108 - t14 * t111);
+        let t138 = 0.53 * c_rod_leg2;
+        let s_cross_leg2 = 2.5 * t111 / t138;
+        let t141 = 0.04 + t104;
+        let t143 = 0.2809 * t120;
+        let t145 = 0.212 * c_rod_leg2;
+        let c_cross_leg2 = (t106 - t141 - t143) / t145;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t149 = minus_s_rod_leg2 * s_armcross_leg2;
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t155 = minus_s_rod_leg2 * c_armcross_leg2;
+        let gcross_vx_leg2 = t125
+            * (minus_s_arm_leg2 * (t149 * t122) - c_arm_leg2 * (t155 * t122));
+        let t160 = c_rod_leg2 * gcross_vx_leg2;
+        let t167 = 0.37735849056603776 * (pose[0] * s_cross_leg2);
+        let t168 = minus_s_rod_leg2 * gcross_vx_leg2;
+        let t174 = minus_s_rod_leg2 * (s_cross_leg2 * (0.2 * garm_vx_leg2));
+        let t178 = t118
+            * (minus_grod_vx_leg2 * parameters[31] + parameters[32] * t160
+                + minus_s_rod_leg2 * parameters[33])
+            + t167
+                * (parameters[32] * t168 - minus_grod_vx_leg2 * parameters[30]
+                    + parameters[33] * t174);
+        let t179 = 0.2 * c_cross_leg2;
+        let t180 = parameters[30] * t160;
+        let t183 = 0.53 * t160;
+        let t188 = garm_vx_leg2 * parameters[17] + garm_vx_leg2 * parameters[20] + t178
+            + t179 * (t180 + parameters[31] * t168 - parameters[33] * t183);
+        let t199 = c_rod_leg2
+            * (parameters[27] * t160 - parameters[25] * t168
+                - minus_grod_vx_leg2 * parameters[28] - 0.53 * t180
+                + minus_s_rod_leg2 * parameters[32]);
+        let t209 = minus_s_rod_leg2
+            * (parameters[25] * t160 - parameters[24] * t168
+                - minus_grod_vx_leg2 * parameters[26] + parameters[31] * t183
+                - parameters[32] * t174);
+        let t222 = minus_grod_vx_leg2
+            * (parameters[28] * t160 - parameters[26] * t168
+                - minus_grod_vx_leg2 * parameters[29] + parameters[30] * t174
+                - minus_s_rod_leg2 * parameters[31]);
+        let t224 = garm_vx_leg1
+            * (garm_vx_leg1 * parameters[0] + garm_vx_leg1 * parameters[3] + t77)
+            - minus_gcross_vx_leg1 * t96 + garm_vx_leg2 * t188
+            + gcross_vx_leg2 * (t199 - t209) - t222;
+        let t225 = pose[0] - 0.05;
+        let t226 = t225 + 0.2;
+        let t227 = t226 * t226;
+        let t229 = 0.16 * (t227 + t3);
+        let t230 = 1.0 / t229;
+        let t231 = 0.4 * t226;
+        let t233 = t227 + t8 + t3;
+        let t235 = t233 - 0.2809 + 0.04;
+        let t238 = t229 - t235 * t235;
+        ::overact::guard::reach(t238, "leg3")?;
+        let t239 = ::overact::math::sqrt(t238);
+        ::overact::guard::leg(t239, 0.20079840636817814, "leg3")?;
+        let minus_c_arm_leg3 = t230 * (t231 * t235 + t14 * t239);
+        let t245 = t225 - (0.2 * minus_c_arm_leg3 - 0.2);
+        let t246 = 1.0 / t239;
+        let t247 = 2.0 * t246;
+        let garm_vx_leg3 = t245 * t247;
+        let t252 = 0.9433962264150944 * t239;
+        let t253 = 1.8867924528301887 * t245;
+        let t255 = 0.4 * t246;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t255;
+        let t257 = c_rod_leg1 * minus_gcross_vx_leg3;
+        let s_cross_leg3 = 2.5 * t239 / t43;
+        let t264 = 0.37735849056603776 * (pose[1] * s_cross_leg3);
+        let c_cross_leg3 = (t233 - t50 - t52) / t54;
+        let s_arm_leg3 = t230 * (t231 * t239 - t14 * t235);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t275 = s_rod_leg1 * minus_c_armcross_leg3;
+        let t277 = s_rod_leg1 * minus_gcross_vx_leg3;
+        let t282 = 0.2 * c_cross_leg3;
+        let t287 = c_cross_leg3 * (0.2 * garm_vx_leg3);
+        let t291 = t252 * (t253 * parameters[50] - parameters[49] * t257)
+            + t264 * (t275 * parameters[50] - parameters[49] * t277)
+            - t282
+                * (parameters[47] * t257 + parameters[48] * t277
+                    - parameters[50] * t287);
+        let t310 = c_rod_leg1
+            * (parameters[42] * t277 - parameters[44] * t257 + parameters[47] * t287
+                + t253 * parameters[49])
+            - s_rod_leg1
+                * (parameters[41] * t277 - parameters[42] * t257 - parameters[48] * t287
+                    - t275 * parameters[49]);
+        let t314 = pose[1] - 0.05;
+        let t315 = t314 + 0.2;
+        let t316 = t315 * t315;
+        let t318 = 0.16 * (t316 + t3);
+        let t320 = t104 + t316 + t3;
+        let t322 = t320 - 0.2809 + 0.04;
+        let t324 = t318 - t322 * t322;
+        ::overact::guard::reach(t324, "leg4")?;
+        let t325 = ::overact::math::sqrt(t324);
+        ::overact::guard::leg(t325, 0.20079840636817814, "leg4")?;
+        let t326 = 1.0 / t325;
+        let t327 = 2.0 * t326;
+        let garm_vx_leg4 = pose[0] * t327;
+        let t332 = 0.9433962264150944 * t325;
+        let t335 = 0.4 * t326;
+        let t336 = 1.0 / t318;
+        let t337 = 0.4 * t315;
+        let s_arm_leg4 = t336 * (t337 * t325 - t14 * t322);
+        let c_cross_leg4 = (t320 - t141 - t143) / t145;
+        let minus_c_arm_leg4 = t336 * (t337 * t322 + t14 * t325);
+        let s_cross_leg4 = 2.5 * t325 / t138;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let t354 = minus_s_rod_leg2 * s_armcross_leg4;
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let t360 = minus_s_rod_leg2 * minus_c_armcross_leg4;
+        let minus_gcross_vx_leg4 = t335
+            * (s_arm_leg4 * (t122 * t354) + minus_c_arm_leg4 * (t122 * t360));
+        let t365 = c_rod_leg2 * minus_gcross_vx_leg4;
+        let t371 = 0.37735849056603776 * (pose[0] * s_cross_leg4);
+        let t373 = minus_s_rod_leg2 * minus_gcross_vx_leg4;
+        let t379 = t332
+            * (minus_s_rod_leg2 * parameters[67]
+                - (minus_grod_vx_leg2 * parameters[65] + parameters[66] * t365))
+            - t371
+                * (minus_grod_vx_leg2 * parameters[64] + parameters[66] * t373
+                    - parameters[67] * t174);
+        let t380 = 0.2 * c_cross_leg4;
+        let t381 = parameters[64] * t365;
+        let t384 = 0.53 * t365;
+        let t389 = garm_vx_leg4 * parameters[51] + garm_vx_leg4 * parameters[54] + t379
+            - t380 * (t381 - parameters[65] * t373 - parameters[67] * t384);
+        let t400 = minus_s_rod_leg2
+            * (minus_grod_vx_leg2 * parameters[60]
+                - (parameters[58] * t373 + parameters[59] * t365) - parameters[65] * t384
+                + parameters[66] * t174);
+        let t410 = c_rod_leg2
+            * (minus_grod_vx_leg2 * parameters[62]
+                - (parameters[59] * t373 + parameters[61] * t365) + 0.53 * t381
+                + minus_s_rod_leg2 * parameters[66]);
+        let t423 = minus_grod_vx_leg2
+            * (minus_grod_vx_leg2 * parameters[63]
+                - (parameters[60] * t373 + parameters[62] * t365) - parameters[64] * t174
+                - minus_s_rod_leg2 * parameters[65]);
+        let t425 = t224
             + garm_vx_leg3
-                * (garm_vx_leg3 * parameters[34] + garm_vx_leg3 * parameters[37] - t221)
-            - minus_gcross_vx_leg3 * t240 + gcross_vx_leg4 * t301
-            + minus_garm_vx_leg4 * t330 + t342;
-        let t345 = parameters[68] + parameters[69];
-        let garm_vy_leg1 = s_rod_leg1 * t18;
-        let t352 = s_armcross_leg1 * s_rod_leg1;
-        let t353 = 1.0 / c_rod_leg1;
-        let minus_gcross_vy_leg1 = t25
-            * (s_arm_leg1 * (t352 * t353) + c_arm_leg1 * (t35 * t353));
-        let t360 = c_rod_leg1 * minus_gcross_vy_leg1;
-        let grod_vy_leg1 = 1.8867924528301887 * t353;
-        let t368 = s_rod_leg1 * minus_gcross_vy_leg1;
-        let t373 = s_rod_leg1 * (s_cross_leg1 * (0.2 * garm_vy_leg1));
-        let t377 = t23
-            * (s_rod_leg1 * parameters[16]
-                - (parameters[15] * t360 + grod_vy_leg1 * parameters[14]))
-            - t32
-                * (grod_vy_leg1 * parameters[13] + parameters[15] * t368
-                    - parameters[16] * t373);
-        let t378 = parameters[13] * t360;
-        let t381 = 0.53 * t360;
-        let t386 = garm_vy_leg1 * parameters[0] + garm_vy_leg1 * parameters[3] + t377
-            - t40 * (t378 - parameters[14] * t368 - parameters[16] * t381);
-        let t397 = s_rod_leg1
-            * (grod_vy_leg1 * parameters[9]
-                - (parameters[7] * t368 + parameters[8] * t360) - parameters[14] * t381
-                + parameters[15] * t373);
-        let t407 = c_rod_leg1
-            * (grod_vy_leg1 * parameters[11]
-                - (parameters[8] * t368 + parameters[10] * t360) + 0.53 * t378
+                * (garm_vx_leg3 * parameters[34] + garm_vx_leg3 * parameters[37] + t291)
+            - minus_gcross_vx_leg3 * t310 + garm_vx_leg4 * t389
+            - minus_gcross_vx_leg4 * (t400 + t410) + t423;
+        let t426 = parameters[68] + parameters[69];
+        let garm_vy_leg1 = pose[1] * t25;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t435 = s_rod_leg1 * s_armcross_leg1;
+        let t436 = 1.0 / c_rod_leg1;
+        let gcross_vy_leg1 = t36
+            * (minus_s_arm_leg1 * (t435 * t436) - c_arm_leg1 * (t63 * t436));
+        let t443 = c_rod_leg1 * gcross_vy_leg1;
+        let grod_vy_leg1 = 1.8867924528301887 * t436;
+        let t452 = s_rod_leg1 * gcross_vy_leg1;
+        let t457 = s_rod_leg1 * (s_cross_leg1 * (0.2 * garm_vy_leg1));
+        let t461 = t30
+            * (parameters[15] * t443 - grod_vy_leg1 * parameters[14]
+                + s_rod_leg1 * parameters[16])
+            - t46
+                * (grod_vy_leg1 * parameters[13] - parameters[15] * t452
+                    - parameters[16] * t457);
+        let t463 = parameters[13] * t443;
+        let t465 = 0.53 * t443;
+        let t470 = garm_vy_leg1 * parameters[0] + garm_vy_leg1 * parameters[3] + t461
+            - t68 * (parameters[14] * t452 - t463 + parameters[16] * t465);
+        let t481 = s_rod_leg1
+            * (parameters[7] * t452 + parameters[8] * t443 + grod_vy_leg1 * parameters[9]
+                + parameters[14] * t465 + parameters[15] * t457);
+        let t491 = c_rod_leg1
+            * (parameters[8] * t452 + parameters[10] * t443
+                + grod_vy_leg1 * parameters[11] - 0.53 * t463
                 + s_rod_leg1 * parameters[15]);
-        let t408 = t397 + t407;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t89;
-        let t413 = s_rod_leg2 * minus_gcross_vy_leg2;
-        let t415 = c_rod_leg2 * minus_gcross_vy_leg2;
-        let garm_vy_leg2 = t85 * t110;
-        let t420 = c_cross_leg2 * (0.2 * garm_vy_leg2);
-        let t433 = s_rod_leg2
-            * (t94 * parameters[32]
-                - (parameters[24] * t413 + parameters[25] * t415
-                    + parameters[31] * t420))
-            + c_rod_leg2
-                * (parameters[30] * t420
-                    - (parameters[25] * t413 + parameters[27] * t415)
-                    + t85 * parameters[32]);
-        let t453 = t130 * (t85 * parameters[33] - parameters[32] * t415)
-            + t138 * (t94 * parameters[33] - parameters[32] * t413)
-            - t146
-                * (parameters[30] * t415 - parameters[31] * t413
-                    - parameters[33] * t420);
-        let t454 = garm_vy_leg2 * parameters[17] + garm_vy_leg2 * parameters[20] + t453;
-        let t465 = gcross_vx_leg2 * t433 - minus_garm_vx_leg2 * t454
-            + minus_grod_vx_leg2
-                * (parameters[26] * t413 + parameters[28] * t415 + t94 * parameters[30]
-                    + t85 * parameters[31]);
-        let garm_vy_leg3 = s_rod_leg3 * t190;
-        let t471 = 1.0 / c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.8867924528301887 * t471;
-        let t474 = s_armcross_leg3 * s_rod_leg3;
-        let minus_gcross_vy_leg3 = t197
-            * (s_arm_leg3 * (t474 * t471) + c_arm_leg3 * (t201 * t471));
-        let t481 = c_rod_leg3 * minus_gcross_vy_leg3;
-        let t487 = s_rod_leg3 * minus_gcross_vy_leg3;
-        let t493 = s_rod_leg3 * (s_cross_leg3 * (0.2 * garm_vy_leg3));
-        let t497 = t205
-            * (minus_grod_vy_leg3 * parameters[48] - parameters[49] * t481
-                - s_rod_leg3 * parameters[50])
-            + t196
-                * (parameters[49] * t487 - minus_grod_vy_leg3 * parameters[47]
-                    - parameters[50] * t493);
-        let t498 = parameters[47] * t481;
-        let t501 = 0.53 * t481;
-        let t506 = garm_vy_leg3 * parameters[34] + garm_vy_leg3 * parameters[37]
-            - (t497 + t212 * (t498 - parameters[48] * t487 - parameters[50] * t501));
-        let t517 = s_rod_leg3
-            * (parameters[49] * t493
-                - (parameters[41] * t487 + parameters[42] * t481
-                    + minus_grod_vy_leg3 * parameters[43] + parameters[48] * t501));
-        let t527 = c_rod_leg3
-            * (0.53 * t498
-                - (parameters[42] * t487 + parameters[44] * t481
-                    + minus_grod_vy_leg3 * parameters[45])
-                - s_rod_leg3 * parameters[49]);
-        let t528 = t517 + t527;
-        let garm_vy_leg4 = t256 * t283;
-        let t534 = c_cross_leg4 * (0.2 * garm_vy_leg4);
-        let minus_gcross_vy_leg4 = c_arm_leg4 * t262;
-        let t537 = s_rod_leg4 * minus_gcross_vy_leg4;
-        let t539 = c_rod_leg4 * minus_gcross_vy_leg4;
-        let t554 = c_rod_leg4
-            * (parameters[64] * t534 - (parameters[59] * t537 + parameters[61] * t539)
-                - t256 * parameters[66])
-            - s_rod_leg4
-                * (parameters[58] * t537 + parameters[59] * t539 + parameters[65] * t534
-                    + t267 * parameters[66]);
-        let t574 = t314 * (parameters[66] * t537 + t267 * parameters[67])
-            - t306 * (parameters[66] * t539 + t256 * parameters[67])
-            + t322
-                * (parameters[64] * t539 - parameters[65] * t537
-                    - parameters[67] * t534);
-        let t575 = garm_vy_leg4 * parameters[51] + garm_vy_leg4 * parameters[54] - t574;
-        let t586 = gcross_vx_leg4 * t554 - minus_garm_vx_leg4 * t575
-            + grod_vx_leg4
-                * (t267 * parameters[64]
-                    - (parameters[60] * t537 + parameters[62] * t539)
-                    + t256 * parameters[65]);
-        let t587 = garm_vx_leg1 * t386 - minus_gcross_vx_leg1 * t408 + t465
-            + garm_vx_leg3 * t506 - minus_gcross_vx_leg3 * t528 + t586;
-        let gcross_vz_leg1 = s_arm_leg1 * t25;
-        let t589 = c_rod_leg1 * gcross_vz_leg1;
-        let t595 = s_rod_leg1 * gcross_vz_leg1;
-        let minus_garm_vz_leg1 = t13 * t18;
-        let t605 = c_cross_leg1 * (0.2 * minus_garm_vz_leg1);
-        let t609 = t23 * (parameters[15] * t589 - t13 * parameters[16])
-            - t32 * (t352 * parameters[16] - parameters[15] * t595)
-            - t40
-                * (parameters[14] * t595 - parameters[13] * t589
-                    + parameters[16] * t605);
-        let t613 = t609
-            - (minus_garm_vz_leg1 * parameters[0] + minus_garm_vz_leg1 * parameters[3]);
-        let t631 = s_rod_leg1
-            * (parameters[7] * t595 + parameters[8] * t589 + parameters[14] * t605
-                - t352 * parameters[15])
-            + c_rod_leg1
-                * (parameters[8] * t595 + parameters[10] * t589 - parameters[13] * t605
-                    - t13 * parameters[15]);
-        let gcross_vz_leg2 = s_arm_leg2 * t89;
-        let t635 = s_rod_leg2 * gcross_vz_leg2;
-        let t637 = c_rod_leg2 * gcross_vz_leg2;
-        let minus_garm_vz_leg2 = t83 * t110;
-        let t642 = c_cross_leg2 * (0.2 * minus_garm_vz_leg2);
-        let t656 = s_rod_leg2
-            * (parameters[24] * t635 + parameters[25] * t637 + parameters[31] * t642
-                - t90 * parameters[32])
-            + c_rod_leg2
-                * (parameters[25] * t635 + parameters[27] * t637 - parameters[30] * t642
-                    - t83 * parameters[32]);
-        let t673 = t130 * (parameters[32] * t637 - t83 * parameters[33])
-            + t138 * (parameters[32] * t635 - t90 * parameters[33])
-            - t146
-                * (parameters[31] * t635 - parameters[30] * t637
-                    + parameters[33] * t642);
-        let t677 = t673
-            - (minus_garm_vz_leg2 * parameters[17]
-                + minus_garm_vz_leg2 * parameters[20]);
-        let t688 = gcross_vx_leg2 * t656 - minus_garm_vx_leg2 * t677
+        let t492 = t481 + t491;
+        let t497 = t99 - (0.2 + 0.2 * c_arm_leg2);
+        let garm_vy_leg2 = t497 * t113;
+        let t502 = 1.8867924528301887 * t497;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t125;
+        let t505 = c_rod_leg2 * minus_gcross_vy_leg2;
+        let t510 = minus_s_rod_leg2 * minus_gcross_vy_leg2;
+        let t516 = c_cross_leg2 * (0.2 * garm_vy_leg2);
+        let t523 = t118 * (t502 * parameters[33] - parameters[32] * t505)
+            + t167 * (t155 * parameters[33] - parameters[32] * t510)
+            + t179
+                * (parameters[33] * t516
+                    - (parameters[30] * t505 + parameters[31] * t510));
+        let t524 = garm_vy_leg2 * parameters[17] + garm_vy_leg2 * parameters[20] + t523;
+        let t542 = c_rod_leg2
+            * (parameters[25] * t510 - parameters[27] * t505 + parameters[30] * t516
+                + t502 * parameters[32])
+            - minus_s_rod_leg2
+                * (parameters[24] * t510 - parameters[25] * t505 - parameters[31] * t516
+                    - t155 * parameters[32]);
+        let t553 = garm_vx_leg2 * t524 + gcross_vx_leg2 * t542
             - minus_grod_vx_leg2
-                * (parameters[26] * t635 + parameters[28] * t637 + t90 * parameters[30]
-                    + t83 * parameters[31]);
-        let garm_vz_leg3 = t186 * t190;
-        let minus_gcross_vz_leg3 = s_arm_leg3 * t197;
-        let t695 = s_rod_leg3 * minus_gcross_vz_leg3;
-        let t700 = c_rod_leg3 * minus_gcross_vz_leg3;
-        let t710 = c_cross_leg3 * (0.2 * garm_vz_leg3);
-        let t714 = t196 * (parameters[49] * t695 + t474 * parameters[50])
-            - t205 * (parameters[49] * t700 + t186 * parameters[50])
-            + t212
-                * (parameters[47] * t700 - parameters[48] * t695
-                    - parameters[50] * t710);
-        let t715 = garm_vz_leg3 * parameters[34] + garm_vz_leg3 * parameters[37] - t714;
-        let t733 = c_rod_leg3
-            * (parameters[47] * t710 - (parameters[42] * t695 + parameters[44] * t700)
-                - t186 * parameters[49])
-            - s_rod_leg3
-                * (t474 * parameters[49] + parameters[41] * t695 + parameters[42] * t700
-                    + parameters[48] * t710);
-        let garm_vz_leg4 = t258 * t283;
-        let t739 = c_cross_leg4 * (0.2 * garm_vz_leg4);
-        let minus_gcross_vz_leg4 = s_arm_leg4 * t262;
-        let t742 = s_rod_leg4 * minus_gcross_vz_leg4;
-        let t744 = c_rod_leg4 * minus_gcross_vz_leg4;
-        let t759 = c_rod_leg4
-            * (parameters[64] * t739 - (parameters[59] * t742 + parameters[61] * t744)
-                - t258 * parameters[66])
-            - s_rod_leg4
-                * (parameters[58] * t742 + parameters[59] * t744 + parameters[65] * t739
-                    + t263 * parameters[66]);
-        let t779 = t314 * (parameters[66] * t742 + t263 * parameters[67])
-            - t306 * (parameters[66] * t744 + t258 * parameters[67])
-            + t322
-                * (parameters[64] * t744 - parameters[65] * t742
-                    - parameters[67] * t739);
-        let t780 = garm_vz_leg4 * parameters[51] + garm_vz_leg4 * parameters[54] - t779;
-        let t791 = gcross_vx_leg4 * t759 - minus_garm_vx_leg4 * t780
-            + grod_vx_leg4
-                * (t263 * parameters[64]
-                    - (parameters[60] * t742 + parameters[62] * t744)
-                    + t258 * parameters[65]);
-        let t792 = garm_vx_leg1 * t613 - minus_gcross_vx_leg1 * t631 + t688
-            + garm_vx_leg3 * t715 - minus_gcross_vx_leg3 * t733 + t791;
-        let t805 = grod_vy_leg1
-            * (grod_vy_leg1 * parameters[12]
-                - (parameters[9] * t368 + parameters[11] * t360) - parameters[13] * t373
+                * (parameters[26] * t510 - parameters[28] * t505 + t155 * parameters[30]
+                    - t502 * parameters[31]);
+        let garm_vy_leg3 = pose[1] * t247;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t563 = s_rod_leg1 * s_armcross_leg3;
+        let minus_gcross_vy_leg3 = t255
+            * (s_arm_leg3 * (t436 * t563) + minus_c_arm_leg3 * (t436 * t275));
+        let t570 = c_rod_leg1 * minus_gcross_vy_leg3;
+        let t578 = s_rod_leg1 * minus_gcross_vy_leg3;
+        let t583 = t252
+            * (grod_vy_leg1 * parameters[48] - parameters[49] * t570
+                + s_rod_leg1 * parameters[50])
+            + t264
+                * (parameters[50] * t457
+                    - (grod_vy_leg1 * parameters[47] + parameters[49] * t578));
+        let t584 = parameters[47] * t570;
+        let t587 = 0.53 * t570;
+        let t592 = garm_vy_leg3 * parameters[34] + garm_vy_leg3 * parameters[37] + t583
+            - t282 * (t584 + parameters[48] * t578 - parameters[50] * t587);
+        let t603 = c_rod_leg1
+            * (parameters[42] * t578 - parameters[44] * t570
+                - grod_vy_leg1 * parameters[45] + 0.53 * t584
+                + s_rod_leg1 * parameters[49]);
+        let t613 = s_rod_leg1
+            * (parameters[41] * t578 - parameters[42] * t570
+                - grod_vy_leg1 * parameters[43] - parameters[48] * t587
+                - parameters[49] * t457);
+        let t614 = t603 - t613;
+        let t620 = t314 - (0.2 * minus_c_arm_leg4 - 0.2);
+        let garm_vy_leg4 = t620 * t327;
+        let t625 = 1.8867924528301887 * t620;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t335;
+        let t628 = c_rod_leg2 * minus_gcross_vy_leg4;
+        let t632 = minus_s_rod_leg2 * minus_gcross_vy_leg4;
+        let t642 = c_cross_leg4 * (0.2 * garm_vy_leg4);
+        let t646 = t332 * (t625 * parameters[67] - parameters[66] * t628)
+            - t371 * (parameters[66] * t632 - t360 * parameters[67])
+            - t380
+                * (parameters[64] * t628 - parameters[65] * t632
+                    - parameters[67] * t642);
+        let t647 = garm_vy_leg4 * parameters[51] + garm_vy_leg4 * parameters[54] + t646;
+        let t665 = minus_s_rod_leg2
+            * (t360 * parameters[66]
+                - (parameters[58] * t632 + parameters[59] * t628
+                    + parameters[65] * t642))
+            + c_rod_leg2
+                * (parameters[64] * t642
+                    - (parameters[59] * t632 + parameters[61] * t628)
+                    + t625 * parameters[66]);
+        let t676 = garm_vx_leg4 * t647 - minus_gcross_vx_leg4 * t665
+            - minus_grod_vx_leg2
+                * (parameters[60] * t632 + parameters[62] * t628 + t360 * parameters[64]
+                    + t625 * parameters[65]);
+        let t677 = garm_vx_leg1 * t470 - minus_gcross_vx_leg1 * t492 + t553
+            + garm_vx_leg3 * t592 - minus_gcross_vx_leg3 * t614 + t676;
+        let t679 = pose[2] - 0.2 * minus_s_arm_leg1;
+        let garm_vz_leg1 = t679 * t25;
+        let t684 = 1.8867924528301887 * t679;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t36;
+        let t687 = c_rod_leg1 * minus_gcross_vz_leg1;
+        let t691 = s_rod_leg1 * minus_gcross_vz_leg1;
+        let t701 = c_cross_leg1 * (0.2 * garm_vz_leg1);
+        let t705 = t30 * (t684 * parameters[16] - parameters[15] * t687)
+            - t46 * (parameters[15] * t691 + t435 * parameters[16])
+            - t68
+                * (parameters[13] * t687 - parameters[14] * t691
+                    - parameters[16] * t701);
+        let t706 = garm_vz_leg1 * parameters[0] + garm_vz_leg1 * parameters[3] + t705;
+        let t724 = c_rod_leg1
+            * (parameters[13] * t701 - (parameters[8] * t691 + parameters[10] * t687)
+                + t684 * parameters[15])
+            - s_rod_leg1
+                * (parameters[7] * t691 + parameters[8] * t687 + parameters[14] * t701
+                    + t435 * parameters[15]);
+        let t728 = pose[2] - 0.2 * minus_s_arm_leg2;
+        let garm_vz_leg2 = t728 * t113;
+        let t733 = 1.8867924528301887 * t728;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t125;
+        let t736 = c_rod_leg2 * minus_gcross_vz_leg2;
+        let t740 = minus_s_rod_leg2 * minus_gcross_vz_leg2;
+        let t747 = c_cross_leg2 * (0.2 * garm_vz_leg2);
+        let t754 = t118 * (t733 * parameters[33] - parameters[32] * t736)
+            - t167 * (parameters[32] * t740 + t149 * parameters[33])
+            + t179
+                * (parameters[33] * t747
+                    - (parameters[30] * t736 + parameters[31] * t740));
+        let t755 = garm_vz_leg2 * parameters[17] + garm_vz_leg2 * parameters[20] + t754;
+        let t773 = c_rod_leg2
+            * (parameters[25] * t740 - parameters[27] * t736 + parameters[30] * t747
+                + t733 * parameters[32])
+            - minus_s_rod_leg2
+                * (parameters[24] * t740 - parameters[25] * t736 - parameters[31] * t747
+                    + t149 * parameters[32]);
+        let t784 = garm_vx_leg2 * t755 + gcross_vx_leg2 * t773
+            - minus_grod_vx_leg2
+                * (parameters[26] * t740 - parameters[28] * t736 - t149 * parameters[30]
+                    - t733 * parameters[31]);
+        let t787 = pose[2] + 0.2 * s_arm_leg3;
+        let garm_vz_leg3 = t787 * t247;
+        let gcross_vz_leg3 = s_arm_leg3 * t255;
+        let t793 = c_rod_leg1 * gcross_vz_leg3;
+        let t795 = 1.8867924528301887 * t787;
+        let t799 = s_rod_leg1 * gcross_vz_leg3;
+        let t809 = c_cross_leg3 * (0.2 * garm_vz_leg3);
+        let t813 = t252 * (parameters[49] * t793 + t795 * parameters[50])
+            + t264 * (parameters[49] * t799 - t563 * parameters[50])
+            + t282
+                * (parameters[47] * t793 + parameters[48] * t799
+                    + parameters[50] * t809);
+        let t814 = garm_vz_leg3 * parameters[34] + garm_vz_leg3 * parameters[37] + t813;
+        let t832 = c_rod_leg1
+            * (parameters[44] * t793 - parameters[42] * t799 + parameters[47] * t809
+                + t795 * parameters[49])
+            - s_rod_leg1
+                * (parameters[42] * t793 - parameters[41] * t799 - parameters[48] * t809
+                    + t563 * parameters[49]);
+        let t837 = pose[2] + 0.2 * s_arm_leg4;
+        let garm_vz_leg4 = t837 * t327;
+        let t842 = 1.8867924528301887 * t837;
+        let gcross_vz_leg4 = s_arm_leg4 * t335;
+        let t845 = c_rod_leg2 * gcross_vz_leg4;
+        let t850 = minus_s_rod_leg2 * gcross_vz_leg4;
+        let t859 = c_cross_leg4 * (0.2 * garm_vz_leg4);
+        let t863 = t332 * (t842 * parameters[67] + parameters[66] * t845)
+            - t371 * (t354 * parameters[67] - parameters[66] * t850)
+            - t380
+                * (parameters[65] * t850 - parameters[64] * t845
+                    - parameters[67] * t859);
+        let t864 = garm_vz_leg4 * parameters[51] + garm_vz_leg4 * parameters[54] + t863;
+        let t882 = minus_s_rod_leg2
+            * (parameters[58] * t850 + parameters[59] * t845 - parameters[65] * t859
+                - t354 * parameters[66])
+            + c_rod_leg2
+                * (parameters[59] * t850 + parameters[61] * t845 + parameters[64] * t859
+                    + t842 * parameters[66]);
+        let t893 = garm_vx_leg4 * t864 - minus_gcross_vx_leg4 * t882
+            + minus_grod_vx_leg2
+                * (parameters[60] * t850 + parameters[62] * t845 + t354 * parameters[64]
+                    - t842 * parameters[65]);
+        let t894 = garm_vx_leg1 * t706 - minus_gcross_vx_leg1 * t724 + t784
+            + garm_vx_leg3 * t814 - minus_gcross_vx_leg3 * t832 + t893;
+        let t907 = grod_vy_leg1
+            * (parameters[9] * t452 + parameters[11] * t443
+                + grod_vy_leg1 * parameters[12] - parameters[13] * t457
                 - s_rod_leg1 * parameters[14]);
-        let t823 = minus_grod_vy_leg3
-            * (parameters[43] * t487 + parameters[45] * t481
-                + minus_grod_vy_leg3 * parameters[46] + parameters[47] * t493
-                - s_rod_leg3 * parameters[48]);
-        let t825 = garm_vy_leg1 * t386 - minus_gcross_vy_leg1 * t408 + t805
-            + garm_vy_leg2 * t454 - minus_gcross_vy_leg2 * t433 + garm_vy_leg3 * t506
-            - minus_gcross_vy_leg3 * t528 + t823;
-        let t842 = garm_vy_leg1 * t613 - minus_gcross_vy_leg1 * t631
+        let t925 = grod_vy_leg1
+            * (parameters[43] * t578 - parameters[45] * t570
+                - grod_vy_leg1 * parameters[46] + parameters[47] * t457
+                - s_rod_leg1 * parameters[48]);
+        let t927 = garm_vy_leg1 * t470 + gcross_vy_leg1 * t492 + t907
+            + garm_vy_leg2 * t524 - minus_gcross_vy_leg2 * t542 + garm_vy_leg3 * t592
+            - minus_gcross_vy_leg3 * t614 - t925;
+        let t944 = garm_vy_leg1 * t706 + gcross_vy_leg1 * t724
             + grod_vy_leg1
-                * (parameters[9] * t595 + parameters[11] * t589 + t352 * parameters[13]
-                    + t13 * parameters[14]);
-        let t858 = garm_vy_leg3 * t715 - minus_gcross_vy_leg3 * t733
-            + minus_grod_vy_leg3
-                * (parameters[43] * t695 + parameters[45] * t700 - t474 * parameters[47]
-                    - t186 * parameters[48]);
-        let t863 = t842 + garm_vy_leg2 * t677 - minus_gcross_vy_leg2 * t656 + t858
-            + garm_vy_leg4 * t780 - minus_gcross_vy_leg4 * t759;
-        let t874 = gcross_vz_leg1 * t631 - minus_garm_vz_leg1 * t613
-            + gcross_vz_leg2 * t656 - minus_garm_vz_leg2 * t677 + garm_vz_leg3 * t715
-            - minus_gcross_vz_leg3 * t733;
+                * (t435 * parameters[13] - (parameters[9] * t691 + parameters[11] * t687)
+                    - t684 * parameters[14]);
+        let t960 = garm_vy_leg3 * t814 - minus_gcross_vy_leg3 * t832
+            - grod_vy_leg1
+                * (parameters[45] * t793 - parameters[43] * t799 - t563 * parameters[47]
+                    - t795 * parameters[48]);
+        let t965 = t944 + garm_vy_leg2 * t755 - minus_gcross_vy_leg2 * t773 + t960
+            + garm_vy_leg4 * t864 - minus_gcross_vy_leg4 * t882;
+        let t976 = garm_vz_leg1 * t706 - minus_gcross_vz_leg1 * t724
+            + garm_vz_leg2 * t755 - minus_gcross_vz_leg2 * t773 + garm_vz_leg3 * t814
+            + gcross_vz_leg3 * t832;
         Ok([
-            [t344 + t345, t587, t792],
+            [t425 + t426, t677, t894],
             [
-                t587, t825 + garm_vy_leg4 * t575 - minus_gcross_vy_leg4 * t554 + t345, t863,
+                t677, t927 + garm_vy_leg4 * t647 - minus_gcross_vy_leg4 * t665 + t426, t965,
             ],
-            [t792, t863, t874 + garm_vz_leg4 * t780 - minus_gcross_vz_leg4 * t759 + t345],
+            [t894, t965, t976 + garm_vz_leg4 * t864 + gcross_vz_leg4 * t882 + t426],
         ])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -7935,7 +11436,7 @@ impl Delta4 {
     ///
     /// Output: 3.
     ///
-    /// 888 operations (331 additions, 549 multiplications, 8 divisions), 0 square roots, 12 trigonometric pairs, 4 signs, 913 intermediates.
+    /// 974 operations (389 additions, 567 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 4 signs, 981 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7944,420 +11445,490 @@ impl Delta4 {
         twist: &[f64; 3],
         parameters: &[f64; 70],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
-        let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t12 = c_armcross_leg1 * c_rod_leg1;
-        let t13 = s_armcross_leg1 * c_rod_leg1;
-        let t16 = c_arm_leg1 * t13 - s_arm_leg1 * t12;
-        ::overact::guard::leg(t16, 0.9471622941895192, "leg1")?;
-        let t17 = 1.0 / t16;
-        let t18 = 5.0 * t17;
-        let garm_vx_leg1 = t12 * t18;
-        let minus_garm_vz_leg1 = t13 * t18;
-        let garm_vy_leg1 = s_rod_leg1 * t18;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.2809 + 0.04;
+        let t14 = 0.4 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.20079840636817814, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t21 = 0.2 * c_arm_leg1;
+        let t23 = t0 - (0.2 + t21);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = t23 * t25;
+        let garm_vy_leg1 = pose[1] * t25;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let t35 = 0.2 * minus_s_arm_leg1;
+        let t36 = pose[2] - t35;
+        let garm_vz_leg1 = t36 * t25;
         let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
-            - minus_garm_vz_leg1 * twist[2];
-        let t28 = rate_arm_leg1 * rate_arm_leg1;
-        let t31 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.8867924528301887 * t31;
+            + garm_vz_leg1 * twist[2];
+        let t41 = 0.4 * t24;
+        let s_rod_leg1 = 1.8867924528301887 * pose[1];
+        let t45 = 1.0 - 3.5599857600569598 * t8;
+        ::overact::guard::reach(t45, "leg1")?;
+        ::overact::guard::reach(t45, "leg3")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t45);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let t47 = 0.53 * c_rod_leg1;
+        let s_cross_leg1 = 2.5 * t17 / t47;
+        let t50 = 0.04 + t8;
+        let t52 = 0.2809 * t45;
+        let t54 = 0.212 * c_rod_leg1;
+        let c_cross_leg1 = (t10 - t50 - t52) / t54;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t59 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t41
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t59)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t59));
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t41;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t41;
+        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
+            - minus_gcross_vz_leg1 * twist[2];
+        let grod_vy_leg1 = 1.8867924528301887 * t59;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t34 = s_armcross_leg1 * rate_rod_leg1;
-        let t36 = 1.8867924528301887 * t17;
-        let gcross_vz_leg1 = s_arm_leg1 * t36;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t36;
-        let minus_gcross_vy_leg1 = t36
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t31)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t31));
-        let rate_cross_leg1 = gcross_vz_leg1 * twist[2]
-            - (minus_gcross_vx_leg1 * twist[0] + minus_gcross_vy_leg1 * twist[1]);
-        let t52 = rate_cross_leg1 * rate_cross_leg1;
-        let t54 = c_armcross_leg1 * rate_rod_leg1;
-        let t56 = t34 * t34 + t52 + t54 * t54;
-        let t59 = 0.53 * s_rod_leg1;
-        let t61 = t59 * (rate_cross_leg1 * t54);
-        let t63 = 0.2 * s_arm_leg1 * t28 + 0.53 * t13 * t56 + t61 + t61;
-        let t66 = t59 * (rate_cross_leg1 * t34);
-        let t73 = t66 - (0.2 * c_arm_leg1 * t28 + 0.53 * t12 * t56) + t66;
-        let t75 = t59 * rate_cross_leg1;
-        let t78 = rate_cross_leg1 * t75 - t59 * t56;
-        let rate_dot_arm_leg1 = minus_garm_vz_leg1 * t63
-            - (garm_vx_leg1 * t73 + garm_vy_leg1 * t78);
-        let t83 = 9.81 * c_arm_leg1;
-        let t86 = 9.81 * s_arm_leg1;
-        let t95 = parameters[0] * rate_dot_arm_leg1 - parameters[1] * t83
-            + parameters[2] * t86 + parameters[3] * rate_dot_arm_leg1
-            + parameters[4] * rate_arm_leg1
-            + ::overact::math::signed(parameters[5], rate_arm_leg1) + parameters[6];
-        let t97 = 1.8867924528301887 * t75;
-        let t98 = c_rod_leg1 * rate_cross_leg1;
-        let t99 = t97 * t98;
-        let minus_rate_dot_rod_leg1 = grod_vy_leg1 * t78;
-        let t101 = t99 + minus_rate_dot_rod_leg1;
-        let t103 = t98 * t98;
-        let t104 = rate_rod_leg1 * rate_rod_leg1;
-        let rate_dot_cross_leg1 = minus_gcross_vx_leg1 * t73 + minus_gcross_vy_leg1 * t78
-            - gcross_vz_leg1 * t63;
-        let t113 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t117 = 0.2 * rate_dot_arm_leg1 - t83;
-        let t120 = t86 + 0.2 * t28;
-        let t122 = s_cross_leg1 * t117 - c_cross_leg1 * t120;
-        let t123 = c_rod_leg1 * t122;
-        let t126 = 0.2 * t16
-            * (parameters[14] * t101 - parameters[13] * (t103 + t104)
-                + parameters[15] * t113 + parameters[16] * t123);
-        let t129 = t99 - minus_rate_dot_rod_leg1;
-        let t132 = 3.5599857600569598 * (t75 * t75);
-        let t136 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t139 = s_rod_leg1 * t122;
-        let t142 = s_rod_leg1 * (0.2 * s_cross_leg1)
-            * (parameters[13] * t129 - parameters[14] * (t132 + t104)
-                - parameters[15] * t136 - parameters[16] * t139);
-        let t145 = rate_rod_leg1 * t97;
-        let t146 = t113 - t145;
-        let t147 = t145 - t146;
-        let t149 = rate_rod_leg1 * t98;
-        let t150 = t136 + t149;
-        let t151 = t149 + t150;
-        let t158 = s_cross_leg1 * t120 + c_cross_leg1 * t117;
-        let t162 = t126 - t142
+        let t79 = s_armcross_leg1 * rate_rod_leg1;
+        let t81 = pose[1] * (rate_cross_leg1 * t79);
+        let t82 = rate_arm_leg1 * rate_arm_leg1;
+        let t85 = rate_cross_leg1 * rate_cross_leg1;
+        let t87 = c_armcross_leg1 * rate_rod_leg1;
+        let t89 = t79 * t79 + t85 + t87 * t87;
+        let t93 = t81 - (t21 * t82 + t23 * t89) + t81;
+        let t95 = pose[1] * rate_cross_leg1;
+        let t98 = rate_cross_leg1 * t95 - pose[1] * t89;
+        let t102 = pose[1] * (rate_cross_leg1 * t87);
+        let t107 = t102 - (t35 * t82 + t36 * t89) + t102;
+        let minus_rate_dot_arm_leg1 = garm_vx_leg1 * t93 + garm_vy_leg1 * t98
+            + garm_vz_leg1 * t107;
+        let t116 = 9.81 * c_arm_leg1;
+        let t119 = 9.81 * minus_s_arm_leg1;
+        let t122 = parameters[4] * rate_arm_leg1
+            - parameters[3] * minus_rate_dot_arm_leg1
+            + ::overact::math::signed(parameters[5], rate_arm_leg1) + parameters[6]
+            - (parameters[0] * minus_rate_dot_arm_leg1 + parameters[1] * t116
+                + parameters[2] * t119);
+        let t124 = 1.8867924528301887 * t95;
+        let t125 = c_rod_leg1 * rate_cross_leg1;
+        let t126 = t124 * t125;
+        let minus_rate_dot_rod_leg1 = grod_vy_leg1 * t98;
+        let t128 = t126 + minus_rate_dot_rod_leg1;
+        let t130 = t125 * t125;
+        let t131 = rate_rod_leg1 * rate_rod_leg1;
+        let rate_dot_cross_leg1 = minus_gcross_vx_leg1 * t93 - gcross_vy_leg1 * t98
+            + minus_gcross_vz_leg1 * t107;
+        let t140 = c_rod_leg1 * rate_dot_cross_leg1;
+        let t144 = t119 - 0.2 * t82;
+        let t147 = t116 + 0.2 * minus_rate_dot_arm_leg1;
+        let t149 = c_cross_leg1 * t144 - s_cross_leg1 * t147;
+        let t150 = c_rod_leg1 * t149;
+        let t153 = 0.9433962264150944 * t17
+            * (parameters[14] * t128 - parameters[13] * (t130 + t131)
+                + parameters[15] * t140 + parameters[16] * t150);
+        let t156 = t126 - minus_rate_dot_rod_leg1;
+        let t159 = 3.5599857600569598 * (t95 * t95);
+        let t163 = s_rod_leg1 * rate_dot_cross_leg1;
+        let t166 = s_rod_leg1 * t149;
+        let t169 = 0.37735849056603776 * (pose[1] * s_cross_leg1)
+            * (parameters[13] * t156 - parameters[14] * (t159 + t131)
+                - parameters[15] * t163 - parameters[16] * t166);
+        let t172 = rate_rod_leg1 * t124;
+        let t173 = t140 - t172;
+        let t174 = t172 - t173;
+        let t176 = rate_rod_leg1 * t125;
+        let t177 = t163 + t176;
+        let t178 = t176 + t177;
+        let t185 = s_cross_leg1 * t144 + c_cross_leg1 * t147;
+        let t189 = t153 - t169
             - 0.2 * c_cross_leg1
-                * (parameters[13] * t147 + parameters[14] * t151 - parameters[15] * t52
-                    - parameters[16] * t158);
-        let t163 = t95 + t162;
-        let t174 = parameters[7] * t150 - parameters[8] * t147 + parameters[9] * t129
-            - parameters[10] * t149 + parameters[11] * (t103 - t104);
-        let t191 = parameters[7] * t145 + parameters[8] * t151
-            + parameters[9] * (t104 - t132) + parameters[10] * t146
-            - parameters[11] * t101;
-        let t199 = s_rod_leg1
-            * (t174 + parameters[12] * t149 - parameters[14] * t158
-                + parameters[15] * t139)
+                * (parameters[13] * t174 + parameters[14] * t178 - parameters[15] * t85
+                    + parameters[16] * t185);
+        let t190 = t122 + t189;
+        let t201 = parameters[7] * t177 - parameters[8] * t174 + parameters[9] * t156
+            - parameters[10] * t176 + parameters[11] * (t130 - t131);
+        let t218 = parameters[7] * t172 + parameters[8] * t178
+            + parameters[9] * (t131 - t159) + parameters[10] * t173
+            - parameters[11] * t128;
+        let t226 = s_rod_leg1
+            * (t201 + parameters[12] * t176 + parameters[14] * t185
+                + parameters[15] * t166)
             + c_rod_leg1
-                * (t191 - parameters[12] * t145 + parameters[13] * t158
-                    + parameters[15] * t123);
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
-        let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
+                * (t218 - parameters[12] * t172 - parameters[13] * t185
+                    + parameters[15] * t150);
+        let t229 = pose[1] + 0.05;
+        let t230 = t229 - 0.2;
+        let t231 = t230 * t230;
+        let t233 = 0.16 * (t231 + t3);
+        let t234 = pose[0] * pose[0];
+        let t236 = t234 + t231 + t3;
+        let t238 = t236 - 0.2809 + 0.04;
+        let t240 = t233 - t238 * t238;
+        ::overact::guard::reach(t240, "leg2")?;
+        let t241 = ::overact::math::sqrt(t240);
+        ::overact::guard::leg(t241, 0.20079840636817814, "leg2")?;
+        let t242 = 1.0 / t241;
+        let t243 = 2.0 * t242;
+        let garm_vx_leg2 = pose[0] * t243;
+        let t246 = 1.0 / t233;
+        let t247 = 0.4 * t230;
+        let c_arm_leg2 = t246 * (t247 * t238 - t14 * t241);
+        let t252 = 0.2 * c_arm_leg2;
+        let t254 = t229 - (0.2 + t252);
+        let garm_vy_leg2 = t254 * t243;
+        let minus_s_arm_leg2 = t246 * (t14 * t238 + t247 * t241);
+        let t262 = 0.2 * minus_s_arm_leg2;
+        let t263 = pose[2] - t262;
+        let garm_vz_leg2 = t263 * t243;
+        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
+            + garm_vz_leg2 * twist[2];
+        let t268 = 0.4 * t242;
+        let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
+        let t272 = 1.0 - 3.5599857600569598 * t234;
+        ::overact::guard::reach(t272, "leg2")?;
+        ::overact::guard::reach(t272, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t272);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t214 = s_armcross_leg2 * c_rod_leg2;
-        let t216 = c_armcross_leg2 * c_rod_leg2;
-        let t218 = c_arm_leg2 * t214 - s_arm_leg2 * t216;
-        ::overact::guard::leg(t218, 0.9471622941895197, "leg2")?;
-        let t219 = 1.0 / t218;
-        let t220 = 1.8867924528301887 * t219;
-        let t222 = 1.0 / c_rod_leg2;
-        let gcross_vx_leg2 = t220
-            * (s_arm_leg2 * (s_armcross_leg2 * s_rod_leg2 * t222)
-                + c_arm_leg2 * (c_armcross_leg2 * s_rod_leg2 * t222));
-        let minus_grod_vx_leg2 = 1.8867924528301887 * t222;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * twist[0];
-        let t232 = 0.53 * s_rod_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t220;
-        let gcross_vz_leg2 = s_arm_leg2 * t220;
+        let t274 = 0.53 * c_rod_leg2;
+        let s_cross_leg2 = 2.5 * t241 / t274;
+        let t277 = 0.04 + t234;
+        let t279 = 0.2809 * t272;
+        let t281 = 0.212 * c_rod_leg2;
+        let c_cross_leg2 = (t236 - t277 - t279) / t281;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t286 = 1.0 / c_rod_leg2;
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let gcross_vx_leg2 = t268
+            * (minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t286)
+                - c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t286));
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t268;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t268;
         let rate_cross_leg2 = gcross_vx_leg2 * twist[0] - minus_gcross_vy_leg2 * twist[1]
-            + gcross_vz_leg2 * twist[2];
-        let t240 = t232 * rate_cross_leg2;
-        let t241 = 1.8867924528301887 * t240;
-        let t242 = minus_rate_rod_leg2 * t241;
-        let t243 = rate_cross_leg2 * rate_cross_leg2;
-        let t244 = s_armcross_leg2 * minus_rate_rod_leg2;
-        let t247 = c_armcross_leg2 * minus_rate_rod_leg2;
-        let t249 = t243 + t244 * t244 + t247 * t247;
-        let t252 = t232 * t249 - rate_cross_leg2 * t240;
-        let t255 = 5.0 * t219;
-        let garm_vy_leg2 = t216 * t255;
-        let minus_garm_vx_leg2 = s_rod_leg2 * t255;
-        let minus_garm_vz_leg2 = t214 * t255;
-        let rate_arm_leg2 = garm_vy_leg2 * twist[1] - minus_garm_vx_leg2 * twist[0]
-            - minus_garm_vz_leg2 * twist[2];
-        let t264 = rate_arm_leg2 * rate_arm_leg2;
-        let t270 = t232 * (rate_cross_leg2 * t244);
-        let t272 = 0.2 * c_arm_leg2 * t264 + 0.53 * t216 * t249 + t270 + t270;
-        let t281 = t232 * (rate_cross_leg2 * t247);
-        let t283 = 0.2 * s_arm_leg2 * t264 + 0.53 * t214 * t249 - t281 - t281;
-        let minus_rate_dot_cross_leg2 = gcross_vx_leg2 * t252
-            + minus_gcross_vy_leg2 * t272 + gcross_vz_leg2 * t283;
-        let t286 = c_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t287 = t242 - t286;
-        let t288 = t242 + t287;
-        let t290 = s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t291 = c_rod_leg2 * rate_cross_leg2;
-        let t292 = minus_rate_rod_leg2 * t291;
-        let t293 = t290 + t292;
-        let t296 = t241 * t291;
-        let rate_dot_rod_leg2 = minus_grod_vx_leg2 * t252;
-        let t298 = t296 + rate_dot_rod_leg2;
-        let t303 = t291 * t291;
-        let t304 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t307 = parameters[25] * t288 - parameters[24] * t293 + parameters[26] * t298
-            + parameters[27] * t292 + parameters[28] * (t303 - t304);
-        let t310 = 9.81 * s_arm_leg2;
-        let t312 = t310 + 0.2 * t264;
-        let rate_dot_arm_leg2 = minus_garm_vx_leg2 * t252 + garm_vy_leg2 * t272
-            + minus_garm_vz_leg2 * t283;
-        let t320 = 9.81 * c_arm_leg2;
-        let t321 = 0.2 * rate_dot_arm_leg2 - t320;
-        let t323 = s_cross_leg2 * t312 + c_cross_leg2 * t321;
-        let t328 = s_cross_leg2 * t321 - c_cross_leg2 * t312;
-        let t329 = s_rod_leg2 * t328;
-        let t334 = 3.5599857600569598 * (t240 * t240);
-        let t338 = t292 + t293;
-        let t344 = t296 - rate_dot_rod_leg2;
-        let t346 = parameters[26] * (t304 - t334)
-            - (parameters[24] * t242 + parameters[25] * t338) + parameters[27] * t287
-            - parameters[28] * t344;
-        let t351 = c_rod_leg2 * t328;
-        let t355 = s_rod_leg2
-            * (t307 - parameters[29] * t292 - parameters[31] * t323
-                + parameters[32] * t329)
-            + c_rod_leg2
-                * (t346 + parameters[29] * t242 + parameters[30] * t323
-                    + parameters[32] * t351);
-        let t368 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t320
-            + parameters[19] * t310 + parameters[20] * rate_dot_arm_leg2
-            + parameters[21] * rate_arm_leg2
-            + ::overact::math::signed(parameters[22], rate_arm_leg2) + parameters[23];
-        let t378 = 0.2 * t218
-            * (parameters[31] * t344 - parameters[30] * (t303 + t304)
-                - parameters[32] * t286 + parameters[33] * t351);
-        let t389 = s_rod_leg2 * (0.2 * s_cross_leg2)
-            * (parameters[30] * t298 - parameters[31] * (t334 + t304)
-                + parameters[32] * t290 - parameters[33] * t329);
-        let t400 = t378 - t389
-            + 0.2 * c_cross_leg2
-                * (parameters[30] * t288 + parameters[31] * t338 + parameters[32] * t243
-                    + parameters[33] * t323);
-        let t401 = t368 + t400;
-        let t413 = parameters[25] * (t334 - t303) - parameters[24] * t296
-            - parameters[26] * t290 + parameters[27] * t296 - parameters[28] * t286;
-        let t421 = gcross_vx_leg2 * t355 - minus_garm_vx_leg2 * t401
+            - minus_gcross_vz_leg2 * twist[2];
+        let t304 = pose[0] * rate_cross_leg2;
+        let t306 = rate_cross_leg2 * rate_cross_leg2;
+        let minus_grod_vx_leg2 = 1.8867924528301887 * t286;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * twist[0];
+        let t309 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t312 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t314 = t306 + t309 * t309 + t312 * t312;
+        let t316 = rate_cross_leg2 * t304 - pose[0] * t314;
+        let t319 = pose[0] * (rate_cross_leg2 * t309);
+        let t320 = rate_arm_leg2 * rate_arm_leg2;
+        let t325 = t319 - (t252 * t320 + t254 * t314) + t319;
+        let t329 = pose[0] * (rate_cross_leg2 * t312);
+        let t334 = t329 - (t262 * t320 + t263 * t314) + t329;
+        let minus_rate_dot_arm_leg2 = garm_vx_leg2 * t316 + garm_vy_leg2 * t325
+            + garm_vz_leg2 * t334;
+        let t343 = 9.81 * c_arm_leg2;
+        let t346 = 9.81 * minus_s_arm_leg2;
+        let t349 = parameters[21] * rate_arm_leg2
+            - parameters[20] * minus_rate_dot_arm_leg2
+            + ::overact::math::signed(parameters[22], rate_arm_leg2) + parameters[23]
+            - (parameters[17] * minus_rate_dot_arm_leg2 + parameters[18] * t343
+                + parameters[19] * t346);
+        let rate_dot_cross_leg2 = minus_gcross_vy_leg2 * t325 - gcross_vx_leg2 * t316
+            + minus_gcross_vz_leg2 * t334;
+        let t356 = c_rod_leg2 * rate_dot_cross_leg2;
+        let t358 = c_rod_leg2 * rate_cross_leg2;
+        let t359 = t358 * t358;
+        let t360 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t363 = 1.8867924528301887 * t304;
+        let t364 = t363 * t358;
+        let rate_dot_rod_leg2 = minus_grod_vx_leg2 * t316;
+        let t366 = t364 + rate_dot_rod_leg2;
+        let t371 = t346 - 0.2 * t320;
+        let t374 = t343 + 0.2 * minus_rate_dot_arm_leg2;
+        let t376 = c_cross_leg2 * t371 - s_cross_leg2 * t374;
+        let t377 = c_rod_leg2 * t376;
+        let t380 = 0.9433962264150944 * t241
+            * (parameters[32] * t356
+                - (parameters[30] * (t359 + t360) + parameters[31] * t366)
+                + parameters[33] * t377);
+        let t383 = rate_dot_rod_leg2 - t364;
+        let t386 = 3.5599857600569598 * (t304 * t304);
+        let t390 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t393 = minus_s_rod_leg2 * t376;
+        let t396 = 0.37735849056603776 * (pose[0] * s_cross_leg2)
+            * (parameters[30] * t383 - parameters[31] * (t386 + t360)
+                + parameters[32] * t390 + parameters[33] * t393);
+        let t399 = minus_rate_rod_leg2 * t363;
+        let t400 = t356 - t399;
+        let t401 = t399 - t400;
+        let t403 = minus_rate_rod_leg2 * t358;
+        let t404 = t390 + t403;
+        let t405 = t403 + t404;
+        let t412 = s_cross_leg2 * t371 + c_cross_leg2 * t374;
+        let t416 = t380 + t396
+            - 0.2 * c_cross_leg2
+                * (parameters[30] * t401 - parameters[31] * t405 - parameters[32] * t306
+                    + parameters[33] * t412);
+        let t417 = t349 + t416;
+        let t428 = parameters[24] * t399 - parameters[25] * t405
+            + parameters[26] * (t360 - t386) + parameters[27] * t400
+            + parameters[28] * t366;
+        let t445 = parameters[26] * t383
+            - (parameters[24] * t404 + parameters[25] * t401) + parameters[27] * t403
+            + parameters[28] * (t359 - t360);
+        let t453 = c_rod_leg2
+            * (t428 - parameters[29] * t399 - parameters[30] * t412
+                + parameters[32] * t377)
+            - minus_s_rod_leg2
+                * (t445 - parameters[29] * t403 + parameters[31] * t412
+                    - parameters[32] * t393);
+        let t465 = parameters[24] * t364 + parameters[25] * (t386 - t359)
+            - parameters[26] * t390 - parameters[27] * t364 + parameters[28] * t356;
+        let t473 = garm_vx_leg2 * t417 + gcross_vx_leg2 * t453
             - minus_grod_vx_leg2
-                * (t413 + parameters[29] * rate_dot_rod_leg2 - parameters[30] * t329
-                    - parameters[31] * t351);
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
-        let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t435 = c_armcross_leg3 * c_rod_leg3;
-        let t437 = s_armcross_leg3 * c_rod_leg3;
-        let t439 = s_arm_leg3 * t435 - c_arm_leg3 * t437;
-        ::overact::guard::leg(t439, 0.9471622941895192, "leg3")?;
-        let t440 = 1.0 / t439;
-        let t441 = 5.0 * t440;
-        let garm_vx_leg3 = t435 * t441;
-        let t443 = 9.81 * s_arm_leg3;
-        let garm_vy_leg3 = s_rod_leg3 * t441;
-        let garm_vz_leg3 = t437 * t441;
+                * (t465 + parameters[29] * rate_dot_rod_leg2 + parameters[30] * t393
+                    - parameters[31] * t377);
+        let t475 = pose[0] - 0.05;
+        let t476 = t475 + 0.2;
+        let t477 = t476 * t476;
+        let t479 = 0.16 * (t477 + t3);
+        let t480 = 1.0 / t479;
+        let t481 = 0.4 * t476;
+        let t483 = t477 + t8 + t3;
+        let t485 = t483 - 0.2809 + 0.04;
+        let t488 = t479 - t485 * t485;
+        ::overact::guard::reach(t488, "leg3")?;
+        let t489 = ::overact::math::sqrt(t488);
+        ::overact::guard::leg(t489, 0.20079840636817814, "leg3")?;
+        let minus_c_arm_leg3 = t480 * (t481 * t485 + t14 * t489);
+        let t493 = 0.2 * minus_c_arm_leg3;
+        let t495 = t475 - (t493 - 0.2);
+        let t496 = 1.0 / t489;
+        let t497 = 2.0 * t496;
+        let garm_vx_leg3 = t495 * t497;
+        let garm_vy_leg3 = pose[1] * t497;
+        let s_arm_leg3 = t480 * (t481 * t489 - t14 * t485);
+        let t507 = 0.2 * s_arm_leg3;
+        let t508 = pose[2] + t507;
+        let garm_vz_leg3 = t508 * t497;
         let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
             + garm_vz_leg3 * twist[2];
-        let t453 = rate_arm_leg3 * rate_arm_leg3;
-        let t456 = 1.0 / c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.8867924528301887 * t456;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * twist[1];
-        let t459 = s_armcross_leg3 * minus_rate_rod_leg3;
-        let t461 = 1.8867924528301887 * t440;
-        let minus_gcross_vx_leg3 = c_arm_leg3 * t461;
-        let minus_gcross_vy_leg3 = t461
-            * (s_arm_leg3 * (s_armcross_leg3 * s_rod_leg3 * t456)
-                + c_arm_leg3 * (c_armcross_leg3 * s_rod_leg3 * t456));
-        let minus_gcross_vz_leg3 = s_arm_leg3 * t461;
-        let minus_rate_cross_leg3 = minus_gcross_vx_leg3 * twist[0]
-            + minus_gcross_vy_leg3 * twist[1] + minus_gcross_vz_leg3 * twist[2];
-        let t477 = minus_rate_cross_leg3 * minus_rate_cross_leg3;
-        let t479 = c_armcross_leg3 * minus_rate_rod_leg3;
-        let t481 = t459 * t459 + t477 + t479 * t479;
-        let t484 = 0.53 * s_rod_leg3;
-        let t486 = t484 * (minus_rate_cross_leg3 * t459);
-        let t488 = 0.2 * c_arm_leg3 * t453 + 0.53 * t435 * t481 - t486 - t486;
-        let t491 = t484 * minus_rate_cross_leg3;
-        let t493 = t484 * t481 - minus_rate_cross_leg3 * t491;
-        let t502 = t484 * (minus_rate_cross_leg3 * t479);
-        let t504 = 0.2 * s_arm_leg3 * t453 + 0.53 * t437 * t481 + t502 + t502;
-        let minus_rate_dot_arm_leg3 = garm_vx_leg3 * t488 + garm_vy_leg3 * t493
-            + garm_vz_leg3 * t504;
-        let t508 = 9.81 * c_arm_leg3;
-        let t518 = parameters[36] * t443
-            - (parameters[34] * minus_rate_dot_arm_leg3 + parameters[35] * t508)
-            + parameters[38] * rate_arm_leg3 - parameters[37] * minus_rate_dot_arm_leg3
+        let t512 = rate_arm_leg3 * rate_arm_leg3;
+        let c_cross_leg3 = (t483 - t50 - t52) / t54;
+        let s_cross_leg3 = 2.5 * t489 / t47;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t522 = s_armcross_leg3 * rate_rod_leg1;
+        let t524 = 0.4 * t496;
+        let gcross_vz_leg3 = s_arm_leg3 * t524;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t524;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t524
+            * (s_arm_leg3 * (t59 * (s_rod_leg1 * s_armcross_leg3))
+                + minus_c_arm_leg3 * (t59 * (s_rod_leg1 * minus_c_armcross_leg3)));
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
+        let t543 = rate_cross_leg3 * rate_cross_leg3;
+        let t545 = minus_c_armcross_leg3 * rate_rod_leg1;
+        let t547 = t522 * t522 + t543 + t545 * t545;
+        let t551 = pose[1] * (rate_cross_leg3 * t522);
+        let t553 = t493 * t512 + t495 * t547 + t551 + t551;
+        let t561 = pose[1] * (rate_cross_leg3 * t545);
+        let t563 = t507 * t512 - t508 * t547 - t561 - t561;
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t553 - garm_vy_leg3 * t98
+            - garm_vz_leg3 * t563;
+        let t567 = 9.81 * minus_c_arm_leg3;
+        let t570 = 9.81 * s_arm_leg3;
+        let t579 = parameters[34] * rate_dot_arm_leg3 + parameters[35] * t567
+            + parameters[36] * t570 + parameters[37] * rate_dot_arm_leg3
+            + parameters[38] * rate_arm_leg3
             + ::overact::math::signed(parameters[39], rate_arm_leg3) + parameters[40];
-        let t520 = 1.8867924528301887 * t491;
-        let t521 = c_rod_leg3 * minus_rate_cross_leg3;
-        let t522 = t520 * t521;
-        let rate_dot_rod_leg3 = minus_grod_vy_leg3 * t493;
-        let t524 = t522 - rate_dot_rod_leg3;
-        let t526 = t521 * t521;
-        let t527 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let rate_dot_cross_leg3 = minus_gcross_vx_leg3 * t488
-            + minus_gcross_vy_leg3 * t493 + minus_gcross_vz_leg3 * t504;
-        let t536 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t540 = t443 + 0.2 * t453;
-        let t543 = t508 + 0.2 * minus_rate_dot_arm_leg3;
-        let t545 = c_cross_leg3 * t540 + s_cross_leg3 * t543;
-        let t546 = c_rod_leg3 * t545;
-        let t549 = 0.2 * t439
-            * (parameters[48] * t524 - parameters[47] * (t526 + t527)
-                + parameters[49] * t536 - parameters[50] * t546);
-        let t552 = t522 + rate_dot_rod_leg3;
-        let t555 = 3.5599857600569598 * (t491 * t491);
-        let t559 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t562 = s_rod_leg3 * t545;
-        let t565 = s_rod_leg3 * (0.2 * s_cross_leg3)
-            * (parameters[47] * t552 - parameters[48] * (t555 + t527)
-                - parameters[49] * t559 + parameters[50] * t562);
-        let t568 = minus_rate_rod_leg3 * t520;
-        let t569 = t536 - t568;
-        let t570 = t568 - t569;
-        let t572 = minus_rate_rod_leg3 * t521;
-        let t573 = t559 + t572;
-        let t574 = t572 + t573;
-        let t581 = s_cross_leg3 * t540 - c_cross_leg3 * t543;
-        let t585 = t549 + t565
-            + 0.2 * c_cross_leg3
-                * (parameters[47] * t570 + parameters[48] * t574 - parameters[49] * t477
-                    - parameters[50] * t581);
-        let t586 = t518 - t585;
-        let t597 = parameters[41] * t573 - parameters[42] * t570 + parameters[43] * t552
-            - parameters[44] * t572 + parameters[45] * (t526 - t527);
-        let t614 = parameters[41] * t568 + parameters[42] * t574
-            + parameters[43] * (t527 - t555) + parameters[44] * t569
-            - parameters[45] * t524;
-        let t622 = s_rod_leg3
-            * (t597 + parameters[46] * t572 - parameters[48] * t581
-                - parameters[49] * t562)
-            + c_rod_leg3
-                * (t614 - parameters[46] * t568 + parameters[47] * t581
-                    - parameters[49] * t546);
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let (s_cross_leg4, c_cross_leg4) = ::overact::math::sin_cos(joints[10]);
-        let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
-        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        ::overact::guard::leg(c_rod_leg4, 1.0, "leg4")?;
-        let t638 = c_armcross_leg4 * c_rod_leg4;
-        let t640 = s_armcross_leg4 * c_rod_leg4;
-        let t642 = s_arm_leg4 * t638 - c_arm_leg4 * t640;
-        ::overact::guard::leg(t642, 0.9471622941895192, "leg4")?;
-        let t643 = 1.0 / t642;
-        let t644 = 1.8867924528301887 * t643;
-        let t646 = 1.0 / c_rod_leg4;
-        let gcross_vx_leg4 = t644
-            * (s_arm_leg4 * (s_armcross_leg4 * s_rod_leg4 * t646)
-                + c_arm_leg4 * (c_armcross_leg4 * s_rod_leg4 * t646));
-        let minus_gcross_vy_leg4 = c_arm_leg4 * t644;
-        let t656 = 5.0 * t643;
-        let garm_vy_leg4 = t638 * t656;
-        let minus_garm_vx_leg4 = s_rod_leg4 * t656;
-        let garm_vz_leg4 = t640 * t656;
-        let rate_arm_leg4 = garm_vy_leg4 * twist[1] - minus_garm_vx_leg4 * twist[0]
+        let rate_dot_cross_leg3 = minus_gcross_vy_leg3 * t98
+            - minus_gcross_vx_leg3 * t553 - gcross_vz_leg3 * t563;
+        let t586 = c_rod_leg1 * rate_dot_cross_leg3;
+        let t588 = c_rod_leg1 * rate_cross_leg3;
+        let t589 = t588 * t588;
+        let t592 = pose[1] * rate_cross_leg3;
+        let t593 = 1.8867924528301887 * t592;
+        let t594 = t593 * t588;
+        let t595 = t594 + minus_rate_dot_rod_leg1;
+        let t600 = t567 + 0.2 * rate_dot_arm_leg3;
+        let t603 = t570 + 0.2 * t512;
+        let t605 = s_cross_leg3 * t600 - c_cross_leg3 * t603;
+        let t606 = c_rod_leg1 * t605;
+        let t609 = 0.9433962264150944 * t489
+            * (parameters[49] * t586
+                - (parameters[47] * (t589 + t131) + parameters[48] * t595)
+                + parameters[50] * t606);
+        let t612 = minus_rate_dot_rod_leg1 - t594;
+        let t615 = 3.5599857600569598 * (t592 * t592);
+        let t619 = s_rod_leg1 * rate_dot_cross_leg3;
+        let t622 = s_rod_leg1 * t605;
+        let t625 = 0.37735849056603776 * (pose[1] * s_cross_leg3)
+            * (parameters[47] * t612 - parameters[48] * (t615 + t131)
+                + parameters[49] * t619 + parameters[50] * t622);
+        let t628 = rate_rod_leg1 * t593;
+        let t629 = t586 - t628;
+        let t630 = t628 - t629;
+        let t632 = rate_rod_leg1 * t588;
+        let t633 = t619 + t632;
+        let t634 = t632 + t633;
+        let t641 = s_cross_leg3 * t603 + c_cross_leg3 * t600;
+        let t645 = t609 + t625
+            - 0.2 * c_cross_leg3
+                * (parameters[47] * t630 - parameters[48] * t634 - parameters[49] * t543
+                    - parameters[50] * t641);
+        let t646 = t579 + t645;
+        let t657 = parameters[41] * t628 - parameters[42] * t634
+            + parameters[43] * (t131 - t615) + parameters[44] * t629
+            + parameters[45] * t595;
+        let t674 = parameters[43] * t612
+            - (parameters[41] * t633 + parameters[42] * t630) + parameters[44] * t632
+            + parameters[45] * (t589 - t131);
+        let t682 = c_rod_leg1
+            * (t657 - parameters[46] * t628 + parameters[47] * t641
+                + parameters[49] * t606)
+            - s_rod_leg1
+                * (t674 - parameters[46] * t632 - parameters[48] * t641
+                    - parameters[49] * t622);
+        let t686 = pose[1] - 0.05;
+        let t687 = t686 + 0.2;
+        let t688 = t687 * t687;
+        let t690 = 0.16 * (t688 + t3);
+        let t692 = t234 + t688 + t3;
+        let t694 = t692 - 0.2809 + 0.04;
+        let t696 = t690 - t694 * t694;
+        ::overact::guard::reach(t696, "leg4")?;
+        let t697 = ::overact::math::sqrt(t696);
+        ::overact::guard::leg(t697, 0.20079840636817814, "leg4")?;
+        let t698 = 1.0 / t697;
+        let t699 = 2.0 * t698;
+        let garm_vx_leg4 = pose[0] * t699;
+        let t701 = 1.0 / t690;
+        let t702 = 0.4 * t687;
+        let minus_c_arm_leg4 = t701 * (t702 * t694 + t14 * t697);
+        let t707 = 0.2 * minus_c_arm_leg4;
+        let t709 = t686 - (t707 - 0.2);
+        let garm_vy_leg4 = t709 * t699;
+        let s_arm_leg4 = t701 * (t702 * t697 - t14 * t694);
+        let t718 = 0.2 * s_arm_leg4;
+        let t719 = pose[2] + t718;
+        let garm_vz_leg4 = t719 * t699;
+        let rate_arm_leg4 = garm_vx_leg4 * twist[0] + garm_vy_leg4 * twist[1]
             + garm_vz_leg4 * twist[2];
-        let t665 = rate_arm_leg4 * rate_arm_leg4;
-        let minus_gcross_vz_leg4 = s_arm_leg4 * t644;
-        let rate_cross_leg4 = gcross_vx_leg4 * twist[0] - minus_gcross_vy_leg4 * twist[1]
-            - minus_gcross_vz_leg4 * twist[2];
-        let t674 = rate_cross_leg4 * rate_cross_leg4;
-        let grod_vx_leg4 = 1.8867924528301887 * t646;
-        let rate_rod_leg4 = grod_vx_leg4 * twist[0];
-        let t677 = s_armcross_leg4 * rate_rod_leg4;
-        let t680 = c_armcross_leg4 * rate_rod_leg4;
-        let t682 = t674 + t677 * t677 + t680 * t680;
-        let t685 = 0.53 * s_rod_leg4;
-        let t687 = t685 * (rate_cross_leg4 * t677);
-        let t689 = 0.2 * c_arm_leg4 * t665 + 0.53 * t638 * t682 - t687 - t687;
-        let t691 = t685 * rate_cross_leg4;
-        let t694 = rate_cross_leg4 * t691 - t685 * t682;
-        let t703 = t685 * (rate_cross_leg4 * t680);
-        let t705 = 0.2 * s_arm_leg4 * t665 + 0.53 * t640 * t682 + t703 + t703;
-        let rate_dot_cross_leg4 = minus_gcross_vy_leg4 * t689 - gcross_vx_leg4 * t694
-            + minus_gcross_vz_leg4 * t705;
-        let t708 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t709 = c_rod_leg4 * rate_cross_leg4;
-        let t710 = rate_rod_leg4 * t709;
-        let t711 = t708 + t710;
-        let t713 = 1.8867924528301887 * t691;
-        let t714 = rate_rod_leg4 * t713;
-        let t715 = c_rod_leg4 * rate_dot_cross_leg4;
-        let t716 = t715 - t714;
-        let t717 = t714 - t716;
-        let t720 = t713 * t709;
-        let minus_rate_dot_rod_leg4 = grod_vx_leg4 * t694;
-        let t722 = t720 - minus_rate_dot_rod_leg4;
-        let t727 = t709 * t709;
-        let t728 = rate_rod_leg4 * rate_rod_leg4;
-        let t731 = parameters[58] * t711 - parameters[59] * t717 + parameters[60] * t722
-            - parameters[61] * t710 + parameters[62] * (t727 - t728);
-        let t734 = 9.81 * s_arm_leg4;
-        let t736 = t734 + 0.2 * t665;
-        let rate_dot_arm_leg4 = minus_garm_vx_leg4 * t694 - garm_vy_leg4 * t689
-            - garm_vz_leg4 * t705;
-        let t744 = 9.81 * c_arm_leg4;
-        let t745 = 0.2 * rate_dot_arm_leg4 - t744;
-        let t747 = s_cross_leg4 * t736 + c_cross_leg4 * t745;
-        let t752 = s_cross_leg4 * t745 - c_cross_leg4 * t736;
-        let t753 = s_rod_leg4 * t752;
-        let t758 = t710 + t711;
-        let t762 = 3.5599857600569598 * (t691 * t691);
-        let t768 = t720 + minus_rate_dot_rod_leg4;
-        let t770 = parameters[58] * t714 + parameters[59] * t758
-            + parameters[60] * (t728 - t762) + parameters[61] * t716
-            - parameters[62] * t768;
-        let t775 = c_rod_leg4 * t752;
-        let t779 = s_rod_leg4
-            * (t731 + parameters[63] * t710 - parameters[65] * t747
-                + parameters[66] * t753)
-            + c_rod_leg4
-                * (t770 - parameters[63] * t714 + parameters[64] * t747
-                    + parameters[66] * t775);
-        let t792 = parameters[51] * rate_dot_arm_leg4 - parameters[52] * t744
-            + parameters[53] * t734 + parameters[54] * rate_dot_arm_leg4
+        let t723 = rate_arm_leg4 * rate_arm_leg4;
+        let t725 = 0.4 * t698;
+        let gcross_vz_leg4 = s_arm_leg4 * t725;
+        let c_cross_leg4 = (t692 - t277 - t279) / t281;
+        let s_cross_leg4 = 2.5 * t697 / t274;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t725
+            * (s_arm_leg4 * (t286 * (minus_s_rod_leg2 * s_armcross_leg4))
+                + minus_c_arm_leg4
+                    * (t286 * (minus_s_rod_leg2 * minus_c_armcross_leg4)));
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t725;
+        let rate_cross_leg4 = gcross_vz_leg4 * twist[2]
+            - (minus_gcross_vx_leg4 * twist[0] + minus_gcross_vy_leg4 * twist[1]);
+        let t752 = rate_cross_leg4 * rate_cross_leg4;
+        let t753 = s_armcross_leg4 * minus_rate_rod_leg2;
+        let t756 = minus_c_armcross_leg4 * minus_rate_rod_leg2;
+        let t758 = t752 + t753 * t753 + t756 * t756;
+        let t762 = pose[0] * (rate_cross_leg4 * t753);
+        let t764 = t707 * t723 + t709 * t758 + t762 + t762;
+        let t772 = pose[0] * (rate_cross_leg4 * t756);
+        let t774 = t718 * t723 - t719 * t758 - t772 - t772;
+        let rate_dot_arm_leg4 = garm_vy_leg4 * t764 - garm_vx_leg4 * t316
+            - garm_vz_leg4 * t774;
+        let t778 = 9.81 * minus_c_arm_leg4;
+        let t781 = 9.81 * s_arm_leg4;
+        let t790 = parameters[51] * rate_dot_arm_leg4 + parameters[52] * t778
+            + parameters[53] * t781 + parameters[54] * rate_dot_arm_leg4
             + parameters[55] * rate_arm_leg4
             + ::overact::math::signed(parameters[56], rate_arm_leg4) + parameters[57];
-        let t802 = 0.2 * t642
-            * (parameters[65] * t768 - parameters[64] * (t727 + t728)
-                + parameters[66] * t715 + parameters[67] * t775);
-        let t813 = s_rod_leg4 * (0.2 * s_cross_leg4)
-            * (parameters[64] * t722 - parameters[65] * (t762 + t728)
-                - parameters[66] * t708 - parameters[67] * t753);
-        let t824 = t802 + t813
-            + 0.2 * c_cross_leg4
-                * (parameters[64] * t717 + parameters[65] * t758 - parameters[66] * t674
-                    - parameters[67] * t747);
-        let t825 = t792 - t824;
-        let t837 = parameters[59] * (t762 - t727) - parameters[58] * t720
-            + parameters[60] * t708 + parameters[61] * t720 + parameters[62] * t715;
-        let t845 = gcross_vx_leg4 * t779 - minus_garm_vx_leg4 * t825
-            + grod_vx_leg4
-                * (t837 - parameters[63] * minus_rate_dot_rod_leg4
-                    - parameters[64] * t753 - parameters[65] * t775);
-        let t859 = parameters[8] * (t132 - t103) - parameters[7] * t99
-            + parameters[9] * t136 + parameters[10] * t99 + parameters[11] * t113;
-        let t867 = garm_vy_leg1 * t163 - minus_gcross_vy_leg1 * t199
+        let t792 = pose[0] * rate_cross_leg4;
+        let t793 = 1.8867924528301887 * t792;
+        let t794 = c_rod_leg2 * rate_cross_leg4;
+        let t795 = t793 * t794;
+        let t796 = t795 + rate_dot_rod_leg2;
+        let t798 = t794 * t794;
+        let rate_dot_cross_leg4 = minus_gcross_vx_leg4 * t316
+            - minus_gcross_vy_leg4 * t764 - gcross_vz_leg4 * t774;
+        let t807 = c_rod_leg2 * rate_dot_cross_leg4;
+        let t811 = t778 + 0.2 * rate_dot_arm_leg4;
+        let t814 = t781 + 0.2 * t723;
+        let t816 = s_cross_leg4 * t811 - c_cross_leg4 * t814;
+        let t817 = c_rod_leg2 * t816;
+        let t820 = 0.9433962264150944 * t697
+            * (parameters[65] * t796 - parameters[64] * (t798 + t360)
+                + parameters[66] * t807 + parameters[67] * t817);
+        let t823 = t795 - rate_dot_rod_leg2;
+        let t826 = 3.5599857600569598 * (t792 * t792);
+        let t830 = minus_s_rod_leg2 * rate_dot_cross_leg4;
+        let t833 = minus_s_rod_leg2 * t816;
+        let t836 = 0.37735849056603776 * (pose[0] * s_cross_leg4)
+            * (parameters[64] * t823 - parameters[65] * (t826 + t360)
+                - parameters[66] * t830 - parameters[67] * t833);
+        let t839 = minus_rate_rod_leg2 * t793;
+        let t840 = t807 - t839;
+        let t841 = t839 - t840;
+        let t843 = minus_rate_rod_leg2 * t794;
+        let t844 = t830 + t843;
+        let t845 = t843 + t844;
+        let t852 = s_cross_leg4 * t814 + c_cross_leg4 * t811;
+        let t856 = t820 - t836
+            - 0.2 * c_cross_leg4
+                * (parameters[64] * t841 + parameters[65] * t845 - parameters[66] * t752
+                    - parameters[67] * t852);
+        let t857 = t790 + t856;
+        let t868 = parameters[58] * t844 - parameters[59] * t841 + parameters[60] * t823
+            - parameters[61] * t843 + parameters[62] * (t798 - t360);
+        let t885 = parameters[58] * t839 + parameters[59] * t845
+            + parameters[60] * (t360 - t826) + parameters[61] * t840
+            - parameters[62] * t796;
+        let t893 = minus_s_rod_leg2
+            * (t868 + parameters[63] * t843 - parameters[65] * t852
+                + parameters[66] * t833)
+            + c_rod_leg2
+                * (t885 - parameters[63] * t839 + parameters[64] * t852
+                    + parameters[66] * t817);
+        let t905 = parameters[59] * (t826 - t798) - parameters[58] * t795
+            + parameters[60] * t830 + parameters[61] * t795 + parameters[62] * t807;
+        let t913 = garm_vx_leg4 * t857 - minus_gcross_vx_leg4 * t893
+            + minus_grod_vx_leg2
+                * (t905 - parameters[63] * rate_dot_rod_leg2 - parameters[64] * t833
+                    - parameters[65] * t817);
+        let t927 = parameters[8] * (t159 - t130) - parameters[7] * t126
+            + parameters[9] * t163 + parameters[10] * t126 + parameters[11] * t140;
+        let t935 = garm_vy_leg1 * t190 + gcross_vy_leg1 * t226
             + grod_vy_leg1
-                * (t859 - parameters[12] * minus_rate_dot_rod_leg1
-                    - parameters[13] * t139 - parameters[14] * t123);
-        let t884 = parameters[42] * (t555 - t526) - parameters[41] * t522
-            + parameters[43] * t559 + parameters[44] * t522 + parameters[45] * t536;
-        let t892 = garm_vy_leg3 * t586 - minus_gcross_vy_leg3 * t622
-            - minus_grod_vy_leg3
-                * (t884 + parameters[46] * rate_dot_rod_leg3 + parameters[47] * t562
-                    + parameters[48] * t546);
-        let t908 = gcross_vz_leg1 * t199 - minus_garm_vz_leg1 * t163
-            + gcross_vz_leg2 * t355 - minus_garm_vz_leg2 * t401 + garm_vz_leg3 * t586
-            - minus_gcross_vz_leg3 * t622;
+                * (t927 - parameters[12] * minus_rate_dot_rod_leg1
+                    - parameters[13] * t166 - parameters[14] * t150);
+        let t952 = parameters[41] * t594 + parameters[42] * (t615 - t589)
+            - parameters[43] * t619 - parameters[44] * t594 + parameters[45] * t586;
+        let t960 = garm_vy_leg3 * t646 - minus_gcross_vy_leg3 * t682
+            - grod_vy_leg1
+                * (t952 + parameters[46] * minus_rate_dot_rod_leg1
+                    + parameters[47] * t622 - parameters[48] * t606);
+        let t976 = garm_vz_leg1 * t190 - minus_gcross_vz_leg1 * t226
+            + garm_vz_leg2 * t417 - minus_gcross_vz_leg2 * t453 + garm_vz_leg3 * t646
+            + gcross_vz_leg3 * t682;
         Ok([
-            garm_vx_leg1 * t163 - minus_gcross_vx_leg1 * t199 + t421
-                + garm_vx_leg3 * t586 - minus_gcross_vx_leg3 * t622 + t845,
-            t867 + garm_vy_leg2 * t401 - minus_gcross_vy_leg2 * t355 + t892
-                + garm_vy_leg4 * t825 - minus_gcross_vy_leg4 * t779,
-            t908 + garm_vz_leg4 * t825 - minus_gcross_vz_leg4 * t779
+            garm_vx_leg1 * t190 - minus_gcross_vx_leg1 * t226 + t473
+                + garm_vx_leg3 * t646 - minus_gcross_vx_leg3 * t682 + t913,
+            t935 + garm_vy_leg2 * t417 - minus_gcross_vy_leg2 * t453 + t960
+                + garm_vy_leg4 * t857 - minus_gcross_vy_leg4 * t893,
+            t976 + garm_vz_leg4 * t857 + gcross_vz_leg4 * t893
                 + 9.81 * (parameters[68] + parameters[69]),
         ])
     }
@@ -8372,7 +11943,7 @@ impl Delta4 {
     ///
     /// Output: 4.
     ///
-    /// 1049 operations (403 additions, 634 multiplications, 12 divisions), 1 square roots, 12 trigonometric pairs, 4 signs, 1074 intermediates.
+    /// 1134 operations (459 additions, 653 multiplications, 22 divisions), 7 square roots, 0 trigonometric pairs, 4 signs, 1141 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -8383,490 +11954,543 @@ impl Delta4 {
         parameters: &[f64; 70],
         preload: &[f64; 1],
     ) -> Result<[f64; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
-        let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * t1;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.2809 + 0.04;
+        let t14 = 0.4 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.20079840636817814, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t21 = 0.2 * c_arm_leg1;
+        let t23 = t0 - (0.2 + t21);
+        let t24 = 1.0 / t17;
+        let t25 = 2.0 * t24;
+        let garm_vx_leg1 = t23 * t25;
+        let t27 = 0.4 * t24;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let s_rod_leg1 = 1.8867924528301887 * pose[1];
+        let t35 = 1.0 - 3.5599857600569598 * t8;
+        ::overact::guard::reach(t35, "leg1")?;
+        ::overact::guard::reach(t35, "leg3")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t35);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t12 = c_armcross_leg1 * c_rod_leg1;
-        let t13 = s_armcross_leg1 * c_rod_leg1;
-        let t16 = c_arm_leg1 * t13 - s_arm_leg1 * t12;
-        ::overact::guard::leg(t16, 0.9471622941895192, "leg1")?;
-        let t17 = 1.0 / t16;
-        let t18 = 5.0 * t17;
-        let garm_vx_leg1 = t12 * t18;
-        let t20 = 0.53 * s_rod_leg1;
-        let t21 = 1.8867924528301887 * t17;
-        let gcross_vz_leg1 = s_arm_leg1 * t21;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t21;
-        let t27 = 1.0 / c_rod_leg1;
-        let minus_gcross_vy_leg1 = t21
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t27)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t27));
-        let rate_cross_leg1 = gcross_vz_leg1 * twist[2]
-            - (minus_gcross_vx_leg1 * twist[0] + minus_gcross_vy_leg1 * twist[1]);
-        let grod_vy_leg1 = 1.8867924528301887 * t27;
+        let t37 = 0.53 * c_rod_leg1;
+        let s_cross_leg1 = 2.5 * t17 / t37;
+        let t40 = 0.04 + t8;
+        let t42 = 0.2809 * t35;
+        let t44 = 0.212 * c_rod_leg1;
+        let c_cross_leg1 = (t10 - t40 - t42) / t44;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t49 = 1.0 / c_rod_leg1;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let gcross_vy_leg1 = t27
+            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t49)
+                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t49));
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t27;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t27;
+        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
+            - minus_gcross_vz_leg1 * twist[2];
+        let grod_vy_leg1 = 1.8867924528301887 * t49;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t40 = s_armcross_leg1 * rate_rod_leg1;
-        let t42 = t20 * (rate_cross_leg1 * t40);
-        let garm_vy_leg1 = s_rod_leg1 * t18;
-        let minus_garm_vz_leg1 = t13 * t18;
+        let t69 = s_armcross_leg1 * rate_rod_leg1;
+        let t71 = pose[1] * (rate_cross_leg1 * t69);
+        let garm_vy_leg1 = pose[1] * t25;
+        let t76 = 0.2 * minus_s_arm_leg1;
+        let t77 = pose[2] - t76;
+        let garm_vz_leg1 = t77 * t25;
         let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
-            - minus_garm_vz_leg1 * twist[2];
-        let t51 = rate_arm_leg1 * rate_arm_leg1;
-        let t55 = rate_cross_leg1 * rate_cross_leg1;
-        let t57 = c_armcross_leg1 * rate_rod_leg1;
-        let t59 = t40 * t40 + t55 + t57 * t57;
-        let t64 = acceleration[0]
-            - (t42 - (0.2 * c_arm_leg1 * t51 + 0.53 * t12 * t59) + t42);
-        let t66 = t20 * rate_cross_leg1;
-        let t70 = acceleration[1] - (rate_cross_leg1 * t66 - t20 * t59);
-        let t79 = t20 * (rate_cross_leg1 * t57);
-        let t82 = acceleration[2]
-            - (0.2 * s_arm_leg1 * t51 + 0.53 * t13 * t59 + t79 + t79);
-        let rate_dot_arm_leg1 = garm_vx_leg1 * t64 + garm_vy_leg1 * t70
-            - minus_garm_vz_leg1 * t82;
-        let t86 = 9.81 * c_arm_leg1;
-        let t89 = 9.81 * s_arm_leg1;
-        let t98 = parameters[0] * rate_dot_arm_leg1 - parameters[1] * t86
-            + parameters[2] * t89 + parameters[3] * rate_dot_arm_leg1
+            + garm_vz_leg1 * twist[2];
+        let t81 = rate_arm_leg1 * rate_arm_leg1;
+        let t84 = rate_cross_leg1 * rate_cross_leg1;
+        let t86 = c_armcross_leg1 * rate_rod_leg1;
+        let t88 = t69 * t69 + t84 + t86 * t86;
+        let t93 = acceleration[0] - (t71 - (t21 * t81 + t23 * t88) + t71);
+        let t95 = pose[1] * rate_cross_leg1;
+        let t99 = acceleration[1] - (rate_cross_leg1 * t95 - pose[1] * t88);
+        let t103 = pose[1] * (rate_cross_leg1 * t86);
+        let t109 = acceleration[2] - (t103 - (t76 * t81 + t77 * t88) + t103);
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t93 + garm_vy_leg1 * t99
+            + garm_vz_leg1 * t109;
+        let t113 = 9.81 * c_arm_leg1;
+        let t116 = 9.81 * minus_s_arm_leg1;
+        let t125 = parameters[0] * rate_dot_arm_leg1 - parameters[1] * t113
+            - parameters[2] * t116 + parameters[3] * rate_dot_arm_leg1
             + parameters[4] * rate_arm_leg1
             + ::overact::math::signed(parameters[5], rate_arm_leg1) + parameters[6];
-        let t100 = 1.8867924528301887 * t66;
-        let t101 = c_rod_leg1 * rate_cross_leg1;
-        let t102 = t100 * t101;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t70;
-        let t104 = t102 - rate_dot_rod_leg1;
-        let t106 = t101 * t101;
-        let t107 = rate_rod_leg1 * rate_rod_leg1;
-        let rate_dot_cross_leg1 = gcross_vz_leg1 * t82
-            - (minus_gcross_vx_leg1 * t64 + minus_gcross_vy_leg1 * t70);
-        let t116 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t120 = 0.2 * rate_dot_arm_leg1 - t86;
-        let t123 = t89 + 0.2 * t51;
-        let t125 = s_cross_leg1 * t120 - c_cross_leg1 * t123;
-        let t126 = c_rod_leg1 * t125;
-        let t129 = 0.2 * t16
-            * (parameters[14] * t104 - parameters[13] * (t106 + t107)
-                + parameters[15] * t116 + parameters[16] * t126);
-        let t132 = t102 + rate_dot_rod_leg1;
-        let t135 = 3.5599857600569598 * (t66 * t66);
-        let t139 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t142 = s_rod_leg1 * t125;
-        let t145 = s_rod_leg1 * (0.2 * s_cross_leg1)
-            * (parameters[13] * t132 - parameters[14] * (t135 + t107)
-                - parameters[15] * t139 - parameters[16] * t142);
-        let t148 = rate_rod_leg1 * t100;
-        let t149 = t116 - t148;
-        let t150 = t148 - t149;
-        let t152 = rate_rod_leg1 * t101;
-        let t153 = t139 + t152;
-        let t154 = t152 + t153;
-        let t161 = s_cross_leg1 * t123 + c_cross_leg1 * t120;
-        let t165 = t129 - t145
+        let t127 = 1.8867924528301887 * t95;
+        let t128 = c_rod_leg1 * rate_cross_leg1;
+        let t129 = t127 * t128;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t99;
+        let t131 = t129 - rate_dot_rod_leg1;
+        let t133 = t128 * t128;
+        let t134 = rate_rod_leg1 * rate_rod_leg1;
+        let rate_dot_cross_leg1 = gcross_vy_leg1 * t99 - minus_gcross_vx_leg1 * t93
+            - minus_gcross_vz_leg1 * t109;
+        let t143 = c_rod_leg1 * rate_dot_cross_leg1;
+        let t147 = t116 - 0.2 * t81;
+        let t150 = 0.2 * rate_dot_arm_leg1 - t113;
+        let t152 = c_cross_leg1 * t147 + s_cross_leg1 * t150;
+        let t153 = c_rod_leg1 * t152;
+        let t156 = 0.9433962264150944 * t17
+            * (parameters[14] * t131 - parameters[13] * (t133 + t134)
+                + parameters[15] * t143 + parameters[16] * t153);
+        let t159 = t129 + rate_dot_rod_leg1;
+        let t162 = 3.5599857600569598 * (t95 * t95);
+        let t166 = s_rod_leg1 * rate_dot_cross_leg1;
+        let t169 = s_rod_leg1 * t152;
+        let t172 = 0.37735849056603776 * (pose[1] * s_cross_leg1)
+            * (parameters[13] * t159 - parameters[14] * (t162 + t134)
+                - parameters[15] * t166 - parameters[16] * t169);
+        let t175 = rate_rod_leg1 * t127;
+        let t176 = t143 - t175;
+        let t177 = t175 - t176;
+        let t179 = rate_rod_leg1 * t128;
+        let t180 = t166 + t179;
+        let t181 = t179 + t180;
+        let t188 = c_cross_leg1 * t150 - s_cross_leg1 * t147;
+        let t192 = t156 - t172
             - 0.2 * c_cross_leg1
-                * (parameters[13] * t150 + parameters[14] * t154 - parameters[15] * t55
-                    - parameters[16] * t161);
-        let t166 = t98 + t165;
-        let t177 = parameters[7] * t153 - parameters[8] * t150 + parameters[9] * t132
-            - parameters[10] * t152 + parameters[11] * (t106 - t107);
-        let t194 = parameters[7] * t148 + parameters[8] * t154
-            + parameters[9] * (t107 - t135) + parameters[10] * t149
-            - parameters[11] * t104;
-        let t202 = s_rod_leg1
-            * (t177 + parameters[12] * t152 - parameters[14] * t161
-                + parameters[15] * t142)
+                * (parameters[13] * t177 + parameters[14] * t181 - parameters[15] * t84
+                    - parameters[16] * t188);
+        let t193 = t125 + t192;
+        let t204 = parameters[7] * t180 - parameters[8] * t177 + parameters[9] * t159
+            - parameters[10] * t179 + parameters[11] * (t133 - t134);
+        let t221 = parameters[7] * t175 + parameters[8] * t181
+            + parameters[9] * (t134 - t162) + parameters[10] * t176
+            - parameters[11] * t131;
+        let t229 = s_rod_leg1
+            * (t204 + parameters[12] * t179 - parameters[14] * t188
+                + parameters[15] * t169)
             + c_rod_leg1
-                * (t194 - parameters[12] * t148 + parameters[13] * t161
-                    + parameters[15] * t126);
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
-        let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
+                * (t221 - parameters[12] * t175 + parameters[13] * t188
+                    + parameters[15] * t153);
+        let t232 = pose[1] + 0.05;
+        let t233 = t232 - 0.2;
+        let t234 = t233 * t233;
+        let t236 = 0.16 * (t234 + t3);
+        let t237 = pose[0] * pose[0];
+        let t239 = t237 + t234 + t3;
+        let t241 = t239 - 0.2809 + 0.04;
+        let t243 = t236 - t241 * t241;
+        ::overact::guard::reach(t243, "leg2")?;
+        let t244 = ::overact::math::sqrt(t243);
+        ::overact::guard::leg(t244, 0.20079840636817814, "leg2")?;
+        let t245 = 1.0 / t244;
+        let t246 = 2.0 * t245;
+        let garm_vx_leg2 = pose[0] * t246;
+        let t248 = 0.4 * t245;
+        let t249 = 1.0 / t236;
+        let t251 = 0.4 * t233;
+        let minus_s_arm_leg2 = t249 * (t14 * t241 + t251 * t244);
+        let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
+        let c_arm_leg2 = t249 * (t251 * t241 - t14 * t244);
+        let t262 = 1.0 - 3.5599857600569598 * t237;
+        ::overact::guard::reach(t262, "leg2")?;
+        ::overact::guard::reach(t262, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t262);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t217 = s_armcross_leg2 * c_rod_leg2;
-        let t219 = c_armcross_leg2 * c_rod_leg2;
-        let t221 = c_arm_leg2 * t217 - s_arm_leg2 * t219;
-        ::overact::guard::leg(t221, 0.9471622941895197, "leg2")?;
-        let t222 = 1.0 / t221;
-        let t223 = 1.8867924528301887 * t222;
-        let t225 = 1.0 / c_rod_leg2;
-        let gcross_vx_leg2 = t223
-            * (s_arm_leg2 * (s_armcross_leg2 * s_rod_leg2 * t225)
-                + c_arm_leg2 * (c_armcross_leg2 * s_rod_leg2 * t225));
-        let t233 = 0.53 * s_rod_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t223;
-        let gcross_vz_leg2 = s_arm_leg2 * t223;
+        let t264 = 0.53 * c_rod_leg2;
+        let s_cross_leg2 = 2.5 * t244 / t264;
+        let t267 = 0.04 + t237;
+        let t269 = 0.2809 * t262;
+        let t271 = 0.212 * c_rod_leg2;
+        let c_cross_leg2 = (t239 - t267 - t269) / t271;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t276 = 1.0 / c_rod_leg2;
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let gcross_vx_leg2 = t248
+            * (minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t276)
+                - c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t276));
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t248;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t248;
         let rate_cross_leg2 = gcross_vx_leg2 * twist[0] - minus_gcross_vy_leg2 * twist[1]
-            + gcross_vz_leg2 * twist[2];
-        let t241 = rate_cross_leg2 * rate_cross_leg2;
-        let minus_grod_vx_leg2 = 1.8867924528301887 * t225;
+            - minus_gcross_vz_leg2 * twist[2];
+        let t294 = pose[0] * rate_cross_leg2;
+        let t296 = rate_cross_leg2 * rate_cross_leg2;
+        let minus_grod_vx_leg2 = 1.8867924528301887 * t276;
         let minus_rate_rod_leg2 = minus_grod_vx_leg2 * twist[0];
-        let t244 = s_armcross_leg2 * minus_rate_rod_leg2;
-        let t247 = c_armcross_leg2 * minus_rate_rod_leg2;
-        let t249 = t241 + t244 * t244 + t247 * t247;
-        let t251 = t233 * rate_cross_leg2;
-        let t254 = acceleration[0] - (t233 * t249 - rate_cross_leg2 * t251);
-        let t257 = 5.0 * t222;
-        let garm_vy_leg2 = t219 * t257;
-        let minus_garm_vx_leg2 = s_rod_leg2 * t257;
-        let minus_garm_vz_leg2 = t217 * t257;
-        let rate_arm_leg2 = garm_vy_leg2 * twist[1] - minus_garm_vx_leg2 * twist[0]
-            - minus_garm_vz_leg2 * twist[2];
-        let t266 = rate_arm_leg2 * rate_arm_leg2;
-        let t272 = t233 * (rate_cross_leg2 * t244);
-        let t275 = acceleration[1] + 0.2 * c_arm_leg2 * t266 + 0.53 * t219 * t249 + t272
-            + t272;
-        let t284 = t233 * (rate_cross_leg2 * t247);
-        let t287 = acceleration[2]
-            - (0.2 * s_arm_leg2 * t266 + 0.53 * t217 * t249 - t284 - t284);
-        let rate_dot_cross_leg2 = gcross_vx_leg2 * t254 - minus_gcross_vy_leg2 * t275
-            + gcross_vz_leg2 * t287;
-        let t290 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t291 = c_rod_leg2 * rate_cross_leg2;
-        let t292 = minus_rate_rod_leg2 * t291;
-        let t293 = t290 - t292;
-        let t295 = 1.8867924528301887 * t251;
-        let t296 = minus_rate_rod_leg2 * t295;
-        let t297 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t298 = t297 + t296;
-        let t299 = t296 + t298;
-        let t302 = t295 * t291;
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t254;
-        let t304 = t302 - minus_rate_dot_rod_leg2;
-        let t309 = t291 * t291;
-        let t310 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t313 = parameters[24] * t293 + parameters[25] * t299 + parameters[26] * t304
-            + parameters[27] * t292 + parameters[28] * (t309 - t310);
-        let t316 = 9.81 * s_arm_leg2;
-        let t318 = t316 + 0.2 * t266;
-        let rate_dot_arm_leg2 = garm_vy_leg2 * t275 - minus_garm_vx_leg2 * t254
-            - minus_garm_vz_leg2 * t287;
-        let t326 = 9.81 * c_arm_leg2;
-        let t327 = 0.2 * rate_dot_arm_leg2 - t326;
-        let t329 = s_cross_leg2 * t318 + c_cross_leg2 * t327;
-        let t334 = s_cross_leg2 * t327 - c_cross_leg2 * t318;
-        let t335 = s_rod_leg2 * t334;
-        let t339 = t293 - t292;
-        let t344 = 3.5599857600569598 * (t251 * t251);
-        let t350 = t302 + minus_rate_dot_rod_leg2;
-        let t352 = parameters[25] * t339 - parameters[24] * t296
-            + parameters[26] * (t310 - t344) + parameters[27] * t298
-            - parameters[28] * t350;
-        let t357 = c_rod_leg2 * t334;
-        let t361 = s_rod_leg2
-            * (t313 - parameters[29] * t292 - parameters[31] * t329
-                + parameters[32] * t335)
-            + c_rod_leg2
-                * (t352 + parameters[29] * t296 + parameters[30] * t329
-                    + parameters[32] * t357);
-        let t374 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t326
-            + parameters[19] * t316 + parameters[20] * rate_dot_arm_leg2
+        let t299 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t302 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t304 = t296 + t299 * t299 + t302 * t302;
+        let t307 = acceleration[0] - (rate_cross_leg2 * t294 - pose[0] * t304);
+        let t309 = 0.2 * c_arm_leg2;
+        let t311 = t232 - (0.2 + t309);
+        let garm_vy_leg2 = t311 * t246;
+        let t314 = pose[0] * (rate_cross_leg2 * t299);
+        let t318 = 0.2 * minus_s_arm_leg2;
+        let t319 = pose[2] - t318;
+        let garm_vz_leg2 = t319 * t246;
+        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
+            + garm_vz_leg2 * twist[2];
+        let t323 = rate_arm_leg2 * rate_arm_leg2;
+        let t329 = acceleration[1] - (t314 - (t309 * t323 + t311 * t304) + t314);
+        let t333 = pose[0] * (rate_cross_leg2 * t302);
+        let t339 = acceleration[2] - (t333 - (t318 * t323 + t319 * t304) + t333);
+        let rate_dot_arm_leg2 = garm_vx_leg2 * t307 + garm_vy_leg2 * t329
+            + garm_vz_leg2 * t339;
+        let t343 = 9.81 * c_arm_leg2;
+        let t346 = 9.81 * minus_s_arm_leg2;
+        let t355 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t343
+            - parameters[19] * t346 + parameters[20] * rate_dot_arm_leg2
             + parameters[21] * rate_arm_leg2
             + ::overact::math::signed(parameters[22], rate_arm_leg2) + parameters[23];
-        let t384 = 0.2 * t221
-            * (parameters[31] * t350 - parameters[30] * (t309 + t310)
-                + parameters[32] * t297 + parameters[33] * t357);
-        let t395 = s_rod_leg2 * (0.2 * s_cross_leg2)
-            * (parameters[30] * t304 - parameters[31] * (t344 + t310)
-                - parameters[32] * t290 - parameters[33] * t335);
-        let t406 = t384 - t395
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t307;
+        let t358 = 1.8867924528301887 * t294;
+        let t359 = c_rod_leg2 * rate_cross_leg2;
+        let t360 = t358 * t359;
+        let t361 = minus_rate_dot_rod_leg2 - t360;
+        let t363 = t359 * t359;
+        let t364 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let rate_dot_cross_leg2 = gcross_vx_leg2 * t307 - minus_gcross_vy_leg2 * t329
+            - minus_gcross_vz_leg2 * t339;
+        let t373 = c_rod_leg2 * rate_dot_cross_leg2;
+        let t377 = t346 - 0.2 * t323;
+        let t380 = 0.2 * rate_dot_arm_leg2 - t343;
+        let t382 = c_cross_leg2 * t377 + s_cross_leg2 * t380;
+        let t383 = c_rod_leg2 * t382;
+        let t386 = 0.9433962264150944 * t244
+            * (parameters[31] * t361 - parameters[30] * (t363 + t364)
+                + parameters[32] * t373 + parameters[33] * t383);
+        let t389 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t391 = t360 + minus_rate_dot_rod_leg2;
+        let t394 = 3.5599857600569598 * (t294 * t294);
+        let t399 = minus_s_rod_leg2 * t382;
+        let t402 = 0.37735849056603776 * (pose[0] * s_cross_leg2)
+            * (parameters[32] * t389
+                - (parameters[30] * t391 + parameters[31] * (t394 + t364))
+                + parameters[33] * t399);
+        let t405 = minus_rate_rod_leg2 * t358;
+        let t406 = t373 - t405;
+        let t407 = t405 - t406;
+        let t409 = minus_rate_rod_leg2 * t359;
+        let t410 = t389 + t409;
+        let t411 = t409 + t410;
+        let t418 = c_cross_leg2 * t380 - s_cross_leg2 * t377;
+        let t422 = t386 + t402
             - 0.2 * c_cross_leg2
-                * (parameters[31] * t339 - parameters[30] * t299 - parameters[32] * t241
-                    - parameters[33] * t329);
-        let t407 = t374 + t406;
-        let t419 = parameters[25] * (t344 - t309) - parameters[24] * t302
-            + parameters[26] * t290 + parameters[27] * t302 + parameters[28] * t297;
-        let t427 = gcross_vx_leg2 * t361 - minus_garm_vx_leg2 * t407
+                * (parameters[30] * t407 - parameters[31] * t411 - parameters[32] * t296
+                    - parameters[33] * t418);
+        let t423 = t355 + t422;
+        let t434 = parameters[24] * t405 - parameters[25] * t411
+            + parameters[26] * (t364 - t394) + parameters[27] * t406
+            - parameters[28] * t361;
+        let t451 = parameters[27] * t409
+            - (parameters[24] * t410 + parameters[25] * t407 + parameters[26] * t391)
+            + parameters[28] * (t363 - t364);
+        let t459 = c_rod_leg2
+            * (t434 - parameters[29] * t405 + parameters[30] * t418
+                + parameters[32] * t383)
+            - minus_s_rod_leg2
+                * (t451 - parameters[29] * t409 - parameters[31] * t418
+                    - parameters[32] * t399);
+        let t471 = parameters[24] * t360 + parameters[25] * (t394 - t363)
+            - parameters[26] * t389 - parameters[27] * t360 + parameters[28] * t373;
+        let t479 = garm_vx_leg2 * t423 + gcross_vx_leg2 * t459
             - minus_grod_vx_leg2
-                * (t419 - parameters[29] * minus_rate_dot_rod_leg2
-                    - parameters[30] * t335 - parameters[31] * t357);
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
-        let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t441 = c_armcross_leg3 * c_rod_leg3;
-        let t443 = s_armcross_leg3 * c_rod_leg3;
-        let t445 = s_arm_leg3 * t441 - c_arm_leg3 * t443;
-        ::overact::guard::leg(t445, 0.9471622941895192, "leg3")?;
-        let t446 = 1.0 / t445;
-        let t447 = 5.0 * t446;
-        let garm_vx_leg3 = t441 * t447;
-        let garm_vy_leg3 = s_rod_leg3 * t447;
-        let garm_vz_leg3 = t443 * t447;
+                * (t471 - parameters[29] * minus_rate_dot_rod_leg2
+                    + parameters[30] * t399 - parameters[31] * t383);
+        let t481 = pose[0] - 0.05;
+        let t482 = t481 + 0.2;
+        let t483 = t482 * t482;
+        let t485 = 0.16 * (t483 + t3);
+        let t486 = 1.0 / t485;
+        let t487 = 0.4 * t482;
+        let t489 = t483 + t8 + t3;
+        let t491 = t489 - 0.2809 + 0.04;
+        let t494 = t485 - t491 * t491;
+        ::overact::guard::reach(t494, "leg3")?;
+        let t495 = ::overact::math::sqrt(t494);
+        ::overact::guard::leg(t495, 0.20079840636817814, "leg3")?;
+        let minus_c_arm_leg3 = t486 * (t487 * t491 + t14 * t495);
+        let t499 = 0.2 * minus_c_arm_leg3;
+        let t501 = t481 - (t499 - 0.2);
+        let t502 = 1.0 / t495;
+        let t503 = 2.0 * t502;
+        let garm_vx_leg3 = t501 * t503;
+        let garm_vy_leg3 = pose[1] * t503;
+        let s_arm_leg3 = t486 * (t487 * t495 - t14 * t491);
+        let t513 = 0.2 * s_arm_leg3;
+        let t514 = pose[2] + t513;
+        let garm_vz_leg3 = t514 * t503;
         let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
             + garm_vz_leg3 * twist[2];
-        let t457 = rate_arm_leg3 * rate_arm_leg3;
-        let t460 = 1.0 / c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.8867924528301887 * t460;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * twist[1];
-        let t463 = s_armcross_leg3 * minus_rate_rod_leg3;
-        let t465 = 1.8867924528301887 * t446;
-        let minus_gcross_vx_leg3 = c_arm_leg3 * t465;
-        let minus_gcross_vy_leg3 = t465
-            * (s_arm_leg3 * (s_armcross_leg3 * s_rod_leg3 * t460)
-                + c_arm_leg3 * (c_armcross_leg3 * s_rod_leg3 * t460));
-        let minus_gcross_vz_leg3 = s_arm_leg3 * t465;
-        let minus_rate_cross_leg3 = minus_gcross_vx_leg3 * twist[0]
-            + minus_gcross_vy_leg3 * twist[1] + minus_gcross_vz_leg3 * twist[2];
-        let t481 = minus_rate_cross_leg3 * minus_rate_cross_leg3;
-        let t483 = c_armcross_leg3 * minus_rate_rod_leg3;
-        let t485 = t463 * t463 + t481 + t483 * t483;
-        let t488 = 0.53 * s_rod_leg3;
-        let t490 = t488 * (minus_rate_cross_leg3 * t463);
-        let t493 = acceleration[0]
-            - (0.2 * c_arm_leg3 * t457 + 0.53 * t441 * t485 - t490 - t490);
-        let t496 = t488 * minus_rate_cross_leg3;
-        let t499 = acceleration[1] - (t488 * t485 - minus_rate_cross_leg3 * t496);
-        let t508 = t488 * (minus_rate_cross_leg3 * t483);
-        let t511 = acceleration[2]
-            - (0.2 * s_arm_leg3 * t457 + 0.53 * t443 * t485 + t508 + t508);
-        let rate_dot_arm_leg3 = garm_vx_leg3 * t493 + garm_vy_leg3 * t499
-            + garm_vz_leg3 * t511;
-        let t515 = 9.81 * c_arm_leg3;
-        let t518 = 9.81 * s_arm_leg3;
-        let t527 = parameters[34] * rate_dot_arm_leg3 - parameters[35] * t515
-            + parameters[36] * t518 + parameters[37] * rate_dot_arm_leg3
+        let t518 = rate_arm_leg3 * rate_arm_leg3;
+        let c_cross_leg3 = (t489 - t40 - t42) / t44;
+        let s_cross_leg3 = 2.5 * t495 / t37;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t528 = s_armcross_leg3 * rate_rod_leg1;
+        let t530 = 0.4 * t502;
+        let gcross_vz_leg3 = s_arm_leg3 * t530;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t530;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t530
+            * (s_arm_leg3 * (t49 * (s_rod_leg1 * s_armcross_leg3))
+                + minus_c_arm_leg3 * (t49 * (s_rod_leg1 * minus_c_armcross_leg3)));
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
+        let t549 = rate_cross_leg3 * rate_cross_leg3;
+        let t551 = minus_c_armcross_leg3 * rate_rod_leg1;
+        let t553 = t528 * t528 + t549 + t551 * t551;
+        let t557 = pose[1] * (rate_cross_leg3 * t528);
+        let t560 = acceleration[0] + t499 * t518 + t501 * t553 + t557 + t557;
+        let t568 = pose[1] * (rate_cross_leg3 * t551);
+        let t571 = acceleration[2] - (t513 * t518 - t514 * t553 - t568 - t568);
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t560 + garm_vy_leg3 * t99
+            + garm_vz_leg3 * t571;
+        let t575 = 9.81 * minus_c_arm_leg3;
+        let t578 = 9.81 * s_arm_leg3;
+        let t587 = parameters[34] * rate_dot_arm_leg3 + parameters[35] * t575
+            + parameters[36] * t578 + parameters[37] * rate_dot_arm_leg3
             + parameters[38] * rate_arm_leg3
             + ::overact::math::signed(parameters[39], rate_arm_leg3) + parameters[40];
-        let t529 = 1.8867924528301887 * t496;
-        let t530 = c_rod_leg3 * minus_rate_cross_leg3;
-        let t531 = t529 * t530;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t499;
-        let t533 = t531 + minus_rate_dot_rod_leg3;
-        let t535 = t530 * t530;
-        let t536 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let minus_rate_dot_cross_leg3 = minus_gcross_vx_leg3 * t493
-            + minus_gcross_vy_leg3 * t499 + minus_gcross_vz_leg3 * t511;
-        let t545 = c_rod_leg3 * minus_rate_dot_cross_leg3;
-        let t549 = 0.2 * rate_dot_arm_leg3 - t515;
-        let t552 = t518 + 0.2 * t457;
-        let t554 = s_cross_leg3 * t549 - c_cross_leg3 * t552;
-        let t555 = c_rod_leg3 * t554;
-        let t558 = 0.2 * t445
-            * (parameters[48] * t533 - parameters[47] * (t535 + t536)
-                - parameters[49] * t545 + parameters[50] * t555);
-        let t561 = t531 - minus_rate_dot_rod_leg3;
-        let t564 = 3.5599857600569598 * (t496 * t496);
-        let t568 = s_rod_leg3 * minus_rate_dot_cross_leg3;
-        let t571 = s_rod_leg3 * t554;
-        let t574 = s_rod_leg3 * (0.2 * s_cross_leg3)
-            * (parameters[47] * t561 - parameters[48] * (t564 + t536)
-                + parameters[49] * t568 - parameters[50] * t571);
-        let t577 = minus_rate_rod_leg3 * t529;
-        let t578 = t545 + t577;
-        let t579 = t577 + t578;
-        let t581 = minus_rate_rod_leg3 * t530;
-        let t582 = t581 - t568;
-        let t583 = t581 + t582;
-        let t590 = s_cross_leg3 * t552 + c_cross_leg3 * t549;
-        let t594 = t558 + t574
-            + 0.2 * c_cross_leg3
-                * (parameters[47] * t579 + parameters[48] * t583 - parameters[49] * t481
-                    - parameters[50] * t590);
-        let t595 = t527 - t594;
-        let t606 = parameters[41] * t582 - parameters[42] * t579 + parameters[43] * t561
-            - parameters[44] * t581 + parameters[45] * (t535 - t536);
-        let t623 = parameters[41] * t577 + parameters[42] * t583
-            + parameters[43] * (t536 - t564) - parameters[44] * t578
-            - parameters[45] * t533;
-        let t631 = s_rod_leg3
-            * (t606 + parameters[46] * t581 - parameters[48] * t590
-                + parameters[49] * t571)
-            + c_rod_leg3
-                * (t623 - parameters[46] * t577 + parameters[47] * t590
-                    + parameters[49] * t555);
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let (s_cross_leg4, c_cross_leg4) = ::overact::math::sin_cos(joints[10]);
-        let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
-        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        ::overact::guard::leg(c_rod_leg4, 1.0, "leg4")?;
-        let t647 = c_armcross_leg4 * c_rod_leg4;
-        let t649 = s_armcross_leg4 * c_rod_leg4;
-        let t651 = s_arm_leg4 * t647 - c_arm_leg4 * t649;
-        ::overact::guard::leg(t651, 0.9471622941895192, "leg4")?;
-        let t652 = 1.0 / t651;
-        let t653 = 1.8867924528301887 * t652;
-        let t655 = 1.0 / c_rod_leg4;
-        let gcross_vx_leg4 = t653
-            * (s_arm_leg4 * (s_armcross_leg4 * s_rod_leg4 * t655)
-                + c_arm_leg4 * (c_armcross_leg4 * s_rod_leg4 * t655));
-        let minus_gcross_vy_leg4 = c_arm_leg4 * t653;
-        let minus_gcross_vz_leg4 = s_arm_leg4 * t653;
-        let rate_cross_leg4 = gcross_vx_leg4 * twist[0] - minus_gcross_vy_leg4 * twist[1]
-            - minus_gcross_vz_leg4 * twist[2];
-        let t670 = 0.53 * s_rod_leg4;
-        let t671 = t670 * rate_cross_leg4;
-        let t673 = rate_cross_leg4 * rate_cross_leg4;
-        let grod_vx_leg4 = 1.8867924528301887 * t655;
-        let rate_rod_leg4 = grod_vx_leg4 * twist[0];
-        let t676 = s_armcross_leg4 * rate_rod_leg4;
-        let t679 = c_armcross_leg4 * rate_rod_leg4;
-        let t681 = t673 + t676 * t676 + t679 * t679;
-        let t684 = acceleration[0] - (rate_cross_leg4 * t671 - t670 * t681);
-        let t687 = 5.0 * t652;
-        let garm_vy_leg4 = t647 * t687;
-        let minus_garm_vx_leg4 = s_rod_leg4 * t687;
-        let garm_vz_leg4 = t649 * t687;
-        let rate_arm_leg4 = garm_vy_leg4 * twist[1] - minus_garm_vx_leg4 * twist[0]
+        let t589 = pose[1] * rate_cross_leg3;
+        let t590 = 1.8867924528301887 * t589;
+        let t591 = c_rod_leg1 * rate_cross_leg3;
+        let t592 = t590 * t591;
+        let t593 = rate_dot_rod_leg1 - t592;
+        let t595 = t591 * t591;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * t571
+            - (minus_gcross_vx_leg3 * t560 + minus_gcross_vy_leg3 * t99);
+        let t604 = c_rod_leg1 * rate_dot_cross_leg3;
+        let t608 = t575 + 0.2 * rate_dot_arm_leg3;
+        let t611 = t578 + 0.2 * t518;
+        let t613 = s_cross_leg3 * t608 - c_cross_leg3 * t611;
+        let t614 = c_rod_leg1 * t613;
+        let t617 = 0.9433962264150944 * t495
+            * (parameters[48] * t593 - parameters[47] * (t595 + t134)
+                + parameters[49] * t604 + parameters[50] * t614);
+        let t620 = s_rod_leg1 * rate_dot_cross_leg3;
+        let t622 = t592 + rate_dot_rod_leg1;
+        let t625 = 3.5599857600569598 * (t589 * t589);
+        let t630 = s_rod_leg1 * t613;
+        let t633 = 0.37735849056603776 * (pose[1] * s_cross_leg3)
+            * (parameters[49] * t620
+                - (parameters[47] * t622 + parameters[48] * (t625 + t134))
+                + parameters[50] * t630);
+        let t636 = rate_rod_leg1 * t590;
+        let t637 = t604 - t636;
+        let t638 = t636 - t637;
+        let t640 = rate_rod_leg1 * t591;
+        let t641 = t620 + t640;
+        let t642 = t640 + t641;
+        let t649 = s_cross_leg3 * t611 + c_cross_leg3 * t608;
+        let t653 = t617 + t633
+            - 0.2 * c_cross_leg3
+                * (parameters[47] * t638 - parameters[48] * t642 - parameters[49] * t549
+                    - parameters[50] * t649);
+        let t654 = t587 + t653;
+        let t665 = parameters[41] * t636 - parameters[42] * t642
+            + parameters[43] * (t134 - t625) + parameters[44] * t637
+            - parameters[45] * t593;
+        let t682 = parameters[44] * t640
+            - (parameters[41] * t641 + parameters[42] * t638 + parameters[43] * t622)
+            + parameters[45] * (t595 - t134);
+        let t690 = c_rod_leg1
+            * (t665 - parameters[46] * t636 + parameters[47] * t649
+                + parameters[49] * t614)
+            - s_rod_leg1
+                * (t682 - parameters[46] * t640 - parameters[48] * t649
+                    - parameters[49] * t630);
+        let t694 = pose[1] - 0.05;
+        let t695 = t694 + 0.2;
+        let t696 = t695 * t695;
+        let t698 = 0.16 * (t696 + t3);
+        let t700 = t237 + t696 + t3;
+        let t702 = t700 - 0.2809 + 0.04;
+        let t704 = t698 - t702 * t702;
+        ::overact::guard::reach(t704, "leg4")?;
+        let t705 = ::overact::math::sqrt(t704);
+        ::overact::guard::leg(t705, 0.20079840636817814, "leg4")?;
+        let t706 = 1.0 / t705;
+        let t707 = 2.0 * t706;
+        let garm_vx_leg4 = pose[0] * t707;
+        let t710 = 1.0 / t698;
+        let t711 = 0.4 * t695;
+        let minus_c_arm_leg4 = t710 * (t711 * t702 + t14 * t705);
+        let t716 = 0.2 * minus_c_arm_leg4;
+        let t718 = t694 - (t716 - 0.2);
+        let garm_vy_leg4 = t718 * t707;
+        let s_arm_leg4 = t710 * (t711 * t705 - t14 * t702);
+        let t727 = 0.2 * s_arm_leg4;
+        let t728 = pose[2] + t727;
+        let garm_vz_leg4 = t728 * t707;
+        let rate_arm_leg4 = garm_vx_leg4 * twist[0] + garm_vy_leg4 * twist[1]
             + garm_vz_leg4 * twist[2];
-        let t696 = rate_arm_leg4 * rate_arm_leg4;
-        let t702 = t670 * (rate_cross_leg4 * t676);
-        let t705 = acceleration[1]
-            - (0.2 * c_arm_leg4 * t696 + 0.53 * t647 * t681 - t702 - t702);
-        let t714 = t670 * (rate_cross_leg4 * t679);
-        let t717 = acceleration[2]
-            - (0.2 * s_arm_leg4 * t696 + 0.53 * t649 * t681 + t714 + t714);
-        let rate_dot_cross_leg4 = gcross_vx_leg4 * t684 - minus_gcross_vy_leg4 * t705
-            - minus_gcross_vz_leg4 * t717;
-        let t720 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t721 = c_rod_leg4 * rate_cross_leg4;
-        let t722 = rate_rod_leg4 * t721;
-        let t723 = t720 + t722;
-        let t725 = 1.8867924528301887 * t671;
-        let t726 = rate_rod_leg4 * t725;
-        let t727 = c_rod_leg4 * rate_dot_cross_leg4;
-        let t728 = t727 - t726;
-        let t729 = t726 - t728;
-        let t732 = t725 * t721;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t684;
-        let t734 = t732 + rate_dot_rod_leg4;
-        let t739 = t721 * t721;
-        let t740 = rate_rod_leg4 * rate_rod_leg4;
-        let t743 = parameters[58] * t723 - parameters[59] * t729 + parameters[60] * t734
-            - parameters[61] * t722 + parameters[62] * (t739 - t740);
-        let t746 = 9.81 * s_arm_leg4;
-        let t748 = t746 + 0.2 * t696;
-        let rate_dot_arm_leg4 = garm_vy_leg4 * t705 - minus_garm_vx_leg4 * t684
-            + garm_vz_leg4 * t717;
-        let t756 = 9.81 * c_arm_leg4;
-        let t757 = 0.2 * rate_dot_arm_leg4 - t756;
-        let t759 = s_cross_leg4 * t748 + c_cross_leg4 * t757;
-        let t764 = s_cross_leg4 * t757 - c_cross_leg4 * t748;
-        let t765 = s_rod_leg4 * t764;
-        let t770 = t722 + t723;
-        let t774 = 3.5599857600569598 * (t671 * t671);
-        let t780 = t732 - rate_dot_rod_leg4;
-        let t782 = parameters[58] * t726 + parameters[59] * t770
-            + parameters[60] * (t740 - t774) + parameters[61] * t728
-            - parameters[62] * t780;
-        let t787 = c_rod_leg4 * t764;
-        let t791 = s_rod_leg4
-            * (t743 + parameters[63] * t722 - parameters[65] * t759
-                + parameters[66] * t765)
-            + c_rod_leg4
-                * (t782 - parameters[63] * t726 + parameters[64] * t759
-                    + parameters[66] * t787);
-        let t804 = parameters[51] * rate_dot_arm_leg4 - parameters[52] * t756
-            + parameters[53] * t746 + parameters[54] * rate_dot_arm_leg4
+        let t732 = rate_arm_leg4 * rate_arm_leg4;
+        let t734 = 0.4 * t706;
+        let gcross_vz_leg4 = s_arm_leg4 * t734;
+        let c_cross_leg4 = (t700 - t267 - t269) / t271;
+        let s_cross_leg4 = 2.5 * t705 / t264;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t734
+            * (s_arm_leg4 * (t276 * (minus_s_rod_leg2 * s_armcross_leg4))
+                + minus_c_arm_leg4
+                    * (t276 * (minus_s_rod_leg2 * minus_c_armcross_leg4)));
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t734;
+        let rate_cross_leg4 = gcross_vz_leg4 * twist[2]
+            - (minus_gcross_vx_leg4 * twist[0] + minus_gcross_vy_leg4 * twist[1]);
+        let t761 = rate_cross_leg4 * rate_cross_leg4;
+        let t762 = s_armcross_leg4 * minus_rate_rod_leg2;
+        let t765 = minus_c_armcross_leg4 * minus_rate_rod_leg2;
+        let t767 = t761 + t762 * t762 + t765 * t765;
+        let t771 = pose[0] * (rate_cross_leg4 * t762);
+        let t774 = acceleration[1] + t716 * t732 + t718 * t767 + t771 + t771;
+        let t781 = pose[0] * (rate_cross_leg4 * t765);
+        let t784 = acceleration[2] - (t727 * t732 - t728 * t767 - t781 - t781);
+        let rate_dot_arm_leg4 = garm_vx_leg4 * t307 + garm_vy_leg4 * t774
+            + garm_vz_leg4 * t784;
+        let t788 = 9.81 * minus_c_arm_leg4;
+        let t791 = 9.81 * s_arm_leg4;
+        let t800 = parameters[51] * rate_dot_arm_leg4 + parameters[52] * t788
+            + parameters[53] * t791 + parameters[54] * rate_dot_arm_leg4
             + parameters[55] * rate_arm_leg4
             + ::overact::math::signed(parameters[56], rate_arm_leg4) + parameters[57];
-        let t814 = 0.2 * t651
-            * (parameters[65] * t780 - parameters[64] * (t739 + t740)
-                + parameters[66] * t727 + parameters[67] * t787);
-        let t825 = s_rod_leg4 * (0.2 * s_cross_leg4)
-            * (parameters[64] * t734 - parameters[65] * (t774 + t740)
-                - parameters[66] * t720 - parameters[67] * t765);
-        let t836 = t814 + t825
-            + 0.2 * c_cross_leg4
-                * (parameters[64] * t729 + parameters[65] * t770 - parameters[66] * t673
-                    - parameters[67] * t759);
-        let t837 = t804 - t836;
-        let t849 = parameters[59] * (t774 - t739) - parameters[58] * t732
-            + parameters[60] * t720 + parameters[61] * t732 + parameters[62] * t727;
-        let t857 = gcross_vx_leg4 * t791 - minus_garm_vx_leg4 * t837
-            + grod_vx_leg4
-                * (t849 + parameters[63] * rate_dot_rod_leg4 - parameters[64] * t765
-                    - parameters[65] * t787);
-        let t862 = garm_vx_leg1 * t166 - minus_gcross_vx_leg1 * t202 + t427
-            + garm_vx_leg3 * t595 - minus_gcross_vx_leg3 * t631 + t857
+        let t802 = pose[0] * rate_cross_leg4;
+        let t803 = 1.8867924528301887 * t802;
+        let t804 = c_rod_leg2 * rate_cross_leg4;
+        let t805 = t803 * t804;
+        let t806 = t805 - minus_rate_dot_rod_leg2;
+        let t808 = t804 * t804;
+        let rate_dot_cross_leg4 = gcross_vz_leg4 * t784
+            - (minus_gcross_vx_leg4 * t307 + minus_gcross_vy_leg4 * t774);
+        let t817 = c_rod_leg2 * rate_dot_cross_leg4;
+        let t821 = t788 + 0.2 * rate_dot_arm_leg4;
+        let t824 = t791 + 0.2 * t732;
+        let t826 = s_cross_leg4 * t821 - c_cross_leg4 * t824;
+        let t827 = c_rod_leg2 * t826;
+        let t830 = 0.9433962264150944 * t705
+            * (parameters[65] * t806 - parameters[64] * (t808 + t364)
+                + parameters[66] * t817 + parameters[67] * t827);
+        let t833 = t805 + minus_rate_dot_rod_leg2;
+        let t836 = 3.5599857600569598 * (t802 * t802);
+        let t840 = minus_s_rod_leg2 * rate_dot_cross_leg4;
+        let t843 = minus_s_rod_leg2 * t826;
+        let t846 = 0.37735849056603776 * (pose[0] * s_cross_leg4)
+            * (parameters[64] * t833 - parameters[65] * (t836 + t364)
+                - parameters[66] * t840 - parameters[67] * t843);
+        let t849 = minus_rate_rod_leg2 * t803;
+        let t850 = t817 - t849;
+        let t851 = t849 - t850;
+        let t853 = minus_rate_rod_leg2 * t804;
+        let t854 = t840 + t853;
+        let t855 = t853 + t854;
+        let t862 = s_cross_leg4 * t824 + c_cross_leg4 * t821;
+        let t866 = t830 - t846
+            - 0.2 * c_cross_leg4
+                * (parameters[64] * t851 + parameters[65] * t855 - parameters[66] * t761
+                    - parameters[67] * t862);
+        let t867 = t800 + t866;
+        let t878 = parameters[58] * t854 - parameters[59] * t851 + parameters[60] * t833
+            - parameters[61] * t853 + parameters[62] * (t808 - t364);
+        let t895 = parameters[58] * t849 + parameters[59] * t855
+            + parameters[60] * (t364 - t836) + parameters[61] * t850
+            - parameters[62] * t806;
+        let t903 = minus_s_rod_leg2
+            * (t878 + parameters[63] * t853 - parameters[65] * t862
+                + parameters[66] * t843)
+            + c_rod_leg2
+                * (t895 - parameters[63] * t849 + parameters[64] * t862
+                    + parameters[66] * t827);
+        let t915 = parameters[59] * (t836 - t808) - parameters[58] * t805
+            + parameters[60] * t840 + parameters[61] * t805 + parameters[62] * t817;
+        let t923 = garm_vx_leg4 * t867 - minus_gcross_vx_leg4 * t903
+            + minus_grod_vx_leg2
+                * (t915 + parameters[63] * minus_rate_dot_rod_leg2
+                    - parameters[64] * t843 - parameters[65] * t827);
+        let t928 = garm_vx_leg1 * t193 - minus_gcross_vx_leg1 * t229 + t479
+            + garm_vx_leg3 * t654 - minus_gcross_vx_leg3 * t690 + t923
             + acceleration[0] * parameters[68] + acceleration[0] * parameters[69];
-        let t869 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3 + minus_garm_vx_leg4 * minus_garm_vx_leg4;
-        ::overact::guard::platform(t869, 22.53317086554555, "actuators")?;
-        ::overact::guard::platform(t869, 22.53317086554555, "actuators")?;
-        let t870 = 1.0 / t869;
-        let t878 = garm_vx_leg1 * garm_vy_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
-            + garm_vx_leg3 * garm_vy_leg3 - minus_garm_vx_leg4 * garm_vy_leg4;
-        let t879 = t878 * t870;
-        let t888 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t878 * t879;
-        ::overact::guard::platform(t888, 22.533170865545543, "actuators")?;
-        ::overact::guard::platform(t888, 22.533170865545543, "actuators")?;
-        let t889 = 1.0 / t888;
-        let t902 = parameters[8] * (t135 - t106) - parameters[7] * t102
-            + parameters[9] * t139 + parameters[10] * t102 + parameters[11] * t116;
-        let t910 = garm_vy_leg1 * t166 - minus_gcross_vy_leg1 * t202
+        let t935 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t935, 22.533170865545554, "actuators")?;
+        ::overact::guard::platform(t935, 22.533170865545554, "actuators")?;
+        let t936 = 1.0 / t935;
+        let t944 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3 + garm_vx_leg4 * garm_vy_leg4;
+        let t945 = t944 * t936;
+        let t954 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t944 * t945;
+        ::overact::guard::platform(t954, 22.533170865545554, "actuators")?;
+        ::overact::guard::platform(t954, 22.533170865545554, "actuators")?;
+        let t955 = 1.0 / t954;
+        let t968 = parameters[8] * (t162 - t133) - parameters[7] * t129
+            + parameters[9] * t166 + parameters[10] * t129 + parameters[11] * t143;
+        let t976 = garm_vy_leg1 * t193 + gcross_vy_leg1 * t229
             + grod_vy_leg1
-                * (t902 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t142
-                    - parameters[14] * t126);
-        let t927 = parameters[42] * (t564 - t535) - parameters[41] * t531
-            - parameters[43] * t568 + parameters[44] * t531 - parameters[45] * t545;
-        let t935 = garm_vy_leg3 * t595 - minus_gcross_vy_leg3 * t631
-            - minus_grod_vy_leg3
-                * (t927 - parameters[46] * minus_rate_dot_rod_leg3
-                    - parameters[47] * t571 - parameters[48] * t555);
-        let t944 = t910 + garm_vy_leg2 * t407 - minus_gcross_vy_leg2 * t361 + t935
-            + garm_vy_leg4 * t837 - minus_gcross_vy_leg4 * t791
+                * (t968 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t169
+                    - parameters[14] * t153);
+        let t993 = parameters[41] * t592 + parameters[42] * (t625 - t595)
+            - parameters[43] * t620 - parameters[44] * t592 + parameters[45] * t604;
+        let t1001 = garm_vy_leg3 * t654 - minus_gcross_vy_leg3 * t690
+            - grod_vy_leg1
+                * (t993 - parameters[46] * rate_dot_rod_leg1 + parameters[47] * t630
+                    - parameters[48] * t614);
+        let t1010 = t976 + garm_vy_leg2 * t423 - minus_gcross_vy_leg2 * t459 + t1001
+            + garm_vy_leg4 * t867 - minus_gcross_vy_leg4 * t903
             + acceleration[1] * parameters[68] + acceleration[1] * parameters[69];
-        let t946 = t944 - t862 * t879;
-        let t961 = minus_garm_vx_leg2 * minus_garm_vz_leg2
-            - garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg3 * garm_vz_leg3
-            - minus_garm_vx_leg4 * garm_vz_leg4;
-        let t962 = t961 * t870;
-        let t964 = garm_vy_leg3 * garm_vz_leg3
-            - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2)
-            + garm_vy_leg4 * garm_vz_leg4 - t878 * t962;
-        let t965 = t964 * t889;
-        let t976 = minus_garm_vz_leg1 * minus_garm_vz_leg1
-            + minus_garm_vz_leg2 * minus_garm_vz_leg2 + garm_vz_leg3 * garm_vz_leg3
-            + garm_vz_leg4 * garm_vz_leg4 - t961 * t962 - t964 * t965;
-        ::overact::guard::platform(t976, 66.4019122371629, "actuators")?;
-        ::overact::guard::platform(t976, 66.4019122371629, "actuators")?;
-        let t977 = 1.0 / t976;
-        let t988 = gcross_vz_leg1 * t202 - minus_garm_vz_leg1 * t166
-            + gcross_vz_leg2 * t361 - minus_garm_vz_leg2 * t407 + garm_vz_leg3 * t595
-            - minus_gcross_vz_leg3 * t631;
-        let t993 = acceleration[2] + 9.81;
-        let t999 = t988 + garm_vz_leg4 * t837 - minus_gcross_vz_leg4 * t791
-            + parameters[68] * t993 + parameters[69] * t993 - t862 * t962;
-        let t1002 = t977 * (t999 - t965 * t946);
-        let t1004 = t889 * t946 - t965 * t1002;
-        let t1008 = t862 * t870 - t879 * t1004 - t962 * t1002;
-        let t1015 = garm_vy_leg4 + minus_garm_vx_leg4 * t879;
-        let t1021 = t977 * (garm_vz_leg4 + minus_garm_vx_leg4 * t962 - t965 * t1015);
-        let t1023 = t889 * t1015 - t965 * t1021;
-        let t1029 = minus_garm_vx_leg4 * t870 + t879 * t1023 + t962 * t1021;
-        let t1040 = ::overact::math::sqrt(
-            1.0
-                - (minus_garm_vx_leg4 * t1029 + garm_vy_leg4 * t1023
-                    + garm_vz_leg4 * t1021),
-        );
-        let t1041 = 1.0 / t1040;
-        let t1044 = garm_vx_leg1 * t1008 + garm_vy_leg1 * t1004
-            - minus_garm_vz_leg1 * t1002
+        let t1012 = t1010 - t928 * t945;
+        let t1027 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3 + garm_vx_leg4 * garm_vz_leg4;
+        let t1028 = t1027 * t936;
+        let t1030 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 + garm_vy_leg4 * garm_vz_leg4 - t944 * t1028;
+        let t1031 = t1030 * t955;
+        let t1042 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 + garm_vz_leg4 * garm_vz_leg4 - t1027 * t1028
+            - t1030 * t1031;
+        ::overact::guard::platform(t1042, 66.40191223716288, "actuators")?;
+        ::overact::guard::platform(t1042, 66.40191223716288, "actuators")?;
+        let t1043 = 1.0 / t1042;
+        let t1054 = garm_vz_leg1 * t193 - minus_gcross_vz_leg1 * t229
+            + garm_vz_leg2 * t423 - minus_gcross_vz_leg2 * t459 + garm_vz_leg3 * t654
+            + gcross_vz_leg3 * t690;
+        let t1059 = acceleration[2] + 9.81;
+        let t1065 = t1054 + garm_vz_leg4 * t867 + gcross_vz_leg4 * t903
+            + parameters[68] * t1059 + parameters[69] * t1059 - t928 * t1028;
+        let t1068 = t1043 * (t1065 - t1031 * t1012);
+        let t1070 = t955 * t1012 - t1031 * t1068;
+        let t1074 = t928 * t936 - t945 * t1070 - t1028 * t1068;
+        let t1082 = garm_vy_leg4 - garm_vx_leg4 * t945;
+        let t1088 = t1043 * (garm_vz_leg4 - garm_vx_leg4 * t1028 - t1031 * t1082);
+        let t1090 = t955 * t1082 - t1031 * t1088;
+        let t1094 = garm_vx_leg4 * t936 - t945 * t1090 - t1028 * t1088;
+        let t1105 = 1.0
+            - (garm_vx_leg4 * t1094 + garm_vy_leg4 * t1090 + garm_vz_leg4 * t1088);
+        let t1107 = 1.0 / ::overact::math::sqrt(t1105);
+        let t1110 = garm_vx_leg1 * t1074 + garm_vy_leg1 * t1070 + garm_vz_leg1 * t1068
             - preload[0]
-                * ((garm_vy_leg1 * t1023 - garm_vx_leg1 * t1029
-                    - minus_garm_vz_leg1 * t1021) * t1041);
-        let t1057 = garm_vy_leg2 * t1004 - minus_garm_vx_leg2 * t1008
-            - minus_garm_vz_leg2 * t1002
+                * ((garm_vx_leg1 * t1094 + garm_vy_leg1 * t1090 + garm_vz_leg1 * t1088)
+                    * t1107);
+        let t1123 = garm_vx_leg2 * t1074 + garm_vy_leg2 * t1070 + garm_vz_leg2 * t1068
             - preload[0]
-                * ((minus_garm_vx_leg2 * t1029 + garm_vy_leg2 * t1023
-                    - minus_garm_vz_leg2 * t1021) * t1041);
-        let t1070 = garm_vx_leg3 * t1008 + garm_vy_leg3 * t1004 + garm_vz_leg3 * t1002
+                * ((garm_vx_leg2 * t1094 + garm_vy_leg2 * t1090 + garm_vz_leg2 * t1088)
+                    * t1107);
+        let t1136 = garm_vx_leg3 * t1074 + garm_vy_leg3 * t1070 + garm_vz_leg3 * t1068
             - preload[0]
-                * ((garm_vy_leg3 * t1023 - garm_vx_leg3 * t1029 + garm_vz_leg3 * t1021)
-                    * t1041);
+                * ((garm_vx_leg3 * t1094 + garm_vy_leg3 * t1090 + garm_vz_leg3 * t1088)
+                    * t1107);
         Ok([
-            t1044, t1057, t1070,
-            garm_vy_leg4 * t1004 - minus_garm_vx_leg4 * t1008 + garm_vz_leg4 * t1002
-                + preload[0] * t1040,
+            t1110, t1123, t1136,
+            garm_vx_leg4 * t1074 + garm_vy_leg4 * t1070 + garm_vz_leg4 * t1068
+                + preload[0] * (t1105 * t1107),
         ])
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50).
@@ -8877,7 +12501,7 @@ impl Delta4 {
     ///
     /// Output: 4.
     ///
-    /// 151 operations (53 additions, 91 multiplications, 7 divisions), 0 square roots, 12 trigonometric pairs, 0 signs, 171 intermediates.
+    /// 235 operations (97 additions, 127 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 235 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -8885,93 +12509,114 @@ impl Delta4 {
         pose: &[f64; 3],
         torques: &[f64; 4],
     ) -> Result<[f64; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let t0 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t0);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        let t5 = c_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t8 = s_armcross_leg1 * c_rod_leg1;
-        let t11 = c_arm_leg1 * t8 - s_arm_leg1 * t5;
-        ::overact::guard::leg(t11, 0.9471622941895192, "leg1")?;
-        let t12 = 5.0 / t11;
-        let garm_vx_leg1 = t5 * t12;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t19 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t19);
-        let t22 = s_armcross_leg2 * c_rod_leg2;
-        let t24 = c_armcross_leg2 * c_rod_leg2;
-        let t26 = c_arm_leg2 * t22 - s_arm_leg2 * t24;
-        ::overact::guard::leg(t26, 0.9471622941895197, "leg2")?;
-        let t27 = 5.0 / t26;
-        let minus_garm_vx_leg2 = s_rod_leg2 * t27;
-        let t31 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t31);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t36 = c_armcross_leg3 * c_rod_leg3;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t40 = s_armcross_leg3 * c_rod_leg3;
-        let t42 = s_arm_leg3 * t36 - c_arm_leg3 * t40;
-        ::overact::guard::leg(t42, 0.9471622941895192, "leg3")?;
-        let t43 = 5.0 / t42;
-        let garm_vx_leg3 = t36 * t43;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let t51 = joints[9] + joints[10];
-        let (s_armcross_leg4, c_armcross_leg4) = ::overact::math::sin_cos(t51);
-        let t54 = c_armcross_leg4 * c_rod_leg4;
-        let t56 = s_armcross_leg4 * c_rod_leg4;
-        let t58 = s_arm_leg4 * t54 - c_arm_leg4 * t56;
-        ::overact::guard::leg(t58, 0.9471622941895192, "leg4")?;
-        let t59 = 5.0 / t58;
-        let minus_garm_vx_leg4 = s_rod_leg4 * t59;
-        let t62 = garm_vx_leg1 * torques[0] - minus_garm_vx_leg2 * torques[1]
-            + garm_vx_leg3 * torques[2] - minus_garm_vx_leg4 * torques[3];
-        let t69 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3 + minus_garm_vx_leg4 * minus_garm_vx_leg4;
-        ::overact::guard::platform(t69, 22.53317086554555, "actuators")?;
-        let t70 = 1.0 / t69;
-        let garm_vy_leg1 = s_rod_leg1 * t12;
-        let garm_vy_leg2 = t24 * t27;
-        let garm_vy_leg3 = s_rod_leg3 * t43;
-        let garm_vy_leg4 = t54 * t59;
-        let t82 = garm_vx_leg1 * garm_vy_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
-            + garm_vx_leg3 * garm_vy_leg3 - minus_garm_vx_leg4 * garm_vy_leg4;
-        let t83 = t82 * t70;
-        let t92 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t82 * t83;
-        ::overact::guard::platform(t92, 22.533170865545543, "actuators")?;
-        let t93 = 1.0 / t92;
-        let t102 = garm_vy_leg1 * torques[0] + garm_vy_leg2 * torques[1]
-            + garm_vy_leg3 * torques[2] + garm_vy_leg4 * torques[3] - t62 * t83;
-        let garm_vz_leg3 = t40 * t43;
-        let minus_garm_vz_leg1 = t8 * t12;
-        let minus_garm_vz_leg2 = t22 * t27;
-        let garm_vz_leg4 = t56 * t59;
-        let t121 = minus_garm_vx_leg2 * minus_garm_vz_leg2
-            - garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg3 * garm_vz_leg3
-            - minus_garm_vx_leg4 * garm_vz_leg4;
-        let t122 = t121 * t70;
-        let t124 = garm_vy_leg3 * garm_vz_leg3
-            - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2)
-            + garm_vy_leg4 * garm_vz_leg4 - t82 * t122;
-        let t125 = t124 * t93;
-        let t136 = minus_garm_vz_leg1 * minus_garm_vz_leg1
-            + minus_garm_vz_leg2 * minus_garm_vz_leg2 + garm_vz_leg3 * garm_vz_leg3
-            + garm_vz_leg4 * garm_vz_leg4 - t121 * t122 - t124 * t125;
-        ::overact::guard::platform(t136, 66.4019122371629, "actuators")?;
-        let t147 = garm_vz_leg3 * torques[2]
-            - (minus_garm_vz_leg1 * torques[0] + minus_garm_vz_leg2 * torques[1])
-            + garm_vz_leg4 * torques[3] - t62 * t122 - t125 * t102;
-        let t148 = t147 / t136;
-        let t150 = t93 * t102 - t125 * t148;
-        let t154 = t62 * t70 - t83 * t150 - t122 * t148;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * t1;
+        let t8 = pose[1] * pose[1];
+        let t12 = t2 + t8 + t3 - 0.2809 + 0.04;
+        let t14 = 0.4 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.20079840636817814, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t24 = 2.0 / t17;
+        let garm_vx_leg1 = (t0 - (0.2 + 0.2 * c_arm_leg1)) * t24;
+        let t27 = pose[1] + 0.05;
+        let t28 = t27 - 0.2;
+        let t29 = t28 * t28;
+        let t31 = 0.16 * (t29 + t3);
+        let t32 = pose[0] * pose[0];
+        let t36 = t32 + t29 + t3 - 0.2809 + 0.04;
+        let t38 = t31 - t36 * t36;
+        ::overact::guard::reach(t38, "leg2")?;
+        let t39 = ::overact::math::sqrt(t38);
+        ::overact::guard::leg(t39, 0.20079840636817814, "leg2")?;
+        let t40 = 2.0 / t39;
+        let garm_vx_leg2 = pose[0] * t40;
+        let t44 = pose[0] - 0.05;
+        let t45 = t44 + 0.2;
+        let t46 = t45 * t45;
+        let t48 = 0.16 * (t46 + t3);
+        let t49 = 1.0 / t48;
+        let t50 = 0.4 * t45;
+        let t54 = t46 + t8 + t3 - 0.2809 + 0.04;
+        let t57 = t48 - t54 * t54;
+        ::overact::guard::reach(t57, "leg3")?;
+        let t58 = ::overact::math::sqrt(t57);
+        ::overact::guard::leg(t58, 0.20079840636817814, "leg3")?;
+        let minus_c_arm_leg3 = t49 * (t50 * t54 + t14 * t58);
+        let t65 = 2.0 / t58;
+        let garm_vx_leg3 = (t44 - (0.2 * minus_c_arm_leg3 - 0.2)) * t65;
+        let t69 = pose[1] - 0.05;
+        let t70 = t69 + 0.2;
+        let t71 = t70 * t70;
+        let t73 = 0.16 * (t71 + t3);
+        let t77 = t32 + t71 + t3 - 0.2809 + 0.04;
+        let t79 = t73 - t77 * t77;
+        ::overact::guard::reach(t79, "leg4")?;
+        let t80 = ::overact::math::sqrt(t79);
+        ::overact::guard::leg(t80, 0.20079840636817814, "leg4")?;
+        let t81 = 2.0 / t80;
+        let garm_vx_leg4 = pose[0] * t81;
+        let t84 = garm_vx_leg1 * torques[0] + garm_vx_leg2 * torques[1]
+            + garm_vx_leg3 * torques[2] + garm_vx_leg4 * torques[3];
+        let t91 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t91, 22.533170865545554, "actuators")?;
+        let t92 = 1.0 / t91;
+        let garm_vy_leg1 = pose[1] * t24;
+        let t96 = 1.0 / t31;
+        let t97 = 0.4 * t28;
+        let c_arm_leg2 = t96 * (t97 * t36 - t14 * t39);
+        let garm_vy_leg2 = (t27 - (0.2 + 0.2 * c_arm_leg2)) * t40;
+        let garm_vy_leg3 = pose[1] * t65;
+        let t111 = 1.0 / t73;
+        let t112 = 0.4 * t70;
+        let minus_c_arm_leg4 = t111 * (t112 * t77 + t14 * t80);
+        let garm_vy_leg4 = (t69 - (0.2 * minus_c_arm_leg4 - 0.2)) * t81;
+        let t122 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3 + garm_vx_leg4 * garm_vy_leg4;
+        let t123 = t122 * t92;
+        let t132 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t122 * t123;
+        ::overact::guard::platform(t132, 22.533170865545554, "actuators")?;
+        let t133 = 1.0 / t132;
+        let t142 = garm_vy_leg1 * torques[0] + garm_vy_leg2 * torques[1]
+            + garm_vy_leg3 * torques[2] + garm_vy_leg4 * torques[3] - t84 * t123;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let garm_vz_leg1 = (pose[2] - 0.2 * minus_s_arm_leg1) * t24;
+        let minus_s_arm_leg2 = t96 * (t14 * t36 + t97 * t39);
+        let garm_vz_leg2 = (pose[2] - 0.2 * minus_s_arm_leg2) * t40;
+        let s_arm_leg3 = t49 * (t50 * t58 - t14 * t54);
+        let garm_vz_leg3 = (pose[2] + 0.2 * s_arm_leg3) * t65;
+        let s_arm_leg4 = t111 * (t112 * t80 - t14 * t77);
+        let garm_vz_leg4 = (pose[2] + 0.2 * s_arm_leg4) * t81;
+        let t185 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3 + garm_vx_leg4 * garm_vz_leg4;
+        let t186 = t185 * t92;
+        let t188 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 + garm_vy_leg4 * garm_vz_leg4 - t122 * t186;
+        let t189 = t188 * t133;
+        let t200 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 + garm_vz_leg4 * garm_vz_leg4 - t185 * t186
+            - t188 * t189;
+        ::overact::guard::platform(t200, 66.40191223716288, "actuators")?;
+        let t211 = garm_vz_leg1 * torques[0] + garm_vz_leg2 * torques[1]
+            + garm_vz_leg3 * torques[2] + garm_vz_leg4 * torques[3] - t84 * t186
+            - t189 * t142;
+        let t212 = t211 / t200;
+        let t214 = t133 * t142 - t189 * t212;
+        let t218 = t84 * t92 - t123 * t214 - t186 * t212;
         Ok([
-            garm_vx_leg1 * t154 + garm_vy_leg1 * t150 - minus_garm_vz_leg1 * t148,
-            garm_vy_leg2 * t150 - minus_garm_vx_leg2 * t154 - minus_garm_vz_leg2 * t148,
-            garm_vx_leg3 * t154 + garm_vy_leg3 * t150 + garm_vz_leg3 * t148,
-            garm_vy_leg4 * t150 - minus_garm_vx_leg4 * t154 + garm_vz_leg4 * t148,
+            garm_vx_leg1 * t218 + garm_vy_leg1 * t214 + garm_vz_leg1 * t212,
+            garm_vx_leg2 * t218 + garm_vy_leg2 * t214 + garm_vz_leg2 * t212,
+            garm_vx_leg3 * t218 + garm_vy_leg3 * t214 + garm_vz_leg3 * t212,
+            garm_vx_leg4 * t218 + garm_vy_leg4 * t214 + garm_vz_leg4 * t212,
         ])
     }
     /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.
@@ -8981,108 +12626,128 @@ impl Delta4 {
     ///
     /// Output: 4 x 1.
     ///
-    /// 135 operations (45 additions, 82 multiplications, 8 divisions), 1 square roots, 12 trigonometric pairs, 0 signs, 156 intermediates.
+    /// 220 operations (89 additions, 119 multiplications, 12 divisions), 5 square roots, 0 trigonometric pairs, 0 signs, 221 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn null_space(pose: &[f64; 3]) -> Result<[[f64; 1]; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t4 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t4);
-        let t7 = s_armcross_leg1 * c_rod_leg1;
-        let t9 = c_armcross_leg1 * c_rod_leg1;
-        let t11 = c_arm_leg1 * t7 - s_arm_leg1 * t9;
-        ::overact::guard::leg(t11, 0.9471622941895192, "leg1")?;
-        let t12 = 5.0 / t11;
-        let garm_vy_leg1 = s_rod_leg1 * t12;
-        let t15 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t15);
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t20 = c_armcross_leg2 * c_rod_leg2;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t23 = s_armcross_leg2 * c_rod_leg2;
-        let t26 = c_arm_leg2 * t23 - s_arm_leg2 * t20;
-        ::overact::guard::leg(t26, 0.9471622941895197, "leg2")?;
-        let t27 = 5.0 / t26;
-        let garm_vy_leg2 = t20 * t27;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t35 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t35);
-        let t38 = c_armcross_leg3 * c_rod_leg3;
-        let t40 = s_armcross_leg3 * c_rod_leg3;
-        let t42 = s_arm_leg3 * t38 - c_arm_leg3 * t40;
-        ::overact::guard::leg(t42, 0.9471622941895192, "leg3")?;
-        let t43 = 5.0 / t42;
-        let garm_vy_leg3 = s_rod_leg3 * t43;
-        let t47 = joints[9] + joints[10];
-        let (s_armcross_leg4, c_armcross_leg4) = ::overact::math::sin_cos(t47);
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        let t52 = c_armcross_leg4 * c_rod_leg4;
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let t56 = s_armcross_leg4 * c_rod_leg4;
-        let t58 = s_arm_leg4 * t52 - c_arm_leg4 * t56;
-        ::overact::guard::leg(t58, 0.9471622941895192, "leg4")?;
-        let t59 = 5.0 / t58;
-        let garm_vy_leg4 = t52 * t59;
-        let garm_vx_leg1 = t9 * t12;
-        let minus_garm_vx_leg2 = s_rod_leg2 * t27;
-        let garm_vx_leg3 = t38 * t43;
-        let minus_garm_vx_leg4 = s_rod_leg4 * t59;
-        let t73 = garm_vx_leg1 * garm_vy_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
-            + garm_vx_leg3 * garm_vy_leg3 - minus_garm_vx_leg4 * garm_vy_leg4;
-        let t80 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3 + minus_garm_vx_leg4 * minus_garm_vx_leg4;
-        ::overact::guard::platform(t80, 22.53317086554555, "actuators")?;
-        let t81 = 1.0 / t80;
-        let t82 = t73 * t81;
-        let t84 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t73 * t82;
-        ::overact::guard::platform(t84, 22.533170865545543, "actuators")?;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
+        let t2 = t1 * t1;
+        let t3 = pose[2] * pose[2];
+        let t5 = 0.16 * (t2 + t3);
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * t1;
+        let t8 = pose[1] * pose[1];
+        let t12 = t2 + t8 + t3 - 0.2809 + 0.04;
+        let t14 = 0.4 * pose[2];
+        let t16 = t5 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        ::overact::guard::leg(t17, 0.20079840636817814, "leg1")?;
+        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
+        let t24 = 2.0 / t17;
+        let garm_vx_leg1 = (t0 - (0.2 + 0.2 * c_arm_leg1)) * t24;
+        let t26 = pose[1] - 0.05;
+        let t27 = t26 + 0.2;
+        let t28 = t27 * t27;
+        let t30 = 0.16 * (t28 + t3);
+        let t31 = pose[0] * pose[0];
+        let t35 = t31 + t28 + t3 - 0.2809 + 0.04;
+        let t37 = t30 - t35 * t35;
+        ::overact::guard::reach(t37, "leg4")?;
+        let t38 = ::overact::math::sqrt(t37);
+        ::overact::guard::leg(t38, 0.20079840636817814, "leg4")?;
+        let t39 = 2.0 / t38;
+        let garm_vx_leg4 = pose[0] * t39;
+        let t42 = pose[1] + 0.05;
+        let t43 = t42 - 0.2;
+        let t44 = t43 * t43;
+        let t46 = 0.16 * (t44 + t3);
+        let t50 = t31 + t44 + t3 - 0.2809 + 0.04;
+        let t52 = t46 - t50 * t50;
+        ::overact::guard::reach(t52, "leg2")?;
+        let t53 = ::overact::math::sqrt(t52);
+        ::overact::guard::leg(t53, 0.20079840636817814, "leg2")?;
+        let t54 = 2.0 / t53;
+        let garm_vx_leg2 = pose[0] * t54;
+        let t58 = pose[0] - 0.05;
+        let t59 = t58 + 0.2;
+        let t60 = t59 * t59;
+        let t62 = 0.16 * (t60 + t3);
+        let t63 = 1.0 / t62;
+        let t64 = 0.4 * t59;
+        let t68 = t60 + t8 + t3 - 0.2809 + 0.04;
+        let t71 = t62 - t68 * t68;
+        ::overact::guard::reach(t71, "leg3")?;
+        let t72 = ::overact::math::sqrt(t71);
+        ::overact::guard::leg(t72, 0.20079840636817814, "leg3")?;
+        let minus_c_arm_leg3 = t63 * (t64 * t68 + t14 * t72);
+        let t79 = 2.0 / t72;
+        let garm_vx_leg3 = (t58 - (0.2 * minus_c_arm_leg3 - 0.2)) * t79;
+        let t84 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t84, 22.533170865545554, "actuators")?;
         let t85 = 1.0 / t84;
-        let t87 = garm_vy_leg4 + minus_garm_vx_leg4 * t82;
-        let garm_vz_leg3 = t40 * t43;
-        let minus_garm_vz_leg1 = t7 * t12;
-        let minus_garm_vz_leg2 = t23 * t27;
-        let garm_vz_leg4 = t56 * t59;
-        let t106 = minus_garm_vx_leg2 * minus_garm_vz_leg2
-            - garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg3 * garm_vz_leg3
-            - minus_garm_vx_leg4 * garm_vz_leg4;
-        let t107 = t106 * t81;
-        let t109 = garm_vy_leg3 * garm_vz_leg3
-            - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2)
-            + garm_vy_leg4 * garm_vz_leg4 - t73 * t107;
-        let t110 = t109 * t85;
-        let t121 = minus_garm_vz_leg1 * minus_garm_vz_leg1
-            + minus_garm_vz_leg2 * minus_garm_vz_leg2 + garm_vz_leg3 * garm_vz_leg3
-            + garm_vz_leg4 * garm_vz_leg4 - t106 * t107 - t109 * t110;
-        ::overact::guard::platform(t121, 66.4019122371629, "actuators")?;
-        let t126 = (garm_vz_leg4 + minus_garm_vx_leg4 * t107 - t110 * t87) / t121;
-        let t128 = t85 * t87 - t110 * t126;
-        let t134 = minus_garm_vx_leg4 * t81 + t82 * t128 + t107 * t126;
-        let t145 = ::overact::math::sqrt(
-            1.0 - (minus_garm_vx_leg4 * t134 + garm_vy_leg4 * t128 + garm_vz_leg4 * t126),
-        );
-        let t146 = 1.0 / t145;
+        let garm_vy_leg1 = pose[1] * t24;
+        let t89 = 1.0 / t46;
+        let t90 = 0.4 * t43;
+        let c_arm_leg2 = t89 * (t90 * t50 - t14 * t53);
+        let garm_vy_leg2 = (t42 - (0.2 + 0.2 * c_arm_leg2)) * t54;
+        let garm_vy_leg3 = pose[1] * t79;
+        let t104 = 1.0 / t30;
+        let t105 = 0.4 * t27;
+        let minus_c_arm_leg4 = t104 * (t105 * t35 + t14 * t38);
+        let garm_vy_leg4 = (t26 - (0.2 * minus_c_arm_leg4 - 0.2)) * t39;
+        let t115 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3 + garm_vx_leg4 * garm_vy_leg4;
+        let t116 = t115 * t85;
+        let t125 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t115 * t116;
+        ::overact::guard::platform(t125, 22.533170865545554, "actuators")?;
+        let t126 = 1.0 / t125;
+        let t128 = garm_vy_leg4 - garm_vx_leg4 * t116;
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let garm_vz_leg1 = (pose[2] - 0.2 * minus_s_arm_leg1) * t24;
+        let minus_s_arm_leg2 = t89 * (t14 * t50 + t90 * t53);
+        let garm_vz_leg2 = (pose[2] - 0.2 * minus_s_arm_leg2) * t54;
+        let s_arm_leg3 = t63 * (t64 * t72 - t14 * t68);
+        let garm_vz_leg3 = (pose[2] + 0.2 * s_arm_leg3) * t79;
+        let s_arm_leg4 = t104 * (t105 * t38 - t14 * t35);
+        let garm_vz_leg4 = (pose[2] + 0.2 * s_arm_leg4) * t39;
+        let t171 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3 + garm_vx_leg4 * garm_vz_leg4;
+        let t172 = t171 * t85;
+        let t174 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 + garm_vy_leg4 * garm_vz_leg4 - t115 * t172;
+        let t175 = t174 * t126;
+        let t186 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 + garm_vz_leg4 * garm_vz_leg4 - t171 * t172
+            - t174 * t175;
+        ::overact::guard::platform(t186, 66.40191223716288, "actuators")?;
+        let t191 = (garm_vz_leg4 - garm_vx_leg4 * t172 - t175 * t128) / t186;
+        let t193 = t126 * t128 - t175 * t191;
+        let t197 = garm_vx_leg4 * t85 - t116 * t193 - t172 * t191;
+        let t208 = 1.0
+            - (garm_vx_leg4 * t197 + garm_vy_leg4 * t193 + garm_vz_leg4 * t191);
+        let t210 = 1.0 / ::overact::math::sqrt(t208);
         Ok([
             [
-                -((garm_vy_leg1 * t128 - garm_vx_leg1 * t134 - minus_garm_vz_leg1 * t126)
-                    * t146),
+                -((garm_vx_leg1 * t197 + garm_vy_leg1 * t193 + garm_vz_leg1 * t191)
+                    * t210),
             ],
             [
-                -((minus_garm_vx_leg2 * t134 + garm_vy_leg2 * t128
-                    - minus_garm_vz_leg2 * t126) * t146),
+                -((garm_vx_leg2 * t197 + garm_vy_leg2 * t193 + garm_vz_leg2 * t191)
+                    * t210),
             ],
             [
-                -((garm_vy_leg3 * t128 - garm_vx_leg3 * t134 + garm_vz_leg3 * t126)
-                    * t146),
+                -((garm_vx_leg3 * t197 + garm_vy_leg3 * t193 + garm_vz_leg3 * t191)
+                    * t210),
             ],
-            [t145],
+            [t208 * t210],
         ])
     }
-    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
+    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. Where the iteration fails from there, it starts again from `pose_in_closed_form`.
     ///
     /// # Errors
     /// No convergence, or a singular or unreachable configuration on the way.
@@ -9090,28 +12755,37 @@ impl Delta4 {
         actuators: &[f64; Self::ACTUATORS],
         start: &[f64; Self::POSE],
     ) -> Result<[f64; Self::POSE], ::overact::Error> {
-        let mut pose = *start;
-        ::overact::forward::gauss_newton(
-            ::overact::forward::Measured {
-                positions: actuators,
-                is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
-            },
-            &mut pose,
-            ::overact::forward::Workspace {
-                actuators: &mut [0.0; Self::ACTUATORS],
-                inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
-                normal: &mut [0.0; Self::DOF * Self::DOF],
-                step: &mut [0.0; Self::DOF],
-            },
-            |pose, positions, jacobian| {
-                let pose = ::overact::block::array(pose)?;
-                positions.copy_from_slice(&Self::actuator_positions(pose)?);
-                jacobian.copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
-                Ok(())
-            },
-            ::overact::forward::displace,
-        )?;
-        Ok(pose)
+        let from = |mut pose: [f64; Self::POSE]| {
+            ::overact::forward::gauss_newton(
+                    ::overact::forward::Measured {
+                        positions: actuators,
+                        is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
+                    },
+                    &mut pose,
+                    ::overact::forward::Workspace {
+                        actuators: &mut [0.0; Self::ACTUATORS],
+                        inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
+                        normal: &mut [0.0; Self::DOF * Self::DOF],
+                        step: &mut [0.0; Self::DOF],
+                    },
+                    |pose, positions, jacobian| {
+                        let pose = ::overact::block::array(pose)?;
+                        positions.copy_from_slice(&Self::actuator_positions(pose)?);
+                        jacobian
+                            .copy_from_slice(
+                                Self::inverse_jacobian(pose)?.as_flattened(),
+                            );
+                        Ok(())
+                    },
+                    ::overact::forward::displace,
+                )
+                .map(|()| pose)
+        };
+        from(*start)
+            .or_else(|error| match Self::pose_in_closed_form(actuators) {
+                Ok(pose) => from(pose),
+                Err(_) => Err(error),
+            })
     }
 }
 impl ::overact::Model for Delta4 {

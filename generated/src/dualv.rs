@@ -231,6 +231,52 @@ impl DualV {
             ),
         ]
     };
+    /// The pose from the actuators in closed form, in the assembly mode of the home configuration; of redundant actuators only some are used.
+    ///
+    /// From the actuators' positions.
+    /// - `actuators`: q, positions of the actuated joints (m, rad)
+    ///
+    /// Output: 3.
+    ///
+    /// 63 operations (29 additions, 31 multiplications, 3 divisions), 3 square roots, 4 trigonometric pairs, 0 signs, 73 intermediates.
+    ///
+    /// # Errors
+    /// A pose out of reach, or a singular configuration.
+    pub fn pose_in_closed_form(
+        actuators: &[f64; 4],
+    ) -> Result<[f64; 3], ::overact::Error> {
+        let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(actuators[0]);
+        let t3 = 0.3950502153918333 + 0.28 * c1_leg1;
+        let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(actuators[1]);
+        let t8 = 0.28 * c1_leg2 - 0.3950502153918333 - t3;
+        let t14 = 0.10970563941232059 + 0.28 * s1_leg1;
+        let t15 = 0.10970563941232059 + 0.28 * s1_leg2 - t14;
+        let t18 = t8 * t8 + t15 * t15;
+        let t21 = (0.0784 - 0.25 * t18) / t18;
+        ::overact::guard::reach(t21, "leg1")?;
+        let t22 = ::overact::math::sqrt(t21);
+        let t24 = t3 + 0.5 * t8 - t15 * t22;
+        let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(actuators[2]);
+        let t28 = 0.28 * c1_leg3 - 0.3950502153918333;
+        let (s1_leg4, c1_leg4) = ::overact::math::sin_cos(actuators[3]);
+        let t33 = 0.3950502153918333 + 0.28 * c1_leg4 - t28;
+        let t39 = 0.28 * s1_leg3 - 0.10970563941232059;
+        let t40 = 0.28 * s1_leg4 - 0.10970563941232059 - t39;
+        let t43 = t33 * t33 + t40 * t40;
+        let t46 = (0.0784 - 0.25 * t43) / t43;
+        ::overact::guard::reach(t46, "leg3")?;
+        let t47 = ::overact::math::sqrt(t46);
+        let t49 = t28 + 0.5 * t33 - t40 * t47;
+        let t55 = t14 + 0.5 * t15 + t8 * t22;
+        let t59 = t39 + 0.5 * t40 + t33 * t47;
+        let t62 = t49 - t24;
+        let t64 = t59 - t55;
+        let t70 = 1.0 / ::overact::math::sqrt(0.0484 * (t64 * t64 + t62 * t62));
+        Ok([
+            0.5 * (t24 + t49), 0.5 * (t55 + t59),
+            ::overact::math::atan2(0.22 * t62 * t70, -(0.22 * t64 * t70)),
+        ])
+    }
     /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
     ///
     /// From the platform's pose and motion.
@@ -7456,7 +7502,7 @@ impl DualV {
             [t174 * t176],
         ])
     }
-    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
+    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. Where the iteration fails from there, it starts again from `pose_in_closed_form`.
     ///
     /// # Errors
     /// No convergence, or a singular or unreachable configuration on the way.
@@ -7464,28 +7510,37 @@ impl DualV {
         actuators: &[f64; Self::ACTUATORS],
         start: &[f64; Self::POSE],
     ) -> Result<[f64; Self::POSE], ::overact::Error> {
-        let mut pose = *start;
-        ::overact::forward::gauss_newton(
-            ::overact::forward::Measured {
-                positions: actuators,
-                is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
-            },
-            &mut pose,
-            ::overact::forward::Workspace {
-                actuators: &mut [0.0; Self::ACTUATORS],
-                inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
-                normal: &mut [0.0; Self::DOF * Self::DOF],
-                step: &mut [0.0; Self::DOF],
-            },
-            |pose, positions, jacobian| {
-                let pose = ::overact::block::array(pose)?;
-                positions.copy_from_slice(&Self::actuator_positions(pose)?);
-                jacobian.copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
-                Ok(())
-            },
-            ::overact::forward::displace,
-        )?;
-        Ok(pose)
+        let from = |mut pose: [f64; Self::POSE]| {
+            ::overact::forward::gauss_newton(
+                    ::overact::forward::Measured {
+                        positions: actuators,
+                        is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
+                    },
+                    &mut pose,
+                    ::overact::forward::Workspace {
+                        actuators: &mut [0.0; Self::ACTUATORS],
+                        inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
+                        normal: &mut [0.0; Self::DOF * Self::DOF],
+                        step: &mut [0.0; Self::DOF],
+                    },
+                    |pose, positions, jacobian| {
+                        let pose = ::overact::block::array(pose)?;
+                        positions.copy_from_slice(&Self::actuator_positions(pose)?);
+                        jacobian
+                            .copy_from_slice(
+                                Self::inverse_jacobian(pose)?.as_flattened(),
+                            );
+                        Ok(())
+                    },
+                    ::overact::forward::displace,
+                )
+                .map(|()| pose)
+        };
+        from(*start)
+            .or_else(|error| match Self::pose_in_closed_form(actuators) {
+                Ok(pose) => from(pose),
+                Err(_) => Err(error),
+            })
     }
 }
 impl ::overact::Model for DualV {

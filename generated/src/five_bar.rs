@@ -122,6 +122,31 @@ impl FiveBar {
             BaseParameter::new("fs_2_right", "fs_2_right", &[]),
         ]
     };
+    /// The pose from the actuators in closed form, in the assembly mode of the home configuration; of redundant actuators only some are used.
+    ///
+    /// From the actuators' positions.
+    /// - `actuators`: q, positions of the actuated joints (m, rad)
+    ///
+    /// Output: 2.
+    ///
+    /// 23 operations (10 additions, 12 multiplications, 1 divisions), 1 square roots, 2 trigonometric pairs, 0 signs, 26 intermediates.
+    ///
+    /// # Errors
+    /// A pose out of reach, or a singular configuration.
+    pub fn pose_in_closed_form(
+        actuators: &[f64; 2],
+    ) -> Result<[f64; 2], ::overact::Error> {
+        let (s1_left, c1_left) = ::overact::math::sin_cos(actuators[0]);
+        let t3 = 0.2 * c1_left - 0.1;
+        let (s1_right, c1_right) = ::overact::math::sin_cos(actuators[1]);
+        let t8 = 0.1 + 0.2 * c1_right - t3;
+        let t11 = s1_right - s1_left;
+        let t16 = t8 * t8 + 0.04 * (t11 * t11);
+        let t19 = (0.0625 - 0.25 * t16) / t16;
+        ::overact::guard::reach(t19, "left")?;
+        let t20 = ::overact::math::sqrt(t19);
+        Ok([t3 + 0.5 * t8 - 0.2 * t11 * t20, 0.2 * s1_left + 0.1 * t11 + t8 * t20])
+    }
     /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
     ///
     /// From the platform's pose and motion.
@@ -2962,7 +2987,7 @@ impl FiveBar {
                 - minus_g2_vy_right * t190 + 9.81 * parameters[24],
         ])
     }
-    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
+    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. It is `pose_in_closed_form` where that has a value.
     ///
     /// # Errors
     /// No convergence, or a singular or unreachable configuration on the way.
@@ -2970,28 +2995,32 @@ impl FiveBar {
         actuators: &[f64; Self::ACTUATORS],
         start: &[f64; Self::POSE],
     ) -> Result<[f64; Self::POSE], ::overact::Error> {
+        if let Ok(pose) = Self::pose_in_closed_form(actuators) {
+            return Ok(pose);
+        }
         let mut pose = *start;
         ::overact::forward::gauss_newton(
-            ::overact::forward::Measured {
-                positions: actuators,
-                is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
-            },
-            &mut pose,
-            ::overact::forward::Workspace {
-                actuators: &mut [0.0; Self::ACTUATORS],
-                inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
-                normal: &mut [0.0; Self::DOF * Self::DOF],
-                step: &mut [0.0; Self::DOF],
-            },
-            |pose, positions, jacobian| {
-                let pose = ::overact::block::array(pose)?;
-                positions.copy_from_slice(&Self::actuator_positions(pose)?);
-                jacobian.copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
-                Ok(())
-            },
-            ::overact::forward::displace,
-        )?;
-        Ok(pose)
+                ::overact::forward::Measured {
+                    positions: actuators,
+                    is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
+                },
+                &mut pose,
+                ::overact::forward::Workspace {
+                    actuators: &mut [0.0; Self::ACTUATORS],
+                    inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
+                    normal: &mut [0.0; Self::DOF * Self::DOF],
+                    step: &mut [0.0; Self::DOF],
+                },
+                |pose, positions, jacobian| {
+                    let pose = ::overact::block::array(pose)?;
+                    positions.copy_from_slice(&Self::actuator_positions(pose)?);
+                    jacobian
+                        .copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
+                    Ok(())
+                },
+                ::overact::forward::displace,
+            )
+            .map(|()| pose)
     }
 }
 impl ::overact::Model for FiveBar {

@@ -384,46 +384,56 @@ impl Orthoglide {
             BaseParameter::new("mx_coupler_along_z", "mx_coupler_along_z", &[]),
         ]
     };
-    /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration; by Newton's method.
+    /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
+    ///
+    /// Output: 12.
+    ///
+    /// 36 operations (12 additions, 21 multiplications, 3 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 45 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration on the way from home.
-    pub fn joints(
-        pose: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::JOINTS], ::overact::Error> {
-        let mut joints = Self::HOME_JOINTS;
-        ::overact::inverse::solve(
-            ::overact::inverse::Legs {
-                names: &Self::LEGS,
-                joints: &[4, 4, 4],
-                home_pose: &Self::HOME_POSE,
-                home_joints: &Self::HOME_JOINTS,
-                has_quaternion: false,
-            },
-            pose,
-            &mut joints,
-            ::overact::inverse::Workspace {
-                error: &mut [0.0; Self::JOINTS],
-                jacobian: &mut [0.0; Self::JOINTS * Self::JOINTS],
-                pose: &mut [0.0; Self::POSE],
-            },
-            |pose, joints, error, jacobian| {
-                let (pose, joints) = (
-                    ::overact::block::array(pose)?,
-                    ::overact::block::array(joints)?,
-                );
-                ::overact::block::write(
-                    &Self::closure_error_from_joints(pose, joints),
-                    error,
-                );
-                ::overact::block::write(
-                    &Self::legs_jacobian_from_joints(pose, joints),
-                    jacobian,
-                );
-                Ok(())
-            },
-        )?;
-        Ok(joints)
+    /// A pose out of reach, or a singular configuration.
+    pub fn joints(pose: &[f64; 3]) -> Result<[f64; 12], ::overact::Error> {
+        let t3 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t3, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t3);
+        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
+        let t8 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t8, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t8);
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t22 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t22, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t22);
+        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let t27 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t27, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t27);
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t41 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t41, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t41);
+        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
+        let t46 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t46, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t46);
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        Ok([
+            pose[0] + 0.56 - 0.31 * (c_left_bar_along_x * c_foot_along_x),
+            ::overact::math::atan2(-minus_s_foot_along_x, c_foot_along_x),
+            ::overact::math::atan2(-minus_s_left_bar_along_x, c_left_bar_along_x),
+            ::overact::math::atan2(minus_s_foot_along_x, c_foot_along_x),
+            pose[1] + 0.56 - 0.31 * (c_left_bar_along_y * c_foot_along_y),
+            ::overact::math::atan2(-minus_s_foot_along_y, c_foot_along_y),
+            ::overact::math::atan2(-minus_s_left_bar_along_y, c_left_bar_along_y),
+            ::overact::math::atan2(minus_s_foot_along_y, c_foot_along_y),
+            pose[2] + 0.56 - 0.31 * (c_left_bar_along_z * c_foot_along_z),
+            ::overact::math::atan2(-minus_s_foot_along_z, c_foot_along_z),
+            ::overact::math::atan2(-minus_s_left_bar_along_z, c_left_bar_along_z),
+            ::overact::math::atan2(minus_s_foot_along_z, c_foot_along_z),
+        ])
     }
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
@@ -432,13 +442,37 @@ impl Orthoglide {
     ///
     /// Output: 3.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 33 operations (12 additions, 18 multiplications, 3 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 36 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn actuator_positions(pose: &[f64; 3]) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Ok([joints[0], joints[4], joints[8]])
+        let t3 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t3, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t3);
+        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
+        let t8 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t8, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t8);
+        let t16 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t16, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t16);
+        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let t21 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t21, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t21);
+        let t29 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t29, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t29);
+        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
+        let t34 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t34, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t34);
+        Ok([
+            pose[0] + 0.56 - 0.31 * (c_left_bar_along_x * c_foot_along_x),
+            pose[1] + 0.56 - 0.31 * (c_left_bar_along_y * c_foot_along_y),
+            pose[2] + 0.56 - 0.31 * (c_left_bar_along_z * c_foot_along_z),
+        ])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -447,13 +481,70 @@ impl Orthoglide {
     ///
     /// Output: 3 x 3.
     ///
-    /// 42 operations (3 additions, 33 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 48 intermediates.
+    /// 57 operations (9 additions, 39 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 57 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::inverse_jacobian_from_joints(pose, joints)
+        let t2 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t2, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t2);
+        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
+        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let t7 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t7, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t7);
+        let t9 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t9, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t9;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t13 = 1.0 / c_left_bar_along_y;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
+            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t13);
+        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y
+            + minus_s_left_bar_along_y * c_foot_along_y * t13;
+        let t22 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t22, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t22);
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
+        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
+        let t27 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t27, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t27);
+        let t29 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t29, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t29;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t34 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t34, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t34);
+        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
+        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
+        let t39 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t39, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t39);
+        let t41 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t41, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t41;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t46 = 1.0 / c_left_bar_along_z;
+        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
+            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t46);
+        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z
+            + minus_s_left_bar_along_z * c_foot_along_z * t46;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t55 = 1.0 / c_left_bar_along_x;
+        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
+            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t55);
+        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x
+            + minus_s_left_bar_along_x * c_foot_along_x * t55;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        Ok([
+            [1.0, gdrive_vy_along_x, gdrive_vz_along_x],
+            [gdrive_vx_along_y, 1.0, gdrive_vz_along_y],
+            [gdrive_vx_along_z, gdrive_vy_along_z, 1.0],
+        ])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -532,100 +623,102 @@ impl Orthoglide {
     ///
     /// Output: 3 x 3.
     ///
-    /// 119 operations (37 additions, 73 multiplications, 9 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 122 intermediates.
+    /// 134 operations (43 additions, 79 multiplications, 12 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 131 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (minus_c_foot_along_y, s_foot_along_y) = ::overact::math::sin_cos(joints[5]);
-        let (s_left_bar_along_y, c_left_bar_along_y) = ::overact::math::sin_cos(
-            joints[6],
-        );
+        let t2 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t2, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let t4 = minus_c_foot_along_y * c_left_bar_along_y;
-        let t6 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t6, 1.0, "along_y")?;
-        let t7 = 1.0 / t6;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t7;
-        let t10 = 1.0 / c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let t7 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t7, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t7);
+        let t9 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t9, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t9;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t13 = 1.0 / c_left_bar_along_y;
         let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_c_foot_along_y * s_left_bar_along_y * t10);
-        let minus_gdrive_vx_along_y = 0.31 * t4 * minus_gfoot_vx_along_y
-            + s_foot_along_y * s_left_bar_along_y * t10;
-        let (minus_c_foot_along_z, s_foot_along_z) = ::overact::math::sin_cos(joints[9]);
-        let (s_left_bar_along_z, c_left_bar_along_z) = ::overact::math::sin_cos(
-            joints[10],
-        );
+            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t13);
+        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y
+            + minus_s_left_bar_along_y * c_foot_along_y * t13;
+        let t24 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t24, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t24);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t23 = minus_c_foot_along_z * c_left_bar_along_z;
-        let t24 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t24, 1.0, "along_z")?;
-        let t25 = 1.0 / t24;
-        let minus_gdrive_vx_along_z = t23 * t25;
-        let t28 = 1.0 + minus_gdrive_vx_along_y * minus_gdrive_vx_along_y
-            + minus_gdrive_vx_along_z * minus_gdrive_vx_along_z;
-        ::overact::guard::platform(t28, 1.0, "actuators")?;
-        let t29 = 1.0 / t28;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t25;
-        let t33 = 1.0 / c_left_bar_along_z;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_c_foot_along_z * s_left_bar_along_z * t33);
-        let minus_gdrive_vy_along_z = 0.31 * t23 * minus_gfoot_vy_along_z
-            + s_foot_along_z * s_left_bar_along_z * t33;
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
+        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
+        let t29 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t29, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t29);
+        let t31 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t31, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t31;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t35 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vx_along_z;
+        ::overact::guard::platform(t35, 1.0, "actuators")?;
+        let t36 = 1.0 / t35;
+        let t39 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t39, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t39);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t45 = minus_c_foot_along_x * c_left_bar_along_x;
-        let t46 = s_foot_along_x * c_left_bar_along_x;
+        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
+        let t44 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t44, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t44);
+        let t46 = c_left_bar_along_x * c_foot_along_x;
         ::overact::guard::leg(t46, 1.0, "along_x")?;
-        let t47 = 1.0 / t46;
-        let minus_gdrive_vy_along_x = t45 * t47;
-        let t50 = minus_gdrive_vx_along_z * minus_gdrive_vy_along_z
-            - (minus_gdrive_vy_along_x + minus_gdrive_vx_along_y);
-        let t51 = t50 * t29;
-        let t57 = minus_gdrive_vy_along_x * minus_gdrive_vy_along_x + 1.0
-            + minus_gdrive_vy_along_z * minus_gdrive_vy_along_z - t50 * t51;
-        ::overact::guard::platform(t57, 1.0, "actuators")?;
-        let t58 = 1.0 / t57;
-        let t59 = minus_gdrive_vy_along_x + t51;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t47;
-        let t64 = 1.0 / c_left_bar_along_x;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t46;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t52 = 1.0 / c_left_bar_along_z;
+        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
+            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t52);
+        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z
+            + minus_s_left_bar_along_z * c_foot_along_z * t52;
+        let t60 = gdrive_vy_along_x + gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vy_along_z;
+        let t61 = t60 * t36;
+        let t67 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
+            + gdrive_vy_along_z * gdrive_vy_along_z - t60 * t61;
+        ::overact::guard::platform(t67, 1.0, "actuators")?;
+        let t68 = 1.0 / t67;
+        let t69 = gdrive_vy_along_x - t61;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t73 = 1.0 / c_left_bar_along_x;
         let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_c_foot_along_x * s_left_bar_along_x * t64);
-        let minus_gdrive_vz_along_x = 0.31 * t45 * minus_gfoot_vz_along_x
-            + s_foot_along_x * s_left_bar_along_x * t64;
-        let minus_gdrive_vz_along_y = t4 * t7;
-        let t77 = minus_gdrive_vz_along_y * minus_gdrive_vx_along_y
-            - minus_gdrive_vz_along_x - minus_gdrive_vx_along_z;
-        let t78 = t77 * t29;
-        let t80 = minus_gdrive_vy_along_x * minus_gdrive_vz_along_x
-            - minus_gdrive_vz_along_y - minus_gdrive_vy_along_z - t50 * t78;
-        let t81 = t80 * t58;
-        let t89 = minus_gdrive_vz_along_x * minus_gdrive_vz_along_x
-            + minus_gdrive_vz_along_y * minus_gdrive_vz_along_y + 1.0 - t77 * t78
-            - t80 * t81;
-        ::overact::guard::platform(t89, 1.0, "actuators")?;
-        let t90 = 1.0 / t89;
-        let t94 = t90 * (t81 * t59 - (minus_gdrive_vz_along_x + t78));
-        let t96 = t58 * t59 + t81 * t94;
-        let t103 = 1.0 + minus_gdrive_vx_along_y * t51;
-        let t109 = t90
-            * (minus_gdrive_vx_along_y * t78 - minus_gdrive_vz_along_y - t81 * t103);
-        let t111 = t58 * t103 - t81 * t109;
-        let t118 = minus_gdrive_vx_along_z * t51 - minus_gdrive_vy_along_z;
-        let t124 = t90 * (1.0 + minus_gdrive_vx_along_z * t78 - t81 * t118);
-        let t126 = t58 * t118 - t81 * t124;
+            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t73);
+        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x
+            + minus_s_left_bar_along_x * c_foot_along_x * t73;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t86 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z;
+        let t87 = t86 * t36;
+        let t89 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
+            + gdrive_vy_along_z - t60 * t87;
+        let t90 = t89 * t68;
+        let t98 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t86 * t87 - t89 * t90;
+        ::overact::guard::platform(t98, 1.0, "actuators")?;
+        let t99 = 1.0 / t98;
+        let t103 = t99 * (gdrive_vz_along_x - t87 - t90 * t69);
+        let t105 = t68 * t69 - t90 * t103;
+        let t112 = 1.0 - gdrive_vx_along_y * t61;
+        let t118 = t99 * (gdrive_vz_along_y - gdrive_vx_along_y * t87 - t90 * t112);
+        let t120 = t68 * t112 - t90 * t118;
+        let t127 = gdrive_vy_along_z - gdrive_vx_along_z * t61;
+        let t133 = t99 * (1.0 - gdrive_vx_along_z * t87 - t90 * t127);
+        let t135 = t68 * t127 - t90 * t133;
         Ok([
             [
-                t29 + t51 * t96 - t78 * t94,
-                -(minus_gdrive_vx_along_y * t29 + t51 * t111 + t78 * t109),
-                -(minus_gdrive_vx_along_z * t29 + t51 * t126 + t78 * t124),
+                t36 - t61 * t105 - t87 * t103, gdrive_vx_along_y * t36 - t61 * t120 - t87 * t118,
+                gdrive_vx_along_z * t36 - t61 * t135 - t87 * t133,
             ],
-            [-t96, t111, t126],
-            [t94, t109, t124],
+            [t105, t120, t135],
+            [t103, t118, t133],
         ])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -822,56 +915,6 @@ impl Orthoglide {
             ],
         ]
     }
-    /// By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m, rad).
-    ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = `[x, y, z]` (m, rad), in the base frame
-    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    ///
-    /// Output: 12.
-    ///
-    /// 39 operations (18 additions, 21 multiplications, 0 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 45 intermediates.
-    #[must_use]
-    pub fn closure_error_from_joints(pose: &[f64; 3], joints: &[f64; 12]) -> [f64; 12] {
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
-        let (c_wrist_along_x, minus_s_wrist_along_x) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let (s_left_bar_along_y, c_left_bar_along_y) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let (minus_c_foot_along_y, s_foot_along_y) = ::overact::math::sin_cos(joints[5]);
-        let (c_wrist_along_y, minus_s_wrist_along_y) = ::overact::math::sin_cos(
-            joints[7],
-        );
-        let (minus_c_foot_along_z, s_foot_along_z) = ::overact::math::sin_cos(joints[9]);
-        let (s_left_bar_along_z, c_left_bar_along_z) = ::overact::math::sin_cos(
-            joints[10],
-        );
-        let (c_wrist_along_z, minus_s_wrist_along_z) = ::overact::math::sin_cos(
-            joints[11],
-        );
-        [
-            pose[0] + 0.56 - (joints[0] + 0.31 * (s_foot_along_x * c_left_bar_along_x)),
-            pose[1] + 0.31 * (minus_c_foot_along_x * c_left_bar_along_x),
-            pose[2] + 0.31 * s_left_bar_along_x,
-            s_foot_along_x * c_wrist_along_x
-                + minus_c_foot_along_x * minus_s_wrist_along_x,
-            pose[0] + 0.31 * s_left_bar_along_y,
-            pose[1] + 0.56 - (joints[4] + 0.31 * (s_foot_along_y * c_left_bar_along_y)),
-            pose[2] + 0.31 * (minus_c_foot_along_y * c_left_bar_along_y),
-            s_foot_along_y * c_wrist_along_y
-                + minus_c_foot_along_y * minus_s_wrist_along_y,
-            pose[0] + 0.31 * (minus_c_foot_along_z * c_left_bar_along_z),
-            pose[1] + 0.31 * s_left_bar_along_z,
-            pose[2] + 0.56 - (joints[8] + 0.31 * (s_foot_along_z * c_left_bar_along_z)),
-            minus_c_foot_along_z * minus_s_wrist_along_z
-                + s_foot_along_z * c_wrist_along_z,
-        ]
-    }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
     /// From the platform's pose and motion.
@@ -880,7 +923,7 @@ impl Orthoglide {
     ///
     /// Output: 12.
     ///
-    /// 69 operations (12 additions, 51 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 72 intermediates.
+    /// 84 operations (18 additions, 57 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 81 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -888,72 +931,77 @@ impl Orthoglide {
         pose: &[f64; 3],
         twist: &[f64; 3],
     ) -> Result<[f64; 12], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
+        let t2 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t2, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t4 = minus_c_foot_along_x * c_left_bar_along_x;
-        let t5 = s_foot_along_x * c_left_bar_along_x;
-        ::overact::guard::leg(t5, 1.0, "along_x")?;
-        let t6 = 1.0 / t5;
-        let minus_gdrive_vy_along_x = t4 * t6;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t6;
-        let t13 = 1.0 / c_left_bar_along_x;
+        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
+        let t7 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t7, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t7);
+        let t9 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t9, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t9;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t16 = 1.0 / c_left_bar_along_x;
         let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_c_foot_along_x * s_left_bar_along_x * t13);
-        let minus_gdrive_vz_along_x = 0.31 * t4 * minus_gfoot_vz_along_x
-            + s_foot_along_x * s_left_bar_along_x * t13;
-        let rate_drive_along_x = twist[0] - minus_gdrive_vy_along_x * twist[1]
-            - minus_gdrive_vz_along_x * twist[2];
+            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t16);
+        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x
+            + minus_s_left_bar_along_x * c_foot_along_x * t16;
+        let rate_drive_along_x = twist[0] + gdrive_vy_along_x * twist[1]
+            + gdrive_vz_along_x * twist[2];
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t13;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t16;
         let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let (minus_c_foot_along_y, s_foot_along_y) = ::overact::math::sin_cos(joints[5]);
-        let (s_left_bar_along_y, c_left_bar_along_y) = ::overact::math::sin_cos(
-            joints[6],
-        );
+        let t32 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t32, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t32);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let t31 = minus_c_foot_along_y * c_left_bar_along_y;
-        let t33 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t33, 1.0, "along_y")?;
-        let t34 = 1.0 / t33;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t34;
-        let t37 = 1.0 / c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let t37 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t37, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t37);
+        let t39 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t39, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t39;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t43 = 1.0 / c_left_bar_along_y;
         let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_c_foot_along_y * s_left_bar_along_y * t37);
-        let minus_gdrive_vx_along_y = 0.31 * t31 * minus_gfoot_vx_along_y
-            + s_foot_along_y * s_left_bar_along_y * t37;
-        let minus_gdrive_vz_along_y = t31 * t34;
-        let rate_drive_along_y = twist[1] - minus_gdrive_vx_along_y * twist[0]
-            - minus_gdrive_vz_along_y * twist[2];
+            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t43);
+        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y
+            + minus_s_left_bar_along_y * c_foot_along_y * t43;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let rate_drive_along_y = gdrive_vx_along_y * twist[0] + twist[1]
+            + gdrive_vz_along_y * twist[2];
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t37;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t43;
         let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let (minus_c_foot_along_z, s_foot_along_z) = ::overact::math::sin_cos(joints[9]);
-        let (s_left_bar_along_z, c_left_bar_along_z) = ::overact::math::sin_cos(
-            joints[10],
-        );
+        let t62 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t62, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t62);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t58 = minus_c_foot_along_z * c_left_bar_along_z;
-        let t59 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t59, 1.0, "along_z")?;
-        let t60 = 1.0 / t59;
-        let minus_gdrive_vx_along_z = t58 * t60;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t60;
-        let t66 = 1.0 / c_left_bar_along_z;
+        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
+        let t67 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t67, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t67);
+        let t69 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t69, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t69;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t75 = 1.0 / c_left_bar_along_z;
         let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_c_foot_along_z * s_left_bar_along_z * t66);
-        let minus_gdrive_vy_along_z = 0.31 * t58 * minus_gfoot_vy_along_z
-            + s_foot_along_z * s_left_bar_along_z * t66;
-        let rate_drive_along_z = twist[2]
-            - (minus_gdrive_vx_along_z * twist[0] + minus_gdrive_vy_along_z * twist[1]);
+            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t75);
+        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z
+            + minus_s_left_bar_along_z * c_foot_along_z * t75;
+        let rate_drive_along_z = gdrive_vx_along_z * twist[0]
+            + gdrive_vy_along_z * twist[1] + twist[2];
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t66;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t75;
         let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
         Ok([
             rate_drive_along_x, -minus_rate_foot_along_x, -minus_rate_left_bar_along_x,
@@ -971,7 +1019,7 @@ impl Orthoglide {
     ///
     /// Output: 12.
     ///
-    /// 159 operations (45 additions, 108 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 162 intermediates.
+    /// 171 operations (51 additions, 111 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 168 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -980,115 +1028,117 @@ impl Orthoglide {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[f64; 12], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
+        let t2 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t2, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t2 = 0.31 * s_left_bar_along_x;
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
-        let t5 = s_foot_along_x * c_left_bar_along_x;
-        ::overact::guard::leg(t5, 1.0, "along_x")?;
-        let t6 = 1.0 / t5;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t6;
-        let t10 = 1.0 / c_left_bar_along_x;
+        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
+        let t7 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t7, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t7);
+        let t9 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t9, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t9;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t14 = 1.0 / c_left_bar_along_x;
         let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_c_foot_along_x * s_left_bar_along_x * t10);
+            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t14);
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t10;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t14;
         let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t17 = minus_c_foot_along_x * minus_rate_left_bar_along_x;
-        let t19 = t2 * (minus_rate_foot_along_x * t17);
-        let t22 = s_foot_along_x * minus_rate_left_bar_along_x;
-        let t26 = t17 * t17 + t22 * t22
+        let t21 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
+        let t23 = pose[2] * (minus_rate_foot_along_x * t21);
+        let t26 = c_foot_along_x * minus_rate_left_bar_along_x;
+        let t30 = t21 * t21 + t26 * t26
             + minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t31 = minus_c_foot_along_x * c_left_bar_along_x;
-        let minus_gdrive_vy_along_x = t31 * t6;
-        let t33 = 0.31 * t31;
-        let t36 = t2 * (minus_rate_foot_along_x * t22);
-        let t39 = acceleration[1] - (t33 * t26 + t36 + t36);
-        let minus_gdrive_vz_along_x = t33 * minus_gfoot_vz_along_x
-            + s_foot_along_x * s_left_bar_along_x * t10;
-        let t50 = acceleration[2]
-            - (t2 * t26 - minus_rate_foot_along_x * (t2 * minus_rate_foot_along_x));
-        let rate_dot_drive_along_x = acceleration[0] - (t19 - 0.31 * t5 * t26 + t19)
-            - minus_gdrive_vy_along_x * t39 - minus_gdrive_vz_along_x * t50;
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t39
-            + minus_gfoot_vz_along_x * t50;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t50;
-        let (s_left_bar_along_y, c_left_bar_along_y) = ::overact::math::sin_cos(
-            joints[6],
-        );
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let t38 = pose[2] * (minus_rate_foot_along_x * t26);
+        let t41 = acceleration[1] + pose[1] * t30 + t38 + t38;
+        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x
+            + minus_s_left_bar_along_x * c_foot_along_x * t14;
+        let t52 = acceleration[2]
+            - (minus_rate_foot_along_x * (pose[2] * minus_rate_foot_along_x)
+                - pose[2] * t30);
+        let rate_dot_drive_along_x = acceleration[0] - (t23 - 0.31 * t9 * t30 + t23)
+            + gdrive_vy_along_x * t41 + gdrive_vz_along_x * t52;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t41
+            + minus_gfoot_vz_along_x * t52;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t52;
+        let t61 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t61, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t61);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let t59 = 0.31 * s_left_bar_along_y;
-        let (minus_c_foot_along_y, s_foot_along_y) = ::overact::math::sin_cos(joints[5]);
-        let t62 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t62, 1.0, "along_y")?;
-        let t63 = 1.0 / t62;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t63;
-        let t66 = 1.0 / c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let t66 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t66, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t66);
+        let t68 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t68, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t68;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t72 = 1.0 / c_left_bar_along_y;
         let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_c_foot_along_y * s_left_bar_along_y * t66);
+            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t72);
+        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y
+            + minus_s_left_bar_along_y * c_foot_along_y * t72;
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t66;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t72;
         let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t74 = minus_c_foot_along_y * minus_rate_left_bar_along_y;
-        let t76 = t59 * (minus_rate_foot_along_y * t74);
-        let t81 = s_foot_along_y * minus_rate_left_bar_along_y;
-        let t83 = minus_rate_foot_along_y * minus_rate_foot_along_y + t74 * t74
-            + t81 * t81;
-        let t88 = minus_c_foot_along_y * c_left_bar_along_y;
-        let t89 = 0.31 * t88;
-        let minus_gdrive_vx_along_y = t89 * minus_gfoot_vx_along_y
-            + s_foot_along_y * s_left_bar_along_y * t66;
-        let t98 = acceleration[0]
-            - (t59 * t83 - minus_rate_foot_along_y * (t59 * minus_rate_foot_along_y));
-        let minus_gdrive_vz_along_y = t88 * t63;
-        let t104 = t59 * (minus_rate_foot_along_y * t81);
-        let t107 = acceleration[2] - (t89 * t83 + t104 + t104);
-        let rate_dot_drive_along_y = acceleration[1] - (t76 - 0.31 * t62 * t83 + t76)
-            - minus_gdrive_vx_along_y * t98 - minus_gdrive_vz_along_y * t107;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t98
-            + minus_gfoot_vz_along_y * t107;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t98;
-        let (s_left_bar_along_z, c_left_bar_along_z) = ::overact::math::sin_cos(
-            joints[10],
-        );
+        let t87 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
+        let t90 = c_foot_along_y * minus_rate_left_bar_along_y;
+        let t92 = minus_rate_foot_along_y * minus_rate_foot_along_y + t87 * t87
+            + t90 * t90;
+        let t95 = acceleration[0]
+            - (minus_rate_foot_along_y * (pose[0] * minus_rate_foot_along_y)
+                - pose[0] * t92);
+        let t98 = pose[0] * (minus_rate_foot_along_y * t87);
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t108 = pose[0] * (minus_rate_foot_along_y * t90);
+        let t111 = acceleration[2] + pose[2] * t92 + t108 + t108;
+        let rate_dot_drive_along_y = gdrive_vx_along_y * t95 + acceleration[1]
+            - (t98 - 0.31 * t68 * t92 + t98) + gdrive_vz_along_y * t111;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t95
+            + minus_gfoot_vz_along_y * t111;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t95;
+        let t120 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t120, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t120);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t116 = 0.31 * s_left_bar_along_z;
-        let (minus_c_foot_along_z, s_foot_along_z) = ::overact::math::sin_cos(joints[9]);
-        let t119 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t119, 1.0, "along_z")?;
-        let t120 = 1.0 / t119;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t120;
-        let t124 = 1.0 / c_left_bar_along_z;
+        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
+        let t125 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t125, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t125);
+        let t127 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t127, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t127;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t130 = 1.0 / c_left_bar_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t130;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
+        let t133 = c_foot_along_z * minus_rate_left_bar_along_z;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
         let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_c_foot_along_z * s_left_bar_along_z * t124);
+            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t130);
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t124;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t131 = minus_c_foot_along_z * minus_rate_left_bar_along_z;
-        let t133 = t116 * (minus_rate_foot_along_z * t131);
-        let t135 = s_foot_along_z * minus_rate_left_bar_along_z;
-        let t140 = t135 * t135 + minus_rate_foot_along_z * minus_rate_foot_along_z
-            + t131 * t131;
-        let t145 = minus_c_foot_along_z * c_left_bar_along_z;
-        let minus_gdrive_vx_along_z = t145 * t120;
-        let t147 = 0.31 * t145;
-        let t150 = t116 * (minus_rate_foot_along_z * t135);
-        let t153 = acceleration[0] - (t147 * t140 + t150 + t150);
-        let minus_gdrive_vy_along_z = t147 * minus_gfoot_vy_along_z
-            + s_foot_along_z * s_left_bar_along_z * t124;
-        let t163 = acceleration[1]
-            - (t116 * t140 - minus_rate_foot_along_z * (t116 * minus_rate_foot_along_z));
-        let rate_dot_drive_along_z = acceleration[2] - (t133 - 0.31 * t119 * t140 + t133)
-            - (minus_gdrive_vx_along_z * t153 + minus_gdrive_vy_along_z * t163);
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t153
-            + minus_gfoot_vy_along_z * t163;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t163;
+        let t144 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
+        let t146 = t133 * t133 + minus_rate_foot_along_z * minus_rate_foot_along_z
+            + t144 * t144;
+        let t149 = pose[1] * (minus_rate_foot_along_z * t133);
+        let t152 = acceleration[0] + pose[0] * t146 + t149 + t149;
+        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z
+            + minus_s_left_bar_along_z * c_foot_along_z * t130;
+        let t162 = acceleration[1]
+            - (minus_rate_foot_along_z * (pose[1] * minus_rate_foot_along_z)
+                - pose[1] * t146);
+        let t166 = pose[1] * (minus_rate_foot_along_z * t144);
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t152 + gdrive_vy_along_z * t162
+            + acceleration[2] - (t166 - 0.31 * t127 * t146 + t166);
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t152
+            + minus_gfoot_vy_along_z * t162;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t162;
         Ok([
             rate_dot_drive_along_x, -minus_rate_dot_foot_along_x, -minus_rate_dot_left_bar_along_x,
             minus_rate_dot_foot_along_x, rate_dot_drive_along_y, -minus_rate_dot_foot_along_y,
@@ -1105,7 +1155,7 @@ impl Orthoglide {
     ///
     /// Output: 3.
     ///
-    /// 103 operations (31 additions, 63 multiplications, 9 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 112 intermediates.
+    /// 118 operations (37 additions, 69 multiplications, 12 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 121 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1113,88 +1163,89 @@ impl Orthoglide {
         pose: &[f64; 3],
         actuator_velocities: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (minus_c_foot_along_y, s_foot_along_y) = ::overact::math::sin_cos(joints[5]);
-        let (s_left_bar_along_y, c_left_bar_along_y) = ::overact::math::sin_cos(
-            joints[6],
-        );
+        let t2 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t2, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let t4 = minus_c_foot_along_y * c_left_bar_along_y;
-        let t6 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t6, 1.0, "along_y")?;
-        let t7 = 1.0 / t6;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t7;
-        let t10 = 1.0 / c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let t7 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t7, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t7);
+        let t9 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t9, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t9;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t13 = 1.0 / c_left_bar_along_y;
         let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_c_foot_along_y * s_left_bar_along_y * t10);
-        let minus_gdrive_vx_along_y = 0.31 * t4 * minus_gfoot_vx_along_y
-            + s_foot_along_y * s_left_bar_along_y * t10;
-        let (minus_c_foot_along_z, s_foot_along_z) = ::overact::math::sin_cos(joints[9]);
-        let (s_left_bar_along_z, c_left_bar_along_z) = ::overact::math::sin_cos(
-            joints[10],
-        );
+            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t13);
+        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y
+            + minus_s_left_bar_along_y * c_foot_along_y * t13;
+        let t24 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t24, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t24);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t23 = minus_c_foot_along_z * c_left_bar_along_z;
-        let t24 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t24, 1.0, "along_z")?;
-        let t25 = 1.0 / t24;
-        let minus_gdrive_vx_along_z = t23 * t25;
-        let t28 = actuator_velocities[0]
-            - minus_gdrive_vx_along_y * actuator_velocities[1]
-            - minus_gdrive_vx_along_z * actuator_velocities[2];
-        let t32 = 1.0 + minus_gdrive_vx_along_y * minus_gdrive_vx_along_y
-            + minus_gdrive_vx_along_z * minus_gdrive_vx_along_z;
-        ::overact::guard::platform(t32, 1.0, "actuators")?;
-        let t33 = 1.0 / t32;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t25;
-        let t38 = 1.0 / c_left_bar_along_z;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_c_foot_along_z * s_left_bar_along_z * t38);
-        let minus_gdrive_vy_along_z = 0.31 * t23 * minus_gfoot_vy_along_z
-            + s_foot_along_z * s_left_bar_along_z * t38;
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
+        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
+        let t29 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t29, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t29);
+        let t31 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t31, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t31;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t35 = actuator_velocities[0] + gdrive_vx_along_y * actuator_velocities[1]
+            + gdrive_vx_along_z * actuator_velocities[2];
+        let t39 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vx_along_z;
+        ::overact::guard::platform(t39, 1.0, "actuators")?;
+        let t40 = 1.0 / t39;
+        let t44 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t44, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t44);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t50 = minus_c_foot_along_x * c_left_bar_along_x;
-        let t51 = s_foot_along_x * c_left_bar_along_x;
+        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
+        let t49 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t49, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t49);
+        let t51 = c_left_bar_along_x * c_foot_along_x;
         ::overact::guard::leg(t51, 1.0, "along_x")?;
-        let t52 = 1.0 / t51;
-        let minus_gdrive_vy_along_x = t50 * t52;
-        let t55 = minus_gdrive_vx_along_z * minus_gdrive_vy_along_z
-            - (minus_gdrive_vy_along_x + minus_gdrive_vx_along_y);
-        let t56 = t55 * t33;
-        let t62 = minus_gdrive_vy_along_x * minus_gdrive_vy_along_x + 1.0
-            + minus_gdrive_vy_along_z * minus_gdrive_vy_along_z - t55 * t56;
-        ::overact::guard::platform(t62, 1.0, "actuators")?;
-        let t63 = 1.0 / t62;
-        let t69 = actuator_velocities[1]
-            - minus_gdrive_vy_along_x * actuator_velocities[0]
-            - minus_gdrive_vy_along_z * actuator_velocities[2] - t28 * t56;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t52;
-        let t74 = 1.0 / c_left_bar_along_x;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t51;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t57 = 1.0 / c_left_bar_along_z;
+        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
+            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t57);
+        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z
+            + minus_s_left_bar_along_z * c_foot_along_z * t57;
+        let t65 = gdrive_vy_along_x + gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vy_along_z;
+        let t66 = t65 * t40;
+        let t72 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
+            + gdrive_vy_along_z * gdrive_vy_along_z - t65 * t66;
+        ::overact::guard::platform(t72, 1.0, "actuators")?;
+        let t73 = 1.0 / t72;
+        let t79 = gdrive_vy_along_x * actuator_velocities[0] + actuator_velocities[1]
+            + gdrive_vy_along_z * actuator_velocities[2] - t35 * t66;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t83 = 1.0 / c_left_bar_along_x;
         let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_c_foot_along_x * s_left_bar_along_x * t74);
-        let minus_gdrive_vz_along_x = 0.31 * t50 * minus_gfoot_vz_along_x
-            + s_foot_along_x * s_left_bar_along_x * t74;
-        let minus_gdrive_vz_along_y = t4 * t7;
-        let t87 = minus_gdrive_vz_along_y * minus_gdrive_vx_along_y
-            - minus_gdrive_vz_along_x - minus_gdrive_vx_along_z;
-        let t88 = t87 * t33;
-        let t90 = minus_gdrive_vy_along_x * minus_gdrive_vz_along_x
-            - minus_gdrive_vz_along_y - minus_gdrive_vy_along_z - t55 * t88;
-        let t91 = t90 * t63;
-        let t99 = minus_gdrive_vz_along_x * minus_gdrive_vz_along_x
-            + minus_gdrive_vz_along_y * minus_gdrive_vz_along_y + 1.0 - t87 * t88
-            - t90 * t91;
-        ::overact::guard::platform(t99, 1.0, "actuators")?;
-        let t108 = (actuator_velocities[2]
-            - (minus_gdrive_vz_along_x * actuator_velocities[0]
-                + minus_gdrive_vz_along_y * actuator_velocities[1]) - t28 * t88
-            - t91 * t69) / t99;
-        let t110 = t63 * t69 - t91 * t108;
-        Ok([t28 * t33 - t56 * t110 - t88 * t108, t110, t108])
+            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t83);
+        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x
+            + minus_s_left_bar_along_x * c_foot_along_x * t83;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t96 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z;
+        let t97 = t96 * t40;
+        let t99 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
+            + gdrive_vy_along_z - t65 * t97;
+        let t100 = t99 * t73;
+        let t108 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t96 * t97 - t99 * t100;
+        ::overact::guard::platform(t108, 1.0, "actuators")?;
+        let t117 = (gdrive_vz_along_x * actuator_velocities[0]
+            + gdrive_vz_along_y * actuator_velocities[1] + actuator_velocities[2]
+            - t35 * t97 - t100 * t79) / t108;
+        let t119 = t73 * t79 - t100 * t117;
+        Ok([t35 * t40 - t66 * t119 - t97 * t117, t119, t117])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1205,7 +1256,7 @@ impl Orthoglide {
     ///
     /// Output: 3.
     ///
-    /// 202 operations (64 additions, 129 multiplications, 9 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 211 intermediates.
+    /// 214 operations (70 additions, 132 multiplications, 12 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 217 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1214,138 +1265,135 @@ impl Orthoglide {
         twist: &[f64; 3],
         actuator_accelerations: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
+        let t2 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t2, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t4 = minus_c_foot_along_x * c_left_bar_along_x;
-        let t5 = s_foot_along_x * c_left_bar_along_x;
-        ::overact::guard::leg(t5, 1.0, "along_x")?;
-        let t6 = 1.0 / t5;
-        let minus_gdrive_vy_along_x = t4 * t6;
-        let t8 = 0.31 * t4;
-        let t9 = 1.0 / c_left_bar_along_x;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t9;
+        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
+        let t7 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t7, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t7);
+        let t9 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t9, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t9;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let t12 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t12;
         let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t12 = minus_c_foot_along_x * minus_rate_left_bar_along_x;
-        let t14 = s_foot_along_x * minus_rate_left_bar_along_x;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t6;
+        let t15 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
+        let t17 = c_foot_along_x * minus_rate_left_bar_along_x;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
         let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_c_foot_along_x * s_left_bar_along_x * t9);
+            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t12);
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let t25 = t12 * t12 + t14 * t14
+        let t28 = t15 * t15 + t17 * t17
             + minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t27 = 0.31 * s_left_bar_along_x;
-        let t29 = t27 * (minus_rate_foot_along_x * t14);
-        let t34 = t27 * (minus_rate_foot_along_x * t12);
-        let minus_gdrive_vz_along_x = t8 * minus_gfoot_vz_along_x
-            + s_foot_along_x * s_left_bar_along_x * t9;
-        let rate_dot_drive_along_x = minus_gdrive_vy_along_x * (t8 * t25 + t29 + t29)
-            - (t34 - 0.31 * t5 * t25 + t34)
-            + minus_gdrive_vz_along_x
-                * (t27 * t25
-                    - minus_rate_foot_along_x * (t27 * minus_rate_foot_along_x));
-        let t50 = actuator_accelerations[0] - rate_dot_drive_along_x;
-        let (minus_c_foot_along_y, s_foot_along_y) = ::overact::math::sin_cos(joints[5]);
-        let (s_left_bar_along_y, c_left_bar_along_y) = ::overact::math::sin_cos(
-            joints[6],
-        );
+        let t31 = pose[2] * (minus_rate_foot_along_x * t17);
+        let t36 = pose[2] * (minus_rate_foot_along_x * t15);
+        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x
+            + minus_s_left_bar_along_x * c_foot_along_x * t12;
+        let rate_dot_drive_along_x = gdrive_vy_along_x * (pose[1] * t28 + t31 + t31)
+            - (t36 - 0.31 * t9 * t28 + t36)
+            - gdrive_vz_along_x
+                * (minus_rate_foot_along_x * (pose[2] * minus_rate_foot_along_x)
+                    - pose[2] * t28);
+        let t52 = actuator_accelerations[0] - rate_dot_drive_along_x;
+        let t55 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t55, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t55);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let t55 = minus_c_foot_along_y * c_left_bar_along_y;
-        let t56 = 0.31 * t55;
-        let t57 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t57, 1.0, "along_y")?;
-        let t58 = 1.0 / t57;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t58;
-        let t61 = 1.0 / c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let t60 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t60, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t60);
+        let t62 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t62, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t62;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t66 = 1.0 / c_left_bar_along_y;
         let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_c_foot_along_y * s_left_bar_along_y * t61);
-        let minus_gdrive_vx_along_y = t56 * minus_gfoot_vx_along_y
-            + s_foot_along_y * s_left_bar_along_y * t61;
-        let t68 = 0.31 * s_left_bar_along_y;
+            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t66);
+        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y
+            + minus_s_left_bar_along_y * c_foot_along_y * t66;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t61;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t66;
         let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t75 = minus_c_foot_along_y * minus_rate_left_bar_along_y;
-        let t78 = s_foot_along_y * minus_rate_left_bar_along_y;
-        let t80 = minus_rate_foot_along_y * minus_rate_foot_along_y + t75 * t75
-            + t78 * t78;
-        let t87 = t68 * (minus_rate_foot_along_y * t75);
-        let t92 = minus_gdrive_vx_along_y
-            * (t68 * t80 - minus_rate_foot_along_y * (t68 * minus_rate_foot_along_y))
-            - (t87 - 0.31 * t57 * t80 + t87);
-        let minus_gdrive_vz_along_y = t55 * t58;
-        let t96 = t68 * (minus_rate_foot_along_y * t78);
-        let rate_dot_drive_along_y = t92
-            + minus_gdrive_vz_along_y * (t56 * t80 + t96 + t96);
-        let t101 = actuator_accelerations[1] - rate_dot_drive_along_y;
-        let (minus_c_foot_along_z, s_foot_along_z) = ::overact::math::sin_cos(joints[9]);
-        let (s_left_bar_along_z, c_left_bar_along_z) = ::overact::math::sin_cos(
-            joints[10],
-        );
+        let t80 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
+        let t83 = c_foot_along_y * minus_rate_left_bar_along_y;
+        let t85 = minus_rate_foot_along_y * minus_rate_foot_along_y + t80 * t80
+            + t83 * t83;
+        let t88 = pose[0] * (minus_rate_foot_along_y * t83);
+        let t98 = pose[0] * (minus_rate_foot_along_y * t80);
+        let t103 = gdrive_vx_along_y
+            * (minus_rate_foot_along_y * (pose[0] * minus_rate_foot_along_y)
+                - pose[0] * t85) + t98 - 0.31 * t62 * t85 + t98;
+        let rate_dot_drive_along_y = gdrive_vz_along_y * (pose[2] * t85 + t88 + t88)
+            - t103;
+        let t105 = actuator_accelerations[1] - rate_dot_drive_along_y;
+        let t110 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t110, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t110);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t108 = minus_c_foot_along_z * c_left_bar_along_z;
-        let t109 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t109, 1.0, "along_z")?;
-        let t110 = 1.0 / t109;
-        let minus_gdrive_vx_along_z = t108 * t110;
-        let t112 = 0.31 * t108;
-        let t113 = 1.0 / c_left_bar_along_z;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t113;
+        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
+        let t115 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t115, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t115);
+        let t117 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t117, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t117;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t120 = 1.0 / c_left_bar_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t120;
         let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t116 = s_foot_along_z * minus_rate_left_bar_along_z;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t110;
+        let t123 = c_foot_along_z * minus_rate_left_bar_along_z;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
         let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_c_foot_along_z * s_left_bar_along_z * t113);
+            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t120);
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let t127 = minus_c_foot_along_z * minus_rate_left_bar_along_z;
-        let t129 = t116 * t116 + minus_rate_foot_along_z * minus_rate_foot_along_z
-            + t127 * t127;
-        let t131 = 0.31 * s_left_bar_along_z;
-        let t133 = t131 * (minus_rate_foot_along_z * t116);
-        let minus_gdrive_vy_along_z = t112 * minus_gfoot_vy_along_z
-            + s_foot_along_z * s_left_bar_along_z * t113;
-        let t146 = minus_gdrive_vx_along_z * (t112 * t129 + t133 + t133)
-            + minus_gdrive_vy_along_z
-                * (t131 * t129
-                    - minus_rate_foot_along_z * (t131 * minus_rate_foot_along_z));
-        let t148 = t131 * (minus_rate_foot_along_z * t127);
-        let rate_dot_drive_along_z = t146 - (t148 - 0.31 * t109 * t129 + t148);
-        let t154 = actuator_accelerations[2] - rate_dot_drive_along_z;
-        let t156 = t50 - minus_gdrive_vx_along_y * t101 - minus_gdrive_vx_along_z * t154;
-        let t160 = 1.0 + minus_gdrive_vx_along_y * minus_gdrive_vx_along_y
-            + minus_gdrive_vx_along_z * minus_gdrive_vx_along_z;
-        ::overact::guard::platform(t160, 1.0, "actuators")?;
-        let t161 = 1.0 / t160;
-        let t165 = minus_gdrive_vx_along_z * minus_gdrive_vy_along_z
-            - (minus_gdrive_vy_along_x + minus_gdrive_vx_along_y);
-        let t166 = t165 * t161;
-        let t172 = minus_gdrive_vy_along_x * minus_gdrive_vy_along_x + 1.0
-            + minus_gdrive_vy_along_z * minus_gdrive_vy_along_z - t165 * t166;
-        ::overact::guard::platform(t172, 1.0, "actuators")?;
-        let t173 = 1.0 / t172;
-        let t179 = t101 - minus_gdrive_vy_along_x * t50 - minus_gdrive_vy_along_z * t154
-            - t156 * t166;
-        let t186 = minus_gdrive_vz_along_y * minus_gdrive_vx_along_y
-            - minus_gdrive_vz_along_x - minus_gdrive_vx_along_z;
-        let t187 = t186 * t161;
-        let t189 = minus_gdrive_vy_along_x * minus_gdrive_vz_along_x
-            - minus_gdrive_vz_along_y - minus_gdrive_vy_along_z - t165 * t187;
-        let t190 = t189 * t173;
-        let t198 = minus_gdrive_vz_along_x * minus_gdrive_vz_along_x
-            + minus_gdrive_vz_along_y * minus_gdrive_vz_along_y + 1.0 - t186 * t187
-            - t189 * t190;
-        ::overact::guard::platform(t198, 1.0, "actuators")?;
-        let t207 = (t154
-            - (minus_gdrive_vz_along_x * t50 + minus_gdrive_vz_along_y * t101)
-            - t156 * t187 - t190 * t179) / t198;
-        let t209 = t173 * t179 - t190 * t207;
-        Ok([t156 * t161 - t166 * t209 - t187 * t207, t209, t207])
+        let t134 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
+        let t136 = t123 * t123 + minus_rate_foot_along_z * minus_rate_foot_along_z
+            + t134 * t134;
+        let t139 = pose[1] * (minus_rate_foot_along_z * t123);
+        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z
+            + minus_s_left_bar_along_z * c_foot_along_z * t120;
+        let t152 = gdrive_vx_along_z * (pose[0] * t136 + t139 + t139)
+            - gdrive_vy_along_z
+                * (minus_rate_foot_along_z * (pose[1] * minus_rate_foot_along_z)
+                    - pose[1] * t136);
+        let t154 = pose[1] * (minus_rate_foot_along_z * t134);
+        let rate_dot_drive_along_z = t152 - (t154 - 0.31 * t117 * t136 + t154);
+        let t160 = actuator_accelerations[2] - rate_dot_drive_along_z;
+        let t162 = t52 + gdrive_vx_along_y * t105 + gdrive_vx_along_z * t160;
+        let t166 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vx_along_z;
+        ::overact::guard::platform(t166, 1.0, "actuators")?;
+        let t167 = 1.0 / t166;
+        let t171 = gdrive_vy_along_x + gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vy_along_z;
+        let t172 = t171 * t167;
+        let t178 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
+            + gdrive_vy_along_z * gdrive_vy_along_z - t171 * t172;
+        ::overact::guard::platform(t178, 1.0, "actuators")?;
+        let t179 = 1.0 / t178;
+        let t185 = gdrive_vy_along_x * t52 + t105 + gdrive_vy_along_z * t160
+            - t162 * t172;
+        let t192 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z;
+        let t193 = t192 * t167;
+        let t195 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
+            + gdrive_vy_along_z - t171 * t193;
+        let t196 = t195 * t179;
+        let t204 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t192 * t193 - t195 * t196;
+        ::overact::guard::platform(t204, 1.0, "actuators")?;
+        let t213 = (gdrive_vz_along_x * t52 + gdrive_vz_along_y * t105 + t160
+            - t162 * t193 - t196 * t185) / t204;
+        let t215 = t179 * t185 - t196 * t213;
+        Ok([t162 * t167 - t172 * t215 - t193 * t213, t215, t213])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1357,7 +1405,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 558 operations (185 additions, 367 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 455 intermediates.
+    /// 573 operations (191 additions, 373 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 464 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1366,8 +1414,403 @@ impl Orthoglide {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 100]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_platform_from_joints(pose, joints, twist, acceleration)
+        let t2 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t2, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t2);
+        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
+        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
+        let t7 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t7, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t7);
+        let t9 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t9, 1.0, "along_x")?;
+        let t10 = 1.0 / t9;
+        let minus_gfoot_vy_along_x = 3.225806451612903 * t10;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t15 = 1.0 / c_left_bar_along_x;
+        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
+            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t15);
+        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
+            + minus_gfoot_vz_along_x * twist[2];
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t15;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
+        let t22 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
+        let t24 = pose[2] * (minus_rate_foot_along_x * t22);
+        let t27 = c_foot_along_x * minus_rate_left_bar_along_x;
+        let t29 = t22 * t22 + t27 * t27;
+        let t30 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t31 = t29 + t30;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let t39 = pose[2] * (minus_rate_foot_along_x * t27);
+        let t42 = acceleration[1] + pose[1] * t31 + t39 + t39;
+        let t46 = minus_s_left_bar_along_x * c_foot_along_x;
+        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t46 * t15;
+        let t49 = pose[2] * minus_rate_foot_along_x;
+        let t50 = minus_rate_foot_along_x * t49;
+        let t53 = acceleration[2] - (t50 - pose[2] * t31);
+        let rate_dot_drive_along_x = acceleration[0] - (t24 - 0.31 * t9 * t31 + t24)
+            + gdrive_vy_along_x * t42 + gdrive_vz_along_x * t53;
+        let t56 = gdrive_vy_along_x * rate_dot_drive_along_x;
+        let t57 = gdrive_vz_along_x * rate_dot_drive_along_x;
+        let rate_drive_along_x = twist[0] + gdrive_vy_along_x * twist[1]
+            + gdrive_vz_along_x * twist[2];
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t42
+            + minus_gfoot_vz_along_x * t53;
+        let t70 = minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x;
+        let t71 = minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x;
+        let t74 = c_foot_along_x * t30
+            + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
+        let t75 = gdrive_vy_along_x * t74;
+        let t76 = minus_s_foot_along_x * rate_dot_drive_along_x;
+        let t79 = gdrive_vz_along_x * t74;
+        let t84 = c_foot_along_x * minus_rate_dot_foot_along_x
+            - minus_s_foot_along_x * t30;
+        let t86 = c_foot_along_x * rate_dot_drive_along_x;
+        let t88 = gdrive_vy_along_x * t84 + minus_gfoot_vy_along_x * t86;
+        let t91 = gdrive_vz_along_x * t84 + minus_gfoot_vz_along_x * t86;
+        let t92 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t93 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t94 = minus_rate_left_bar_along_x * t93;
+        let t95 = t92 + t94;
+        let t97 = 3.225806451612903 * t49;
+        let t98 = minus_rate_left_bar_along_x * t97;
+        let t99 = c_left_bar_along_x * t98;
+        let t100 = minus_s_left_bar_along_x * t95 + t99;
+        let t101 = minus_gfoot_vy_along_x * t100;
+        let t103 = 10.40582726326743 * t50;
+        let t104 = minus_gfoot_vz_along_x * t100 - t103;
+        let t105 = t94 + t95;
+        let t107 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t108 = t98 - t107;
+        let t109 = t98 + t108;
+        let t111 = c_left_bar_along_x * t105 - minus_s_left_bar_along_x * t109;
+        let t112 = minus_gfoot_vy_along_x * t111;
+        let t115 = 10.40582726326743 * (t49 * t49);
+        let t116 = t93 * t93;
+        let t119 = minus_gfoot_vz_along_x * t111
+            + minus_gleft_bar_vz_along_x * (t115 - t116);
+        let t120 = t97 * t93;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t53;
+        let t122 = t120 + minus_rate_dot_left_bar_along_x;
+        let t126 = minus_s_left_bar_along_x * t122 + c_left_bar_along_x * (t29 - t115);
+        let t127 = minus_gfoot_vy_along_x * t126;
+        let t130 = minus_gfoot_vz_along_x * t126 + minus_gleft_bar_vz_along_x * t92;
+        let t132 = t99 + c_left_bar_along_x * t108;
+        let t133 = minus_gfoot_vy_along_x * t132;
+        let t135 = t103 - minus_gfoot_vz_along_x * t132;
+        let t137 = 10.40582726326743 * (t10 * acceleration[2]);
+        let t141 = minus_gfoot_vz_along_x * (3.225806451612903 * acceleration[2])
+            + 3.225806451612903 * minus_rate_dot_foot_along_x;
+        let t142 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
+        let t144 = t116 + t29;
+        let t148 = minus_s_foot_along_x * t109 - (t9 * t144 + t46 * t122);
+        let t151 = gdrive_vy_along_x * t148 - 3.225806451612903 * t56;
+        let t158 = minus_s_left_bar_along_x * t86 - 9.81 * c_left_bar_along_x;
+        let t160 = gdrive_vz_along_x * t148
+            - minus_gfoot_vz_along_x * (c_left_bar_along_x * t76)
+            - minus_gleft_bar_vz_along_x * t158;
+        let t167 = t9 * (minus_rate_dot_left_bar_along_x - t120) - t46 * (t115 + t29)
+            - minus_s_foot_along_x * t105;
+        let t169 = minus_s_left_bar_along_x * t76;
+        let t171 = gdrive_vy_along_x * t167 - minus_gfoot_vy_along_x * t169;
+        let t177 = c_left_bar_along_x * t86 + 31.64516129032258 * pose[2];
+        let t179 = gdrive_vz_along_x * t167 - minus_gfoot_vz_along_x * t169
+            + minus_gleft_bar_vz_along_x * t177;
+        let t183 = t76 + 0.31 * t109 - 0.31 * t107;
+        let t200 = c_left_bar_along_x * (t158 - 0.31 * t122)
+            - minus_s_left_bar_along_x * (t177 - 0.31 * t144);
+        let t203 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t203, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t203);
+        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
+        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let t208 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t208, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t208);
+        let t210 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t210, 1.0, "along_y")?;
+        let t211 = 1.0 / t210;
+        let minus_gfoot_vz_along_y = 3.225806451612903 * t211;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t215 = 1.0 / c_left_bar_along_y;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
+            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t215);
+        let t219 = minus_s_left_bar_along_y * c_foot_along_y;
+        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t219 * t215;
+        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
+            + minus_gfoot_vz_along_y * twist[2];
+        let t225 = pose[0] * minus_rate_foot_along_y;
+        let t226 = minus_rate_foot_along_y * t225;
+        let t227 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t215;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
+        let t230 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
+        let t233 = c_foot_along_y * minus_rate_left_bar_along_y;
+        let t235 = t227 + t230 * t230 + t233 * t233;
+        let t238 = acceleration[0] - (t226 - pose[0] * t235);
+        let t241 = pose[0] * (minus_rate_foot_along_y * t230);
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t251 = pose[0] * (minus_rate_foot_along_y * t233);
+        let t254 = acceleration[2] + pose[2] * t235 + t251 + t251;
+        let rate_dot_drive_along_y = gdrive_vx_along_y * t238 + acceleration[1]
+            - (t241 - 0.31 * t210 * t235 + t241) + gdrive_vz_along_y * t254;
+        let t257 = gdrive_vx_along_y * rate_dot_drive_along_y;
+        let t258 = gdrive_vz_along_y * rate_dot_drive_along_y;
+        let rate_drive_along_y = gdrive_vx_along_y * twist[0] + twist[1]
+            + gdrive_vz_along_y * twist[2];
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t238
+            + minus_gfoot_vz_along_y * t254;
+        let t271 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
+        let t272 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
+        let t275 = c_foot_along_y * t227
+            + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
+        let t276 = gdrive_vx_along_y * t275;
+        let t279 = minus_s_foot_along_y * rate_dot_drive_along_y - 9.81 * c_foot_along_y;
+        let t282 = gdrive_vz_along_y * t275;
+        let t287 = c_foot_along_y * minus_rate_dot_foot_along_y
+            - minus_s_foot_along_y * t227;
+        let t291 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
+        let t293 = gdrive_vx_along_y * t287 + minus_gfoot_vx_along_y * t291;
+        let t296 = gdrive_vz_along_y * t287 + minus_gfoot_vz_along_y * t291;
+        let t297 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t298 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t299 = minus_rate_left_bar_along_y * t298;
+        let t300 = t297 + t299;
+        let t302 = 3.225806451612903 * t225;
+        let t303 = minus_rate_left_bar_along_y * t302;
+        let t304 = c_left_bar_along_y * t303;
+        let t305 = minus_s_left_bar_along_y * t300 + t304;
+        let t307 = 10.40582726326743 * t226;
+        let t308 = minus_gfoot_vx_along_y * t305 - t307;
+        let t309 = minus_gfoot_vz_along_y * t305;
+        let t310 = t299 + t300;
+        let t312 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t313 = t303 - t312;
+        let t314 = t303 + t313;
+        let t316 = c_left_bar_along_y * t310 - minus_s_left_bar_along_y * t314;
+        let t319 = 10.40582726326743 * (t225 * t225);
+        let t320 = t298 * t298;
+        let t323 = minus_gfoot_vx_along_y * t316
+            + minus_gleft_bar_vx_along_y * (t319 - t320);
+        let t324 = minus_gfoot_vz_along_y * t316;
+        let t325 = t302 * t298;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t238;
+        let t327 = t325 + minus_rate_dot_left_bar_along_y;
+        let t329 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t332 = minus_s_left_bar_along_y * t327 + c_left_bar_along_y * (t329 - t319);
+        let t335 = minus_gfoot_vx_along_y * t332 + minus_gleft_bar_vx_along_y * t297;
+        let t336 = minus_gfoot_vz_along_y * t332;
+        let t338 = t304 + c_left_bar_along_y * t313;
+        let t340 = t307 - minus_gfoot_vx_along_y * t338;
+        let t341 = minus_gfoot_vz_along_y * t338;
+        let t345 = minus_gfoot_vx_along_y * (3.225806451612903 * acceleration[0])
+            + 3.225806451612903 * minus_rate_dot_foot_along_y;
+        let t347 = 10.40582726326743 * (t211 * acceleration[0]);
+        let t348 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
+        let t354 = minus_s_foot_along_y * t314 - (t210 * (t320 + t329) + t219 * t327);
+        let t356 = c_left_bar_along_y * t279;
+        let t361 = gdrive_vx_along_y * t354 - minus_gfoot_vx_along_y * t356
+            - minus_gleft_bar_vx_along_y * (minus_s_left_bar_along_y * t291);
+        let t364 = gdrive_vz_along_y * t354 - minus_gfoot_vz_along_y * t356;
+        let t371 = t210 * (minus_rate_dot_left_bar_along_y - t325) - t219 * (t319 + t329)
+            - minus_s_foot_along_y * t310;
+        let t373 = minus_s_left_bar_along_y * t279;
+        let t377 = gdrive_vx_along_y * t371 - minus_gfoot_vx_along_y * t373
+            + 3.225806451612903 * t291;
+        let t380 = gdrive_vz_along_y * t371 - minus_gfoot_vz_along_y * t373;
+        let t385 = t279 + 0.31 * t314 - 0.31 * t312;
+        let t397 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t397, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t397);
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
+        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
+        let t402 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t402, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t402);
+        let t404 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t404, 1.0, "along_z")?;
+        let t405 = 1.0 / t404;
+        let minus_gfoot_vx_along_z = 3.225806451612903 * t405;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t408 = 1.0 / c_left_bar_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t408;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
+        let t411 = c_foot_along_z * minus_rate_left_bar_along_z;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
+            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t408);
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
+            + minus_gfoot_vy_along_z * twist[1];
+        let t420 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t422 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
+        let t424 = t411 * t411 + t420 + t422 * t422;
+        let t427 = pose[1] * (minus_rate_foot_along_z * t411);
+        let t430 = acceleration[0] + pose[0] * t424 + t427 + t427;
+        let t433 = minus_s_left_bar_along_z * c_foot_along_z;
+        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t433 * t408;
+        let t436 = pose[1] * minus_rate_foot_along_z;
+        let t437 = minus_rate_foot_along_z * t436;
+        let t440 = acceleration[1] - (t437 - pose[1] * t424);
+        let t444 = pose[1] * (minus_rate_foot_along_z * t422);
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t430 + gdrive_vy_along_z * t440
+            + acceleration[2] - (t444 - 0.31 * t404 * t424 + t444);
+        let t451 = 9.81 + rate_dot_drive_along_z;
+        let t452 = gdrive_vx_along_z * t451;
+        let t453 = gdrive_vy_along_z * t451;
+        let rate_drive_along_z = gdrive_vx_along_z * twist[0]
+            + gdrive_vy_along_z * twist[1] + twist[2];
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t430
+            + minus_gfoot_vy_along_z * t440;
+        let t468 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
+        let t469 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
+        let t472 = c_foot_along_z * t420
+            + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
+        let t473 = gdrive_vx_along_z * t472;
+        let t474 = minus_s_foot_along_z * t451;
+        let t477 = gdrive_vy_along_z * t472;
+        let t482 = c_foot_along_z * minus_rate_dot_foot_along_z
+            - minus_s_foot_along_z * t420;
+        let t484 = c_foot_along_z * t451;
+        let t486 = gdrive_vx_along_z * t482 + minus_gfoot_vx_along_z * t484;
+        let t489 = gdrive_vy_along_z * t482 + minus_gfoot_vy_along_z * t484;
+        let t490 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t491 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t492 = minus_rate_left_bar_along_z * t491;
+        let t493 = t490 + t492;
+        let t495 = 3.225806451612903 * t436;
+        let t496 = minus_rate_left_bar_along_z * t495;
+        let t497 = c_left_bar_along_z * t496;
+        let t498 = minus_s_left_bar_along_z * t493 + t497;
+        let t499 = minus_gfoot_vx_along_z * t498;
+        let t501 = 10.40582726326743 * t437;
+        let t502 = minus_gfoot_vy_along_z * t498 - t501;
+        let t503 = t492 + t493;
+        let t505 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t506 = t496 - t505;
+        let t507 = t496 + t506;
+        let t509 = c_left_bar_along_z * t503 - minus_s_left_bar_along_z * t507;
+        let t510 = minus_gfoot_vx_along_z * t509;
+        let t513 = 10.40582726326743 * (t436 * t436);
+        let t514 = t491 * t491;
+        let t517 = minus_gfoot_vy_along_z * t509
+            + minus_gleft_bar_vy_along_z * (t513 - t514);
+        let t518 = t495 * t491;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t440;
+        let t520 = t518 + minus_rate_dot_left_bar_along_z;
+        let t522 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t525 = minus_s_left_bar_along_z * t520 + c_left_bar_along_z * (t522 - t513);
+        let t526 = minus_gfoot_vx_along_z * t525;
+        let t529 = minus_gfoot_vy_along_z * t525 + minus_gleft_bar_vy_along_z * t490;
+        let t531 = t497 + c_left_bar_along_z * t506;
+        let t532 = minus_gfoot_vx_along_z * t531;
+        let t534 = t501 - minus_gfoot_vy_along_z * t531;
+        let t536 = 10.40582726326743 * (t405 * acceleration[1]);
+        let t540 = minus_gfoot_vy_along_z * (3.225806451612903 * acceleration[1])
+            + 3.225806451612903 * minus_rate_dot_foot_along_z;
+        let t541 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
+        let t547 = minus_s_foot_along_z * t507 - (t404 * (t514 + t522) + t433 * t520);
+        let t550 = gdrive_vx_along_z * t547 - 3.225806451612903 * t452;
+        let t557 = gdrive_vy_along_z * t547
+            - minus_gfoot_vy_along_z * (c_left_bar_along_z * t474)
+            - minus_gleft_bar_vy_along_z * (minus_s_left_bar_along_z * t484);
+        let t564 = t404 * (minus_rate_dot_left_bar_along_z - t518) - t433 * (t513 + t522)
+            - minus_s_foot_along_z * t503;
+        let t566 = minus_s_left_bar_along_z * t474;
+        let t568 = gdrive_vx_along_z * t564 - minus_gfoot_vx_along_z * t566;
+        let t573 = gdrive_vy_along_z * t564 - minus_gfoot_vy_along_z * t566
+            + 3.225806451612903 * t484;
+        let t577 = t474 + 0.31 * t507 - 0.31 * t505;
+        Ok([
+            [
+                rate_dot_drive_along_x, rate_dot_drive_along_x, rate_drive_along_x,
+                ::overact::math::sign(rate_drive_along_x), 1.0, 0.0, -t74, t84,
+                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t148, t167, -t84,
+                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t148, t167, -t84,
+                rate_dot_drive_along_x, 0.0, -t74, -t84, acceleration[0], t257, t257,
+                gdrive_vx_along_y * rate_drive_along_y,
+                ::overact::math::signed(gdrive_vx_along_y, rate_drive_along_y), gdrive_vx_along_y,
+                t271, -(t276 + minus_gfoot_vx_along_y * t279), t293, t257, t308, -t323, -t335, t340,
+                t345, t348, t361, t377, -t293, t257, t308, -t323, -t335, t340, t345, t348, t361,
+                t377, -t293, t257, t271,
+                minus_gleft_bar_vx_along_y * t226
+                    - (t276 + minus_gfoot_vx_along_y * t385),
+                -(t293 - 0.31 * t335),
+                acceleration[0],
+                t452,
+                gdrive_vx_along_z * rate_dot_drive_along_z,
+                gdrive_vx_along_z * rate_drive_along_z,
+                ::overact::math::signed(gdrive_vx_along_z, rate_drive_along_z),
+                gdrive_vx_along_z,
+                t468,
+                -(t473 + minus_gfoot_vx_along_z * t474),
+                t486,
+                t452,
+                t499,
+                -t510,
+                -t526,
+                -t532,
+                t536,
+                0.0,
+                t550,
+                t568,
+                -t486,
+                t452,
+                t499,
+                -t510,
+                -t526,
+                -t532,
+                t536,
+                0.0,
+                t550,
+                t568,
+                -t486,
+                t452,
+                t468,
+                -(t473 + minus_gfoot_vx_along_z * t577),
+                -(t486 - 0.31 * t526),
+                acceleration[0],
+                acceleration[0],
+            ],
+            [
+                t56, t56, gdrive_vy_along_x * rate_drive_along_x,
+                ::overact::math::signed(gdrive_vy_along_x, rate_drive_along_x), gdrive_vy_along_x,
+                t70, -(t75 + minus_gfoot_vy_along_x * t76), t88, t56, t101, -t112, -t127, -t133,
+                t137, 0.0, t151, t171, -t88, t56, t101, -t112, -t127, -t133, t137, 0.0, t151, t171,
+                -t88, t56, t70, -(t75 + minus_gfoot_vy_along_x * t183), -(t88 - 0.31 * t127),
+                acceleration[1], rate_dot_drive_along_y, rate_dot_drive_along_y, rate_drive_along_y,
+                ::overact::math::sign(rate_drive_along_y), 1.0, 0.0, -t275, t287,
+                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t354, t371, -t287,
+                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t354, t371, -t287,
+                rate_dot_drive_along_y, 0.0, -t275, -t287, acceleration[1], t453,
+                gdrive_vy_along_z * rate_dot_drive_along_z, gdrive_vy_along_z * rate_drive_along_z,
+                ::overact::math::signed(gdrive_vy_along_z, rate_drive_along_z), gdrive_vy_along_z,
+                t469, -(t477 + minus_gfoot_vy_along_z * t474), t489, t453, t502, -t517, -t529, t534,
+                t540, t541, t557, t573, -t489, t453, t502, -t517, -t529, t534, t540, t541, t557,
+                t573, -t489, t453, t469,
+                minus_gleft_bar_vy_along_z * t437
+                    - (t477 + minus_gfoot_vy_along_z * t577),
+                -(t489 - 0.31 * t529),
+                acceleration[1],
+                acceleration[1],
+            ],
+            [
+                t57, t57, gdrive_vz_along_x * rate_drive_along_x,
+                ::overact::math::signed(gdrive_vz_along_x, rate_drive_along_x), gdrive_vz_along_x,
+                t71, -(t79 + minus_gfoot_vz_along_x * t76), t91, t57, t104, -t119, -t130, t135,
+                t141, t142, t160, t179, -t91, t57, t104, -t119, -t130, t135, t141, t142, t160, t179,
+                -t91, t57, t71,
+                minus_gleft_bar_vz_along_x * t50 - (t79 + minus_gfoot_vz_along_x * t183),
+                -(t91 - 0.31 * t130), -t200, t258, t258, gdrive_vz_along_y * rate_drive_along_y,
+                ::overact::math::signed(gdrive_vz_along_y, rate_drive_along_y), gdrive_vz_along_y,
+                t272, -(t282 + minus_gfoot_vz_along_y * t279), t296, t258, t309, -t324, -t336,
+                -t341, t347, 0.0, t364, t380, -t296, t258, t309, -t324, -t336, -t341, t347, 0.0,
+                t364, t380, -t296, t258, t272, -(t282 + minus_gfoot_vz_along_y * t385),
+                -(t296 - 0.31 * t336), -t200, t451, rate_dot_drive_along_z, rate_drive_along_z,
+                ::overact::math::sign(rate_drive_along_z), 1.0, 0.0, -t472, t482, t451, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, t547, t564, -t482, t451, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t547,
+                t564, -t482, t451, 0.0, -t472, -t482, -t200, -t200,
+            ],
+        ])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1768,7 +2211,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 630 operations (218 additions, 403 multiplications, 9 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 531 intermediates.
+    /// 645 operations (224 additions, 409 multiplications, 12 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 540 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1779,646 +2222,505 @@ impl Orthoglide {
         start: &[f64; 3],
     ) -> Result<[[f64; 100]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
+        let t2 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t2, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t4 = minus_c_foot_along_x * c_left_bar_along_x;
-        let t5 = s_foot_along_x * c_left_bar_along_x;
-        ::overact::guard::leg(t5, 1.0, "along_x")?;
-        let t6 = 1.0 / t5;
-        let minus_gdrive_vy_along_x = t4 * t6;
-        let t8 = minus_gdrive_vy_along_x * actuator_accelerations[0];
-        let t9 = 0.31 * t4;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t6;
-        let t12 = 1.0 / c_left_bar_along_x;
+        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
+        let t7 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t7, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t7);
+        let t9 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t9, 1.0, "along_x")?;
+        let t10 = 1.0 / t9;
+        let minus_gfoot_vy_along_x = 3.225806451612903 * t10;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let t13 = gdrive_vy_along_x * actuator_accelerations[0];
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t16 = 1.0 / c_left_bar_along_x;
         let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_c_foot_along_x * s_left_bar_along_x * t12);
-        let t16 = s_foot_along_x * s_left_bar_along_x;
-        let minus_gdrive_vz_along_x = t9 * minus_gfoot_vz_along_x + t16 * t12;
-        let t19 = minus_gdrive_vz_along_x * actuator_accelerations[0];
-        let t20 = minus_gdrive_vy_along_x * actuator_velocities[0];
-        let t21 = minus_gdrive_vz_along_x * actuator_velocities[0];
-        let (minus_c_foot_along_z, s_foot_along_z) = ::overact::math::sin_cos(joints[9]);
-        let (s_left_bar_along_z, c_left_bar_along_z) = ::overact::math::sin_cos(
-            joints[10],
-        );
+            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t16);
+        let t20 = minus_s_left_bar_along_x * c_foot_along_x;
+        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t20 * t16;
+        let t23 = gdrive_vz_along_x * actuator_accelerations[0];
+        let t24 = gdrive_vy_along_x * actuator_velocities[0];
+        let t25 = gdrive_vz_along_x * actuator_velocities[0];
+        let t33 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t33, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t33);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t31 = minus_c_foot_along_z * c_left_bar_along_z;
-        let t32 = 0.31 * t31;
-        let t33 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t33, 1.0, "along_z")?;
-        let t34 = 1.0 / t33;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t34;
-        let t37 = 1.0 / c_left_bar_along_z;
+        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
+        let t38 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t38, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t38);
+        let t40 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t40, 1.0, "along_z")?;
+        let t41 = 1.0 / t40;
+        let minus_gfoot_vx_along_z = 3.225806451612903 * t41;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t45 = 1.0 / c_left_bar_along_z;
         let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_c_foot_along_z * s_left_bar_along_z * t37);
-        let t41 = s_foot_along_z * s_left_bar_along_z;
-        let minus_gdrive_vy_along_z = t32 * minus_gfoot_vy_along_z + t41 * t37;
-        let minus_gdrive_vx_along_z = t31 * t34;
-        let (minus_c_foot_along_y, s_foot_along_y) = ::overact::math::sin_cos(joints[5]);
-        let (s_left_bar_along_y, c_left_bar_along_y) = ::overact::math::sin_cos(
-            joints[6],
-        );
+            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t45);
+        let t49 = minus_s_left_bar_along_z * c_foot_along_z;
+        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t49 * t45;
+        let t56 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t56, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t56);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let t52 = minus_c_foot_along_y * c_left_bar_along_y;
-        let t53 = 0.31 * t52;
-        let t54 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t54, 1.0, "along_y")?;
-        let t55 = 1.0 / t54;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t55;
-        let t58 = 1.0 / c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let t61 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t61, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t61);
+        let t63 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t63, 1.0, "along_y")?;
+        let t64 = 1.0 / t63;
+        let minus_gfoot_vz_along_y = 3.225806451612903 * t64;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t68 = 1.0 / c_left_bar_along_y;
         let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_c_foot_along_y * s_left_bar_along_y * t58);
-        let t62 = s_foot_along_y * s_left_bar_along_y;
-        let minus_gdrive_vx_along_y = t53 * minus_gfoot_vx_along_y + t62 * t58;
-        let t66 = minus_gdrive_vx_along_z * minus_gdrive_vy_along_z
-            - (minus_gdrive_vy_along_x + minus_gdrive_vx_along_y);
-        let t70 = 1.0 + minus_gdrive_vx_along_y * minus_gdrive_vx_along_y
-            + minus_gdrive_vx_along_z * minus_gdrive_vx_along_z;
-        ::overact::guard::platform(t70, 1.0, "actuators")?;
-        ::overact::guard::platform(t70, 1.0, "actuators")?;
-        let t71 = 1.0 / t70;
-        let t72 = t66 * t71;
-        let t74 = minus_gdrive_vy_along_x * minus_gdrive_vy_along_x + 1.0
-            + minus_gdrive_vy_along_z * minus_gdrive_vy_along_z - t66 * t72;
-        ::overact::guard::platform(t74, 1.0, "actuators")?;
-        ::overact::guard::platform(t74, 1.0, "actuators")?;
-        let t75 = 1.0 / t74;
-        let t76 = 0.31 * s_left_bar_along_y;
-        let t77 = minus_gdrive_vx_along_y * actuator_velocities[1];
-        let t79 = minus_gdrive_vx_along_z * actuator_velocities[2];
-        let t80 = actuator_velocities[0] - t77 - t79;
-        let t83 = minus_gdrive_vy_along_z * actuator_velocities[2];
-        let t86 = actuator_velocities[1] - t20 - t83 - t80 * t72;
-        let minus_gdrive_vz_along_y = t52 * t55;
-        let t94 = minus_gdrive_vz_along_y * minus_gdrive_vx_along_y
-            - minus_gdrive_vz_along_x - minus_gdrive_vx_along_z;
-        let t95 = t94 * t71;
-        let t97 = minus_gdrive_vy_along_x * minus_gdrive_vz_along_x
-            - minus_gdrive_vz_along_y - minus_gdrive_vy_along_z - t66 * t95;
-        let t98 = t97 * t75;
-        let t106 = minus_gdrive_vz_along_x * minus_gdrive_vz_along_x
-            + minus_gdrive_vz_along_y * minus_gdrive_vz_along_y + 1.0 - t94 * t95
-            - t97 * t98;
-        ::overact::guard::platform(t106, 1.0, "actuators")?;
-        ::overact::guard::platform(t106, 1.0, "actuators")?;
-        let t107 = 1.0 / t106;
-        let t108 = minus_gdrive_vz_along_y * actuator_velocities[1];
-        let t115 = t107
-            * (actuator_velocities[2] - (t21 + t108) - t80 * t95 - t98 * t86);
-        let t117 = t75 * t86 - t98 * t115;
-        let t121 = t80 * t71 - t72 * t117 - t95 * t115;
-        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t121
-            + minus_gfoot_vz_along_y * t115;
-        let t125 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t58;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t121;
-        let t128 = minus_c_foot_along_y * minus_rate_left_bar_along_y;
-        let t131 = s_foot_along_y * minus_rate_left_bar_along_y;
-        let t133 = t125 + t128 * t128 + t131 * t131;
-        let t135 = t76 * minus_rate_foot_along_y;
-        let t136 = minus_rate_foot_along_y * t135;
-        let t137 = t76 * t133 - t136;
-        let t140 = t76 * (minus_rate_foot_along_y * t128);
-        let t148 = t76 * (minus_rate_foot_along_y * t131);
-        let t150 = t53 * t133 + t148 + t148;
-        let rate_dot_drive_along_y = minus_gdrive_vx_along_y * t137
-            - (t140 - 0.31 * t54 * t133 + t140) + minus_gdrive_vz_along_y * t150;
-        let t153 = actuator_accelerations[1] - rate_dot_drive_along_y;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t12;
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t115;
-        let t156 = minus_c_foot_along_x * minus_rate_left_bar_along_x;
-        let t158 = s_foot_along_x * minus_rate_left_bar_along_x;
-        let t160 = t156 * t156 + t158 * t158;
-        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t117
-            + minus_gfoot_vz_along_x * t115;
-        let t164 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t165 = t160 + t164;
-        let t167 = 0.31 * s_left_bar_along_x;
-        let t169 = t167 * (minus_rate_foot_along_x * t158);
-        let t171 = t9 * t165 + t169 + t169;
-        let t174 = t167 * (minus_rate_foot_along_x * t156);
-        let t181 = t167 * minus_rate_foot_along_x;
-        let t182 = minus_rate_foot_along_x * t181;
-        let t183 = t167 * t165 - t182;
-        let rate_dot_drive_along_x = minus_gdrive_vy_along_x * t171
-            - (t174 - 0.31 * t5 * t165 + t174) + minus_gdrive_vz_along_x * t183;
-        let t186 = actuator_accelerations[0] - rate_dot_drive_along_x;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t37;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t117;
-        let t191 = s_foot_along_z * minus_rate_left_bar_along_z;
-        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t121
-            + minus_gfoot_vy_along_z * t117;
-        let t196 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t198 = minus_c_foot_along_z * minus_rate_left_bar_along_z;
-        let t200 = t191 * t191 + t196 + t198 * t198;
-        let t202 = 0.31 * s_left_bar_along_z;
-        let t204 = t202 * (minus_rate_foot_along_z * t191);
-        let t206 = t32 * t200 + t204 + t204;
-        let t209 = t202 * minus_rate_foot_along_z;
-        let t210 = minus_rate_foot_along_z * t209;
-        let t211 = t202 * t200 - t210;
-        let t215 = t202 * (minus_rate_foot_along_z * t198);
-        let rate_dot_drive_along_z = minus_gdrive_vx_along_z * t206
-            + minus_gdrive_vy_along_z * t211 - (t215 - 0.31 * t33 * t200 + t215);
-        let t221 = actuator_accelerations[2] - rate_dot_drive_along_z;
-        let t227 = t186 - minus_gdrive_vx_along_y * t153
-            - minus_gdrive_vx_along_z * t221;
-        let t229 = t153 - minus_gdrive_vy_along_x * t186 - minus_gdrive_vy_along_z * t221
-            - t72 * t227;
-        let t239 = t107
-            * (t221 - (minus_gdrive_vz_along_x * t186 + minus_gdrive_vz_along_y * t153)
-                - t95 * t227 - t98 * t229);
-        let t241 = t75 * t229 - t98 * t239;
-        let t244 = t239 - t183;
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * (t241 - t171)
-            + minus_gfoot_vz_along_x * t244;
-        let t247 = minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x;
-        let t248 = minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x;
-        let t251 = minus_c_foot_along_x * minus_rate_dot_foot_along_x
-            - s_foot_along_x * t164;
-        let t252 = minus_c_foot_along_x * actuator_accelerations[0];
-        let t254 = minus_gdrive_vy_along_x * t251;
-        let t257 = minus_gdrive_vz_along_x * t251;
-        let t261 = s_foot_along_x * minus_rate_dot_foot_along_x
-            + minus_c_foot_along_x * t164;
-        let t262 = s_foot_along_x * actuator_accelerations[0];
-        let t265 = minus_gfoot_vy_along_x * t262 - minus_gdrive_vy_along_x * t261;
-        let t268 = minus_gfoot_vz_along_x * t262 - minus_gdrive_vz_along_x * t261;
-        let t269 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t270 = minus_rate_left_bar_along_x * t269;
-        let t271 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t272 = t270 - t271;
-        let t274 = 3.225806451612903 * t181;
-        let t275 = minus_rate_left_bar_along_x * t274;
-        let t276 = c_left_bar_along_x * t275;
-        let t277 = s_left_bar_along_x * t272 + t276;
-        let t278 = minus_gfoot_vy_along_x * t277;
-        let t279 = 10.40582726326743 * t182;
-        let t281 = t279 - minus_gfoot_vz_along_x * t277;
-        let t282 = t270 + t272;
-        let t284 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t285 = t284 + t275;
-        let t286 = t275 + t285;
-        let t288 = c_left_bar_along_x * t282 - s_left_bar_along_x * t286;
-        let t289 = minus_gfoot_vy_along_x * t288;
-        let t292 = 10.40582726326743 * (t181 * t181);
-        let t296 = minus_gfoot_vz_along_x * t288
-            + minus_gleft_bar_vz_along_x * (t292 - t269 * t269);
-        let t297 = t274 * t269;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t244;
-        let t299 = t297 - minus_rate_dot_left_bar_along_x;
-        let t303 = s_left_bar_along_x * t299 + c_left_bar_along_x * (t160 - t292);
-        let t304 = minus_gfoot_vy_along_x * t303;
-        let t307 = minus_gleft_bar_vz_along_x * t271 - minus_gfoot_vz_along_x * t303;
-        let t309 = t276 + c_left_bar_along_x * t285;
-        let t310 = minus_gfoot_vy_along_x * t309;
-        let t312 = minus_gfoot_vz_along_x * t309 - t279;
-        let t314 = 10.40582726326743 * (t6 * t239);
-        let t318 = minus_gfoot_vz_along_x * (3.225806451612903 * t239)
+            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t68);
+        let t72 = minus_s_left_bar_along_y * c_foot_along_y;
+        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t72 * t68;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t78 = gdrive_vy_along_x + gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vy_along_z;
+        let t82 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vx_along_z;
+        ::overact::guard::platform(t82, 1.0, "actuators")?;
+        ::overact::guard::platform(t82, 1.0, "actuators")?;
+        let t83 = 1.0 / t82;
+        let t84 = t78 * t83;
+        let t86 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
+            + gdrive_vy_along_z * gdrive_vy_along_z - t78 * t84;
+        ::overact::guard::platform(t86, 1.0, "actuators")?;
+        ::overact::guard::platform(t86, 1.0, "actuators")?;
+        let t87 = 1.0 / t86;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t16;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t96 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z;
+        let t97 = t96 * t83;
+        let t104 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
+            + gdrive_vy_along_z - t78 * t97;
+        let t105 = t104 * t87;
+        let t107 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t96 * t97 - t104 * t105;
+        ::overact::guard::platform(t107, 1.0, "actuators")?;
+        ::overact::guard::platform(t107, 1.0, "actuators")?;
+        let t108 = 1.0 / t107;
+        let t109 = gdrive_vz_along_y * actuator_velocities[1];
+        let t112 = gdrive_vx_along_y * actuator_velocities[1];
+        let t114 = gdrive_vx_along_z * actuator_velocities[2];
+        let t115 = actuator_velocities[0] + t112 + t114;
+        let t119 = gdrive_vy_along_z * actuator_velocities[2];
+        let t122 = t24 + actuator_velocities[1] + t119 - t115 * t84;
+        let t125 = t108
+            * (t25 + t109 + actuator_velocities[2] - t115 * t97 - t105 * t122);
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t125;
+        let t127 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
+        let t129 = c_foot_along_x * minus_rate_left_bar_along_x;
+        let t131 = t127 * t127 + t129 * t129;
+        let t134 = t87 * t122 - t105 * t125;
+        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t134
+            + minus_gfoot_vz_along_x * t125;
+        let t138 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t139 = t131 + t138;
+        let t142 = pose[2] * (minus_rate_foot_along_x * t129);
+        let t144 = pose[1] * t139 + t142 + t142;
+        let t147 = pose[2] * (minus_rate_foot_along_x * t127);
+        let t153 = pose[2] * minus_rate_foot_along_x;
+        let t154 = minus_rate_foot_along_x * t153;
+        let t156 = t154 - pose[2] * t139;
+        let rate_dot_drive_along_x = gdrive_vy_along_x * t144
+            - (t147 - 0.31 * t9 * t139 + t147) - gdrive_vz_along_x * t156;
+        let t159 = actuator_accelerations[0] - rate_dot_drive_along_x;
+        let t165 = t115 * t83 - t84 * t134 - t97 * t125;
+        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t165
+            + minus_gfoot_vz_along_y * t125;
+        let t169 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t68;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t165;
+        let t172 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
+        let t175 = c_foot_along_y * minus_rate_left_bar_along_y;
+        let t177 = t169 + t172 * t172 + t175 * t175;
+        let t180 = pose[0] * (minus_rate_foot_along_y * t175);
+        let t182 = pose[2] * t177 + t180 + t180;
+        let t184 = pose[0] * minus_rate_foot_along_y;
+        let t185 = minus_rate_foot_along_y * t184;
+        let t187 = t185 - pose[0] * t177;
+        let t190 = pose[0] * (minus_rate_foot_along_y * t172);
+        let rate_dot_drive_along_y = gdrive_vz_along_y * t182
+            - (gdrive_vx_along_y * t187 + t190 - 0.31 * t63 * t177 + t190);
+        let t197 = actuator_accelerations[1] - rate_dot_drive_along_y;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t45;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t134;
+        let t201 = c_foot_along_z * minus_rate_left_bar_along_z;
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t165
+            + minus_gfoot_vy_along_z * t134;
+        let t206 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t208 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
+        let t210 = t201 * t201 + t206 + t208 * t208;
+        let t213 = pose[1] * (minus_rate_foot_along_z * t201);
+        let t215 = pose[0] * t210 + t213 + t213;
+        let t217 = pose[1] * minus_rate_foot_along_z;
+        let t218 = minus_rate_foot_along_z * t217;
+        let t220 = t218 - pose[1] * t210;
+        let t224 = pose[1] * (minus_rate_foot_along_z * t208);
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t215 - gdrive_vy_along_z * t220
+            - (t224 - 0.31 * t40 * t210 + t224);
+        let t230 = actuator_accelerations[2] - rate_dot_drive_along_z;
+        let t236 = t159 + gdrive_vx_along_y * t197 + gdrive_vx_along_z * t230;
+        let t238 = gdrive_vy_along_x * t159 + t197 + gdrive_vy_along_z * t230
+            - t84 * t236;
+        let t248 = t108
+            * (gdrive_vz_along_x * t159 + gdrive_vz_along_y * t197 + t230 - t97 * t236
+                - t105 * t238);
+        let t250 = t87 * t238 - t105 * t248;
+        let t253 = t248 - t156;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * (t250 + t144)
+            + minus_gfoot_vz_along_x * t253;
+        let t256 = minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x;
+        let t257 = minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x;
+        let t260 = c_foot_along_x * t138
+            + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
+        let t261 = gdrive_vy_along_x * t260;
+        let t262 = minus_s_foot_along_x * actuator_accelerations[0];
+        let t265 = gdrive_vz_along_x * t260;
+        let t270 = c_foot_along_x * minus_rate_dot_foot_along_x
+            - minus_s_foot_along_x * t138;
+        let t272 = c_foot_along_x * actuator_accelerations[0];
+        let t274 = gdrive_vy_along_x * t270 + minus_gfoot_vy_along_x * t272;
+        let t277 = gdrive_vz_along_x * t270 + minus_gfoot_vz_along_x * t272;
+        let t278 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t279 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t280 = minus_rate_left_bar_along_x * t279;
+        let t281 = t278 + t280;
+        let t283 = 3.225806451612903 * t153;
+        let t284 = minus_rate_left_bar_along_x * t283;
+        let t285 = c_left_bar_along_x * t284;
+        let t286 = minus_s_left_bar_along_x * t281 + t285;
+        let t287 = minus_gfoot_vy_along_x * t286;
+        let t289 = 10.40582726326743 * t154;
+        let t290 = minus_gfoot_vz_along_x * t286 - t289;
+        let t291 = t280 + t281;
+        let t293 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t294 = t284 - t293;
+        let t295 = t284 + t294;
+        let t297 = c_left_bar_along_x * t291 - minus_s_left_bar_along_x * t295;
+        let t298 = minus_gfoot_vy_along_x * t297;
+        let t301 = 10.40582726326743 * (t153 * t153);
+        let t305 = minus_gfoot_vz_along_x * t297
+            + minus_gleft_bar_vz_along_x * (t301 - t279 * t279);
+        let t306 = t283 * t279;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t253;
+        let t308 = t306 + minus_rate_dot_left_bar_along_x;
+        let t312 = minus_s_left_bar_along_x * t308 + c_left_bar_along_x * (t131 - t301);
+        let t313 = minus_gfoot_vy_along_x * t312;
+        let t316 = minus_gfoot_vz_along_x * t312 + minus_gleft_bar_vz_along_x * t278;
+        let t318 = t285 + c_left_bar_along_x * t294;
+        let t319 = minus_gfoot_vy_along_x * t318;
+        let t321 = t289 - minus_gfoot_vz_along_x * t318;
+        let t323 = 10.40582726326743 * (t10 * t248);
+        let t327 = minus_gfoot_vz_along_x * (3.225806451612903 * t248)
             + 3.225806451612903 * minus_rate_dot_foot_along_x;
-        let t319 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
-        let t322 = c_left_bar_along_x * (s_foot_along_x * rate_dot_drive_along_x);
-        let t327 = minus_c_foot_along_x * t286
-            - (t5 * (3.225806451612903 * t322) + t16 * t299);
-        let t330 = 3.225806451612903 * t8 - minus_gdrive_vy_along_x * t327;
-        let t337 = s_left_bar_along_x * t262 + 9.81 * c_left_bar_along_x;
-        let t339 = minus_gfoot_vz_along_x * (c_left_bar_along_x * t252)
-            - minus_gdrive_vz_along_x * t327 + minus_gleft_bar_vz_along_x * t337;
-        let t346 = t5 * (t297 + minus_rate_dot_left_bar_along_x) + t16 * (t292 + t160)
-            + minus_c_foot_along_x * t282;
-        let t348 = s_left_bar_along_x * t252;
-        let t350 = minus_gdrive_vy_along_x * t346 + minus_gfoot_vy_along_x * t348;
-        let t353 = c_left_bar_along_x * t262 - 9.81 * s_left_bar_along_x;
-        let t358 = minus_gleft_bar_vz_along_x * t353
-            - (minus_gdrive_vz_along_x * t346 + minus_gfoot_vz_along_x * t348);
-        let t362 = 0.31 * t284 + t252 + 0.31 * t286;
-        let t377 = t71 * t227 - t72 * t241 - t95 * t239;
-        let t383 = s_left_bar_along_x * (t353 - t322)
-            + c_left_bar_along_x * (0.31 * t299 - t337);
-        let t384 = minus_gdrive_vx_along_y * actuator_accelerations[1];
-        let t385 = minus_gdrive_vz_along_y * actuator_accelerations[1];
-        let t389 = t377 - t137;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t389
-            + minus_gfoot_vz_along_y * (t239 - t150);
-        let t394 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
-        let t395 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
-        let t398 = 9.81 * s_foot_along_y
-            + minus_c_foot_along_y * actuator_accelerations[1];
-        let t402 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
-            - s_foot_along_y * t125;
-        let t403 = minus_gdrive_vx_along_y * t402;
-        let t406 = minus_gdrive_vz_along_y * t402;
-        let t410 = s_foot_along_y * actuator_accelerations[1]
-            - 9.81 * minus_c_foot_along_y;
-        let t414 = s_foot_along_y * minus_rate_dot_foot_along_y
-            + minus_c_foot_along_y * t125;
-        let t416 = minus_gfoot_vx_along_y * t410 - minus_gdrive_vx_along_y * t414;
-        let t419 = minus_gfoot_vz_along_y * t410 - minus_gdrive_vz_along_y * t414;
-        let t420 = 10.40582726326743 * t136;
-        let t421 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t422 = minus_rate_left_bar_along_y * t421;
-        let t423 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t424 = t422 - t423;
-        let t426 = 3.225806451612903 * t135;
-        let t427 = minus_rate_left_bar_along_y * t426;
-        let t428 = c_left_bar_along_y * t427;
-        let t429 = s_left_bar_along_y * t424 + t428;
-        let t431 = t420 - minus_gfoot_vx_along_y * t429;
-        let t432 = minus_gfoot_vz_along_y * t429;
-        let t433 = t422 + t424;
-        let t435 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t436 = t435 + t427;
-        let t437 = t427 + t436;
-        let t439 = c_left_bar_along_y * t433 - s_left_bar_along_y * t437;
-        let t442 = 10.40582726326743 * (t135 * t135);
-        let t443 = t421 * t421;
-        let t446 = minus_gfoot_vx_along_y * t439
-            + minus_gleft_bar_vx_along_y * (t442 - t443);
-        let t447 = minus_gfoot_vz_along_y * t439;
-        let t449 = t426 * t421;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t389;
-        let t451 = t449 - minus_rate_dot_left_bar_along_y;
-        let t453 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t456 = s_left_bar_along_y * t451 + c_left_bar_along_y * (t453 - t442);
-        let t458 = minus_gleft_bar_vx_along_y * t423 - minus_gfoot_vx_along_y * t456;
-        let t459 = minus_gfoot_vz_along_y * t456;
-        let t461 = t428 + c_left_bar_along_y * t436;
-        let t463 = minus_gfoot_vx_along_y * t461 - t420;
-        let t464 = minus_gfoot_vz_along_y * t461;
-        let t468 = minus_gfoot_vx_along_y * (3.225806451612903 * t377)
+        let t328 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
+        let t331 = c_left_bar_along_x * (c_foot_along_x * rate_dot_drive_along_x);
+        let t336 = minus_s_foot_along_x * t295
+            - (t9 * (3.225806451612903 * t331) + t20 * t308);
+        let t339 = gdrive_vy_along_x * t336 - 3.225806451612903 * t13;
+        let t346 = minus_s_left_bar_along_x * t272 - 9.81 * c_left_bar_along_x;
+        let t348 = gdrive_vz_along_x * t336
+            - minus_gfoot_vz_along_x * (c_left_bar_along_x * t262)
+            - minus_gleft_bar_vz_along_x * t346;
+        let t355 = t9 * (minus_rate_dot_left_bar_along_x - t306) - t20 * (t301 + t131)
+            - minus_s_foot_along_x * t291;
+        let t357 = minus_s_left_bar_along_x * t262;
+        let t359 = gdrive_vy_along_x * t355 - minus_gfoot_vy_along_x * t357;
+        let t365 = c_left_bar_along_x * t272 + 31.64516129032258 * pose[2];
+        let t367 = gdrive_vz_along_x * t355 - minus_gfoot_vz_along_x * t357
+            + minus_gleft_bar_vz_along_x * t365;
+        let t371 = t262 + 0.31 * t295 - 0.31 * t293;
+        let t386 = t83 * t236 - t84 * t250 - t97 * t248;
+        let t392 = c_left_bar_along_x * (t346 - 0.31 * t308)
+            - minus_s_left_bar_along_x * (t365 - t331);
+        let t393 = gdrive_vx_along_y * actuator_accelerations[1];
+        let t394 = gdrive_vz_along_y * actuator_accelerations[1];
+        let t398 = t386 - t187;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t398
+            + minus_gfoot_vz_along_y * (t248 + t182);
+        let t403 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
+        let t404 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
+        let t407 = c_foot_along_y * t169
+            + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
+        let t408 = gdrive_vx_along_y * t407;
+        let t411 = minus_s_foot_along_y * actuator_accelerations[1]
+            - 9.81 * c_foot_along_y;
+        let t414 = gdrive_vz_along_y * t407;
+        let t419 = c_foot_along_y * minus_rate_dot_foot_along_y
+            - minus_s_foot_along_y * t169;
+        let t423 = 9.81 * minus_s_foot_along_y
+            + c_foot_along_y * actuator_accelerations[1];
+        let t425 = gdrive_vx_along_y * t419 + minus_gfoot_vx_along_y * t423;
+        let t428 = gdrive_vz_along_y * t419 + minus_gfoot_vz_along_y * t423;
+        let t429 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t430 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t431 = minus_rate_left_bar_along_y * t430;
+        let t432 = t429 + t431;
+        let t434 = 3.225806451612903 * t184;
+        let t435 = minus_rate_left_bar_along_y * t434;
+        let t436 = c_left_bar_along_y * t435;
+        let t437 = minus_s_left_bar_along_y * t432 + t436;
+        let t439 = 10.40582726326743 * t185;
+        let t440 = minus_gfoot_vx_along_y * t437 - t439;
+        let t441 = minus_gfoot_vz_along_y * t437;
+        let t442 = t431 + t432;
+        let t444 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t445 = t435 - t444;
+        let t446 = t435 + t445;
+        let t448 = c_left_bar_along_y * t442 - minus_s_left_bar_along_y * t446;
+        let t451 = 10.40582726326743 * (t184 * t184);
+        let t452 = t430 * t430;
+        let t455 = minus_gfoot_vx_along_y * t448
+            + minus_gleft_bar_vx_along_y * (t451 - t452);
+        let t456 = minus_gfoot_vz_along_y * t448;
+        let t457 = t434 * t430;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t398;
+        let t459 = t457 + minus_rate_dot_left_bar_along_y;
+        let t461 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t464 = minus_s_left_bar_along_y * t459 + c_left_bar_along_y * (t461 - t451);
+        let t467 = minus_gfoot_vx_along_y * t464 + minus_gleft_bar_vx_along_y * t429;
+        let t468 = minus_gfoot_vz_along_y * t464;
+        let t470 = t436 + c_left_bar_along_y * t445;
+        let t472 = t439 - minus_gfoot_vx_along_y * t470;
+        let t473 = minus_gfoot_vz_along_y * t470;
+        let t477 = minus_gfoot_vx_along_y * (3.225806451612903 * t386)
             + 3.225806451612903 * minus_rate_dot_foot_along_y;
-        let t470 = 10.40582726326743 * (t55 * t377);
-        let t471 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
-        let t472 = c_left_bar_along_y * t398;
-        let t479 = minus_c_foot_along_y * t437 - (t54 * (t443 + t453) + t62 * t451);
-        let t484 = minus_gfoot_vx_along_y * t472 - minus_gdrive_vx_along_y * t479
-            + minus_gleft_bar_vx_along_y * (s_left_bar_along_y * t410);
-        let t487 = minus_gfoot_vz_along_y * t472 - minus_gdrive_vz_along_y * t479;
-        let t495 = t54 * (t449 + minus_rate_dot_left_bar_along_y) + t62 * (t442 + t453)
-            + minus_c_foot_along_y * t433;
-        let t497 = s_left_bar_along_y * t398;
-        let t500 = 3.225806451612903 * t410
-            - (minus_gdrive_vx_along_y * t495 + minus_gfoot_vx_along_y * t497);
-        let t503 = minus_gdrive_vz_along_y * t495 + minus_gfoot_vz_along_y * t497;
-        let t507 = 0.31 * t435 + t398 + 0.31 * t437;
-        let t518 = 9.81 + actuator_accelerations[2];
-        let t519 = minus_gdrive_vx_along_z * t518;
-        let t520 = minus_gdrive_vy_along_z * t518;
-        let t528 = t241 - t211;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t377 - t206)
-            + minus_gfoot_vy_along_z * t528;
-        let t531 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
-        let t532 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
-        let t533 = minus_c_foot_along_z * t518;
-        let t537 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
-            - s_foot_along_z * t196;
-        let t538 = minus_gdrive_vx_along_z * t537;
-        let t541 = minus_gdrive_vy_along_z * t537;
-        let t543 = s_foot_along_z * t518;
-        let t547 = s_foot_along_z * minus_rate_dot_foot_along_z
-            + minus_c_foot_along_z * t196;
-        let t549 = minus_gfoot_vx_along_z * t543 - minus_gdrive_vx_along_z * t547;
-        let t552 = minus_gfoot_vy_along_z * t543 - minus_gdrive_vy_along_z * t547;
-        let t553 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t554 = minus_rate_left_bar_along_z * t553;
-        let t555 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t556 = t554 - t555;
-        let t558 = 3.225806451612903 * t209;
-        let t559 = minus_rate_left_bar_along_z * t558;
-        let t560 = c_left_bar_along_z * t559;
-        let t561 = s_left_bar_along_z * t556 + t560;
-        let t562 = minus_gfoot_vx_along_z * t561;
-        let t563 = 10.40582726326743 * t210;
-        let t565 = t563 - minus_gfoot_vy_along_z * t561;
-        let t566 = t554 + t556;
-        let t568 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t569 = t568 + t559;
-        let t570 = t559 + t569;
-        let t572 = c_left_bar_along_z * t566 - s_left_bar_along_z * t570;
-        let t573 = minus_gfoot_vx_along_z * t572;
-        let t576 = 10.40582726326743 * (t209 * t209);
-        let t577 = t553 * t553;
-        let t580 = minus_gfoot_vy_along_z * t572
-            + minus_gleft_bar_vy_along_z * (t576 - t577);
-        let t581 = t558 * t553;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t528;
-        let t583 = t581 - minus_rate_dot_left_bar_along_z;
-        let t585 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t588 = s_left_bar_along_z * t583 + c_left_bar_along_z * (t585 - t576);
-        let t589 = minus_gfoot_vx_along_z * t588;
-        let t592 = minus_gleft_bar_vy_along_z * t555 - minus_gfoot_vy_along_z * t588;
-        let t594 = t560 + c_left_bar_along_z * t569;
-        let t595 = minus_gfoot_vx_along_z * t594;
-        let t597 = minus_gfoot_vy_along_z * t594 - t563;
-        let t599 = 10.40582726326743 * (t34 * t241);
-        let t603 = minus_gfoot_vy_along_z * (3.225806451612903 * t241)
+        let t479 = 10.40582726326743 * (t64 * t386);
+        let t480 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
+        let t486 = minus_s_foot_along_y * t446 - (t63 * (t452 + t461) + t72 * t459);
+        let t488 = c_left_bar_along_y * t411;
+        let t493 = gdrive_vx_along_y * t486 - minus_gfoot_vx_along_y * t488
+            - minus_gleft_bar_vx_along_y * (minus_s_left_bar_along_y * t423);
+        let t496 = gdrive_vz_along_y * t486 - minus_gfoot_vz_along_y * t488;
+        let t503 = t63 * (minus_rate_dot_left_bar_along_y - t457) - t72 * (t451 + t461)
+            - minus_s_foot_along_y * t442;
+        let t505 = minus_s_left_bar_along_y * t411;
+        let t509 = gdrive_vx_along_y * t503 - minus_gfoot_vx_along_y * t505
+            + 3.225806451612903 * t423;
+        let t512 = gdrive_vz_along_y * t503 - minus_gfoot_vz_along_y * t505;
+        let t517 = t411 + 0.31 * t446 - 0.31 * t444;
+        let t527 = 9.81 + actuator_accelerations[2];
+        let t528 = gdrive_vx_along_z * t527;
+        let t529 = gdrive_vy_along_z * t527;
+        let t537 = t250 - t220;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t386 + t215)
+            + minus_gfoot_vy_along_z * t537;
+        let t540 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
+        let t541 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
+        let t544 = c_foot_along_z * t206
+            + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
+        let t545 = gdrive_vx_along_z * t544;
+        let t546 = minus_s_foot_along_z * t527;
+        let t549 = gdrive_vy_along_z * t544;
+        let t554 = c_foot_along_z * minus_rate_dot_foot_along_z
+            - minus_s_foot_along_z * t206;
+        let t556 = c_foot_along_z * t527;
+        let t558 = gdrive_vx_along_z * t554 + minus_gfoot_vx_along_z * t556;
+        let t561 = gdrive_vy_along_z * t554 + minus_gfoot_vy_along_z * t556;
+        let t562 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t563 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t564 = minus_rate_left_bar_along_z * t563;
+        let t565 = t562 + t564;
+        let t567 = 3.225806451612903 * t217;
+        let t568 = minus_rate_left_bar_along_z * t567;
+        let t569 = c_left_bar_along_z * t568;
+        let t570 = minus_s_left_bar_along_z * t565 + t569;
+        let t571 = minus_gfoot_vx_along_z * t570;
+        let t573 = 10.40582726326743 * t218;
+        let t574 = minus_gfoot_vy_along_z * t570 - t573;
+        let t575 = t564 + t565;
+        let t577 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t578 = t568 - t577;
+        let t579 = t568 + t578;
+        let t581 = c_left_bar_along_z * t575 - minus_s_left_bar_along_z * t579;
+        let t582 = minus_gfoot_vx_along_z * t581;
+        let t585 = 10.40582726326743 * (t217 * t217);
+        let t586 = t563 * t563;
+        let t589 = minus_gfoot_vy_along_z * t581
+            + minus_gleft_bar_vy_along_z * (t585 - t586);
+        let t590 = t567 * t563;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t537;
+        let t592 = t590 + minus_rate_dot_left_bar_along_z;
+        let t594 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t597 = minus_s_left_bar_along_z * t592 + c_left_bar_along_z * (t594 - t585);
+        let t598 = minus_gfoot_vx_along_z * t597;
+        let t601 = minus_gfoot_vy_along_z * t597 + minus_gleft_bar_vy_along_z * t562;
+        let t603 = t569 + c_left_bar_along_z * t578;
+        let t604 = minus_gfoot_vx_along_z * t603;
+        let t606 = t573 - minus_gfoot_vy_along_z * t603;
+        let t608 = 10.40582726326743 * (t41 * t250);
+        let t612 = minus_gfoot_vy_along_z * (3.225806451612903 * t250)
             + 3.225806451612903 * minus_rate_dot_foot_along_z;
-        let t604 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
-        let t611 = minus_c_foot_along_z * t570 - (t33 * (t577 + t585) + t41 * t583);
-        let t613 = 3.225806451612903 * t519 - minus_gdrive_vx_along_z * t611;
-        let t620 = minus_gfoot_vy_along_z * (c_left_bar_along_z * t533)
-            - minus_gdrive_vy_along_z * t611
-            + minus_gleft_bar_vy_along_z * (s_left_bar_along_z * t543);
-        let t627 = t33 * (t581 + minus_rate_dot_left_bar_along_z) + t41 * (t576 + t585)
-            + minus_c_foot_along_z * t566;
-        let t629 = s_left_bar_along_z * t533;
-        let t631 = minus_gdrive_vx_along_z * t627 + minus_gfoot_vx_along_z * t629;
-        let t636 = 3.225806451612903 * t543
-            - (minus_gdrive_vy_along_z * t627 + minus_gfoot_vy_along_z * t629);
-        let t640 = 0.31 * t568 + t533 + 0.31 * t570;
+        let t613 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
+        let t619 = minus_s_foot_along_z * t579 - (t40 * (t586 + t594) + t49 * t592);
+        let t622 = gdrive_vx_along_z * t619 - 3.225806451612903 * t528;
+        let t629 = gdrive_vy_along_z * t619
+            - minus_gfoot_vy_along_z * (c_left_bar_along_z * t546)
+            - minus_gleft_bar_vy_along_z * (minus_s_left_bar_along_z * t556);
+        let t636 = t40 * (minus_rate_dot_left_bar_along_z - t590) - t49 * (t585 + t594)
+            - minus_s_foot_along_z * t575;
+        let t638 = minus_s_left_bar_along_z * t546;
+        let t640 = gdrive_vx_along_z * t636 - minus_gfoot_vx_along_z * t638;
+        let t645 = gdrive_vy_along_z * t636 - minus_gfoot_vy_along_z * t638
+            + 3.225806451612903 * t556;
+        let t649 = t546 + 0.31 * t579 - 0.31 * t577;
         Ok([
             [
                 actuator_accelerations[0], actuator_accelerations[0], actuator_velocities[0],
-                ::overact::math::sign(actuator_velocities[0]), 1.0, 0.0, t251, t261,
-                actuator_accelerations[0], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t327, t346, -t261,
-                actuator_accelerations[0], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t327, t346, -t261,
-                actuator_accelerations[0], 0.0, t251, -t261, t377, -t384, -t384, -t77,
-                -::overact::math::signed(
-                    minus_gdrive_vx_along_y,
-                    actuator_velocities[1],
-                ),
-                -minus_gdrive_vx_along_y,
-                t394,
-                minus_gfoot_vx_along_y * t398 - t403,
-                t416,
-                -t384,
-                t431,
-                -t446,
-                t458,
-                t463,
-                t468,
-                t471,
-                t484,
-                t500,
-                -t416,
-                -t384,
-                t431,
-                -t446,
-                t458,
-                t463,
-                t468,
-                t471,
-                t484,
-                t500,
-                -t416,
-                -t384,
-                t394,
-                minus_gfoot_vx_along_y * t507 - t403 - minus_gleft_bar_vx_along_y * t136,
-                -(t416 + 0.31 * t458),
-                t377,
-                -t519,
-                -(minus_gdrive_vx_along_z * actuator_accelerations[2]),
-                -t79,
-                -::overact::math::signed(
-                    minus_gdrive_vx_along_z,
-                    actuator_velocities[2],
-                ),
-                -minus_gdrive_vx_along_z,
-                t531,
-                minus_gfoot_vx_along_z * t533 - t538,
-                t549,
-                -t519,
-                -t562,
-                -t573,
-                -t589,
-                t595,
-                t599,
+                ::overact::math::sign(actuator_velocities[0]), 1.0, 0.0, -t260, t270,
+                actuator_accelerations[0], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t336, t355, -t270,
+                actuator_accelerations[0], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t336, t355, -t270,
+                actuator_accelerations[0], 0.0, -t260, -t270, t386, t393, t393, t112,
+                ::overact::math::signed(gdrive_vx_along_y, actuator_velocities[1]),
+                gdrive_vx_along_y, t403, -(t408 + minus_gfoot_vx_along_y * t411), t425, t393, t440,
+                -t455, -t467, t472, t477, t480, t493, t509, -t425, t393, t440, -t455, -t467, t472,
+                t477, t480, t493, t509, -t425, t393, t403,
+                minus_gleft_bar_vx_along_y * t185
+                    - (t408 + minus_gfoot_vx_along_y * t517),
+                -(t425 - 0.31 * t467),
+                t386,
+                t528,
+                gdrive_vx_along_z * actuator_accelerations[2],
+                t114,
+                ::overact::math::signed(gdrive_vx_along_z, actuator_velocities[2]),
+                gdrive_vx_along_z,
+                t540,
+                -(t545 + minus_gfoot_vx_along_z * t546),
+                t558,
+                t528,
+                t571,
+                -t582,
+                -t598,
+                -t604,
+                t608,
                 0.0,
-                t613,
-                -t631,
-                -t549,
-                -t519,
-                -t562,
-                -t573,
-                -t589,
-                t595,
-                t599,
+                t622,
+                t640,
+                -t558,
+                t528,
+                t571,
+                -t582,
+                -t598,
+                -t604,
+                t608,
                 0.0,
-                t613,
-                -t631,
-                -t549,
-                -t519,
-                t531,
-                minus_gfoot_vx_along_z * t640 - t538,
-                -(t549 - 0.31 * t589),
-                t377,
-                t377,
+                t622,
+                t640,
+                -t558,
+                t528,
+                t540,
+                -(t545 + minus_gfoot_vx_along_z * t649),
+                -(t558 - 0.31 * t598),
+                t386,
+                t386,
             ],
             [
-                -t8, -t8, -t20,
-                -::overact::math::signed(
-                    minus_gdrive_vy_along_x,
-                    actuator_velocities[0],
-                ),
-                -minus_gdrive_vy_along_x,
-                t247,
-                minus_gfoot_vy_along_x * t252 - t254,
-                t265,
-                -t8,
-                -t278,
-                -t289,
-                -t304,
-                t310,
-                t314,
-                0.0,
-                t330,
-                -t350,
-                -t265,
-                -t8,
-                -t278,
-                -t289,
-                -t304,
-                t310,
-                t314,
-                0.0,
-                t330,
-                -t350,
-                -t265,
-                -t8,
-                t247,
-                minus_gfoot_vy_along_x * t362 - t254,
-                -(t265 - 0.31 * t304),
-                t241,
-                actuator_accelerations[1],
-                actuator_accelerations[1],
-                actuator_velocities[1],
-                ::overact::math::sign(actuator_velocities[1]),
-                1.0,
-                0.0,
-                t402,
-                t414,
-                actuator_accelerations[1],
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                t479,
-                t495,
-                -t414,
-                actuator_accelerations[1],
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                t479,
-                t495,
-                -t414,
-                actuator_accelerations[1],
-                0.0,
-                t402,
-                -t414,
-                t241,
-                -t520,
-                -(minus_gdrive_vy_along_z * actuator_accelerations[2]),
-                -t83,
-                -::overact::math::signed(
-                    minus_gdrive_vy_along_z,
-                    actuator_velocities[2],
-                ),
-                -minus_gdrive_vy_along_z,
-                t532,
-                minus_gfoot_vy_along_z * t533 - t541,
-                t552,
-                -t520,
-                t565,
-                -t580,
-                t592,
-                t597,
-                t603,
-                t604,
-                t620,
-                t636,
-                -t552,
-                -t520,
-                t565,
-                -t580,
-                t592,
-                t597,
-                t603,
-                t604,
-                t620,
-                t636,
-                -t552,
-                -t520,
-                t532,
-                minus_gfoot_vy_along_z * t640 - t541 - minus_gleft_bar_vy_along_z * t210,
-                -(t552 + 0.31 * t592),
-                t241,
-                t241,
+                t13, t13, t24, ::overact::math::signed(gdrive_vy_along_x, actuator_velocities[0]),
+                gdrive_vy_along_x, t256, -(t261 + minus_gfoot_vy_along_x * t262), t274, t13, t287,
+                -t298, -t313, -t319, t323, 0.0, t339, t359, -t274, t13, t287, -t298, -t313, -t319,
+                t323, 0.0, t339, t359, -t274, t13, t256, -(t261 + minus_gfoot_vy_along_x * t371),
+                -(t274 - 0.31 * t313), t250, actuator_accelerations[1], actuator_accelerations[1],
+                actuator_velocities[1], ::overact::math::sign(actuator_velocities[1]), 1.0, 0.0,
+                -t407, t419, actuator_accelerations[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t486, t503,
+                -t419, actuator_accelerations[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t486, t503, -t419,
+                actuator_accelerations[1], 0.0, -t407, -t419, t250, t529,
+                gdrive_vy_along_z * actuator_accelerations[2], t119,
+                ::overact::math::signed(gdrive_vy_along_z, actuator_velocities[2]),
+                gdrive_vy_along_z, t541, -(t549 + minus_gfoot_vy_along_z * t546), t561, t529, t574,
+                -t589, -t601, t606, t612, t613, t629, t645, -t561, t529, t574, -t589, -t601, t606,
+                t612, t613, t629, t645, -t561, t529, t541,
+                minus_gleft_bar_vy_along_z * t218
+                    - (t549 + minus_gfoot_vy_along_z * t649),
+                -(t561 - 0.31 * t601),
+                t250,
+                t250,
             ],
             [
-                -t19, -t19, -t21,
-                -::overact::math::signed(
-                    minus_gdrive_vz_along_x,
-                    actuator_velocities[0],
-                ),
-                -minus_gdrive_vz_along_x,
-                t248,
-                minus_gfoot_vz_along_x * t252 - t257,
-                t268,
-                -t19,
-                t281,
-                -t296,
-                t307,
-                t312,
-                t318,
-                t319,
-                t339,
-                t358,
-                -t268,
-                -t19,
-                t281,
-                -t296,
-                t307,
-                t312,
-                t318,
-                t319,
-                t339,
-                t358,
-                -t268,
-                -t19,
-                t248,
-                minus_gfoot_vz_along_x * t362 - t257 - minus_gleft_bar_vz_along_x * t182,
-                -(t268 + 0.31 * t307),
-                -t383,
-                -t385,
-                -t385,
-                -t108,
-                -::overact::math::signed(
-                    minus_gdrive_vz_along_y,
-                    actuator_velocities[1],
-                ),
-                -minus_gdrive_vz_along_y,
-                t395,
-                minus_gfoot_vz_along_y * t398 - t406,
-                t419,
-                -t385,
-                -t432,
-                -t447,
-                -t459,
-                t464,
-                t470,
+                t23, t23, t25, ::overact::math::signed(gdrive_vz_along_x, actuator_velocities[0]),
+                gdrive_vz_along_x, t257, -(t265 + minus_gfoot_vz_along_x * t262), t277, t23, t290,
+                -t305, -t316, t321, t327, t328, t348, t367, -t277, t23, t290, -t305, -t316, t321,
+                t327, t328, t348, t367, -t277, t23, t257,
+                minus_gleft_bar_vz_along_x * t154
+                    - (t265 + minus_gfoot_vz_along_x * t371),
+                -(t277 - 0.31 * t316),
+                -t392,
+                t394,
+                t394,
+                t109,
+                ::overact::math::signed(gdrive_vz_along_y, actuator_velocities[1]),
+                gdrive_vz_along_y,
+                t404,
+                -(t414 + minus_gfoot_vz_along_y * t411),
+                t428,
+                t394,
+                t441,
+                -t456,
+                -t468,
+                -t473,
+                t479,
                 0.0,
-                t487,
-                -t503,
-                -t419,
-                -t385,
-                -t432,
-                -t447,
-                -t459,
-                t464,
-                t470,
+                t496,
+                t512,
+                -t428,
+                t394,
+                t441,
+                -t456,
+                -t468,
+                -t473,
+                t479,
                 0.0,
-                t487,
-                -t503,
-                -t419,
-                -t385,
-                t395,
-                minus_gfoot_vz_along_y * t507 - t406,
-                -(t419 - 0.31 * t459),
-                -t383,
-                t518,
+                t496,
+                t512,
+                -t428,
+                t394,
+                t404,
+                -(t414 + minus_gfoot_vz_along_y * t517),
+                -(t428 - 0.31 * t468),
+                -t392,
+                t527,
                 actuator_accelerations[2],
                 actuator_velocities[2],
                 ::overact::math::sign(actuator_velocities[2]),
                 1.0,
                 0.0,
-                t537,
-                t547,
-                t518,
+                -t544,
+                t554,
+                t527,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
-                t611,
-                t627,
-                -t547,
-                t518,
+                t619,
+                t636,
+                -t554,
+                t527,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
-                t611,
-                t627,
-                -t547,
-                t518,
+                t619,
+                t636,
+                -t554,
+                t527,
                 0.0,
-                t537,
-                -t547,
-                -t383,
-                -t383,
+                -t544,
+                -t554,
+                -t392,
+                -t392,
             ],
         ])
     }
@@ -2432,7 +2734,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 715 operations (243 additions, 465 multiplications, 7 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 600 intermediates.
+    /// 726 operations (249 additions, 467 multiplications, 10 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 605 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2441,8 +2743,410 @@ impl Orthoglide {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 100]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_actuators_from_joints(pose, joints, twist, acceleration)
+        let t2 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t2, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t2);
+        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
+        let t4 = 0.31 * c_left_bar_along_x;
+        let minus_s_foot_along_x = pose[1] / t4;
+        let t7 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t7, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t7);
+        let t9 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t9, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t9;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t14 = 1.0 / c_left_bar_along_x;
+        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
+            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t14);
+        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
+            + minus_gfoot_vz_along_x * twist[2];
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t14;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
+        let t21 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
+        let t23 = pose[2] * (minus_rate_foot_along_x * t21);
+        let t26 = c_foot_along_x * minus_rate_left_bar_along_x;
+        let t28 = t21 * t21 + t26 * t26;
+        let t29 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t30 = t28 + t29;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let t38 = pose[2] * (minus_rate_foot_along_x * t26);
+        let t41 = acceleration[1] + pose[1] * t30 + t38 + t38;
+        let t45 = minus_s_left_bar_along_x * c_foot_along_x;
+        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t45 * t14;
+        let t48 = pose[2] * minus_rate_foot_along_x;
+        let t49 = minus_rate_foot_along_x * t48;
+        let t52 = acceleration[2] - (t49 - pose[2] * t30);
+        let rate_dot_drive_along_x = acceleration[0] - (t23 - 0.31 * t9 * t30 + t23)
+            + gdrive_vy_along_x * t41 + gdrive_vz_along_x * t52;
+        let rate_drive_along_x = twist[0] + gdrive_vy_along_x * twist[1]
+            + gdrive_vz_along_x * twist[2];
+        let t62 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t62, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t62);
+        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
+        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let t67 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t67, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t67);
+        let t69 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t69, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t69;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t73 = 1.0 / c_left_bar_along_y;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
+            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t73);
+        let t77 = minus_s_left_bar_along_y * c_foot_along_y;
+        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t77 * t73;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t83 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t83, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t83);
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
+        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
+        let t88 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t88, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t88);
+        let t90 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t90, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t90;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t94 = gdrive_vx_along_y - gdrive_vz_along_y * gdrive_vx_along_z;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t97 = 1.0 / c_left_bar_along_z;
+        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
+            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t97);
+        let t101 = minus_s_left_bar_along_z * c_foot_along_z;
+        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t101 * t97;
+        let t105 = 1.0 - gdrive_vz_along_y * gdrive_vy_along_z;
+        let t109 = gdrive_vx_along_y * gdrive_vy_along_z - gdrive_vx_along_z;
+        let t111 = t105 - gdrive_vy_along_x * t94 + gdrive_vz_along_x * t109;
+        ::overact::guard::platform(t111, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t111, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t111, 1.0, "kept actuators")?;
+        let t112 = 1.0 / t111;
+        let t113 = t94 * t112;
+        let t115 = t109 * t112;
+        let t117 = minus_gfoot_vy_along_x * t113 - minus_gfoot_vz_along_x * t115;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t41
+            + minus_gfoot_vz_along_x * t52;
+        let t121 = t117 * minus_rate_dot_foot_along_x;
+        let t124 = (gdrive_vy_along_z - gdrive_vy_along_x * gdrive_vx_along_z) * t112;
+        let t128 = (1.0 - gdrive_vz_along_x * gdrive_vx_along_z) * t112;
+        let t130 = minus_gfoot_vz_along_x * t124 - minus_gfoot_vy_along_x * t128;
+        let t131 = t130 * minus_rate_dot_foot_along_x;
+        let t134 = (gdrive_vz_along_y - gdrive_vz_along_x * gdrive_vx_along_y) * t112;
+        let t138 = (1.0 - gdrive_vy_along_x * gdrive_vx_along_y) * t112;
+        let t140 = minus_gfoot_vy_along_x * t134 - minus_gfoot_vz_along_x * t138;
+        let t141 = t140 * minus_rate_dot_foot_along_x;
+        let t142 = minus_s_foot_along_x * rate_dot_drive_along_x;
+        let t146 = c_foot_along_x * t29
+            + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
+        let t153 = c_foot_along_x * rate_dot_drive_along_x;
+        let t155 = c_foot_along_x * minus_rate_dot_foot_along_x
+            - minus_s_foot_along_x * t29 - t117 * t153;
+        let t156 = t130 * t153;
+        let t157 = t140 * t153;
+        let t158 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t159 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t160 = minus_rate_left_bar_along_x * t159;
+        let t161 = t158 + t160;
+        let t163 = 3.225806451612903 * t48;
+        let t164 = minus_rate_left_bar_along_x * t163;
+        let t165 = c_left_bar_along_x * t164;
+        let t166 = minus_s_left_bar_along_x * t161 + t165;
+        let t168 = minus_gleft_bar_vz_along_x * t115;
+        let t169 = t163 * t159;
+        let t170 = t168 * t169;
+        let t171 = t117 * t166 + t170;
+        let t172 = minus_gleft_bar_vz_along_x * t124;
+        let t173 = t172 * t169;
+        let t175 = t173 - t130 * t166;
+        let t177 = minus_gleft_bar_vz_along_x * t138;
+        let t178 = t177 * t169;
+        let t179 = t140 * t166 + t178;
+        let t180 = t160 + t161;
+        let t182 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t183 = t164 - t182;
+        let t184 = t164 + t183;
+        let t186 = c_left_bar_along_x * t180 - minus_s_left_bar_along_x * t184;
+        let t189 = 10.40582726326743 * (t48 * t48);
+        let t190 = t159 * t159;
+        let t191 = t189 - t190;
+        let t193 = t117 * t186 - t168 * t191;
+        let t196 = t130 * t186 + t172 * t191;
+        let t199 = t140 * t186 - t177 * t191;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t52;
+        let t201 = t169 + minus_rate_dot_left_bar_along_x;
+        let t205 = minus_s_left_bar_along_x * t201 + c_left_bar_along_x * (t28 - t189);
+        let t208 = t117 * t205 - t168 * t158;
+        let t211 = t130 * t205 + t172 * t158;
+        let t214 = t140 * t205 - t177 * t158;
+        let t216 = t165 + c_left_bar_along_x * t183;
+        let t218 = t117 * t216 + t170;
+        let t220 = t130 * t216 - t173;
+        let t222 = t140 * t216 + t178;
+        let t224 = 3.225806451612903 * acceleration[2];
+        let t226 = t168 * t182 - t117 * t224;
+        let t229 = t130 * t224 + t172 * t182;
+        let t232 = t177 * t182 - t140 * t224;
+        let t233 = t168 * minus_rate_dot_left_bar_along_x;
+        let t234 = t172 * minus_rate_dot_left_bar_along_x;
+        let t235 = t177 * minus_rate_dot_left_bar_along_x;
+        let t242 = c_left_bar_along_x * t142;
+        let t247 = minus_s_left_bar_along_x * t153 - 9.81 * c_left_bar_along_x;
+        let t249 = minus_s_foot_along_x * t184 - (t9 * (t190 + t28) + t45 * t201)
+            + t117 * t242 - t168 * t247;
+        let t252 = t130 * t242 + t172 * t247;
+        let t255 = t140 * t242 - t177 * t247;
+        let t263 = minus_s_left_bar_along_x * t142;
+        let t268 = c_left_bar_along_x * t153 + 31.64516129032258 * pose[2];
+        let t270 = t9 * (minus_rate_dot_left_bar_along_x - t169) - t45 * (t189 + t28)
+            - minus_s_foot_along_x * t180 + t117 * t263 + t168 * t268;
+        let t273 = t130 * t263 - t172 * t268;
+        let t276 = t140 * t263 + t177 * t268;
+        let t278 = t142 + 0.31 * t184;
+        let t280 = t278 - 0.31 * t182;
+        let t297 = t4 * t278;
+        let t302 = 0.31 * (t247 - 0.31 * t201);
+        let t304 = acceleration[0] + t117 * t297 - t168 * t302;
+        let t307 = t130 * t297 + t172 * t302;
+        let t310 = t140 * t297 - t177 * t302;
+        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
+            + minus_gfoot_vz_along_y * twist[2];
+        let t314 = pose[0] * minus_rate_foot_along_y;
+        let t315 = minus_rate_foot_along_y * t314;
+        let t316 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t73;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
+        let t319 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
+        let t322 = c_foot_along_y * minus_rate_left_bar_along_y;
+        let t324 = t316 + t319 * t319 + t322 * t322;
+        let t327 = acceleration[0] - (t315 - pose[0] * t324);
+        let t330 = pose[0] * (minus_rate_foot_along_y * t319);
+        let t339 = pose[0] * (minus_rate_foot_along_y * t322);
+        let t342 = acceleration[2] + pose[2] * t324 + t339 + t339;
+        let rate_dot_drive_along_y = gdrive_vx_along_y * t327 + acceleration[1]
+            - (t330 - 0.31 * t69 * t324 + t330) + gdrive_vz_along_y * t342;
+        let rate_drive_along_y = gdrive_vx_along_y * twist[0] + twist[1]
+            + gdrive_vz_along_y * twist[2];
+        let t350 = t105 * t112;
+        let t353 = minus_gfoot_vx_along_y * t350 + minus_gfoot_vz_along_y * t115;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t327
+            + minus_gfoot_vz_along_y * t342;
+        let t357 = t353 * minus_rate_dot_foot_along_y;
+        let t360 = (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t112;
+        let t363 = minus_gfoot_vx_along_y * t360 + minus_gfoot_vz_along_y * t124;
+        let t364 = t363 * minus_rate_dot_foot_along_y;
+        let t367 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t112;
+        let t370 = minus_gfoot_vx_along_y * t367 + minus_gfoot_vz_along_y * t138;
+        let t371 = t370 * minus_rate_dot_foot_along_y;
+        let t374 = minus_s_foot_along_y * rate_dot_drive_along_y - 9.81 * c_foot_along_y;
+        let t379 = c_foot_along_y * t316
+            + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
+        let t384 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
+        let t385 = t353 * t384;
+        let t390 = c_foot_along_y * minus_rate_dot_foot_along_y
+            - minus_s_foot_along_y * t316 - t363 * t384;
+        let t391 = t370 * t384;
+        let t392 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t393 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t394 = minus_rate_left_bar_along_y * t393;
+        let t395 = t392 + t394;
+        let t397 = 3.225806451612903 * t314;
+        let t398 = minus_rate_left_bar_along_y * t397;
+        let t399 = c_left_bar_along_y * t398;
+        let t400 = minus_s_left_bar_along_y * t395 + t399;
+        let t402 = minus_gleft_bar_vx_along_y * t350;
+        let t403 = t397 * t393;
+        let t404 = t402 * t403;
+        let t405 = t353 * t400 - t404;
+        let t406 = minus_gleft_bar_vx_along_y * t360;
+        let t407 = t406 * t403;
+        let t409 = t407 - t363 * t400;
+        let t411 = minus_gleft_bar_vx_along_y * t367;
+        let t412 = t411 * t403;
+        let t413 = t370 * t400 - t412;
+        let t414 = t394 + t395;
+        let t416 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t417 = t398 - t416;
+        let t418 = t398 + t417;
+        let t420 = c_left_bar_along_y * t414 - minus_s_left_bar_along_y * t418;
+        let t423 = 10.40582726326743 * (t314 * t314);
+        let t424 = t393 * t393;
+        let t425 = t423 - t424;
+        let t427 = t353 * t420 + t402 * t425;
+        let t430 = t363 * t420 + t406 * t425;
+        let t433 = t370 * t420 + t411 * t425;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t327;
+        let t435 = t403 + minus_rate_dot_left_bar_along_y;
+        let t437 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t440 = minus_s_left_bar_along_y * t435 + c_left_bar_along_y * (t437 - t423);
+        let t443 = t353 * t440 + t402 * t392;
+        let t446 = t363 * t440 + t406 * t392;
+        let t449 = t370 * t440 + t411 * t392;
+        let t451 = t399 + c_left_bar_along_y * t417;
+        let t453 = t404 - t353 * t451;
+        let t455 = t363 * t451 - t407;
+        let t457 = t412 - t370 * t451;
+        let t458 = 3.225806451612903 * acceleration[0];
+        let t461 = t353 * t458 + t402 * t416;
+        let t464 = t363 * t458 + t406 * t416;
+        let t467 = t370 * t458 + t411 * t416;
+        let t468 = t402 * minus_rate_dot_left_bar_along_y;
+        let t469 = t406 * minus_rate_dot_left_bar_along_y;
+        let t470 = t411 * minus_rate_dot_left_bar_along_y;
+        let t471 = c_left_bar_along_y * t374;
+        let t473 = minus_s_left_bar_along_y * t384;
+        let t475 = t353 * t471 + t402 * t473;
+        let t485 = minus_s_foot_along_y * t418 - (t69 * (t424 + t437) + t77 * t435)
+            + t363 * t471 + t406 * t473;
+        let t488 = t370 * t471 + t411 * t473;
+        let t489 = c_left_bar_along_y * t384;
+        let t491 = minus_s_left_bar_along_y * t374;
+        let t493 = t402 * t489 - t353 * t491;
+        let t504 = t69 * (minus_rate_dot_left_bar_along_y - t403) - t77 * (t423 + t437)
+            - minus_s_foot_along_y * t414 + t363 * t491 - t406 * t489;
+        let t507 = t411 * t489 - t370 * t491;
+        let t512 = t374 + 0.31 * t418 - 0.31 * t416;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t97;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
+        let t530 = c_foot_along_z * minus_rate_left_bar_along_z;
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
+            + minus_gfoot_vy_along_z * twist[1];
+        let t535 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t537 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
+        let t539 = t530 * t530 + t535 + t537 * t537;
+        let t542 = pose[1] * (minus_rate_foot_along_z * t530);
+        let t545 = acceleration[0] + pose[0] * t539 + t542 + t542;
+        let t547 = pose[1] * minus_rate_foot_along_z;
+        let t548 = minus_rate_foot_along_z * t547;
+        let t551 = acceleration[1] - (t548 - pose[1] * t539);
+        let t555 = pose[1] * (minus_rate_foot_along_z * t537);
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t545 + gdrive_vy_along_z * t551
+            + acceleration[2] - (t555 - 0.31 * t90 * t539 + t555);
+        let t562 = 9.81 + rate_dot_drive_along_z;
+        let rate_drive_along_z = gdrive_vx_along_z * twist[0]
+            + gdrive_vy_along_z * twist[1] + twist[2];
+        let t570 = minus_gfoot_vy_along_z * t113 - minus_gfoot_vx_along_z * t350;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t545
+            + minus_gfoot_vy_along_z * t551;
+        let t574 = t570 * minus_rate_dot_foot_along_z;
+        let t577 = minus_gfoot_vx_along_z * t360 - minus_gfoot_vy_along_z * t128;
+        let t578 = t577 * minus_rate_dot_foot_along_z;
+        let t581 = minus_gfoot_vy_along_z * t134 - minus_gfoot_vx_along_z * t367;
+        let t582 = t581 * minus_rate_dot_foot_along_z;
+        let t583 = minus_s_foot_along_z * t562;
+        let t589 = c_foot_along_z * t535
+            + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
+        let t591 = c_foot_along_z * t562;
+        let t592 = t570 * t591;
+        let t593 = t577 * t591;
+        let t598 = c_foot_along_z * minus_rate_dot_foot_along_z
+            - minus_s_foot_along_z * t535 - t581 * t591;
+        let t599 = minus_gleft_bar_vy_along_z * t113;
+        let t600 = 3.225806451612903 * t547;
+        let t601 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t602 = t600 * t601;
+        let t603 = t599 * t602;
+        let t604 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t605 = minus_rate_left_bar_along_z * t601;
+        let t606 = t604 + t605;
+        let t608 = minus_rate_left_bar_along_z * t600;
+        let t609 = c_left_bar_along_z * t608;
+        let t610 = minus_s_left_bar_along_z * t606 + t609;
+        let t612 = t603 - t570 * t610;
+        let t614 = minus_gleft_bar_vy_along_z * t128;
+        let t615 = t614 * t602;
+        let t616 = t577 * t610 + t615;
+        let t617 = minus_gleft_bar_vy_along_z * t134;
+        let t618 = t617 * t602;
+        let t620 = t618 - t581 * t610;
+        let t621 = t605 + t606;
+        let t623 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t624 = t608 - t623;
+        let t625 = t608 + t624;
+        let t627 = c_left_bar_along_z * t621 - minus_s_left_bar_along_z * t625;
+        let t630 = 10.40582726326743 * (t547 * t547);
+        let t631 = t601 * t601;
+        let t632 = t630 - t631;
+        let t634 = t570 * t627 + t599 * t632;
+        let t637 = t577 * t627 - t614 * t632;
+        let t640 = t581 * t627 + t617 * t632;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t551;
+        let t642 = t602 + minus_rate_dot_left_bar_along_z;
+        let t644 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t647 = minus_s_left_bar_along_z * t642 + c_left_bar_along_z * (t644 - t630);
+        let t650 = t570 * t647 + t599 * t604;
+        let t653 = t577 * t647 - t614 * t604;
+        let t656 = t581 * t647 + t617 * t604;
+        let t658 = t609 + c_left_bar_along_z * t624;
+        let t660 = t570 * t658 - t603;
+        let t662 = t577 * t658 + t615;
+        let t664 = t581 * t658 - t618;
+        let t665 = 3.225806451612903 * acceleration[1];
+        let t668 = t570 * t665 + t599 * t623;
+        let t671 = t614 * t623 - t577 * t665;
+        let t674 = t581 * t665 + t617 * t623;
+        let t675 = t599 * minus_rate_dot_left_bar_along_z;
+        let t676 = t614 * minus_rate_dot_left_bar_along_z;
+        let t677 = t617 * minus_rate_dot_left_bar_along_z;
+        let t678 = c_left_bar_along_z * t583;
+        let t680 = minus_s_left_bar_along_z * t591;
+        let t682 = t570 * t678 + t599 * t680;
+        let t685 = t577 * t678 - t614 * t680;
+        let t695 = minus_s_foot_along_z * t625 - (t90 * (t631 + t644) + t101 * t642)
+            + t581 * t678 + t617 * t680;
+        let t696 = minus_s_left_bar_along_z * t583;
+        let t698 = c_left_bar_along_z * t591;
+        let t700 = t570 * t696 - t599 * t698;
+        let t703 = t577 * t696 + t614 * t698;
+        let t714 = t90 * (minus_rate_dot_left_bar_along_z - t602) - t101 * (t630 + t644)
+            - minus_s_foot_along_z * t621 + t581 * t696 - t617 * t698;
+        let t718 = t583 + 0.31 * t625 - 0.31 * t623;
+        Ok([
+            [
+                rate_dot_drive_along_x, rate_dot_drive_along_x, rate_drive_along_x,
+                ::overact::math::sign(rate_drive_along_x), 1.0, -t121, t117 * t142 - t146, t155,
+                rate_dot_drive_along_x, -t171, t193, t208, t218, t226, t233, t249, t270, -t155,
+                rate_dot_drive_along_x, -t171, t193, t208, t218, t226, t233, t249, t270, -t155,
+                rate_dot_drive_along_x, -t121, t117 * t280 - t146 + t168 * t49,
+                -(t155 + 0.31 * t208), t304, 0.0, 0.0, 0.0, 0.0, 0.0, t357, -(t353 * t374), t385,
+                0.0, t405, -t427, -t443, t453, t461, t468, -t475, t493, -t385, 0.0, t405, -t427,
+                -t443, t453, t461, t468, -t475, t493, -t385, 0.0, t357, t402 * t315 - t353 * t512,
+                -(t385 - 0.31 * t443), t304, 0.0, 0.0, 0.0, 0.0, 0.0, -t574, t570 * t583, -t592,
+                0.0, t612, t634, t650, t660, -t668, -t675, t682, t700, t592, 0.0, t612, t634, t650,
+                t660, -t668, -t675, t682, t700, t592, 0.0, -t574, t570 * t718 - t599 * t548,
+                -(0.31 * t650 - t592), t304, t304,
+            ],
+            [
+                0.0, 0.0, 0.0, 0.0, 0.0, -t131, t130 * t142, -t156, 0.0, t175, t196, t211, t220,
+                -t229, -t234, t252, t273, t156, 0.0, t175, t196, t211, t220, -t229, -t234, t252,
+                t273, t156, 0.0, -t131, t130 * t280 - t172 * t49, -(0.31 * t211 - t156), t307,
+                rate_dot_drive_along_y, rate_dot_drive_along_y, rate_drive_along_y,
+                ::overact::math::sign(rate_drive_along_y), 1.0, -t364, t363 * t374 - t379, t390,
+                rate_dot_drive_along_y, t409, t430, t446, t455, -t464, -t469, t485, t504, -t390,
+                rate_dot_drive_along_y, t409, t430, t446, t455, -t464, -t469, t485, t504, -t390,
+                rate_dot_drive_along_y, -t364, t363 * t512 - t379 - t406 * t315,
+                -(t390 + 0.31 * t446), t307, 0.0, 0.0, 0.0, 0.0, 0.0, -t578, t577 * t583, -t593,
+                0.0, -t616, t637, t653, t662, t671, t676, t685, t703, t593, 0.0, -t616, t637, t653,
+                t662, t671, t676, t685, t703, t593, 0.0, -t578, t577 * t718 + t614 * t548,
+                -(0.31 * t653 - t593), t307, t307,
+            ],
+            [
+                0.0, 0.0, 0.0, 0.0, 0.0, -t141, t140 * t142, -t157, 0.0, -t179, t199, t214, t222,
+                t232, t235, t255, t276, t157, 0.0, -t179, t199, t214, t222, t232, t235, t255, t276,
+                t157, 0.0, -t141, t140 * t280 + t177 * t49, -(0.31 * t214 - t157), t310, 0.0, 0.0,
+                0.0, 0.0, 0.0, t371, -(t370 * t374), t391, 0.0, t413, -t433, -t449, t457, t467,
+                t470, -t488, t507, -t391, 0.0, t413, -t433, -t449, t457, t467, t470, -t488, t507,
+                -t391, 0.0, t371, t411 * t315 - t370 * t512, -(t391 - 0.31 * t449), t310, t562,
+                rate_dot_drive_along_z, rate_drive_along_z,
+                ::overact::math::sign(rate_drive_along_z), 1.0, -t582, t581 * t583 - t589, t598,
+                t562, t620, t640, t656, t664, -t674, -t677, t695, t714, -t598, t562, t620, t640,
+                t656, t664, -t674, -t677, t695, t714, -t598, t562, -t582,
+                t581 * t718 - t589 - t617 * t548, -(t598 + 0.31 * t656), t310, t310,
+            ],
+        ])
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -2886,7 +3590,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 794 operations (276 additions, 508 multiplications, 10 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 685 intermediates.
+    /// 805 operations (282 additions, 510 multiplications, 13 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 690 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2897,466 +3601,455 @@ impl Orthoglide {
         start: &[f64; 3],
     ) -> Result<[[f64; 100]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
+        let t3 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t3, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t3);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t5 = s_foot_along_x * c_left_bar_along_x;
-        ::overact::guard::leg(t5, 1.0, "along_x")?;
-        let t6 = 1.0 / t5;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t6;
-        let (minus_c_foot_along_y, s_foot_along_y) = ::overact::math::sin_cos(joints[5]);
-        let (s_left_bar_along_y, c_left_bar_along_y) = ::overact::math::sin_cos(
-            joints[6],
-        );
+        let t5 = 0.31 * c_left_bar_along_x;
+        let minus_s_foot_along_x = pose[1] / t5;
+        let t8 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t8, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t8);
+        let t10 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t10, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t10;
+        let t14 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t14, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t14);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let t12 = minus_c_foot_along_y * c_left_bar_along_y;
-        let t13 = 0.31 * t12;
-        let t14 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t14, 1.0, "along_y")?;
-        let t15 = 1.0 / t14;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t15;
-        let t18 = 1.0 / c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let t19 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t19, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t19);
+        let t21 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t21, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t21;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t25 = 1.0 / c_left_bar_along_y;
         let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_c_foot_along_y * s_left_bar_along_y * t18);
-        let t22 = s_foot_along_y * s_left_bar_along_y;
-        let minus_gdrive_vx_along_y = t13 * minus_gfoot_vx_along_y + t22 * t18;
-        let minus_gdrive_vz_along_y = t12 * t15;
-        let (minus_c_foot_along_z, s_foot_along_z) = ::overact::math::sin_cos(joints[9]);
-        let (s_left_bar_along_z, c_left_bar_along_z) = ::overact::math::sin_cos(
-            joints[10],
-        );
+            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t25);
+        let t29 = minus_s_left_bar_along_y * c_foot_along_y;
+        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t29 * t25;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t35 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t35, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t35);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t30 = minus_c_foot_along_z * c_left_bar_along_z;
-        let t31 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t31, 1.0, "along_z")?;
-        let t32 = 1.0 / t31;
-        let minus_gdrive_vx_along_z = t30 * t32;
-        let t35 = minus_gdrive_vx_along_y
-            + minus_gdrive_vz_along_y * minus_gdrive_vx_along_z;
-        let t36 = 0.31 * t30;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t32;
-        let t39 = 1.0 / c_left_bar_along_z;
+        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
+        let t40 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t40, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t40);
+        let t42 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t42, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t42;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t46 = gdrive_vx_along_y - gdrive_vz_along_y * gdrive_vx_along_z;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t49 = 1.0 / c_left_bar_along_z;
         let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_c_foot_along_z * s_left_bar_along_z * t39);
-        let t43 = s_foot_along_z * s_left_bar_along_z;
-        let minus_gdrive_vy_along_z = t36 * minus_gfoot_vy_along_z + t43 * t39;
-        let t47 = 1.0 - minus_gdrive_vz_along_y * minus_gdrive_vy_along_z;
-        let t48 = minus_c_foot_along_x * c_left_bar_along_x;
-        let minus_gdrive_vy_along_x = t48 * t6;
-        let t52 = 0.31 * t48;
-        let t54 = 1.0 / c_left_bar_along_x;
+            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t49);
+        let t53 = minus_s_left_bar_along_z * c_foot_along_z;
+        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t53 * t49;
+        let t57 = 1.0 - gdrive_vz_along_y * gdrive_vy_along_z;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t63 = 1.0 / c_left_bar_along_x;
         let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_c_foot_along_x * s_left_bar_along_x * t54);
-        let t58 = s_foot_along_x * s_left_bar_along_x;
-        let minus_gdrive_vz_along_x = t52 * minus_gfoot_vz_along_x + t58 * t54;
-        let t62 = minus_gdrive_vx_along_y * minus_gdrive_vy_along_z
-            + minus_gdrive_vx_along_z;
-        let t64 = t47 - minus_gdrive_vy_along_x * t35 - minus_gdrive_vz_along_x * t62;
-        ::overact::guard::platform(t64, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t64, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t64, 1.0, "kept actuators")?;
-        let t65 = 1.0 / t64;
-        let t66 = t35 * t65;
-        let t68 = t62 * t65;
-        let t70 = minus_gfoot_vy_along_x * t66 + minus_gfoot_vz_along_x * t68;
-        let t77 = minus_gdrive_vx_along_z * minus_gdrive_vy_along_z
-            - (minus_gdrive_vy_along_x + minus_gdrive_vx_along_y);
-        let t81 = 1.0 + minus_gdrive_vx_along_y * minus_gdrive_vx_along_y
-            + minus_gdrive_vx_along_z * minus_gdrive_vx_along_z;
-        ::overact::guard::platform(t81, 1.0, "actuators")?;
-        ::overact::guard::platform(t81, 1.0, "actuators")?;
-        let t82 = 1.0 / t81;
-        let t83 = t77 * t82;
-        let t85 = minus_gdrive_vy_along_x * minus_gdrive_vy_along_x + 1.0
-            + minus_gdrive_vy_along_z * minus_gdrive_vy_along_z - t77 * t83;
-        ::overact::guard::platform(t85, 1.0, "actuators")?;
-        ::overact::guard::platform(t85, 1.0, "actuators")?;
-        let t86 = 1.0 / t85;
-        let t87 = 0.31 * s_left_bar_along_y;
-        let t91 = actuator_velocities[0]
-            - minus_gdrive_vx_along_y * actuator_velocities[1]
-            - minus_gdrive_vx_along_z * actuator_velocities[2];
-        let t98 = actuator_velocities[1]
-            - minus_gdrive_vy_along_x * actuator_velocities[0]
-            - minus_gdrive_vy_along_z * actuator_velocities[2] - t91 * t83;
-        let t105 = minus_gdrive_vz_along_y * minus_gdrive_vx_along_y
-            - minus_gdrive_vz_along_x - minus_gdrive_vx_along_z;
-        let t106 = t105 * t82;
-        let t108 = minus_gdrive_vy_along_x * minus_gdrive_vz_along_x
-            - minus_gdrive_vz_along_y - minus_gdrive_vy_along_z - t77 * t106;
-        let t109 = t108 * t86;
-        let t117 = minus_gdrive_vz_along_x * minus_gdrive_vz_along_x
-            + minus_gdrive_vz_along_y * minus_gdrive_vz_along_y + 1.0 - t105 * t106
-            - t108 * t109;
-        ::overact::guard::platform(t117, 1.0, "actuators")?;
-        ::overact::guard::platform(t117, 1.0, "actuators")?;
-        let t118 = 1.0 / t117;
-        let t127 = t118
-            * (actuator_velocities[2]
-                - (minus_gdrive_vz_along_x * actuator_velocities[0]
-                    + minus_gdrive_vz_along_y * actuator_velocities[1]) - t91 * t106
-                - t109 * t98);
-        let t129 = t86 * t98 - t109 * t127;
-        let t133 = t91 * t82 - t83 * t129 - t106 * t127;
-        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t133
-            + minus_gfoot_vz_along_y * t127;
-        let t137 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t18;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t133;
-        let t140 = minus_c_foot_along_y * minus_rate_left_bar_along_y;
-        let t143 = s_foot_along_y * minus_rate_left_bar_along_y;
-        let t145 = t137 + t140 * t140 + t143 * t143;
-        let t147 = t87 * minus_rate_foot_along_y;
-        let t148 = minus_rate_foot_along_y * t147;
-        let t149 = t87 * t145 - t148;
-        let t152 = t87 * (minus_rate_foot_along_y * t140);
-        let t160 = t87 * (minus_rate_foot_along_y * t143);
-        let t162 = t13 * t145 + t160 + t160;
-        let rate_dot_drive_along_y = minus_gdrive_vx_along_y * t149
-            - (t152 - 0.31 * t14 * t145 + t152) + minus_gdrive_vz_along_y * t162;
-        let t165 = actuator_accelerations[1] - rate_dot_drive_along_y;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t54;
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t127;
-        let t168 = minus_c_foot_along_x * minus_rate_left_bar_along_x;
-        let t170 = s_foot_along_x * minus_rate_left_bar_along_x;
-        let t172 = t168 * t168 + t170 * t170;
-        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t129
-            + minus_gfoot_vz_along_x * t127;
-        let t176 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t177 = t172 + t176;
-        let t179 = 0.31 * s_left_bar_along_x;
-        let t181 = t179 * (minus_rate_foot_along_x * t170);
-        let t183 = t52 * t177 + t181 + t181;
-        let t186 = t179 * (minus_rate_foot_along_x * t168);
-        let t193 = t179 * minus_rate_foot_along_x;
-        let t194 = minus_rate_foot_along_x * t193;
-        let t195 = t179 * t177 - t194;
-        let rate_dot_drive_along_x = minus_gdrive_vy_along_x * t183
-            - (t186 - 0.31 * t5 * t177 + t186) + minus_gdrive_vz_along_x * t195;
-        let t198 = actuator_accelerations[0] - rate_dot_drive_along_x;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t39;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t129;
-        let t203 = s_foot_along_z * minus_rate_left_bar_along_z;
-        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t133
-            + minus_gfoot_vy_along_z * t129;
-        let t208 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t210 = minus_c_foot_along_z * minus_rate_left_bar_along_z;
-        let t212 = t203 * t203 + t208 + t210 * t210;
-        let t214 = 0.31 * s_left_bar_along_z;
-        let t216 = t214 * (minus_rate_foot_along_z * t203);
-        let t218 = t36 * t212 + t216 + t216;
-        let t221 = t214 * minus_rate_foot_along_z;
-        let t222 = minus_rate_foot_along_z * t221;
-        let t223 = t214 * t212 - t222;
-        let t227 = t214 * (minus_rate_foot_along_z * t210);
-        let rate_dot_drive_along_z = minus_gdrive_vx_along_z * t218
-            + minus_gdrive_vy_along_z * t223 - (t227 - 0.31 * t31 * t212 + t227);
-        let t233 = actuator_accelerations[2] - rate_dot_drive_along_z;
-        let t239 = t198 - minus_gdrive_vx_along_y * t165
-            - minus_gdrive_vx_along_z * t233;
-        let t241 = t165 - minus_gdrive_vy_along_x * t198 - minus_gdrive_vy_along_z * t233
-            - t83 * t239;
-        let t251 = t118
-            * (t233 - (minus_gdrive_vz_along_x * t198 + minus_gdrive_vz_along_y * t165)
-                - t106 * t239 - t109 * t241);
-        let t253 = t86 * t241 - t109 * t251;
-        let t256 = t251 - t195;
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * (t253 - t183)
-            + minus_gfoot_vz_along_x * t256;
-        let t259 = t70 * minus_rate_dot_foot_along_x;
-        let t262 = (1.0 - minus_gdrive_vz_along_x * minus_gdrive_vx_along_z) * t65;
-        let t266 = (minus_gdrive_vy_along_z
-            + minus_gdrive_vy_along_x * minus_gdrive_vx_along_z) * t65;
-        let t268 = minus_gfoot_vy_along_x * t262 + minus_gfoot_vz_along_x * t266;
-        let t269 = t268 * minus_rate_dot_foot_along_x;
-        let t272 = (minus_gdrive_vz_along_y
-            + minus_gdrive_vz_along_x * minus_gdrive_vx_along_y) * t65;
-        let t276 = (1.0 - minus_gdrive_vy_along_x * minus_gdrive_vx_along_y) * t65;
-        let t278 = minus_gfoot_vy_along_x * t272 + minus_gfoot_vz_along_x * t276;
-        let t279 = t278 * minus_rate_dot_foot_along_x;
-        let t282 = minus_c_foot_along_x * minus_rate_dot_foot_along_x
-            - s_foot_along_x * t176;
-        let t283 = minus_c_foot_along_x * actuator_accelerations[0];
-        let t291 = s_foot_along_x * actuator_accelerations[0];
-        let t293 = s_foot_along_x * minus_rate_dot_foot_along_x
-            + minus_c_foot_along_x * t176 + t70 * t291;
-        let t294 = t268 * t291;
-        let t295 = t278 * t291;
-        let t296 = minus_gleft_bar_vz_along_x * t68;
-        let t297 = 3.225806451612903 * t193;
-        let t298 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t299 = t297 * t298;
-        let t300 = t296 * t299;
-        let t301 = minus_rate_left_bar_along_x * t298;
-        let t302 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t303 = t301 - t302;
-        let t305 = minus_rate_left_bar_along_x * t297;
-        let t306 = c_left_bar_along_x * t305;
-        let t307 = s_left_bar_along_x * t303 + t306;
-        let t309 = t300 - t70 * t307;
-        let t310 = minus_gleft_bar_vz_along_x * t266;
-        let t311 = t310 * t299;
-        let t313 = t311 - t268 * t307;
-        let t314 = minus_gleft_bar_vz_along_x * t276;
-        let t315 = t314 * t299;
-        let t317 = t315 - t278 * t307;
-        let t318 = t301 + t303;
-        let t320 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t321 = t320 + t305;
-        let t322 = t305 + t321;
-        let t324 = c_left_bar_along_x * t318 - s_left_bar_along_x * t322;
-        let t327 = 10.40582726326743 * (t193 * t193);
-        let t329 = t327 - t298 * t298;
-        let t331 = t70 * t324 + t296 * t329;
-        let t334 = t268 * t324 + t310 * t329;
-        let t337 = t278 * t324 + t314 * t329;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t256;
-        let t340 = t299 - minus_rate_dot_left_bar_along_x;
-        let t344 = s_left_bar_along_x * t340 + c_left_bar_along_x * (t172 - t327);
-        let t346 = t296 * t302 - t70 * t344;
-        let t349 = t310 * t302 - t268 * t344;
-        let t352 = t314 * t302 - t278 * t344;
-        let t354 = t306 + c_left_bar_along_x * t321;
-        let t356 = t70 * t354 - t300;
-        let t358 = t268 * t354 - t311;
-        let t360 = t278 * t354 - t315;
-        let t361 = 3.225806451612903 * t251;
-        let t364 = t70 * t361 + t296 * t320;
-        let t367 = t268 * t361 + t310 * t320;
-        let t370 = t278 * t361 + t314 * t320;
-        let t371 = t296 * minus_rate_dot_left_bar_along_x;
-        let t372 = t310 * minus_rate_dot_left_bar_along_x;
-        let t373 = t314 * minus_rate_dot_left_bar_along_x;
-        let t382 = c_left_bar_along_x * t283;
-        let t384 = minus_c_foot_along_x * t322
-            - (t5
+            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t63);
+        let t67 = minus_s_left_bar_along_x * c_foot_along_x;
+        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t67 * t63;
+        let t71 = gdrive_vx_along_y * gdrive_vy_along_z - gdrive_vx_along_z;
+        let t73 = t57 - gdrive_vy_along_x * t46 + gdrive_vz_along_x * t71;
+        ::overact::guard::platform(t73, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t73, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t73, 1.0, "kept actuators")?;
+        let t74 = 1.0 / t73;
+        let t75 = t46 * t74;
+        let t77 = t71 * t74;
+        let t79 = minus_gfoot_vy_along_x * t75 - minus_gfoot_vz_along_x * t77;
+        let t86 = gdrive_vy_along_x + gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vy_along_z;
+        let t90 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vx_along_z;
+        ::overact::guard::platform(t90, 1.0, "actuators")?;
+        ::overact::guard::platform(t90, 1.0, "actuators")?;
+        let t91 = 1.0 / t90;
+        let t92 = t86 * t91;
+        let t94 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
+            + gdrive_vy_along_z * gdrive_vy_along_z - t86 * t92;
+        ::overact::guard::platform(t94, 1.0, "actuators")?;
+        ::overact::guard::platform(t94, 1.0, "actuators")?;
+        let t95 = 1.0 / t94;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t63;
+        let t103 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z;
+        let t104 = t103 * t91;
+        let t111 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
+            + gdrive_vy_along_z - t86 * t104;
+        let t112 = t111 * t95;
+        let t114 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t103 * t104 - t111 * t112;
+        ::overact::guard::platform(t114, 1.0, "actuators")?;
+        ::overact::guard::platform(t114, 1.0, "actuators")?;
+        let t115 = 1.0 / t114;
+        let t123 = actuator_velocities[0] + gdrive_vx_along_y * actuator_velocities[1]
+            + gdrive_vx_along_z * actuator_velocities[2];
+        let t131 = gdrive_vy_along_x * actuator_velocities[0] + actuator_velocities[1]
+            + gdrive_vy_along_z * actuator_velocities[2] - t123 * t92;
+        let t134 = t115
+            * (gdrive_vz_along_x * actuator_velocities[0]
+                + gdrive_vz_along_y * actuator_velocities[1] + actuator_velocities[2]
+                - t123 * t104 - t112 * t131);
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t134;
+        let t136 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
+        let t138 = c_foot_along_x * minus_rate_left_bar_along_x;
+        let t140 = t136 * t136 + t138 * t138;
+        let t143 = t95 * t131 - t112 * t134;
+        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t143
+            + minus_gfoot_vz_along_x * t134;
+        let t147 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t148 = t140 + t147;
+        let t151 = pose[2] * (minus_rate_foot_along_x * t138);
+        let t153 = pose[1] * t148 + t151 + t151;
+        let t156 = pose[2] * (minus_rate_foot_along_x * t136);
+        let t162 = pose[2] * minus_rate_foot_along_x;
+        let t163 = minus_rate_foot_along_x * t162;
+        let t165 = t163 - pose[2] * t148;
+        let rate_dot_drive_along_x = gdrive_vy_along_x * t153
+            - (t156 - 0.31 * t10 * t148 + t156) - gdrive_vz_along_x * t165;
+        let t168 = actuator_accelerations[0] - rate_dot_drive_along_x;
+        let t174 = t123 * t91 - t92 * t143 - t104 * t134;
+        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t174
+            + minus_gfoot_vz_along_y * t134;
+        let t178 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t25;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t174;
+        let t181 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
+        let t184 = c_foot_along_y * minus_rate_left_bar_along_y;
+        let t186 = t178 + t181 * t181 + t184 * t184;
+        let t189 = pose[0] * (minus_rate_foot_along_y * t184);
+        let t191 = pose[2] * t186 + t189 + t189;
+        let t193 = pose[0] * minus_rate_foot_along_y;
+        let t194 = minus_rate_foot_along_y * t193;
+        let t196 = t194 - pose[0] * t186;
+        let t199 = pose[0] * (minus_rate_foot_along_y * t181);
+        let rate_dot_drive_along_y = gdrive_vz_along_y * t191
+            - (gdrive_vx_along_y * t196 + t199 - 0.31 * t21 * t186 + t199);
+        let t206 = actuator_accelerations[1] - rate_dot_drive_along_y;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t49;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t143;
+        let t210 = c_foot_along_z * minus_rate_left_bar_along_z;
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t174
+            + minus_gfoot_vy_along_z * t143;
+        let t215 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t217 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
+        let t219 = t210 * t210 + t215 + t217 * t217;
+        let t222 = pose[1] * (minus_rate_foot_along_z * t210);
+        let t224 = pose[0] * t219 + t222 + t222;
+        let t226 = pose[1] * minus_rate_foot_along_z;
+        let t227 = minus_rate_foot_along_z * t226;
+        let t229 = t227 - pose[1] * t219;
+        let t233 = pose[1] * (minus_rate_foot_along_z * t217);
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t224 - gdrive_vy_along_z * t229
+            - (t233 - 0.31 * t42 * t219 + t233);
+        let t239 = actuator_accelerations[2] - rate_dot_drive_along_z;
+        let t245 = t168 + gdrive_vx_along_y * t206 + gdrive_vx_along_z * t239;
+        let t247 = gdrive_vy_along_x * t168 + t206 + gdrive_vy_along_z * t239
+            - t92 * t245;
+        let t257 = t115
+            * (gdrive_vz_along_x * t168 + gdrive_vz_along_y * t206 + t239 - t104 * t245
+                - t112 * t247);
+        let t259 = t95 * t247 - t112 * t257;
+        let t262 = t257 - t165;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * (t259 + t153)
+            + minus_gfoot_vz_along_x * t262;
+        let t265 = t79 * minus_rate_dot_foot_along_x;
+        let t268 = (gdrive_vy_along_z - gdrive_vy_along_x * gdrive_vx_along_z) * t74;
+        let t272 = (1.0 - gdrive_vz_along_x * gdrive_vx_along_z) * t74;
+        let t274 = minus_gfoot_vz_along_x * t268 - minus_gfoot_vy_along_x * t272;
+        let t275 = t274 * minus_rate_dot_foot_along_x;
+        let t278 = (gdrive_vz_along_y - gdrive_vz_along_x * gdrive_vx_along_y) * t74;
+        let t282 = (1.0 - gdrive_vy_along_x * gdrive_vx_along_y) * t74;
+        let t284 = minus_gfoot_vy_along_x * t278 - minus_gfoot_vz_along_x * t282;
+        let t285 = t284 * minus_rate_dot_foot_along_x;
+        let t286 = minus_s_foot_along_x * actuator_accelerations[0];
+        let t290 = c_foot_along_x * t147
+            + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
+        let t297 = c_foot_along_x * actuator_accelerations[0];
+        let t299 = c_foot_along_x * minus_rate_dot_foot_along_x
+            - minus_s_foot_along_x * t147 - t79 * t297;
+        let t300 = t274 * t297;
+        let t301 = t284 * t297;
+        let t302 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t303 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t304 = minus_rate_left_bar_along_x * t303;
+        let t305 = t302 + t304;
+        let t307 = 3.225806451612903 * t162;
+        let t308 = minus_rate_left_bar_along_x * t307;
+        let t309 = c_left_bar_along_x * t308;
+        let t310 = minus_s_left_bar_along_x * t305 + t309;
+        let t312 = minus_gleft_bar_vz_along_x * t77;
+        let t313 = t307 * t303;
+        let t314 = t312 * t313;
+        let t315 = t79 * t310 + t314;
+        let t316 = minus_gleft_bar_vz_along_x * t268;
+        let t317 = t316 * t313;
+        let t319 = t317 - t274 * t310;
+        let t321 = minus_gleft_bar_vz_along_x * t282;
+        let t322 = t321 * t313;
+        let t323 = t284 * t310 + t322;
+        let t324 = t304 + t305;
+        let t326 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t327 = t308 - t326;
+        let t328 = t308 + t327;
+        let t330 = c_left_bar_along_x * t324 - minus_s_left_bar_along_x * t328;
+        let t333 = 10.40582726326743 * (t162 * t162);
+        let t335 = t333 - t303 * t303;
+        let t337 = t79 * t330 - t312 * t335;
+        let t340 = t274 * t330 + t316 * t335;
+        let t343 = t284 * t330 - t321 * t335;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t262;
+        let t345 = t313 + minus_rate_dot_left_bar_along_x;
+        let t349 = minus_s_left_bar_along_x * t345 + c_left_bar_along_x * (t140 - t333);
+        let t352 = t79 * t349 - t312 * t302;
+        let t355 = t274 * t349 + t316 * t302;
+        let t358 = t284 * t349 - t321 * t302;
+        let t360 = t309 + c_left_bar_along_x * t327;
+        let t362 = t79 * t360 + t314;
+        let t364 = t274 * t360 - t317;
+        let t366 = t284 * t360 + t322;
+        let t368 = 3.225806451612903 * t257;
+        let t370 = t312 * t326 - t79 * t368;
+        let t373 = t274 * t368 + t316 * t326;
+        let t376 = t321 * t326 - t284 * t368;
+        let t377 = t312 * minus_rate_dot_left_bar_along_x;
+        let t378 = t316 * minus_rate_dot_left_bar_along_x;
+        let t379 = t321 * minus_rate_dot_left_bar_along_x;
+        let t388 = c_left_bar_along_x * t286;
+        let t390 = minus_s_foot_along_x * t328
+            - (t10
                 * (3.225806451612903
-                    * (c_left_bar_along_x * (s_foot_along_x * rate_dot_drive_along_x)))
-                + t58 * t340) + t70 * t382;
-        let t387 = s_left_bar_along_x * t291 + 9.81 * c_left_bar_along_x;
-        let t389 = t384 + t296 * t387;
-        let t392 = t268 * t382 + t310 * t387;
-        let t395 = t278 * t382 + t314 * t387;
-        let t403 = s_left_bar_along_x * t283;
-        let t408 = c_left_bar_along_x * t291 - 9.81 * s_left_bar_along_x;
-        let t410 = t5 * (t299 + minus_rate_dot_left_bar_along_x) + t58 * (t327 + t172)
-            + minus_c_foot_along_x * t318 - t70 * t403 + t296 * t408;
-        let t413 = t310 * t408 - t268 * t403;
-        let t416 = t314 * t408 - t278 * t403;
-        let t419 = t283 + 0.31 * t322;
-        let t420 = 0.31 * t320 + t419;
-        let t441 = t82 * t239 - t83 * t253 - t106 * t251;
-        let t443 = 0.31 * c_left_bar_along_x * t419;
-        let t448 = 0.31 * (0.31 * t340 - t387);
-        let t450 = t441 + t70 * t443 - t296 * t448;
-        let t453 = t268 * t443 - t310 * t448;
-        let t456 = t278 * t443 - t314 * t448;
-        let t458 = t47 * t65;
-        let t461 = minus_gfoot_vx_along_y * t458 + minus_gfoot_vz_along_y * t68;
-        let t462 = t441 - t149;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t462
-            + minus_gfoot_vz_along_y * (t251 - t162);
-        let t467 = t461 * minus_rate_dot_foot_along_y;
-        let t470 = (minus_gdrive_vy_along_x
-            + minus_gdrive_vz_along_x * minus_gdrive_vy_along_z) * t65;
-        let t473 = minus_gfoot_vx_along_y * t470 + minus_gfoot_vz_along_y * t266;
-        let t474 = t473 * minus_rate_dot_foot_along_y;
-        let t477 = (minus_gdrive_vy_along_x * minus_gdrive_vz_along_y
-            + minus_gdrive_vz_along_x) * t65;
-        let t480 = minus_gfoot_vx_along_y * t477 + minus_gfoot_vz_along_y * t276;
-        let t481 = t480 * minus_rate_dot_foot_along_y;
-        let t484 = 9.81 * s_foot_along_y
-            + minus_c_foot_along_y * actuator_accelerations[1];
-        let t488 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
-            - s_foot_along_y * t137;
-        let t494 = s_foot_along_y * actuator_accelerations[1]
-            - 9.81 * minus_c_foot_along_y;
-        let t495 = t461 * t494;
-        let t500 = s_foot_along_y * minus_rate_dot_foot_along_y
-            + minus_c_foot_along_y * t137 + t473 * t494;
-        let t501 = t480 * t494;
-        let t502 = minus_gleft_bar_vx_along_y * t458;
-        let t503 = 3.225806451612903 * t147;
-        let t504 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t505 = t503 * t504;
-        let t506 = t502 * t505;
-        let t507 = minus_rate_left_bar_along_y * t504;
-        let t508 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t509 = t507 - t508;
-        let t511 = minus_rate_left_bar_along_y * t503;
-        let t512 = c_left_bar_along_y * t511;
-        let t513 = s_left_bar_along_y * t509 + t512;
-        let t515 = t506 - t461 * t513;
-        let t516 = minus_gleft_bar_vx_along_y * t470;
-        let t517 = t516 * t505;
-        let t519 = t517 - t473 * t513;
-        let t520 = minus_gleft_bar_vx_along_y * t477;
-        let t521 = t520 * t505;
-        let t523 = t521 - t480 * t513;
-        let t524 = t507 + t509;
-        let t526 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t527 = t526 + t511;
-        let t528 = t511 + t527;
-        let t530 = c_left_bar_along_y * t524 - s_left_bar_along_y * t528;
-        let t533 = 10.40582726326743 * (t147 * t147);
-        let t534 = t504 * t504;
-        let t535 = t533 - t534;
-        let t537 = t461 * t530 + t502 * t535;
-        let t540 = t473 * t530 + t516 * t535;
-        let t543 = t480 * t530 + t520 * t535;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t462;
-        let t546 = t505 - minus_rate_dot_left_bar_along_y;
-        let t548 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t551 = s_left_bar_along_y * t546 + c_left_bar_along_y * (t548 - t533);
-        let t553 = t502 * t508 - t461 * t551;
-        let t556 = t516 * t508 - t473 * t551;
-        let t559 = t520 * t508 - t480 * t551;
-        let t561 = t512 + c_left_bar_along_y * t527;
-        let t563 = t461 * t561 - t506;
-        let t565 = t473 * t561 - t517;
-        let t567 = t480 * t561 - t521;
-        let t568 = 3.225806451612903 * t441;
-        let t571 = t461 * t568 + t502 * t526;
-        let t574 = t473 * t568 + t516 * t526;
-        let t577 = t480 * t568 + t520 * t526;
-        let t578 = t502 * minus_rate_dot_left_bar_along_y;
-        let t579 = t516 * minus_rate_dot_left_bar_along_y;
-        let t580 = t520 * minus_rate_dot_left_bar_along_y;
-        let t581 = c_left_bar_along_y * t484;
-        let t583 = s_left_bar_along_y * t494;
-        let t585 = t461 * t581 + t502 * t583;
-        let t595 = minus_c_foot_along_y * t528 - (t14 * (t534 + t548) + t22 * t546)
-            + t473 * t581 + t516 * t583;
-        let t598 = t480 * t581 + t520 * t583;
-        let t599 = c_left_bar_along_y * t494;
-        let t601 = s_left_bar_along_y * t484;
-        let t603 = t502 * t599 - t461 * t601;
-        let t614 = t14 * (t505 + minus_rate_dot_left_bar_along_y) + t22 * (t533 + t548)
-            + minus_c_foot_along_y * t524 - t473 * t601 + t516 * t599;
-        let t617 = t520 * t599 - t480 * t601;
-        let t621 = 0.31 * t526 + t484 + 0.31 * t528;
-        let t638 = 9.81 + actuator_accelerations[2];
-        let t642 = minus_gfoot_vx_along_z * t458 + minus_gfoot_vy_along_z * t66;
-        let t645 = t253 - t223;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t441 - t218)
-            + minus_gfoot_vy_along_z * t645;
-        let t648 = t642 * minus_rate_dot_foot_along_z;
-        let t651 = minus_gfoot_vx_along_z * t470 + minus_gfoot_vy_along_z * t262;
-        let t652 = t651 * minus_rate_dot_foot_along_z;
-        let t655 = minus_gfoot_vx_along_z * t477 + minus_gfoot_vy_along_z * t272;
-        let t656 = t655 * minus_rate_dot_foot_along_z;
-        let t657 = minus_c_foot_along_z * t638;
-        let t662 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
-            - s_foot_along_z * t208;
-        let t665 = s_foot_along_z * t638;
-        let t666 = t642 * t665;
-        let t667 = t651 * t665;
-        let t672 = s_foot_along_z * minus_rate_dot_foot_along_z
-            + minus_c_foot_along_z * t208 + t655 * t665;
-        let t673 = minus_gleft_bar_vy_along_z * t66;
-        let t674 = 3.225806451612903 * t221;
-        let t675 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t676 = t674 * t675;
-        let t677 = t673 * t676;
-        let t678 = minus_rate_left_bar_along_z * t675;
-        let t679 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t680 = t678 - t679;
-        let t682 = minus_rate_left_bar_along_z * t674;
-        let t683 = c_left_bar_along_z * t682;
-        let t684 = s_left_bar_along_z * t680 + t683;
-        let t686 = t677 - t642 * t684;
-        let t687 = minus_gleft_bar_vy_along_z * t262;
-        let t688 = t687 * t676;
-        let t690 = t688 - t651 * t684;
-        let t691 = minus_gleft_bar_vy_along_z * t272;
-        let t692 = t691 * t676;
-        let t694 = t692 - t655 * t684;
-        let t695 = t678 + t680;
-        let t697 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t698 = t697 + t682;
-        let t699 = t682 + t698;
-        let t701 = c_left_bar_along_z * t695 - s_left_bar_along_z * t699;
-        let t704 = 10.40582726326743 * (t221 * t221);
-        let t705 = t675 * t675;
-        let t706 = t704 - t705;
-        let t708 = t642 * t701 + t673 * t706;
-        let t711 = t651 * t701 + t687 * t706;
-        let t714 = t655 * t701 + t691 * t706;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t645;
-        let t717 = t676 - minus_rate_dot_left_bar_along_z;
-        let t719 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t722 = s_left_bar_along_z * t717 + c_left_bar_along_z * (t719 - t704);
-        let t724 = t673 * t679 - t642 * t722;
-        let t727 = t687 * t679 - t651 * t722;
-        let t730 = t691 * t679 - t655 * t722;
-        let t732 = t683 + c_left_bar_along_z * t698;
-        let t734 = t642 * t732 - t677;
-        let t736 = t651 * t732 - t688;
-        let t738 = t655 * t732 - t692;
-        let t739 = 3.225806451612903 * t253;
-        let t742 = t642 * t739 + t673 * t697;
-        let t745 = t651 * t739 + t687 * t697;
-        let t748 = t655 * t739 + t691 * t697;
-        let t749 = t673 * minus_rate_dot_left_bar_along_z;
-        let t750 = t687 * minus_rate_dot_left_bar_along_z;
-        let t751 = t691 * minus_rate_dot_left_bar_along_z;
-        let t752 = c_left_bar_along_z * t657;
-        let t754 = s_left_bar_along_z * t665;
-        let t756 = t642 * t752 + t673 * t754;
-        let t759 = t651 * t752 + t687 * t754;
-        let t769 = minus_c_foot_along_z * t699 - (t31 * (t705 + t719) + t43 * t717)
-            + t655 * t752 + t691 * t754;
-        let t770 = c_left_bar_along_z * t665;
-        let t772 = s_left_bar_along_z * t657;
-        let t774 = t673 * t770 - t642 * t772;
-        let t777 = t687 * t770 - t651 * t772;
-        let t788 = t31 * (t676 + minus_rate_dot_left_bar_along_z) + t43 * (t704 + t719)
-            + minus_c_foot_along_z * t695 - t655 * t772 + t691 * t770;
-        let t792 = 0.31 * t697 + t657 + 0.31 * t699;
+                    * (c_left_bar_along_x * (c_foot_along_x * rate_dot_drive_along_x)))
+                + t67 * t345) + t79 * t388;
+        let t393 = minus_s_left_bar_along_x * t297 - 9.81 * c_left_bar_along_x;
+        let t395 = t390 - t312 * t393;
+        let t398 = t274 * t388 + t316 * t393;
+        let t401 = t284 * t388 - t321 * t393;
+        let t409 = minus_s_left_bar_along_x * t286;
+        let t414 = c_left_bar_along_x * t297 + 31.64516129032258 * pose[2];
+        let t416 = t10 * (minus_rate_dot_left_bar_along_x - t313) - t67 * (t333 + t140)
+            - minus_s_foot_along_x * t324 + t79 * t409 + t312 * t414;
+        let t419 = t274 * t409 - t316 * t414;
+        let t422 = t284 * t409 + t321 * t414;
+        let t424 = t286 + 0.31 * t328;
+        let t426 = t424 - 0.31 * t326;
+        let t447 = t91 * t245 - t92 * t259 - t104 * t257;
+        let t448 = t5 * t424;
+        let t453 = 0.31 * (t393 - 0.31 * t345);
+        let t455 = t447 + t79 * t448 - t312 * t453;
+        let t458 = t274 * t448 + t316 * t453;
+        let t461 = t284 * t448 - t321 * t453;
+        let t463 = t57 * t74;
+        let t466 = minus_gfoot_vx_along_y * t463 + minus_gfoot_vz_along_y * t77;
+        let t467 = t447 - t196;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t467
+            + minus_gfoot_vz_along_y * (t257 + t191);
+        let t472 = t466 * minus_rate_dot_foot_along_y;
+        let t475 = (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t74;
+        let t478 = minus_gfoot_vx_along_y * t475 + minus_gfoot_vz_along_y * t268;
+        let t479 = t478 * minus_rate_dot_foot_along_y;
+        let t482 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t74;
+        let t485 = minus_gfoot_vx_along_y * t482 + minus_gfoot_vz_along_y * t282;
+        let t486 = t485 * minus_rate_dot_foot_along_y;
+        let t489 = minus_s_foot_along_y * actuator_accelerations[1]
+            - 9.81 * c_foot_along_y;
+        let t494 = c_foot_along_y * t178
+            + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
+        let t499 = 9.81 * minus_s_foot_along_y
+            + c_foot_along_y * actuator_accelerations[1];
+        let t500 = t466 * t499;
+        let t505 = c_foot_along_y * minus_rate_dot_foot_along_y
+            - minus_s_foot_along_y * t178 - t478 * t499;
+        let t506 = t485 * t499;
+        let t507 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t508 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t509 = minus_rate_left_bar_along_y * t508;
+        let t510 = t507 + t509;
+        let t512 = 3.225806451612903 * t193;
+        let t513 = minus_rate_left_bar_along_y * t512;
+        let t514 = c_left_bar_along_y * t513;
+        let t515 = minus_s_left_bar_along_y * t510 + t514;
+        let t517 = minus_gleft_bar_vx_along_y * t463;
+        let t518 = t512 * t508;
+        let t519 = t517 * t518;
+        let t520 = t466 * t515 - t519;
+        let t521 = minus_gleft_bar_vx_along_y * t475;
+        let t522 = t521 * t518;
+        let t524 = t522 - t478 * t515;
+        let t526 = minus_gleft_bar_vx_along_y * t482;
+        let t527 = t526 * t518;
+        let t528 = t485 * t515 - t527;
+        let t529 = t509 + t510;
+        let t531 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t532 = t513 - t531;
+        let t533 = t513 + t532;
+        let t535 = c_left_bar_along_y * t529 - minus_s_left_bar_along_y * t533;
+        let t538 = 10.40582726326743 * (t193 * t193);
+        let t539 = t508 * t508;
+        let t540 = t538 - t539;
+        let t542 = t466 * t535 + t517 * t540;
+        let t545 = t478 * t535 + t521 * t540;
+        let t548 = t485 * t535 + t526 * t540;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t467;
+        let t550 = t518 + minus_rate_dot_left_bar_along_y;
+        let t552 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t555 = minus_s_left_bar_along_y * t550 + c_left_bar_along_y * (t552 - t538);
+        let t558 = t466 * t555 + t517 * t507;
+        let t561 = t478 * t555 + t521 * t507;
+        let t564 = t485 * t555 + t526 * t507;
+        let t566 = t514 + c_left_bar_along_y * t532;
+        let t568 = t519 - t466 * t566;
+        let t570 = t478 * t566 - t522;
+        let t572 = t527 - t485 * t566;
+        let t573 = 3.225806451612903 * t447;
+        let t576 = t466 * t573 + t517 * t531;
+        let t579 = t478 * t573 + t521 * t531;
+        let t582 = t485 * t573 + t526 * t531;
+        let t583 = t517 * minus_rate_dot_left_bar_along_y;
+        let t584 = t521 * minus_rate_dot_left_bar_along_y;
+        let t585 = t526 * minus_rate_dot_left_bar_along_y;
+        let t586 = c_left_bar_along_y * t489;
+        let t588 = minus_s_left_bar_along_y * t499;
+        let t590 = t466 * t586 + t517 * t588;
+        let t600 = minus_s_foot_along_y * t533 - (t21 * (t539 + t552) + t29 * t550)
+            + t478 * t586 + t521 * t588;
+        let t603 = t485 * t586 + t526 * t588;
+        let t604 = c_left_bar_along_y * t499;
+        let t606 = minus_s_left_bar_along_y * t489;
+        let t608 = t517 * t604 - t466 * t606;
+        let t619 = t21 * (minus_rate_dot_left_bar_along_y - t518) - t29 * (t538 + t552)
+            - minus_s_foot_along_y * t529 + t478 * t606 - t521 * t604;
+        let t622 = t526 * t604 - t485 * t606;
+        let t627 = t489 + 0.31 * t533 - 0.31 * t531;
+        let t643 = 9.81 + actuator_accelerations[2];
+        let t647 = minus_gfoot_vy_along_z * t75 - minus_gfoot_vx_along_z * t463;
+        let t650 = t259 - t229;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t447 + t224)
+            + minus_gfoot_vy_along_z * t650;
+        let t653 = t647 * minus_rate_dot_foot_along_z;
+        let t656 = minus_gfoot_vx_along_z * t475 - minus_gfoot_vy_along_z * t272;
+        let t657 = t656 * minus_rate_dot_foot_along_z;
+        let t660 = minus_gfoot_vy_along_z * t278 - minus_gfoot_vx_along_z * t482;
+        let t661 = t660 * minus_rate_dot_foot_along_z;
+        let t662 = minus_s_foot_along_z * t643;
+        let t668 = c_foot_along_z * t215
+            + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
+        let t670 = c_foot_along_z * t643;
+        let t671 = t647 * t670;
+        let t672 = t656 * t670;
+        let t677 = c_foot_along_z * minus_rate_dot_foot_along_z
+            - minus_s_foot_along_z * t215 - t660 * t670;
+        let t678 = minus_gleft_bar_vy_along_z * t75;
+        let t679 = 3.225806451612903 * t226;
+        let t680 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t681 = t679 * t680;
+        let t682 = t678 * t681;
+        let t683 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t684 = minus_rate_left_bar_along_z * t680;
+        let t685 = t683 + t684;
+        let t687 = minus_rate_left_bar_along_z * t679;
+        let t688 = c_left_bar_along_z * t687;
+        let t689 = minus_s_left_bar_along_z * t685 + t688;
+        let t691 = t682 - t647 * t689;
+        let t693 = minus_gleft_bar_vy_along_z * t272;
+        let t694 = t693 * t681;
+        let t695 = t656 * t689 + t694;
+        let t696 = minus_gleft_bar_vy_along_z * t278;
+        let t697 = t696 * t681;
+        let t699 = t697 - t660 * t689;
+        let t700 = t684 + t685;
+        let t702 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t703 = t687 - t702;
+        let t704 = t687 + t703;
+        let t706 = c_left_bar_along_z * t700 - minus_s_left_bar_along_z * t704;
+        let t709 = 10.40582726326743 * (t226 * t226);
+        let t710 = t680 * t680;
+        let t711 = t709 - t710;
+        let t713 = t647 * t706 + t678 * t711;
+        let t716 = t656 * t706 - t693 * t711;
+        let t719 = t660 * t706 + t696 * t711;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t650;
+        let t721 = t681 + minus_rate_dot_left_bar_along_z;
+        let t723 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t726 = minus_s_left_bar_along_z * t721 + c_left_bar_along_z * (t723 - t709);
+        let t729 = t647 * t726 + t678 * t683;
+        let t732 = t656 * t726 - t693 * t683;
+        let t735 = t660 * t726 + t696 * t683;
+        let t737 = t688 + c_left_bar_along_z * t703;
+        let t739 = t647 * t737 - t682;
+        let t741 = t656 * t737 + t694;
+        let t743 = t660 * t737 - t697;
+        let t744 = 3.225806451612903 * t259;
+        let t747 = t647 * t744 + t678 * t702;
+        let t750 = t693 * t702 - t656 * t744;
+        let t753 = t660 * t744 + t696 * t702;
+        let t754 = t678 * minus_rate_dot_left_bar_along_z;
+        let t755 = t693 * minus_rate_dot_left_bar_along_z;
+        let t756 = t696 * minus_rate_dot_left_bar_along_z;
+        let t757 = c_left_bar_along_z * t662;
+        let t759 = minus_s_left_bar_along_z * t670;
+        let t761 = t647 * t757 + t678 * t759;
+        let t764 = t656 * t757 - t693 * t759;
+        let t774 = minus_s_foot_along_z * t704 - (t42 * (t710 + t723) + t53 * t721)
+            + t660 * t757 + t696 * t759;
+        let t775 = minus_s_left_bar_along_z * t662;
+        let t777 = c_left_bar_along_z * t670;
+        let t779 = t647 * t775 - t678 * t777;
+        let t782 = t656 * t775 + t693 * t777;
+        let t793 = t42 * (minus_rate_dot_left_bar_along_z - t681) - t53 * (t709 + t723)
+            - minus_s_foot_along_z * t700 + t660 * t775 - t696 * t777;
+        let t797 = t662 + 0.31 * t704 - 0.31 * t702;
         Ok([
             [
                 actuator_accelerations[0], actuator_accelerations[0], actuator_velocities[0],
-                ::overact::math::sign(actuator_velocities[0]), 1.0, t259, t282 + t70 * t283, t293,
-                actuator_accelerations[0], t309, -t331, t346, t356, t364, t371, t389, t410, -t293,
-                actuator_accelerations[0], t309, -t331, t346, t356, t364, t371, t389, t410, -t293,
-                actuator_accelerations[0], t259, t282 + t70 * t420 - t296 * t194,
-                -(t293 + 0.31 * t346), t450, 0.0, 0.0, 0.0, 0.0, 0.0, t467, t461 * t484, t495, 0.0,
-                t515, -t537, t553, t563, t571, t578, t585, t603, -t495, 0.0, t515, -t537, t553,
-                t563, t571, t578, t585, t603, -t495, 0.0, t467, t461 * t621 - t502 * t148,
-                -(t495 + 0.31 * t553), t450, 0.0, 0.0, 0.0, 0.0, 0.0, t648, t642 * t657, t666, 0.0,
-                t686, -t708, t724, t734, t742, t749, t756, t774, -t666, 0.0, t686, -t708, t724,
-                t734, t742, t749, t756, t774, -t666, 0.0, t648, t642 * t792 - t673 * t222,
-                -(t666 + 0.31 * t724), t450, t450,
+                ::overact::math::sign(actuator_velocities[0]), 1.0, -t265, t79 * t286 - t290, t299,
+                actuator_accelerations[0], -t315, t337, t352, t362, t370, t377, t395, t416, -t299,
+                actuator_accelerations[0], -t315, t337, t352, t362, t370, t377, t395, t416, -t299,
+                actuator_accelerations[0], -t265, t79 * t426 - t290 + t312 * t163,
+                -(t299 + 0.31 * t352), t455, 0.0, 0.0, 0.0, 0.0, 0.0, t472, -(t466 * t489), t500,
+                0.0, t520, -t542, -t558, t568, t576, t583, -t590, t608, -t500, 0.0, t520, -t542,
+                -t558, t568, t576, t583, -t590, t608, -t500, 0.0, t472, t517 * t194 - t466 * t627,
+                -(t500 - 0.31 * t558), t455, 0.0, 0.0, 0.0, 0.0, 0.0, -t653, t647 * t662, -t671,
+                0.0, t691, t713, t729, t739, -t747, -t754, t761, t779, t671, 0.0, t691, t713, t729,
+                t739, -t747, -t754, t761, t779, t671, 0.0, -t653, t647 * t797 - t678 * t227,
+                -(0.31 * t729 - t671), t455, t455,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, t269, t268 * t283, t294, 0.0, t313, -t334, t349, t358,
-                t367, t372, t392, t413, -t294, 0.0, t313, -t334, t349, t358, t367, t372, t392, t413,
-                -t294, 0.0, t269, t268 * t420 - t310 * t194, -(t294 + 0.31 * t349), t453,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t275, t274 * t286, -t300, 0.0, t319, t340, t355, t364,
+                -t373, -t378, t398, t419, t300, 0.0, t319, t340, t355, t364, -t373, -t378, t398,
+                t419, t300, 0.0, -t275, t274 * t426 - t316 * t163, -(0.31 * t355 - t300), t458,
                 actuator_accelerations[1], actuator_accelerations[1], actuator_velocities[1],
-                ::overact::math::sign(actuator_velocities[1]), 1.0, t474, t488 + t473 * t484, t500,
-                actuator_accelerations[1], t519, -t540, t556, t565, t574, t579, t595, t614, -t500,
-                actuator_accelerations[1], t519, -t540, t556, t565, t574, t579, t595, t614, -t500,
-                actuator_accelerations[1], t474, t488 + t473 * t621 - t516 * t148,
-                -(t500 + 0.31 * t556), t453, 0.0, 0.0, 0.0, 0.0, 0.0, t652, t651 * t657, t667, 0.0,
-                t690, -t711, t727, t736, t745, t750, t759, t777, -t667, 0.0, t690, -t711, t727,
-                t736, t745, t750, t759, t777, -t667, 0.0, t652, t651 * t792 - t687 * t222,
-                -(t667 + 0.31 * t727), t453, t453,
+                ::overact::math::sign(actuator_velocities[1]), 1.0, -t479, t478 * t489 - t494, t505,
+                actuator_accelerations[1], t524, t545, t561, t570, -t579, -t584, t600, t619, -t505,
+                actuator_accelerations[1], t524, t545, t561, t570, -t579, -t584, t600, t619, -t505,
+                actuator_accelerations[1], -t479, t478 * t627 - t494 - t521 * t194,
+                -(t505 + 0.31 * t561), t458, 0.0, 0.0, 0.0, 0.0, 0.0, -t657, t656 * t662, -t672,
+                0.0, -t695, t716, t732, t741, t750, t755, t764, t782, t672, 0.0, -t695, t716, t732,
+                t741, t750, t755, t764, t782, t672, 0.0, -t657, t656 * t797 + t693 * t227,
+                -(0.31 * t732 - t672), t458, t458,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, t279, t278 * t283, t295, 0.0, t317, -t337, t352, t360,
-                t370, t373, t395, t416, -t295, 0.0, t317, -t337, t352, t360, t370, t373, t395, t416,
-                -t295, 0.0, t279, t278 * t420 - t314 * t194, -(t295 + 0.31 * t352), t456, 0.0, 0.0,
-                0.0, 0.0, 0.0, t481, t480 * t484, t501, 0.0, t523, -t543, t559, t567, t577, t580,
-                t598, t617, -t501, 0.0, t523, -t543, t559, t567, t577, t580, t598, t617, -t501, 0.0,
-                t481, t480 * t621 - t520 * t148, -(t501 + 0.31 * t559), t456, t638,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t285, t284 * t286, -t301, 0.0, -t323, t343, t358, t366,
+                t376, t379, t401, t422, t301, 0.0, -t323, t343, t358, t366, t376, t379, t401, t422,
+                t301, 0.0, -t285, t284 * t426 + t321 * t163, -(0.31 * t358 - t301), t461, 0.0, 0.0,
+                0.0, 0.0, 0.0, t486, -(t485 * t489), t506, 0.0, t528, -t548, -t564, t572, t582,
+                t585, -t603, t622, -t506, 0.0, t528, -t548, -t564, t572, t582, t585, -t603, t622,
+                -t506, 0.0, t486, t526 * t194 - t485 * t627, -(t506 - 0.31 * t564), t461, t643,
                 actuator_accelerations[2], actuator_velocities[2],
-                ::overact::math::sign(actuator_velocities[2]), 1.0, t656, t662 + t655 * t657, t672,
-                t638, t694, -t714, t730, t738, t748, t751, t769, t788, -t672, t638, t694, -t714,
-                t730, t738, t748, t751, t769, t788, -t672, t638, t656,
-                t662 + t655 * t792 - t691 * t222, -(t672 + 0.31 * t730), t456, t456,
+                ::overact::math::sign(actuator_velocities[2]), 1.0, -t661, t660 * t662 - t668, t677,
+                t643, t699, t719, t735, t743, -t753, -t756, t774, t793, -t677, t643, t699, t719,
+                t735, t743, -t753, -t756, t774, t793, -t677, t643, -t661,
+                t660 * t797 - t668 - t696 * t227, -(t677 + 0.31 * t735), t461, t461,
             ],
         ])
     }
@@ -3370,7 +4063,7 @@ impl Orthoglide {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 485 operations (156 additions, 323 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 405 intermediates.
+    /// 500 operations (162 additions, 329 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 414 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3379,8 +4072,329 @@ impl Orthoglide {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_platform_base_from_joints(pose, joints, twist, acceleration)
+        let t2 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t2, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t2);
+        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
+        let t8 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t8, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t8);
+        let t10 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t10, 1.0, "along_x")?;
+        let t11 = 1.0 / t10;
+        let minus_gfoot_vy_along_x = 3.225806451612903 * t11;
+        let t15 = 1.0 / c_left_bar_along_x;
+        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
+            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t15);
+        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
+            + minus_gfoot_vz_along_x * twist[2];
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t15;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
+        let t22 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
+        let t24 = pose[2] * (minus_rate_foot_along_x * t22);
+        let t27 = c_foot_along_x * minus_rate_left_bar_along_x;
+        let t29 = t22 * t22 + t27 * t27;
+        let t30 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t31 = t29 + t30;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let t39 = pose[2] * (minus_rate_foot_along_x * t27);
+        let t42 = acceleration[1] + pose[1] * t31 + t39 + t39;
+        let t46 = minus_s_left_bar_along_x * c_foot_along_x;
+        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t46 * t15;
+        let t49 = pose[2] * minus_rate_foot_along_x;
+        let t50 = minus_rate_foot_along_x * t49;
+        let t53 = acceleration[2] - (t50 - pose[2] * t31);
+        let rate_dot_drive_along_x = acceleration[0] - (t24 - 0.31 * t10 * t31 + t24)
+            + gdrive_vy_along_x * t42 + gdrive_vz_along_x * t53;
+        let t56 = c_foot_along_x * rate_dot_drive_along_x;
+        let t60 = 3.225806451612903 * t49;
+        let t61 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t62 = t60 * t61;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t53;
+        let t64 = t62 + minus_rate_dot_left_bar_along_x;
+        let t70 = c_left_bar_along_x * t56 + 31.64516129032258 * pose[2];
+        let t71 = t61 * t61;
+        let t76 = c_left_bar_along_x
+            * (minus_s_left_bar_along_x * t56 - 9.81 * c_left_bar_along_x - 0.31 * t64)
+            - minus_s_left_bar_along_x * (t70 - 0.31 * (t71 + t29));
+        let t81 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t81, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t81);
+        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
+        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let t86 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t86, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t86);
+        let t88 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t88, 1.0, "along_y")?;
+        let t89 = 1.0 / t88;
+        let minus_gfoot_vz_along_y = 3.225806451612903 * t89;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t93 = 1.0 / c_left_bar_along_y;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
+            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t93);
+        let t97 = minus_s_left_bar_along_y * c_foot_along_y;
+        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t97 * t93;
+        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
+            + minus_gfoot_vz_along_y * twist[2];
+        let t103 = pose[0] * minus_rate_foot_along_y;
+        let t104 = minus_rate_foot_along_y * t103;
+        let t105 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t93;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
+        let t108 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
+        let t111 = c_foot_along_y * minus_rate_left_bar_along_y;
+        let t113 = t105 + t108 * t108 + t111 * t111;
+        let t116 = acceleration[0] - (t104 - pose[0] * t113);
+        let t119 = pose[0] * (minus_rate_foot_along_y * t108);
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t129 = pose[0] * (minus_rate_foot_along_y * t111);
+        let t132 = acceleration[2] + pose[2] * t113 + t129 + t129;
+        let rate_dot_drive_along_y = gdrive_vx_along_y * t116 + acceleration[1]
+            - (t119 - 0.31 * t88 * t113 + t119) + gdrive_vz_along_y * t132;
+        let t139 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t139, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t139);
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
+        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
+        let t144 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t144, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t144);
+        let t146 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t146, 1.0, "along_z")?;
+        let t147 = 1.0 / t146;
+        let minus_gfoot_vx_along_z = 3.225806451612903 * t147;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t150 = 1.0 / c_left_bar_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t150;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
+        let t153 = c_foot_along_z * minus_rate_left_bar_along_z;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
+            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t150);
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
+            + minus_gfoot_vy_along_z * twist[1];
+        let t162 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t164 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
+        let t166 = t153 * t153 + t162 + t164 * t164;
+        let t169 = pose[1] * (minus_rate_foot_along_z * t153);
+        let t172 = acceleration[0] + pose[0] * t166 + t169 + t169;
+        let t175 = minus_s_left_bar_along_z * c_foot_along_z;
+        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t175 * t150;
+        let t178 = pose[1] * minus_rate_foot_along_z;
+        let t179 = minus_rate_foot_along_z * t178;
+        let t182 = acceleration[1] - (t179 - pose[1] * t166);
+        let t186 = pose[1] * (minus_rate_foot_along_z * t164);
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t172 + gdrive_vy_along_z * t182
+            + acceleration[2] - (t186 - 0.31 * t146 * t166 + t186);
+        let t193 = 9.81 + rate_dot_drive_along_z;
+        let rate_drive_along_x = twist[0] + gdrive_vy_along_x * twist[1]
+            + gdrive_vz_along_x * twist[2];
+        let rate_drive_along_y = gdrive_vx_along_y * twist[0] + twist[1]
+            + gdrive_vz_along_y * twist[2];
+        let rate_drive_along_z = gdrive_vx_along_z * twist[0]
+            + gdrive_vy_along_z * twist[1] + twist[2];
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t42
+            + minus_gfoot_vz_along_x * t53;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t116
+            + minus_gfoot_vz_along_y * t132;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t172
+            + minus_gfoot_vy_along_z * t182;
+        let t242 = c_foot_along_x * t30
+            + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
+        let t243 = gdrive_vy_along_x * t242;
+        let t244 = minus_s_foot_along_x * rate_dot_drive_along_x;
+        let t247 = gdrive_vz_along_x * t242;
+        let t252 = c_foot_along_y * t105
+            + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
+        let t253 = gdrive_vx_along_y * t252;
+        let t256 = minus_s_foot_along_y * rate_dot_drive_along_y - 9.81 * c_foot_along_y;
+        let t259 = gdrive_vz_along_y * t252;
+        let t264 = c_foot_along_z * t162
+            + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
+        let t265 = gdrive_vx_along_z * t264;
+        let t266 = minus_s_foot_along_z * t193;
+        let t269 = gdrive_vy_along_z * t264;
+        let t274 = c_foot_along_x * minus_rate_dot_foot_along_x
+            - minus_s_foot_along_x * t30;
+        let t283 = c_foot_along_y * minus_rate_dot_foot_along_y
+            - minus_s_foot_along_y * t105;
+        let t287 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
+        let t295 = c_foot_along_z * minus_rate_dot_foot_along_z
+            - minus_s_foot_along_z * t162;
+        let t297 = c_foot_along_z * t193;
+        let t303 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t304 = minus_rate_left_bar_along_x * t61;
+        let t305 = t303 + t304;
+        let t307 = minus_rate_left_bar_along_x * t60;
+        let t309 = minus_s_left_bar_along_x * t305 + c_left_bar_along_x * t307;
+        let t314 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t315 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t316 = minus_rate_left_bar_along_y * t315;
+        let t317 = t314 + t316;
+        let t319 = 3.225806451612903 * t103;
+        let t320 = minus_rate_left_bar_along_y * t319;
+        let t322 = minus_s_left_bar_along_y * t317 + c_left_bar_along_y * t320;
+        let t327 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t328 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t329 = minus_rate_left_bar_along_z * t328;
+        let t330 = t327 + t329;
+        let t332 = 3.225806451612903 * t178;
+        let t333 = minus_rate_left_bar_along_z * t332;
+        let t335 = minus_s_left_bar_along_z * t330 + c_left_bar_along_z * t333;
+        let t340 = t304 + t305;
+        let t342 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t344 = t307 + t307 - t342;
+        let t346 = c_left_bar_along_x * t340 - minus_s_left_bar_along_x * t344;
+        let t350 = 10.40582726326743 * (t49 * t49);
+        let t354 = t316 + t317;
+        let t356 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t358 = t320 + t320 - t356;
+        let t360 = c_left_bar_along_y * t354 - minus_s_left_bar_along_y * t358;
+        let t363 = 10.40582726326743 * (t103 * t103);
+        let t369 = t329 + t330;
+        let t371 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t373 = t333 + t333 - t371;
+        let t375 = c_left_bar_along_z * t369 - minus_s_left_bar_along_z * t373;
+        let t379 = 10.40582726326743 * (t178 * t178);
+        let t387 = minus_s_left_bar_along_x * t64 + c_left_bar_along_x * (t29 - t350);
+        let t392 = t319 * t315;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t116;
+        let t396 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t399 = minus_s_left_bar_along_y * (t392 + minus_rate_dot_left_bar_along_y)
+            + c_left_bar_along_y * (t396 - t363);
+        let t404 = t332 * t328;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t182;
+        let t408 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t411 = minus_s_left_bar_along_z * (t404 + minus_rate_dot_left_bar_along_z)
+            + c_left_bar_along_z * (t408 - t379);
+        let t443 = t10 * (minus_rate_dot_left_bar_along_x - t62) - t46 * (t350 + t29)
+            - minus_s_foot_along_x * t340;
+        let t445 = minus_s_left_bar_along_x * t244;
+        let t459 = t88 * (minus_rate_dot_left_bar_along_y - t392) - t97 * (t363 + t396)
+            - minus_s_foot_along_y * t354;
+        let t461 = minus_s_left_bar_along_y * t256;
+        let t475 = t146 * (minus_rate_dot_left_bar_along_z - t404) - t175 * (t379 + t408)
+            - minus_s_foot_along_z * t369;
+        let t477 = minus_s_left_bar_along_z * t266;
+        let t488 = t244 + 0.31 * t344 - 0.31 * t342;
+        let t499 = t256 + 0.31 * t358 - 0.31 * t356;
+        let t508 = t266 + 0.31 * t373 - 0.31 * t371;
+        Ok([
+            [
+                acceleration[0], rate_dot_drive_along_x, gdrive_vx_along_y * rate_dot_drive_along_y,
+                gdrive_vx_along_z * t193, gdrive_vx_along_z * rate_dot_drive_along_z,
+                rate_drive_along_x, gdrive_vx_along_y * rate_drive_along_y,
+                gdrive_vx_along_z * rate_drive_along_z, ::overact::math::sign(rate_drive_along_x),
+                ::overact::math::signed(gdrive_vx_along_y, rate_drive_along_y),
+                ::overact::math::signed(gdrive_vx_along_z, rate_drive_along_z), 1.0,
+                gdrive_vx_along_y, 0.0, minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y,
+                minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z, -t242,
+                -(t253 + minus_gfoot_vx_along_y * t256), -(t265 + minus_gfoot_vx_along_z * t266),
+                t274, gdrive_vx_along_y * t283 + minus_gfoot_vx_along_y * t287,
+                gdrive_vx_along_z * t295 + minus_gfoot_vx_along_z * t297, 0.0,
+                minus_gfoot_vx_along_y * t322 - 10.40582726326743 * t104,
+                minus_gfoot_vx_along_z * t335, 0.0,
+                -(minus_gfoot_vx_along_y * t360
+                    + minus_gleft_bar_vx_along_y * (t363 - t315 * t315)),
+                -(minus_gfoot_vx_along_z * t375),
+                0.0,
+                -(minus_gfoot_vx_along_y * t399 + minus_gleft_bar_vx_along_y * t314),
+                -(minus_gfoot_vx_along_z * t411),
+                0.0,
+                minus_gfoot_vx_along_y * (3.225806451612903 * acceleration[0])
+                    + 3.225806451612903 * minus_rate_dot_foot_along_y,
+                10.40582726326743 * (t147 * acceleration[1]),
+                0.0,
+                minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y,
+                0.0,
+                t443,
+                gdrive_vx_along_y * t459 - minus_gfoot_vx_along_y * t461
+                    + 3.225806451612903 * t287,
+                gdrive_vx_along_z * t475 - minus_gfoot_vx_along_z * t477,
+                -t242,
+                minus_gleft_bar_vx_along_y * t104
+                    - (t253 + minus_gfoot_vx_along_y * t499),
+                -(t265 + minus_gfoot_vx_along_z * t508),
+            ],
+            [
+                acceleration[1], gdrive_vy_along_x * rate_dot_drive_along_x, rate_dot_drive_along_y,
+                gdrive_vy_along_z * t193, gdrive_vy_along_z * rate_dot_drive_along_z,
+                gdrive_vy_along_x * rate_drive_along_x, rate_drive_along_y,
+                gdrive_vy_along_z * rate_drive_along_z,
+                ::overact::math::signed(gdrive_vy_along_x, rate_drive_along_x),
+                ::overact::math::sign(rate_drive_along_y),
+                ::overact::math::signed(gdrive_vy_along_z, rate_drive_along_z), gdrive_vy_along_x,
+                1.0, minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x, 0.0,
+                minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z,
+                -(t243 + minus_gfoot_vy_along_x * t244), -t252,
+                -(t269 + minus_gfoot_vy_along_z * t266),
+                gdrive_vy_along_x * t274 + minus_gfoot_vy_along_x * t56, t283,
+                gdrive_vy_along_z * t295 + minus_gfoot_vy_along_z * t297,
+                minus_gfoot_vy_along_x * t309, 0.0,
+                minus_gfoot_vy_along_z * t335 - 10.40582726326743 * t179,
+                -(minus_gfoot_vy_along_x * t346), 0.0,
+                -(minus_gfoot_vy_along_z * t375
+                    + minus_gleft_bar_vy_along_z * (t379 - t328 * t328)),
+                -(minus_gfoot_vy_along_x * t387),
+                0.0,
+                -(minus_gfoot_vy_along_z * t411 + minus_gleft_bar_vy_along_z * t327),
+                10.40582726326743 * (t11 * acceleration[2]),
+                0.0,
+                minus_gfoot_vy_along_z * (3.225806451612903 * acceleration[1])
+                    + 3.225806451612903 * minus_rate_dot_foot_along_z,
+                0.0,
+                0.0,
+                minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z,
+                gdrive_vy_along_x * t443 - minus_gfoot_vy_along_x * t445,
+                t459,
+                gdrive_vy_along_z * t475 - minus_gfoot_vy_along_z * t477
+                    + 3.225806451612903 * t297,
+                -(t243 + minus_gfoot_vy_along_x * t488),
+                -t252,
+                minus_gleft_bar_vy_along_z * t179
+                    - (t269 + minus_gfoot_vy_along_z * t508),
+            ],
+            [
+                -t76, gdrive_vz_along_x * rate_dot_drive_along_x,
+                gdrive_vz_along_y * rate_dot_drive_along_y, t193, rate_dot_drive_along_z,
+                gdrive_vz_along_x * rate_drive_along_x, gdrive_vz_along_y * rate_drive_along_y,
+                rate_drive_along_z, ::overact::math::signed(gdrive_vz_along_x, rate_drive_along_x),
+                ::overact::math::signed(gdrive_vz_along_y, rate_drive_along_y),
+                ::overact::math::sign(rate_drive_along_z), gdrive_vz_along_x, gdrive_vz_along_y,
+                minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x,
+                minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y, 0.0,
+                -(t247 + minus_gfoot_vz_along_x * t244), -(t259 + minus_gfoot_vz_along_y * t256),
+                -t264, gdrive_vz_along_x * t274 + minus_gfoot_vz_along_x * t56,
+                gdrive_vz_along_y * t283 + minus_gfoot_vz_along_y * t287, t295,
+                minus_gfoot_vz_along_x * t309 - 10.40582726326743 * t50,
+                minus_gfoot_vz_along_y * t322, 0.0,
+                -(minus_gfoot_vz_along_x * t346
+                    + minus_gleft_bar_vz_along_x * (t350 - t71)),
+                -(minus_gfoot_vz_along_y * t360),
+                0.0,
+                -(minus_gfoot_vz_along_x * t387 + minus_gleft_bar_vz_along_x * t303),
+                -(minus_gfoot_vz_along_y * t399),
+                0.0,
+                minus_gfoot_vz_along_x * (3.225806451612903 * acceleration[2])
+                    + 3.225806451612903 * minus_rate_dot_foot_along_x,
+                10.40582726326743 * (t89 * acceleration[0]),
+                0.0,
+                minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x,
+                0.0,
+                0.0,
+                gdrive_vz_along_x * t443 - minus_gfoot_vz_along_x * t445
+                    + minus_gleft_bar_vz_along_x * t70,
+                gdrive_vz_along_y * t459 - minus_gfoot_vz_along_y * t461,
+                t475,
+                minus_gleft_bar_vz_along_x * t50
+                    - (t247 + minus_gfoot_vz_along_x * t488),
+                -(t259 + minus_gfoot_vz_along_y * t499),
+                -t264,
+            ],
+        ])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -3736,7 +4750,7 @@ impl Orthoglide {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 556 operations (189 additions, 358 multiplications, 9 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 480 intermediates.
+    /// 571 operations (195 additions, 364 multiplications, 12 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 489 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3747,411 +4761,372 @@ impl Orthoglide {
         start: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (minus_c_foot_along_y, s_foot_along_y) = ::overact::math::sin_cos(joints[5]);
-        let (s_left_bar_along_y, c_left_bar_along_y) = ::overact::math::sin_cos(
-            joints[6],
-        );
+        let t2 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t2, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let t4 = minus_c_foot_along_y * c_left_bar_along_y;
-        let t5 = 0.31 * t4;
-        let t6 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t6, 1.0, "along_y")?;
-        let t7 = 1.0 / t6;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t7;
-        let t10 = 1.0 / c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let t7 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t7, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t7);
+        let t9 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t9, 1.0, "along_y")?;
+        let t10 = 1.0 / t9;
+        let minus_gfoot_vz_along_y = 3.225806451612903 * t10;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t14 = 1.0 / c_left_bar_along_y;
         let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_c_foot_along_y * s_left_bar_along_y * t10);
-        let t14 = s_foot_along_y * s_left_bar_along_y;
-        let minus_gdrive_vx_along_y = t5 * minus_gfoot_vx_along_y + t14 * t10;
-        let (minus_c_foot_along_z, s_foot_along_z) = ::overact::math::sin_cos(joints[9]);
-        let (s_left_bar_along_z, c_left_bar_along_z) = ::overact::math::sin_cos(
-            joints[10],
-        );
+            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t14);
+        let t18 = minus_s_left_bar_along_y * c_foot_along_y;
+        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t18 * t14;
+        let t25 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t25, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t25);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t23 = minus_c_foot_along_z * c_left_bar_along_z;
-        let t24 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t24, 1.0, "along_z")?;
-        let t25 = 1.0 / t24;
-        let minus_gdrive_vx_along_z = t23 * t25;
-        let t28 = 1.0 + minus_gdrive_vx_along_y * minus_gdrive_vx_along_y
-            + minus_gdrive_vx_along_z * minus_gdrive_vx_along_z;
-        ::overact::guard::platform(t28, 1.0, "actuators")?;
-        ::overact::guard::platform(t28, 1.0, "actuators")?;
-        let t29 = 1.0 / t28;
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
+        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
+        let t30 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t30, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t30);
+        let t32 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t32, 1.0, "along_z")?;
+        let t33 = 1.0 / t32;
+        let minus_gfoot_vx_along_z = 3.225806451612903 * t33;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t37 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vx_along_z;
+        ::overact::guard::platform(t37, 1.0, "actuators")?;
+        ::overact::guard::platform(t37, 1.0, "actuators")?;
+        let t38 = 1.0 / t37;
+        let t41 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t41, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t41);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t34 = minus_c_foot_along_x * c_left_bar_along_x;
-        let t35 = s_foot_along_x * c_left_bar_along_x;
-        ::overact::guard::leg(t35, 1.0, "along_x")?;
-        let t36 = 1.0 / t35;
-        let minus_gdrive_vy_along_x = t34 * t36;
-        let t38 = 0.31 * t34;
-        let t39 = 1.0 / c_left_bar_along_x;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t39;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t36;
+        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
+        let t46 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t46, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t46);
+        let t48 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t48, 1.0, "along_x")?;
+        let t49 = 1.0 / t48;
+        let minus_gfoot_vy_along_x = 3.225806451612903 * t49;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let t52 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t52;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
         let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_c_foot_along_x * s_left_bar_along_x * t39);
-        let t46 = s_foot_along_x * s_left_bar_along_x;
-        let minus_gdrive_vz_along_x = t38 * minus_gfoot_vz_along_x + t46 * t39;
-        let minus_gdrive_vz_along_y = t4 * t7;
-        let t56 = minus_gdrive_vz_along_y * minus_gdrive_vx_along_y
-            - minus_gdrive_vz_along_x - minus_gdrive_vx_along_z;
-        let t57 = t56 * t29;
-        let t62 = 0.31 * t23;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t25;
-        let t65 = 1.0 / c_left_bar_along_z;
+            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t52);
+        let t59 = minus_s_left_bar_along_x * c_foot_along_x;
+        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t59 * t52;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t69 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z;
+        let t70 = t69 * t38;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t77 = 1.0 / c_left_bar_along_z;
         let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_c_foot_along_z * s_left_bar_along_z * t65);
-        let t69 = s_foot_along_z * s_left_bar_along_z;
-        let minus_gdrive_vy_along_z = t62 * minus_gfoot_vy_along_z + t69 * t65;
-        let t75 = minus_gdrive_vx_along_z * minus_gdrive_vy_along_z
-            - (minus_gdrive_vy_along_x + minus_gdrive_vx_along_y);
-        let t77 = minus_gdrive_vy_along_x * minus_gdrive_vz_along_x
-            - minus_gdrive_vz_along_y - minus_gdrive_vy_along_z - t75 * t57;
-        let t82 = t75 * t29;
-        let t84 = minus_gdrive_vy_along_x * minus_gdrive_vy_along_x + 1.0
-            + minus_gdrive_vy_along_z * minus_gdrive_vy_along_z - t75 * t82;
-        ::overact::guard::platform(t84, 1.0, "actuators")?;
-        ::overact::guard::platform(t84, 1.0, "actuators")?;
-        let t85 = 1.0 / t84;
-        let t86 = t77 * t85;
-        let t88 = minus_gdrive_vz_along_x * minus_gdrive_vz_along_x
-            + minus_gdrive_vz_along_y * minus_gdrive_vz_along_y + 1.0 - t56 * t57
-            - t77 * t86;
-        ::overact::guard::platform(t88, 1.0, "actuators")?;
-        ::overact::guard::platform(t88, 1.0, "actuators")?;
-        let t89 = 1.0 / t88;
-        let t90 = minus_gdrive_vz_along_x * actuator_velocities[0];
-        let t91 = minus_gdrive_vz_along_y * actuator_velocities[1];
-        let t94 = minus_gdrive_vx_along_y * actuator_velocities[1];
-        let t96 = minus_gdrive_vx_along_z * actuator_velocities[2];
-        let t97 = actuator_velocities[0] - t94 - t96;
-        let t100 = minus_gdrive_vy_along_x * actuator_velocities[0];
-        let t102 = minus_gdrive_vy_along_z * actuator_velocities[2];
-        let t105 = actuator_velocities[1] - t100 - t102 - t97 * t82;
-        let t108 = t89 * (actuator_velocities[2] - (t90 + t91) - t97 * t57 - t86 * t105);
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t108;
-        let t110 = minus_c_foot_along_x * minus_rate_left_bar_along_x;
-        let t112 = s_foot_along_x * minus_rate_left_bar_along_x;
-        let t114 = t110 * t110 + t112 * t112;
-        let t117 = t85 * t105 - t86 * t108;
-        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t117
-            + minus_gfoot_vz_along_x * t108;
-        let t121 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t122 = t114 + t121;
-        let t124 = 0.31 * s_left_bar_along_x;
-        let t126 = t124 * (minus_rate_foot_along_x * t112);
-        let t128 = t38 * t122 + t126 + t126;
-        let t131 = t124 * (minus_rate_foot_along_x * t110);
-        let t138 = t124 * minus_rate_foot_along_x;
-        let t139 = minus_rate_foot_along_x * t138;
-        let t140 = t124 * t122 - t139;
-        let rate_dot_drive_along_x = minus_gdrive_vy_along_x * t128
-            - (t131 - 0.31 * t35 * t122 + t131) + minus_gdrive_vz_along_x * t140;
-        let t143 = actuator_accelerations[0] - rate_dot_drive_along_x;
-        let t144 = 0.31 * s_left_bar_along_y;
-        let t149 = t97 * t29 - t82 * t117 - t57 * t108;
-        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t149
-            + minus_gfoot_vz_along_y * t108;
-        let t153 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t10;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t149;
-        let t156 = minus_c_foot_along_y * minus_rate_left_bar_along_y;
-        let t159 = s_foot_along_y * minus_rate_left_bar_along_y;
-        let t161 = t153 + t156 * t156 + t159 * t159;
-        let t163 = t144 * minus_rate_foot_along_y;
-        let t164 = minus_rate_foot_along_y * t163;
-        let t165 = t144 * t161 - t164;
-        let t168 = t144 * (minus_rate_foot_along_y * t156);
-        let t176 = t144 * (minus_rate_foot_along_y * t159);
-        let t178 = t5 * t161 + t176 + t176;
-        let rate_dot_drive_along_y = minus_gdrive_vx_along_y * t165
-            - (t168 - 0.31 * t6 * t161 + t168) + minus_gdrive_vz_along_y * t178;
-        let t181 = actuator_accelerations[1] - rate_dot_drive_along_y;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t65;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t117;
-        let t186 = s_foot_along_z * minus_rate_left_bar_along_z;
-        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t149
-            + minus_gfoot_vy_along_z * t117;
-        let t191 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t193 = minus_c_foot_along_z * minus_rate_left_bar_along_z;
-        let t195 = t186 * t186 + t191 + t193 * t193;
-        let t197 = 0.31 * s_left_bar_along_z;
-        let t199 = t197 * (minus_rate_foot_along_z * t186);
-        let t201 = t62 * t195 + t199 + t199;
-        let t204 = t197 * minus_rate_foot_along_z;
-        let t205 = minus_rate_foot_along_z * t204;
-        let t206 = t197 * t195 - t205;
-        let t210 = t197 * (minus_rate_foot_along_z * t193);
-        let rate_dot_drive_along_z = minus_gdrive_vx_along_z * t201
-            + minus_gdrive_vy_along_z * t206 - (t210 - 0.31 * t24 * t195 + t210);
-        let t216 = actuator_accelerations[2] - rate_dot_drive_along_z;
-        let t218 = t143 - minus_gdrive_vx_along_y * t181
-            - minus_gdrive_vx_along_z * t216;
-        let t225 = t181 - minus_gdrive_vy_along_x * t143 - minus_gdrive_vy_along_z * t216
-            - t82 * t218;
-        let t235 = t89
-            * (t216 - (minus_gdrive_vz_along_x * t143 + minus_gdrive_vz_along_y * t181)
-                - t57 * t218 - t86 * t225);
-        let t237 = t85 * t225 - t86 * t235;
-        let t241 = t29 * t218 - t82 * t237 - t57 * t235;
-        let t242 = s_foot_along_x * actuator_accelerations[0];
-        let t245 = c_left_bar_along_x * t242 - 9.81 * s_left_bar_along_x;
-        let t250 = 3.225806451612903 * t138;
-        let t251 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t252 = t250 * t251;
-        let t253 = t235 - t140;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t253;
-        let t255 = t252 - minus_rate_dot_left_bar_along_x;
-        let t262 = s_left_bar_along_x
-            * (t245 - c_left_bar_along_x * (s_foot_along_x * rate_dot_drive_along_x))
-            + c_left_bar_along_x
-                * (0.31 * t255
-                    - (s_left_bar_along_x * t242 + 9.81 * c_left_bar_along_x));
-        let t267 = 9.81 + actuator_accelerations[2];
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * (t237 - t128)
-            + minus_gfoot_vz_along_x * t253;
-        let t287 = t241 - t165;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t287
-            + minus_gfoot_vz_along_y * (t235 - t178);
-        let t296 = t237 - t206;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t241 - t201)
-            + minus_gfoot_vy_along_z * t296;
-        let t303 = minus_c_foot_along_x * minus_rate_dot_foot_along_x
-            - s_foot_along_x * t121;
-        let t304 = minus_c_foot_along_x * actuator_accelerations[0];
-        let t306 = minus_gdrive_vy_along_x * t303;
-        let t309 = minus_gdrive_vz_along_x * t303;
-        let t313 = 9.81 * s_foot_along_y
-            + minus_c_foot_along_y * actuator_accelerations[1];
-        let t317 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
-            - s_foot_along_y * t153;
-        let t318 = minus_gdrive_vx_along_y * t317;
-        let t321 = minus_gdrive_vz_along_y * t317;
-        let t323 = minus_c_foot_along_z * t267;
-        let t327 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
-            - s_foot_along_z * t191;
-        let t328 = minus_gdrive_vx_along_z * t327;
-        let t331 = minus_gdrive_vy_along_z * t327;
-        let t335 = s_foot_along_x * minus_rate_dot_foot_along_x
-            + minus_c_foot_along_x * t121;
-        let t344 = s_foot_along_y * actuator_accelerations[1]
-            - 9.81 * minus_c_foot_along_y;
-        let t348 = s_foot_along_y * minus_rate_dot_foot_along_y
-            + minus_c_foot_along_y * t153;
-        let t354 = s_foot_along_z * t267;
-        let t358 = s_foot_along_z * minus_rate_dot_foot_along_z
-            + minus_c_foot_along_z * t191;
-        let t364 = minus_rate_left_bar_along_x * t251;
-        let t365 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t366 = t364 - t365;
-        let t368 = minus_rate_left_bar_along_x * t250;
-        let t370 = s_left_bar_along_x * t366 + c_left_bar_along_x * t368;
-        let t376 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t377 = minus_rate_left_bar_along_y * t376;
-        let t378 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t379 = t377 - t378;
-        let t381 = 3.225806451612903 * t163;
-        let t382 = minus_rate_left_bar_along_y * t381;
-        let t384 = s_left_bar_along_y * t379 + c_left_bar_along_y * t382;
-        let t388 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t389 = minus_rate_left_bar_along_z * t388;
-        let t390 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t391 = t389 - t390;
-        let t393 = 3.225806451612903 * t204;
-        let t394 = minus_rate_left_bar_along_z * t393;
-        let t396 = s_left_bar_along_z * t391 + c_left_bar_along_z * t394;
-        let t401 = t364 + t366;
-        let t403 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t405 = t368 + t403 + t368;
-        let t407 = c_left_bar_along_x * t401 - s_left_bar_along_x * t405;
-        let t411 = 10.40582726326743 * (t138 * t138);
-        let t416 = t377 + t379;
-        let t418 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t420 = t382 + t418 + t382;
-        let t422 = c_left_bar_along_y * t416 - s_left_bar_along_y * t420;
-        let t425 = 10.40582726326743 * (t163 * t163);
-        let t431 = t389 + t391;
-        let t433 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t435 = t394 + t433 + t394;
-        let t437 = c_left_bar_along_z * t431 - s_left_bar_along_z * t435;
-        let t441 = 10.40582726326743 * (t204 * t204);
-        let t449 = s_left_bar_along_x * t255 + c_left_bar_along_x * (t114 - t411);
-        let t455 = t381 * t376;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t287;
-        let t459 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t462 = s_left_bar_along_y * (t455 - minus_rate_dot_left_bar_along_y)
-            + c_left_bar_along_y * (t459 - t425);
-        let t466 = t393 * t388;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t296;
-        let t470 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t473 = s_left_bar_along_z * (t466 - minus_rate_dot_left_bar_along_z)
-            + c_left_bar_along_z * (t470 - t441);
-        let t505 = t35 * (t252 + minus_rate_dot_left_bar_along_x) + t46 * (t411 + t114)
-            + minus_c_foot_along_x * t401;
-        let t507 = s_left_bar_along_x * t304;
-        let t522 = t6 * (t455 + minus_rate_dot_left_bar_along_y) + t14 * (t425 + t459)
-            + minus_c_foot_along_y * t416;
-        let t524 = s_left_bar_along_y * t313;
-        let t537 = t24 * (t466 + minus_rate_dot_left_bar_along_z) + t69 * (t441 + t470)
-            + minus_c_foot_along_z * t431;
-        let t539 = s_left_bar_along_z * t323;
-        let t550 = 0.31 * t403 + t304 + 0.31 * t405;
-        let t560 = 0.31 * t418 + t313 + 0.31 * t420;
-        let t570 = 0.31 * t433 + t323 + 0.31 * t435;
+            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t77);
+        let t81 = minus_s_left_bar_along_z * c_foot_along_z;
+        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t81 * t77;
+        let t87 = gdrive_vy_along_x + gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vy_along_z;
+        let t89 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
+            + gdrive_vy_along_z - t87 * t70;
+        let t94 = t87 * t38;
+        let t96 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
+            + gdrive_vy_along_z * gdrive_vy_along_z - t87 * t94;
+        ::overact::guard::platform(t96, 1.0, "actuators")?;
+        ::overact::guard::platform(t96, 1.0, "actuators")?;
+        let t97 = 1.0 / t96;
+        let t98 = t89 * t97;
+        let t100 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t69 * t70 - t89 * t98;
+        ::overact::guard::platform(t100, 1.0, "actuators")?;
+        ::overact::guard::platform(t100, 1.0, "actuators")?;
+        let t101 = 1.0 / t100;
+        let t102 = gdrive_vz_along_x * actuator_velocities[0];
+        let t103 = gdrive_vz_along_y * actuator_velocities[1];
+        let t106 = gdrive_vx_along_y * actuator_velocities[1];
+        let t108 = gdrive_vx_along_z * actuator_velocities[2];
+        let t109 = actuator_velocities[0] + t106 + t108;
+        let t112 = gdrive_vy_along_x * actuator_velocities[0];
+        let t114 = gdrive_vy_along_z * actuator_velocities[2];
+        let t117 = t112 + actuator_velocities[1] + t114 - t109 * t94;
+        let t120 = t101
+            * (t102 + t103 + actuator_velocities[2] - t109 * t70 - t98 * t117);
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t120;
+        let t122 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
+        let t124 = c_foot_along_x * minus_rate_left_bar_along_x;
+        let t126 = t122 * t122 + t124 * t124;
+        let t129 = t97 * t117 - t98 * t120;
+        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t129
+            + minus_gfoot_vz_along_x * t120;
+        let t133 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t134 = t126 + t133;
+        let t137 = pose[2] * (minus_rate_foot_along_x * t124);
+        let t139 = pose[1] * t134 + t137 + t137;
+        let t142 = pose[2] * (minus_rate_foot_along_x * t122);
+        let t148 = pose[2] * minus_rate_foot_along_x;
+        let t149 = minus_rate_foot_along_x * t148;
+        let t151 = t149 - pose[2] * t134;
+        let rate_dot_drive_along_x = gdrive_vy_along_x * t139
+            - (t142 - 0.31 * t48 * t134 + t142) - gdrive_vz_along_x * t151;
+        let t154 = actuator_accelerations[0] - rate_dot_drive_along_x;
+        let t159 = t109 * t38 - t94 * t129 - t70 * t120;
+        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t159
+            + minus_gfoot_vz_along_y * t120;
+        let t163 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t14;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t159;
+        let t166 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
+        let t169 = c_foot_along_y * minus_rate_left_bar_along_y;
+        let t171 = t163 + t166 * t166 + t169 * t169;
+        let t174 = pose[0] * (minus_rate_foot_along_y * t169);
+        let t176 = pose[2] * t171 + t174 + t174;
+        let t178 = pose[0] * minus_rate_foot_along_y;
+        let t179 = minus_rate_foot_along_y * t178;
+        let t181 = t179 - pose[0] * t171;
+        let t184 = pose[0] * (minus_rate_foot_along_y * t166);
+        let rate_dot_drive_along_y = gdrive_vz_along_y * t176
+            - (gdrive_vx_along_y * t181 + t184 - 0.31 * t9 * t171 + t184);
+        let t191 = actuator_accelerations[1] - rate_dot_drive_along_y;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t77;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t129;
+        let t196 = c_foot_along_z * minus_rate_left_bar_along_z;
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t159
+            + minus_gfoot_vy_along_z * t129;
+        let t201 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t203 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
+        let t205 = t196 * t196 + t201 + t203 * t203;
+        let t208 = pose[1] * (minus_rate_foot_along_z * t196);
+        let t210 = pose[0] * t205 + t208 + t208;
+        let t212 = pose[1] * minus_rate_foot_along_z;
+        let t213 = minus_rate_foot_along_z * t212;
+        let t215 = t213 - pose[1] * t205;
+        let t219 = pose[1] * (minus_rate_foot_along_z * t203);
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t210 - gdrive_vy_along_z * t215
+            - (t219 - 0.31 * t32 * t205 + t219);
+        let t225 = actuator_accelerations[2] - rate_dot_drive_along_z;
+        let t227 = t154 + gdrive_vx_along_y * t191 + gdrive_vx_along_z * t225;
+        let t234 = gdrive_vy_along_x * t154 + t191 + gdrive_vy_along_z * t225
+            - t94 * t227;
+        let t244 = t101
+            * (gdrive_vz_along_x * t154 + gdrive_vz_along_y * t191 + t225 - t70 * t227
+                - t98 * t234);
+        let t246 = t97 * t234 - t98 * t244;
+        let t250 = t38 * t227 - t94 * t246 - t70 * t244;
+        let t251 = c_foot_along_x * actuator_accelerations[0];
+        let t255 = 3.225806451612903 * t148;
+        let t256 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t257 = t255 * t256;
+        let t258 = t244 - t151;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t258;
+        let t260 = t257 + minus_rate_dot_left_bar_along_x;
+        let t266 = c_left_bar_along_x * t251 + 31.64516129032258 * pose[2];
+        let t271 = c_left_bar_along_x
+            * (minus_s_left_bar_along_x * t251 - 9.81 * c_left_bar_along_x - 0.31 * t260)
+            - minus_s_left_bar_along_x
+                * (t266
+                    - c_left_bar_along_x * (c_foot_along_x * rate_dot_drive_along_x));
+        let t276 = 9.81 + actuator_accelerations[2];
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * (t246 + t139)
+            + minus_gfoot_vz_along_x * t258;
+        let t296 = t250 - t181;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t296
+            + minus_gfoot_vz_along_y * (t244 + t176);
+        let t305 = t246 - t215;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t250 + t210)
+            + minus_gfoot_vy_along_z * t305;
+        let t312 = c_foot_along_x * t133
+            + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
+        let t313 = gdrive_vy_along_x * t312;
+        let t314 = minus_s_foot_along_x * actuator_accelerations[0];
+        let t317 = gdrive_vz_along_x * t312;
+        let t322 = c_foot_along_y * t163
+            + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
+        let t323 = gdrive_vx_along_y * t322;
+        let t326 = minus_s_foot_along_y * actuator_accelerations[1]
+            - 9.81 * c_foot_along_y;
+        let t329 = gdrive_vz_along_y * t322;
+        let t334 = c_foot_along_z * t201
+            + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
+        let t335 = gdrive_vx_along_z * t334;
+        let t336 = minus_s_foot_along_z * t276;
+        let t339 = gdrive_vy_along_z * t334;
+        let t344 = c_foot_along_x * minus_rate_dot_foot_along_x
+            - minus_s_foot_along_x * t133;
+        let t353 = c_foot_along_y * minus_rate_dot_foot_along_y
+            - minus_s_foot_along_y * t163;
+        let t357 = 9.81 * minus_s_foot_along_y
+            + c_foot_along_y * actuator_accelerations[1];
+        let t365 = c_foot_along_z * minus_rate_dot_foot_along_z
+            - minus_s_foot_along_z * t201;
+        let t367 = c_foot_along_z * t276;
+        let t373 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t374 = minus_rate_left_bar_along_x * t256;
+        let t375 = t373 + t374;
+        let t377 = minus_rate_left_bar_along_x * t255;
+        let t379 = minus_s_left_bar_along_x * t375 + c_left_bar_along_x * t377;
+        let t384 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t385 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t386 = minus_rate_left_bar_along_y * t385;
+        let t387 = t384 + t386;
+        let t389 = 3.225806451612903 * t178;
+        let t390 = minus_rate_left_bar_along_y * t389;
+        let t392 = minus_s_left_bar_along_y * t387 + c_left_bar_along_y * t390;
+        let t397 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t398 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t399 = minus_rate_left_bar_along_z * t398;
+        let t400 = t397 + t399;
+        let t402 = 3.225806451612903 * t212;
+        let t403 = minus_rate_left_bar_along_z * t402;
+        let t405 = minus_s_left_bar_along_z * t400 + c_left_bar_along_z * t403;
+        let t410 = t374 + t375;
+        let t412 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t414 = t377 + t377 - t412;
+        let t416 = c_left_bar_along_x * t410 - minus_s_left_bar_along_x * t414;
+        let t420 = 10.40582726326743 * (t148 * t148);
+        let t425 = t386 + t387;
+        let t427 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t429 = t390 + t390 - t427;
+        let t431 = c_left_bar_along_y * t425 - minus_s_left_bar_along_y * t429;
+        let t434 = 10.40582726326743 * (t178 * t178);
+        let t440 = t399 + t400;
+        let t442 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t444 = t403 + t403 - t442;
+        let t446 = c_left_bar_along_z * t440 - minus_s_left_bar_along_z * t444;
+        let t450 = 10.40582726326743 * (t212 * t212);
+        let t458 = minus_s_left_bar_along_x * t260 + c_left_bar_along_x * (t126 - t420);
+        let t463 = t389 * t385;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t296;
+        let t467 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t470 = minus_s_left_bar_along_y * (t463 + minus_rate_dot_left_bar_along_y)
+            + c_left_bar_along_y * (t467 - t434);
+        let t475 = t402 * t398;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t305;
+        let t479 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t482 = minus_s_left_bar_along_z * (t475 + minus_rate_dot_left_bar_along_z)
+            + c_left_bar_along_z * (t479 - t450);
+        let t514 = t48 * (minus_rate_dot_left_bar_along_x - t257) - t59 * (t420 + t126)
+            - minus_s_foot_along_x * t410;
+        let t516 = minus_s_left_bar_along_x * t314;
+        let t530 = t9 * (minus_rate_dot_left_bar_along_y - t463) - t18 * (t434 + t467)
+            - minus_s_foot_along_y * t425;
+        let t532 = minus_s_left_bar_along_y * t326;
+        let t546 = t32 * (minus_rate_dot_left_bar_along_z - t475) - t81 * (t450 + t479)
+            - minus_s_foot_along_z * t440;
+        let t548 = minus_s_left_bar_along_z * t336;
+        let t559 = t314 + 0.31 * t414 - 0.31 * t412;
+        let t570 = t326 + 0.31 * t429 - 0.31 * t427;
+        let t579 = t336 + 0.31 * t444 - 0.31 * t442;
         Ok([
             [
-                t241, actuator_accelerations[0],
-                -(minus_gdrive_vx_along_y * actuator_accelerations[1]),
-                -(minus_gdrive_vx_along_z * t267),
-                -(minus_gdrive_vx_along_z * actuator_accelerations[2]), actuator_velocities[0],
-                -t94, -t96, ::overact::math::sign(actuator_velocities[0]),
-                -::overact::math::signed(
-                    minus_gdrive_vx_along_y,
-                    actuator_velocities[1],
-                ),
-                -::overact::math::signed(
-                    minus_gdrive_vx_along_z,
-                    actuator_velocities[2],
-                ),
-                1.0,
-                -minus_gdrive_vx_along_y,
+                t250, actuator_accelerations[0], gdrive_vx_along_y * actuator_accelerations[1],
+                gdrive_vx_along_z * t276, gdrive_vx_along_z * actuator_accelerations[2],
+                actuator_velocities[0], t106, t108, ::overact::math::sign(actuator_velocities[0]),
+                ::overact::math::signed(gdrive_vx_along_y, actuator_velocities[1]),
+                ::overact::math::signed(gdrive_vx_along_z, actuator_velocities[2]), 1.0,
+                gdrive_vx_along_y, 0.0, minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y,
+                minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z, -t312,
+                -(t323 + minus_gfoot_vx_along_y * t326), -(t335 + minus_gfoot_vx_along_z * t336),
+                t344, gdrive_vx_along_y * t353 + minus_gfoot_vx_along_y * t357,
+                gdrive_vx_along_z * t365 + minus_gfoot_vx_along_z * t367, 0.0,
+                minus_gfoot_vx_along_y * t392 - 10.40582726326743 * t179,
+                minus_gfoot_vx_along_z * t405, 0.0,
+                -(minus_gfoot_vx_along_y * t431
+                    + minus_gleft_bar_vx_along_y * (t434 - t385 * t385)),
+                -(minus_gfoot_vx_along_z * t446),
                 0.0,
-                minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y,
-                minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z,
-                t303,
-                minus_gfoot_vx_along_y * t313 - t318,
-                minus_gfoot_vx_along_z * t323 - t328,
-                t335,
-                minus_gfoot_vx_along_y * t344 - minus_gdrive_vx_along_y * t348,
-                minus_gfoot_vx_along_z * t354 - minus_gdrive_vx_along_z * t358,
+                -(minus_gfoot_vx_along_y * t470 + minus_gleft_bar_vx_along_y * t384),
+                -(minus_gfoot_vx_along_z * t482),
                 0.0,
-                10.40582726326743 * t164 - minus_gfoot_vx_along_y * t384,
-                -(minus_gfoot_vx_along_z * t396),
-                0.0,
-                -(minus_gfoot_vx_along_y * t422
-                    + minus_gleft_bar_vx_along_y * (t425 - t376 * t376)),
-                -(minus_gfoot_vx_along_z * t437),
-                0.0,
-                minus_gleft_bar_vx_along_y * t378 - minus_gfoot_vx_along_y * t462,
-                -(minus_gfoot_vx_along_z * t473),
-                0.0,
-                minus_gfoot_vx_along_y * (3.225806451612903 * t241)
+                minus_gfoot_vx_along_y * (3.225806451612903 * t250)
                     + 3.225806451612903 * minus_rate_dot_foot_along_y,
-                10.40582726326743 * (t25 * t237),
+                10.40582726326743 * (t33 * t246),
                 0.0,
                 minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y,
                 0.0,
-                t505,
-                3.225806451612903 * t344
-                    - (minus_gdrive_vx_along_y * t522 + minus_gfoot_vx_along_y * t524),
-                -(minus_gdrive_vx_along_z * t537 + minus_gfoot_vx_along_z * t539),
-                t303,
-                minus_gfoot_vx_along_y * t560 - t318 - minus_gleft_bar_vx_along_y * t164,
-                minus_gfoot_vx_along_z * t570 - t328,
+                t514,
+                gdrive_vx_along_y * t530 - minus_gfoot_vx_along_y * t532
+                    + 3.225806451612903 * t357,
+                gdrive_vx_along_z * t546 - minus_gfoot_vx_along_z * t548,
+                -t312,
+                minus_gleft_bar_vx_along_y * t179
+                    - (t323 + minus_gfoot_vx_along_y * t570),
+                -(t335 + minus_gfoot_vx_along_z * t579),
             ],
             [
-                t237, -(minus_gdrive_vy_along_x * actuator_accelerations[0]),
-                actuator_accelerations[1], -(minus_gdrive_vy_along_z * t267),
-                -(minus_gdrive_vy_along_z * actuator_accelerations[2]), -t100,
-                actuator_velocities[1], -t102,
-                -::overact::math::signed(
-                    minus_gdrive_vy_along_x,
-                    actuator_velocities[0],
-                ),
+                t246, gdrive_vy_along_x * actuator_accelerations[0], actuator_accelerations[1],
+                gdrive_vy_along_z * t276, gdrive_vy_along_z * actuator_accelerations[2], t112,
+                actuator_velocities[1], t114,
+                ::overact::math::signed(gdrive_vy_along_x, actuator_velocities[0]),
                 ::overact::math::sign(actuator_velocities[1]),
-                -::overact::math::signed(
-                    minus_gdrive_vy_along_z,
-                    actuator_velocities[2],
-                ),
-                -minus_gdrive_vy_along_x,
-                1.0,
-                minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x,
-                0.0,
+                ::overact::math::signed(gdrive_vy_along_z, actuator_velocities[2]),
+                gdrive_vy_along_x, 1.0, minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x, 0.0,
                 minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z,
-                minus_gfoot_vy_along_x * t304 - t306,
-                t317,
-                minus_gfoot_vy_along_z * t323 - t331,
-                minus_gfoot_vy_along_x * t242 - minus_gdrive_vy_along_x * t335,
-                t348,
-                minus_gfoot_vy_along_z * t354 - minus_gdrive_vy_along_z * t358,
-                -(minus_gfoot_vy_along_x * t370),
+                -(t313 + minus_gfoot_vy_along_x * t314), -t322,
+                -(t339 + minus_gfoot_vy_along_z * t336),
+                gdrive_vy_along_x * t344 + minus_gfoot_vy_along_x * t251, t353,
+                gdrive_vy_along_z * t365 + minus_gfoot_vy_along_z * t367,
+                minus_gfoot_vy_along_x * t379, 0.0,
+                minus_gfoot_vy_along_z * t405 - 10.40582726326743 * t213,
+                -(minus_gfoot_vy_along_x * t416), 0.0,
+                -(minus_gfoot_vy_along_z * t446
+                    + minus_gleft_bar_vy_along_z * (t450 - t398 * t398)),
+                -(minus_gfoot_vy_along_x * t458),
                 0.0,
-                10.40582726326743 * t205 - minus_gfoot_vy_along_z * t396,
-                -(minus_gfoot_vy_along_x * t407),
+                -(minus_gfoot_vy_along_z * t482 + minus_gleft_bar_vy_along_z * t397),
+                10.40582726326743 * (t49 * t244),
                 0.0,
-                -(minus_gfoot_vy_along_z * t437
-                    + minus_gleft_bar_vy_along_z * (t441 - t388 * t388)),
-                -(minus_gfoot_vy_along_x * t449),
-                0.0,
-                minus_gleft_bar_vy_along_z * t390 - minus_gfoot_vy_along_z * t473,
-                10.40582726326743 * (t36 * t235),
-                0.0,
-                minus_gfoot_vy_along_z * (3.225806451612903 * t237)
+                minus_gfoot_vy_along_z * (3.225806451612903 * t246)
                     + 3.225806451612903 * minus_rate_dot_foot_along_z,
                 0.0,
                 0.0,
                 minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z,
-                -(minus_gdrive_vy_along_x * t505 + minus_gfoot_vy_along_x * t507),
-                t522,
-                3.225806451612903 * t354
-                    - (minus_gdrive_vy_along_z * t537 + minus_gfoot_vy_along_z * t539),
-                minus_gfoot_vy_along_x * t550 - t306,
-                t317,
-                minus_gfoot_vy_along_z * t570 - t331 - minus_gleft_bar_vy_along_z * t205,
+                gdrive_vy_along_x * t514 - minus_gfoot_vy_along_x * t516,
+                t530,
+                gdrive_vy_along_z * t546 - minus_gfoot_vy_along_z * t548
+                    + 3.225806451612903 * t367,
+                -(t313 + minus_gfoot_vy_along_x * t559),
+                -t322,
+                minus_gleft_bar_vy_along_z * t213
+                    - (t339 + minus_gfoot_vy_along_z * t579),
             ],
             [
-                -t262, -(minus_gdrive_vz_along_x * actuator_accelerations[0]),
-                -(minus_gdrive_vz_along_y * actuator_accelerations[1]), t267,
-                actuator_accelerations[2], -t90, -t91, actuator_velocities[2],
-                -::overact::math::signed(
-                    minus_gdrive_vz_along_x,
-                    actuator_velocities[0],
-                ),
-                -::overact::math::signed(
-                    minus_gdrive_vz_along_y,
-                    actuator_velocities[1],
-                ),
-                ::overact::math::sign(actuator_velocities[2]),
-                -minus_gdrive_vz_along_x,
-                -minus_gdrive_vz_along_y,
+                -t271, gdrive_vz_along_x * actuator_accelerations[0],
+                gdrive_vz_along_y * actuator_accelerations[1], t276, actuator_accelerations[2],
+                t102, t103, actuator_velocities[2],
+                ::overact::math::signed(gdrive_vz_along_x, actuator_velocities[0]),
+                ::overact::math::signed(gdrive_vz_along_y, actuator_velocities[1]),
+                ::overact::math::sign(actuator_velocities[2]), gdrive_vz_along_x, gdrive_vz_along_y,
                 minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x,
-                minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y,
+                minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y, 0.0,
+                -(t317 + minus_gfoot_vz_along_x * t314), -(t329 + minus_gfoot_vz_along_y * t326),
+                -t334, gdrive_vz_along_x * t344 + minus_gfoot_vz_along_x * t251,
+                gdrive_vz_along_y * t353 + minus_gfoot_vz_along_y * t357, t365,
+                minus_gfoot_vz_along_x * t379 - 10.40582726326743 * t149,
+                minus_gfoot_vz_along_y * t392, 0.0,
+                -(minus_gfoot_vz_along_x * t416
+                    + minus_gleft_bar_vz_along_x * (t420 - t256 * t256)),
+                -(minus_gfoot_vz_along_y * t431),
                 0.0,
-                minus_gfoot_vz_along_x * t304 - t309,
-                minus_gfoot_vz_along_y * t313 - t321,
-                t327,
-                minus_gfoot_vz_along_x * t242 - minus_gdrive_vz_along_x * t335,
-                minus_gfoot_vz_along_y * t344 - minus_gdrive_vz_along_y * t348,
-                t358,
-                10.40582726326743 * t139 - minus_gfoot_vz_along_x * t370,
-                -(minus_gfoot_vz_along_y * t384),
+                -(minus_gfoot_vz_along_x * t458 + minus_gleft_bar_vz_along_x * t373),
+                -(minus_gfoot_vz_along_y * t470),
                 0.0,
-                -(minus_gfoot_vz_along_x * t407
-                    + minus_gleft_bar_vz_along_x * (t411 - t251 * t251)),
-                -(minus_gfoot_vz_along_y * t422),
-                0.0,
-                minus_gleft_bar_vz_along_x * t365 - minus_gfoot_vz_along_x * t449,
-                -(minus_gfoot_vz_along_y * t462),
-                0.0,
-                minus_gfoot_vz_along_x * (3.225806451612903 * t235)
+                minus_gfoot_vz_along_x * (3.225806451612903 * t244)
                     + 3.225806451612903 * minus_rate_dot_foot_along_x,
-                10.40582726326743 * (t7 * t241),
+                10.40582726326743 * (t10 * t250),
                 0.0,
                 minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x,
                 0.0,
                 0.0,
-                minus_gleft_bar_vz_along_x * t245
-                    - (minus_gdrive_vz_along_x * t505 + minus_gfoot_vz_along_x * t507),
-                -(minus_gdrive_vz_along_y * t522 + minus_gfoot_vz_along_y * t524),
-                t537,
-                minus_gfoot_vz_along_x * t550 - t309 - minus_gleft_bar_vz_along_x * t139,
-                minus_gfoot_vz_along_y * t560 - t321,
-                t327,
+                gdrive_vz_along_x * t514 - minus_gfoot_vz_along_x * t516
+                    + minus_gleft_bar_vz_along_x * t266,
+                gdrive_vz_along_y * t530 - minus_gfoot_vz_along_y * t532,
+                t546,
+                minus_gleft_bar_vz_along_x * t149
+                    - (t317 + minus_gfoot_vz_along_x * t559),
+                -(t329 + minus_gfoot_vz_along_y * t570),
+                -t334,
             ],
         ])
     }
@@ -4165,7 +5140,7 @@ impl Orthoglide {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 628 operations (206 additions, 415 multiplications, 7 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 540 intermediates.
+    /// 640 operations (212 additions, 418 multiplications, 10 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 546 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4174,8 +5149,342 @@ impl Orthoglide {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_actuators_base_from_joints(pose, joints, twist, acceleration)
+        let t2 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t2, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t2);
+        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
+        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let t7 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t7, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t7);
+        let t9 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t9, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t9;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t14 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t14, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t14);
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
+        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
+        let t19 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t19, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t19);
+        let t21 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t21, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t21;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t25 = 1.0 / c_left_bar_along_z;
+        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
+            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t25);
+        let t29 = minus_s_left_bar_along_z * c_foot_along_z;
+        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t29 * t25;
+        let t33 = 1.0 - gdrive_vz_along_y * gdrive_vy_along_z;
+        let t36 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t36, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t36);
+        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
+        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
+        let t41 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t41, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t41);
+        let t43 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t43, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t43;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t48 = 1.0 / c_left_bar_along_y;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
+            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t48);
+        let t52 = minus_s_left_bar_along_y * c_foot_along_y;
+        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t52 * t48;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t57 = gdrive_vx_along_y - gdrive_vz_along_y * gdrive_vx_along_z;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t62 = 1.0 / c_left_bar_along_x;
+        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
+            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t62);
+        let t66 = minus_s_left_bar_along_x * c_foot_along_x;
+        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t66 * t62;
+        let t70 = gdrive_vx_along_y * gdrive_vy_along_z - gdrive_vx_along_z;
+        let t72 = t33 - gdrive_vy_along_x * t57 + gdrive_vz_along_x * t70;
+        ::overact::guard::platform(t72, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t72, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t72, 1.0, "kept actuators")?;
+        let t73 = 1.0 / t72;
+        let t74 = t33 * t73;
+        let t76 = t57 * t73;
+        let t79 = t70 * t73;
+        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
+            + minus_gfoot_vz_along_x * twist[2];
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t62;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
+        let t85 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
+        let t87 = pose[2] * (minus_rate_foot_along_x * t85);
+        let t90 = c_foot_along_x * minus_rate_left_bar_along_x;
+        let t92 = t85 * t85 + t90 * t90;
+        let t93 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t94 = t92 + t93;
+        let t101 = pose[2] * (minus_rate_foot_along_x * t90);
+        let t104 = acceleration[1] + pose[1] * t94 + t101 + t101;
+        let t107 = pose[2] * minus_rate_foot_along_x;
+        let t108 = minus_rate_foot_along_x * t107;
+        let t111 = acceleration[2] - (t108 - pose[2] * t94);
+        let rate_dot_drive_along_x = acceleration[0] - (t87 - 0.31 * t43 * t94 + t87)
+            + gdrive_vy_along_x * t104 + gdrive_vz_along_x * t111;
+        let t114 = c_foot_along_x * rate_dot_drive_along_x;
+        let t118 = 3.225806451612903 * t107;
+        let t119 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t120 = t118 * t119;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t111;
+        let t122 = t120 + minus_rate_dot_left_bar_along_x;
+        let t128 = c_left_bar_along_x * t114 + 31.64516129032258 * pose[2];
+        let t129 = t119 * t119;
+        let t134 = c_left_bar_along_x
+            * (minus_s_left_bar_along_x * t114 - 9.81 * c_left_bar_along_x - 0.31 * t122)
+            - minus_s_left_bar_along_x * (t128 - 0.31 * (t129 + t92));
+        let t139 = (1.0 - gdrive_vz_along_x * gdrive_vx_along_z) * t73;
+        let t143 = (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t73;
+        let t148 = (gdrive_vy_along_z - gdrive_vy_along_x * gdrive_vx_along_z) * t73;
+        let t153 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t73;
+        let t157 = (gdrive_vz_along_y - gdrive_vz_along_x * gdrive_vx_along_y) * t73;
+        let t162 = (1.0 - gdrive_vy_along_x * gdrive_vx_along_y) * t73;
+        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
+            + minus_gfoot_vz_along_y * twist[2];
+        let t168 = pose[0] * minus_rate_foot_along_y;
+        let t169 = minus_rate_foot_along_y * t168;
+        let t170 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t48;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
+        let t173 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
+        let t176 = c_foot_along_y * minus_rate_left_bar_along_y;
+        let t178 = t170 + t173 * t173 + t176 * t176;
+        let t181 = acceleration[0] - (t169 - pose[0] * t178);
+        let t184 = pose[0] * (minus_rate_foot_along_y * t173);
+        let t193 = pose[0] * (minus_rate_foot_along_y * t176);
+        let t196 = acceleration[2] + pose[2] * t178 + t193 + t193;
+        let rate_dot_drive_along_y = gdrive_vx_along_y * t181 + acceleration[1]
+            - (t184 - 0.31 * t9 * t178 + t184) + gdrive_vz_along_y * t196;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t25;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
+        let t201 = c_foot_along_z * minus_rate_left_bar_along_z;
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
+            + minus_gfoot_vy_along_z * twist[1];
+        let t206 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t208 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
+        let t210 = t201 * t201 + t206 + t208 * t208;
+        let t213 = pose[1] * (minus_rate_foot_along_z * t201);
+        let t216 = acceleration[0] + pose[0] * t210 + t213 + t213;
+        let t218 = pose[1] * minus_rate_foot_along_z;
+        let t219 = minus_rate_foot_along_z * t218;
+        let t222 = acceleration[1] - (t219 - pose[1] * t210);
+        let t226 = pose[1] * (minus_rate_foot_along_z * t208);
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t216 + gdrive_vy_along_z * t222
+            + acceleration[2] - (t226 - 0.31 * t21 * t210 + t226);
+        let t233 = 9.81 + rate_dot_drive_along_z;
+        let rate_drive_along_x = twist[0] + gdrive_vy_along_x * twist[1]
+            + gdrive_vz_along_x * twist[2];
+        let rate_drive_along_y = gdrive_vx_along_y * twist[0] + twist[1]
+            + gdrive_vz_along_y * twist[2];
+        let rate_drive_along_z = gdrive_vx_along_z * twist[0]
+            + gdrive_vy_along_z * twist[1] + twist[2];
+        let t251 = minus_gfoot_vy_along_x * t76 - minus_gfoot_vz_along_x * t79;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t104
+            + minus_gfoot_vz_along_x * t111;
+        let t258 = minus_gfoot_vz_along_x * t148 - minus_gfoot_vy_along_x * t139;
+        let t262 = minus_gfoot_vy_along_x * t157 - minus_gfoot_vz_along_x * t162;
+        let t266 = minus_gfoot_vx_along_y * t74 + minus_gfoot_vz_along_y * t79;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t181
+            + minus_gfoot_vz_along_y * t196;
+        let t273 = minus_gfoot_vx_along_y * t143 + minus_gfoot_vz_along_y * t148;
+        let t277 = minus_gfoot_vx_along_y * t153 + minus_gfoot_vz_along_y * t162;
+        let t281 = minus_gfoot_vy_along_z * t76 - minus_gfoot_vx_along_z * t74;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t216
+            + minus_gfoot_vy_along_z * t222;
+        let t288 = minus_gfoot_vx_along_z * t143 - minus_gfoot_vy_along_z * t139;
+        let t292 = minus_gfoot_vy_along_z * t157 - minus_gfoot_vx_along_z * t153;
+        let t294 = minus_s_foot_along_x * rate_dot_drive_along_x;
+        let t298 = c_foot_along_x * t93
+            + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
+        let t304 = minus_s_foot_along_y * rate_dot_drive_along_y - 9.81 * c_foot_along_y;
+        let t309 = c_foot_along_y * t170
+            + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
+        let t312 = minus_s_foot_along_z * t233;
+        let t318 = c_foot_along_z * t206
+            + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
+        let t329 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
+        let t337 = c_foot_along_z * t233;
+        let t345 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t346 = minus_rate_left_bar_along_x * t119;
+        let t347 = t345 + t346;
+        let t349 = minus_rate_left_bar_along_x * t118;
+        let t351 = minus_s_left_bar_along_x * t347 + c_left_bar_along_x * t349;
+        let t353 = minus_gleft_bar_vz_along_x * t79;
+        let t356 = minus_gleft_bar_vz_along_x * t148;
+        let t361 = minus_gleft_bar_vz_along_x * t162;
+        let t364 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t365 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t366 = minus_rate_left_bar_along_y * t365;
+        let t367 = t364 + t366;
+        let t369 = 3.225806451612903 * t168;
+        let t370 = minus_rate_left_bar_along_y * t369;
+        let t372 = minus_s_left_bar_along_y * t367 + c_left_bar_along_y * t370;
+        let t374 = minus_gleft_bar_vx_along_y * t74;
+        let t375 = t369 * t365;
+        let t378 = minus_gleft_bar_vx_along_y * t143;
+        let t383 = minus_gleft_bar_vx_along_y * t153;
+        let t386 = minus_gleft_bar_vy_along_z * t76;
+        let t387 = 3.225806451612903 * t218;
+        let t388 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t389 = t387 * t388;
+        let t391 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t392 = minus_rate_left_bar_along_z * t388;
+        let t393 = t391 + t392;
+        let t395 = minus_rate_left_bar_along_z * t387;
+        let t397 = minus_s_left_bar_along_z * t393 + c_left_bar_along_z * t395;
+        let t401 = minus_gleft_bar_vy_along_z * t139;
+        let t404 = minus_gleft_bar_vy_along_z * t157;
+        let t408 = t346 + t347;
+        let t410 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t412 = t349 + t349 - t410;
+        let t414 = c_left_bar_along_x * t408 - minus_s_left_bar_along_x * t412;
+        let t417 = 10.40582726326743 * (t107 * t107);
+        let t418 = t417 - t129;
+        let t427 = t366 + t367;
+        let t429 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t431 = t370 + t370 - t429;
+        let t433 = c_left_bar_along_y * t427 - minus_s_left_bar_along_y * t431;
+        let t436 = 10.40582726326743 * (t168 * t168);
+        let t438 = t436 - t365 * t365;
+        let t447 = t392 + t393;
+        let t449 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t451 = t395 + t395 - t449;
+        let t453 = c_left_bar_along_z * t447 - minus_s_left_bar_along_z * t451;
+        let t456 = 10.40582726326743 * (t218 * t218);
+        let t458 = t456 - t388 * t388;
+        let t470 = minus_s_left_bar_along_x * t122 + c_left_bar_along_x * (t92 - t417);
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t181;
+        let t483 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t486 = minus_s_left_bar_along_y * (t375 + minus_rate_dot_left_bar_along_y)
+            + c_left_bar_along_y * (t483 - t436);
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t222;
+        let t499 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t502 = minus_s_left_bar_along_z * (t389 + minus_rate_dot_left_bar_along_z)
+            + c_left_bar_along_z * (t499 - t456);
+        let t513 = 3.225806451612903 * acceleration[2];
+        let t522 = 3.225806451612903 * acceleration[0];
+        let t532 = 3.225806451612903 * acceleration[1];
+        let t558 = minus_s_left_bar_along_x * t294;
+        let t562 = t43 * (minus_rate_dot_left_bar_along_x - t120) - t66 * (t417 + t92)
+            - minus_s_foot_along_x * t408 + t251 * t558 + t353 * t128;
+        let t569 = c_left_bar_along_y * t329;
+        let t571 = minus_s_left_bar_along_y * t304;
+        let t584 = t9 * (minus_rate_dot_left_bar_along_y - t375) - t52 * (t436 + t483)
+            - minus_s_foot_along_y * t427 + t273 * t571 - t378 * t569;
+        let t588 = minus_s_left_bar_along_z * t312;
+        let t590 = c_left_bar_along_z * t337;
+        let t606 = t21 * (minus_rate_dot_left_bar_along_z - t389) - t29 * (t456 + t499)
+            - minus_s_foot_along_z * t447 + t292 * t588 - t404 * t590;
+        let t610 = t294 + 0.31 * t412 - 0.31 * t410;
+        let t625 = t304 + 0.31 * t431 - 0.31 * t429;
+        let t638 = t312 + 0.31 * t451 - 0.31 * t449;
+        Ok([
+            [
+                t74 * acceleration[0] - t76 * acceleration[1] - t79 * t134, rate_dot_drive_along_x,
+                0.0, 0.0, 0.0, rate_drive_along_x, 0.0, 0.0,
+                ::overact::math::sign(rate_drive_along_x), 0.0, 0.0, 1.0, 0.0,
+                -(t251 * minus_rate_dot_foot_along_x), t266 * minus_rate_dot_foot_along_y,
+                -(t281 * minus_rate_dot_foot_along_z), t251 * t294 - t298, -(t266 * t304),
+                t281 * t312,
+                c_foot_along_x * minus_rate_dot_foot_along_x - minus_s_foot_along_x * t93
+                    - t251 * t114,
+                t266 * t329,
+                -(t281 * t337),
+                -(t251 * t351 + t353 * t120),
+                t266 * t372 - t374 * t375,
+                t386 * t389 - t281 * t397,
+                t251 * t414 - t353 * t418,
+                -(t266 * t433 + t374 * t438),
+                t281 * t453 + t386 * t458,
+                t251 * t470 - t353 * t345,
+                -(t266 * t486 + t374 * t364),
+                t281 * t502 + t386 * t391,
+                t353 * t410 - t251 * t513,
+                t266 * t522 + t374 * t429,
+                -(t281 * t532 + t386 * t449),
+                t353 * minus_rate_dot_left_bar_along_x,
+                t374 * minus_rate_dot_left_bar_along_y,
+                -(t386 * minus_rate_dot_left_bar_along_z),
+                t562,
+                t374 * t569 - t266 * t571,
+                t281 * t588 - t386 * t590,
+                t251 * t610 - t298 + t353 * t108,
+                t374 * t169 - t266 * t625,
+                t281 * t638 - t386 * t219,
+            ],
+            [
+                t139 * acceleration[1] - t143 * acceleration[0] + t148 * t134, 0.0,
+                rate_dot_drive_along_y, 0.0, 0.0, 0.0, rate_drive_along_y, 0.0, 0.0,
+                ::overact::math::sign(rate_drive_along_y), 0.0, 0.0, 1.0,
+                -(t258 * minus_rate_dot_foot_along_x), -(t273 * minus_rate_dot_foot_along_y),
+                -(t288 * minus_rate_dot_foot_along_z), t258 * t294, t273 * t304 - t309, t288 * t312,
+                -(t258 * t114),
+                c_foot_along_y * minus_rate_dot_foot_along_y
+                    - minus_s_foot_along_y * t170 - t273 * t329,
+                -(t288 * t337),
+                t356 * t120 - t258 * t351,
+                t378 * t375 - t273 * t372,
+                -(t288 * t397 + t401 * t389),
+                t258 * t414 + t356 * t418,
+                t273 * t433 + t378 * t438,
+                t288 * t453 - t401 * t458,
+                t258 * t470 + t356 * t345,
+                t273 * t486 + t378 * t364,
+                t288 * t502 - t401 * t391,
+                -(t258 * t513 + t356 * t410),
+                -(t273 * t522 + t378 * t429),
+                t401 * t449 - t288 * t532,
+                -(t356 * minus_rate_dot_left_bar_along_x),
+                -(t378 * minus_rate_dot_left_bar_along_y),
+                t401 * minus_rate_dot_left_bar_along_z,
+                t258 * t558 - t356 * t128,
+                t584,
+                t288 * t588 + t401 * t590,
+                t258 * t610 - t356 * t108,
+                t273 * t625 - t309 - t378 * t169,
+                t288 * t638 + t401 * t219,
+            ],
+            [
+                t153 * acceleration[0] - t157 * acceleration[1] - t162 * t134, 0.0, 0.0, t233,
+                rate_dot_drive_along_z, 0.0, 0.0, rate_drive_along_z, 0.0, 0.0,
+                ::overact::math::sign(rate_drive_along_z), 0.0, 0.0,
+                -(t262 * minus_rate_dot_foot_along_x), t277 * minus_rate_dot_foot_along_y,
+                -(t292 * minus_rate_dot_foot_along_z), t262 * t294, -(t277 * t304),
+                t292 * t312 - t318, -(t262 * t114), t277 * t329,
+                c_foot_along_z * minus_rate_dot_foot_along_z
+                    - minus_s_foot_along_z * t206 - t292 * t337,
+                -(t262 * t351 + t361 * t120),
+                t277 * t372 - t383 * t375,
+                t404 * t389 - t292 * t397,
+                t262 * t414 - t361 * t418,
+                -(t277 * t433 + t383 * t438),
+                t292 * t453 + t404 * t458,
+                t262 * t470 - t361 * t345,
+                -(t277 * t486 + t383 * t364),
+                t292 * t502 + t404 * t391,
+                t361 * t410 - t262 * t513,
+                t277 * t522 + t383 * t429,
+                -(t292 * t532 + t404 * t449),
+                t361 * minus_rate_dot_left_bar_along_x,
+                t383 * minus_rate_dot_left_bar_along_y,
+                -(t404 * minus_rate_dot_left_bar_along_z),
+                t262 * t558 + t361 * t128,
+                t383 * t569 - t277 * t571,
+                t606,
+                t262 * t610 + t361 * t108,
+                t383 * t169 - t277 * t625,
+                t292 * t638 - t318 - t404 * t219,
+            ],
+        ])
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -4552,7 +5861,7 @@ impl Orthoglide {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 705 operations (239 additions, 456 multiplications, 10 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 623 intermediates.
+    /// 717 operations (245 additions, 459 multiplications, 13 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 629 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4563,396 +5872,384 @@ impl Orthoglide {
         start: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (minus_c_foot_along_y, s_foot_along_y) = ::overact::math::sin_cos(joints[5]);
-        let (s_left_bar_along_y, c_left_bar_along_y) = ::overact::math::sin_cos(
-            joints[6],
-        );
+        let t2 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t2, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let t4 = minus_c_foot_along_y * c_left_bar_along_y;
-        let t5 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t5, 1.0, "along_y")?;
-        let t6 = 1.0 / t5;
-        let minus_gdrive_vz_along_y = t4 * t6;
-        let (minus_c_foot_along_z, s_foot_along_z) = ::overact::math::sin_cos(joints[9]);
-        let (s_left_bar_along_z, c_left_bar_along_z) = ::overact::math::sin_cos(
-            joints[10],
-        );
+        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let t7 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t7, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t7);
+        let t9 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t9, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t9;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t14 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t14, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t14);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t12 = minus_c_foot_along_z * c_left_bar_along_z;
-        let t13 = 0.31 * t12;
-        let t14 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t14, 1.0, "along_z")?;
-        let t15 = 1.0 / t14;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t15;
-        let t18 = 1.0 / c_left_bar_along_z;
+        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
+        let t19 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t19, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t19);
+        let t21 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t21, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t21;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t25 = 1.0 / c_left_bar_along_z;
         let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_c_foot_along_z * s_left_bar_along_z * t18);
-        let t22 = s_foot_along_z * s_left_bar_along_z;
-        let minus_gdrive_vy_along_z = t13 * minus_gfoot_vy_along_z + t22 * t18;
-        let t26 = 1.0 - minus_gdrive_vz_along_y * minus_gdrive_vy_along_z;
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
+            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t25);
+        let t29 = minus_s_left_bar_along_z * c_foot_along_z;
+        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t29 * t25;
+        let t33 = 1.0 - gdrive_vz_along_y * gdrive_vy_along_z;
+        let t36 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t36, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t36);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t31 = minus_c_foot_along_x * c_left_bar_along_x;
-        let t32 = s_foot_along_x * c_left_bar_along_x;
-        ::overact::guard::leg(t32, 1.0, "along_x")?;
-        let t33 = 1.0 / t32;
-        let minus_gdrive_vy_along_x = t31 * t33;
-        let t35 = 0.31 * t4;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t6;
-        let t38 = 1.0 / c_left_bar_along_y;
+        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
+        let t41 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t41, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t41);
+        let t43 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t43, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t43;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t48 = 1.0 / c_left_bar_along_y;
         let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_c_foot_along_y * s_left_bar_along_y * t38);
-        let t42 = s_foot_along_y * s_left_bar_along_y;
-        let minus_gdrive_vx_along_y = t35 * minus_gfoot_vx_along_y + t42 * t38;
-        let minus_gdrive_vx_along_z = t12 * t15;
-        let t47 = minus_gdrive_vx_along_y
-            + minus_gdrive_vz_along_y * minus_gdrive_vx_along_z;
-        let t50 = 0.31 * t31;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t33;
-        let t53 = 1.0 / c_left_bar_along_x;
+            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t48);
+        let t52 = minus_s_left_bar_along_y * c_foot_along_y;
+        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t52 * t48;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t57 = gdrive_vx_along_y - gdrive_vz_along_y * gdrive_vx_along_z;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t62 = 1.0 / c_left_bar_along_x;
         let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_c_foot_along_x * s_left_bar_along_x * t53);
-        let t57 = s_foot_along_x * s_left_bar_along_x;
-        let minus_gdrive_vz_along_x = t50 * minus_gfoot_vz_along_x + t57 * t53;
-        let t61 = minus_gdrive_vx_along_y * minus_gdrive_vy_along_z
-            + minus_gdrive_vx_along_z;
-        let t63 = t26 - minus_gdrive_vy_along_x * t47 - minus_gdrive_vz_along_x * t61;
-        ::overact::guard::platform(t63, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t63, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t63, 1.0, "kept actuators")?;
-        let t64 = 1.0 / t63;
-        let t65 = t26 * t64;
-        let t69 = 1.0 + minus_gdrive_vx_along_y * minus_gdrive_vx_along_y
-            + minus_gdrive_vx_along_z * minus_gdrive_vx_along_z;
-        ::overact::guard::platform(t69, 1.0, "actuators")?;
-        ::overact::guard::platform(t69, 1.0, "actuators")?;
-        let t70 = 1.0 / t69;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t53;
-        let t78 = minus_gdrive_vz_along_y * minus_gdrive_vx_along_y
-            - minus_gdrive_vz_along_x - minus_gdrive_vx_along_z;
-        let t79 = t78 * t70;
-        let t87 = minus_gdrive_vx_along_z * minus_gdrive_vy_along_z
-            - (minus_gdrive_vy_along_x + minus_gdrive_vx_along_y);
-        let t89 = minus_gdrive_vy_along_x * minus_gdrive_vz_along_x
-            - minus_gdrive_vz_along_y - minus_gdrive_vy_along_z - t87 * t79;
-        let t94 = t87 * t70;
-        let t96 = minus_gdrive_vy_along_x * minus_gdrive_vy_along_x + 1.0
-            + minus_gdrive_vy_along_z * minus_gdrive_vy_along_z - t87 * t94;
-        ::overact::guard::platform(t96, 1.0, "actuators")?;
-        ::overact::guard::platform(t96, 1.0, "actuators")?;
-        let t97 = 1.0 / t96;
-        let t98 = t89 * t97;
-        let t100 = minus_gdrive_vz_along_x * minus_gdrive_vz_along_x
-            + minus_gdrive_vz_along_y * minus_gdrive_vz_along_y + 1.0 - t78 * t79
-            - t89 * t98;
-        ::overact::guard::platform(t100, 1.0, "actuators")?;
-        ::overact::guard::platform(t100, 1.0, "actuators")?;
-        let t101 = 1.0 / t100;
-        let t109 = actuator_velocities[0]
-            - minus_gdrive_vx_along_y * actuator_velocities[1]
-            - minus_gdrive_vx_along_z * actuator_velocities[2];
-        let t117 = actuator_velocities[1]
-            - minus_gdrive_vy_along_x * actuator_velocities[0]
-            - minus_gdrive_vy_along_z * actuator_velocities[2] - t109 * t94;
-        let t120 = t101
-            * (actuator_velocities[2]
-                - (minus_gdrive_vz_along_x * actuator_velocities[0]
-                    + minus_gdrive_vz_along_y * actuator_velocities[1]) - t109 * t79
-                - t98 * t117);
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t120;
-        let t122 = minus_c_foot_along_x * minus_rate_left_bar_along_x;
-        let t124 = s_foot_along_x * minus_rate_left_bar_along_x;
-        let t126 = t122 * t122 + t124 * t124;
-        let t129 = t97 * t117 - t98 * t120;
-        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t129
-            + minus_gfoot_vz_along_x * t120;
-        let t133 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t134 = t126 + t133;
-        let t136 = 0.31 * s_left_bar_along_x;
-        let t138 = t136 * (minus_rate_foot_along_x * t124);
-        let t140 = t50 * t134 + t138 + t138;
-        let t143 = t136 * (minus_rate_foot_along_x * t122);
-        let t150 = t136 * minus_rate_foot_along_x;
-        let t151 = minus_rate_foot_along_x * t150;
-        let t152 = t136 * t134 - t151;
-        let rate_dot_drive_along_x = minus_gdrive_vy_along_x * t140
-            - (t143 - 0.31 * t32 * t134 + t143) + minus_gdrive_vz_along_x * t152;
-        let t155 = actuator_accelerations[0] - rate_dot_drive_along_x;
-        let t156 = 0.31 * s_left_bar_along_y;
-        let t161 = t109 * t70 - t94 * t129 - t79 * t120;
-        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t161
-            + minus_gfoot_vz_along_y * t120;
-        let t165 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t38;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t161;
-        let t168 = minus_c_foot_along_y * minus_rate_left_bar_along_y;
-        let t171 = s_foot_along_y * minus_rate_left_bar_along_y;
-        let t173 = t165 + t168 * t168 + t171 * t171;
-        let t175 = t156 * minus_rate_foot_along_y;
-        let t176 = minus_rate_foot_along_y * t175;
-        let t177 = t156 * t173 - t176;
-        let t180 = t156 * (minus_rate_foot_along_y * t168);
-        let t188 = t156 * (minus_rate_foot_along_y * t171);
-        let t190 = t35 * t173 + t188 + t188;
-        let rate_dot_drive_along_y = minus_gdrive_vx_along_y * t177
-            - (t180 - 0.31 * t5 * t173 + t180) + minus_gdrive_vz_along_y * t190;
-        let t193 = actuator_accelerations[1] - rate_dot_drive_along_y;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t18;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t129;
-        let t198 = s_foot_along_z * minus_rate_left_bar_along_z;
-        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t161
-            + minus_gfoot_vy_along_z * t129;
-        let t203 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t205 = minus_c_foot_along_z * minus_rate_left_bar_along_z;
-        let t207 = t198 * t198 + t203 + t205 * t205;
-        let t209 = 0.31 * s_left_bar_along_z;
-        let t211 = t209 * (minus_rate_foot_along_z * t198);
-        let t213 = t13 * t207 + t211 + t211;
-        let t216 = t209 * minus_rate_foot_along_z;
-        let t217 = minus_rate_foot_along_z * t216;
-        let t218 = t209 * t207 - t217;
-        let t222 = t209 * (minus_rate_foot_along_z * t205);
-        let rate_dot_drive_along_z = minus_gdrive_vx_along_z * t213
-            + minus_gdrive_vy_along_z * t218 - (t222 - 0.31 * t14 * t207 + t222);
-        let t228 = actuator_accelerations[2] - rate_dot_drive_along_z;
-        let t230 = t155 - minus_gdrive_vx_along_y * t193
-            - minus_gdrive_vx_along_z * t228;
-        let t237 = t193 - minus_gdrive_vy_along_x * t155 - minus_gdrive_vy_along_z * t228
-            - t94 * t230;
-        let t247 = t101
-            * (t228 - (minus_gdrive_vz_along_x * t155 + minus_gdrive_vz_along_y * t193)
-                - t79 * t230 - t98 * t237);
-        let t249 = t97 * t237 - t98 * t247;
-        let t253 = t70 * t230 - t94 * t249 - t79 * t247;
-        let t255 = t47 * t64;
-        let t258 = t61 * t64;
-        let t259 = s_foot_along_x * actuator_accelerations[0];
-        let t262 = c_left_bar_along_x * t259 - 9.81 * s_left_bar_along_x;
-        let t267 = 3.225806451612903 * t150;
-        let t268 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t269 = t267 * t268;
-        let t270 = t247 - t152;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t270;
-        let t272 = t269 - minus_rate_dot_left_bar_along_x;
-        let t279 = s_left_bar_along_x
-            * (t262 - c_left_bar_along_x * (s_foot_along_x * rate_dot_drive_along_x))
-            + c_left_bar_along_x
-                * (0.31 * t272
-                    - (s_left_bar_along_x * t259 + 9.81 * c_left_bar_along_x));
-        let t284 = (minus_gdrive_vy_along_x
-            + minus_gdrive_vz_along_x * minus_gdrive_vy_along_z) * t64;
-        let t288 = (1.0 - minus_gdrive_vz_along_x * minus_gdrive_vx_along_z) * t64;
-        let t293 = (minus_gdrive_vy_along_z
-            + minus_gdrive_vy_along_x * minus_gdrive_vx_along_z) * t64;
-        let t298 = (minus_gdrive_vy_along_x * minus_gdrive_vz_along_y
-            + minus_gdrive_vz_along_x) * t64;
-        let t302 = (minus_gdrive_vz_along_y
-            + minus_gdrive_vz_along_x * minus_gdrive_vx_along_y) * t64;
-        let t307 = (1.0 - minus_gdrive_vy_along_x * minus_gdrive_vx_along_y) * t64;
-        let t310 = 9.81 + actuator_accelerations[2];
-        let t316 = minus_gfoot_vy_along_x * t255 + minus_gfoot_vz_along_x * t258;
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * (t249 - t140)
-            + minus_gfoot_vz_along_x * t270;
-        let t324 = minus_gfoot_vy_along_x * t288 + minus_gfoot_vz_along_x * t293;
-        let t328 = minus_gfoot_vy_along_x * t302 + minus_gfoot_vz_along_x * t307;
-        let t332 = minus_gfoot_vx_along_y * t65 + minus_gfoot_vz_along_y * t258;
-        let t333 = t253 - t177;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t333
-            + minus_gfoot_vz_along_y * (t247 - t190);
-        let t341 = minus_gfoot_vx_along_y * t284 + minus_gfoot_vz_along_y * t293;
-        let t345 = minus_gfoot_vx_along_y * t298 + minus_gfoot_vz_along_y * t307;
-        let t349 = minus_gfoot_vx_along_z * t65 + minus_gfoot_vy_along_z * t255;
-        let t352 = t249 - t218;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t253 - t213)
-            + minus_gfoot_vy_along_z * t352;
-        let t358 = minus_gfoot_vx_along_z * t284 + minus_gfoot_vy_along_z * t288;
-        let t362 = minus_gfoot_vx_along_z * t298 + minus_gfoot_vy_along_z * t302;
-        let t366 = minus_c_foot_along_x * minus_rate_dot_foot_along_x
-            - s_foot_along_x * t133;
-        let t367 = minus_c_foot_along_x * actuator_accelerations[0];
-        let t374 = 9.81 * s_foot_along_y
-            + minus_c_foot_along_y * actuator_accelerations[1];
-        let t378 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
-            - s_foot_along_y * t165;
-        let t382 = minus_c_foot_along_z * t310;
-        let t387 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
-            - s_foot_along_z * t203;
-        let t399 = s_foot_along_y * actuator_accelerations[1]
-            - 9.81 * minus_c_foot_along_y;
-        let t407 = s_foot_along_z * t310;
-        let t415 = minus_gleft_bar_vz_along_x * t258;
-        let t417 = minus_rate_left_bar_along_x * t268;
-        let t418 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t419 = t417 - t418;
-        let t421 = minus_rate_left_bar_along_x * t267;
-        let t423 = s_left_bar_along_x * t419 + c_left_bar_along_x * t421;
-        let t426 = minus_gleft_bar_vz_along_x * t293;
-        let t430 = minus_gleft_bar_vz_along_x * t307;
-        let t434 = minus_gleft_bar_vx_along_y * t65;
-        let t435 = 3.225806451612903 * t175;
-        let t436 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t437 = t435 * t436;
-        let t439 = minus_rate_left_bar_along_y * t436;
-        let t440 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t441 = t439 - t440;
-        let t443 = minus_rate_left_bar_along_y * t435;
-        let t445 = s_left_bar_along_y * t441 + c_left_bar_along_y * t443;
-        let t448 = minus_gleft_bar_vx_along_y * t284;
-        let t452 = minus_gleft_bar_vx_along_y * t298;
-        let t456 = minus_gleft_bar_vy_along_z * t255;
-        let t457 = 3.225806451612903 * t216;
-        let t458 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t459 = t457 * t458;
-        let t461 = minus_rate_left_bar_along_z * t458;
-        let t462 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t463 = t461 - t462;
-        let t465 = minus_rate_left_bar_along_z * t457;
-        let t467 = s_left_bar_along_z * t463 + c_left_bar_along_z * t465;
-        let t470 = minus_gleft_bar_vy_along_z * t288;
-        let t474 = minus_gleft_bar_vy_along_z * t302;
-        let t478 = t417 + t419;
-        let t480 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t482 = t421 + t480 + t421;
-        let t484 = c_left_bar_along_x * t478 - s_left_bar_along_x * t482;
-        let t487 = 10.40582726326743 * (t150 * t150);
-        let t489 = t487 - t268 * t268;
-        let t498 = t439 + t441;
-        let t500 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t502 = t443 + t500 + t443;
-        let t504 = c_left_bar_along_y * t498 - s_left_bar_along_y * t502;
-        let t507 = 10.40582726326743 * (t175 * t175);
-        let t509 = t507 - t436 * t436;
-        let t518 = t461 + t463;
-        let t520 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t522 = t465 + t520 + t465;
-        let t524 = c_left_bar_along_z * t518 - s_left_bar_along_z * t522;
-        let t527 = 10.40582726326743 * (t216 * t216);
-        let t529 = t527 - t458 * t458;
-        let t542 = s_left_bar_along_x * t272 + c_left_bar_along_x * (t126 - t487);
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t333;
-        let t555 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t558 = s_left_bar_along_y * (t437 - minus_rate_dot_left_bar_along_y)
-            + c_left_bar_along_y * (t555 - t507);
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t352;
-        let t571 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t574 = s_left_bar_along_z * (t459 - minus_rate_dot_left_bar_along_z)
-            + c_left_bar_along_z * (t571 - t527);
-        let t583 = 3.225806451612903 * t247;
-        let t593 = 3.225806451612903 * t253;
-        let t603 = 3.225806451612903 * t249;
-        let t629 = s_left_bar_along_x * t367;
-        let t633 = t32 * (t269 + minus_rate_dot_left_bar_along_x) + t57 * (t487 + t126)
-            + minus_c_foot_along_x * t478 - t316 * t629 + t415 * t262;
-        let t640 = c_left_bar_along_y * t399;
-        let t642 = s_left_bar_along_y * t374;
-        let t655 = t5 * (t437 + minus_rate_dot_left_bar_along_y) + t42 * (t507 + t555)
-            + minus_c_foot_along_y * t498 - t341 * t642 + t448 * t640;
-        let t659 = c_left_bar_along_z * t407;
-        let t661 = s_left_bar_along_z * t382;
-        let t677 = t14 * (t459 + minus_rate_dot_left_bar_along_z) + t22 * (t527 + t571)
-            + minus_c_foot_along_z * t518 - t362 * t661 + t474 * t659;
-        let t681 = 0.31 * t480 + t367 + 0.31 * t482;
-        let t695 = 0.31 * t500 + t374 + 0.31 * t502;
-        let t709 = 0.31 * t520 + t382 + 0.31 * t522;
+            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t62);
+        let t66 = minus_s_left_bar_along_x * c_foot_along_x;
+        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t66 * t62;
+        let t70 = gdrive_vx_along_y * gdrive_vy_along_z - gdrive_vx_along_z;
+        let t72 = t33 - gdrive_vy_along_x * t57 + gdrive_vz_along_x * t70;
+        ::overact::guard::platform(t72, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t72, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t72, 1.0, "kept actuators")?;
+        let t73 = 1.0 / t72;
+        let t74 = t33 * t73;
+        let t78 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vx_along_z;
+        ::overact::guard::platform(t78, 1.0, "actuators")?;
+        ::overact::guard::platform(t78, 1.0, "actuators")?;
+        let t79 = 1.0 / t78;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t62;
+        let t87 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z;
+        let t88 = t87 * t79;
+        let t96 = gdrive_vy_along_x + gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vy_along_z;
+        let t98 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
+            + gdrive_vy_along_z - t96 * t88;
+        let t103 = t96 * t79;
+        let t105 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
+            + gdrive_vy_along_z * gdrive_vy_along_z - t96 * t103;
+        ::overact::guard::platform(t105, 1.0, "actuators")?;
+        ::overact::guard::platform(t105, 1.0, "actuators")?;
+        let t106 = 1.0 / t105;
+        let t107 = t98 * t106;
+        let t109 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t87 * t88 - t98 * t107;
+        ::overact::guard::platform(t109, 1.0, "actuators")?;
+        ::overact::guard::platform(t109, 1.0, "actuators")?;
+        let t110 = 1.0 / t109;
+        let t118 = actuator_velocities[0] + gdrive_vx_along_y * actuator_velocities[1]
+            + gdrive_vx_along_z * actuator_velocities[2];
+        let t126 = gdrive_vy_along_x * actuator_velocities[0] + actuator_velocities[1]
+            + gdrive_vy_along_z * actuator_velocities[2] - t118 * t103;
+        let t129 = t110
+            * (gdrive_vz_along_x * actuator_velocities[0]
+                + gdrive_vz_along_y * actuator_velocities[1] + actuator_velocities[2]
+                - t118 * t88 - t107 * t126);
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t129;
+        let t131 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
+        let t133 = c_foot_along_x * minus_rate_left_bar_along_x;
+        let t135 = t131 * t131 + t133 * t133;
+        let t138 = t106 * t126 - t107 * t129;
+        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t138
+            + minus_gfoot_vz_along_x * t129;
+        let t142 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t143 = t135 + t142;
+        let t146 = pose[2] * (minus_rate_foot_along_x * t133);
+        let t148 = pose[1] * t143 + t146 + t146;
+        let t151 = pose[2] * (minus_rate_foot_along_x * t131);
+        let t157 = pose[2] * minus_rate_foot_along_x;
+        let t158 = minus_rate_foot_along_x * t157;
+        let t160 = t158 - pose[2] * t143;
+        let rate_dot_drive_along_x = gdrive_vy_along_x * t148
+            - (t151 - 0.31 * t43 * t143 + t151) - gdrive_vz_along_x * t160;
+        let t163 = actuator_accelerations[0] - rate_dot_drive_along_x;
+        let t168 = t118 * t79 - t103 * t138 - t88 * t129;
+        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t168
+            + minus_gfoot_vz_along_y * t129;
+        let t172 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t48;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t168;
+        let t175 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
+        let t178 = c_foot_along_y * minus_rate_left_bar_along_y;
+        let t180 = t172 + t175 * t175 + t178 * t178;
+        let t183 = pose[0] * (minus_rate_foot_along_y * t178);
+        let t185 = pose[2] * t180 + t183 + t183;
+        let t187 = pose[0] * minus_rate_foot_along_y;
+        let t188 = minus_rate_foot_along_y * t187;
+        let t190 = t188 - pose[0] * t180;
+        let t193 = pose[0] * (minus_rate_foot_along_y * t175);
+        let rate_dot_drive_along_y = gdrive_vz_along_y * t185
+            - (gdrive_vx_along_y * t190 + t193 - 0.31 * t9 * t180 + t193);
+        let t200 = actuator_accelerations[1] - rate_dot_drive_along_y;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t25;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t138;
+        let t205 = c_foot_along_z * minus_rate_left_bar_along_z;
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t168
+            + minus_gfoot_vy_along_z * t138;
+        let t210 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t212 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
+        let t214 = t205 * t205 + t210 + t212 * t212;
+        let t217 = pose[1] * (minus_rate_foot_along_z * t205);
+        let t219 = pose[0] * t214 + t217 + t217;
+        let t221 = pose[1] * minus_rate_foot_along_z;
+        let t222 = minus_rate_foot_along_z * t221;
+        let t224 = t222 - pose[1] * t214;
+        let t228 = pose[1] * (minus_rate_foot_along_z * t212);
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t219 - gdrive_vy_along_z * t224
+            - (t228 - 0.31 * t21 * t214 + t228);
+        let t234 = actuator_accelerations[2] - rate_dot_drive_along_z;
+        let t236 = t163 + gdrive_vx_along_y * t200 + gdrive_vx_along_z * t234;
+        let t243 = gdrive_vy_along_x * t163 + t200 + gdrive_vy_along_z * t234
+            - t103 * t236;
+        let t253 = t110
+            * (gdrive_vz_along_x * t163 + gdrive_vz_along_y * t200 + t234 - t88 * t236
+                - t107 * t243);
+        let t255 = t106 * t243 - t107 * t253;
+        let t259 = t79 * t236 - t103 * t255 - t88 * t253;
+        let t261 = t57 * t73;
+        let t264 = t70 * t73;
+        let t265 = c_foot_along_x * actuator_accelerations[0];
+        let t269 = 3.225806451612903 * t157;
+        let t270 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t271 = t269 * t270;
+        let t272 = t253 - t160;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t272;
+        let t274 = t271 + minus_rate_dot_left_bar_along_x;
+        let t280 = c_left_bar_along_x * t265 + 31.64516129032258 * pose[2];
+        let t285 = c_left_bar_along_x
+            * (minus_s_left_bar_along_x * t265 - 9.81 * c_left_bar_along_x - 0.31 * t274)
+            - minus_s_left_bar_along_x
+                * (t280
+                    - c_left_bar_along_x * (c_foot_along_x * rate_dot_drive_along_x));
+        let t290 = (1.0 - gdrive_vz_along_x * gdrive_vx_along_z) * t73;
+        let t294 = (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t73;
+        let t299 = (gdrive_vy_along_z - gdrive_vy_along_x * gdrive_vx_along_z) * t73;
+        let t304 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t73;
+        let t308 = (gdrive_vz_along_y - gdrive_vz_along_x * gdrive_vx_along_y) * t73;
+        let t313 = (1.0 - gdrive_vy_along_x * gdrive_vx_along_y) * t73;
+        let t316 = 9.81 + actuator_accelerations[2];
+        let t322 = minus_gfoot_vy_along_x * t261 - minus_gfoot_vz_along_x * t264;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * (t255 + t148)
+            + minus_gfoot_vz_along_x * t272;
+        let t330 = minus_gfoot_vz_along_x * t299 - minus_gfoot_vy_along_x * t290;
+        let t334 = minus_gfoot_vy_along_x * t308 - minus_gfoot_vz_along_x * t313;
+        let t338 = minus_gfoot_vx_along_y * t74 + minus_gfoot_vz_along_y * t264;
+        let t339 = t259 - t190;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t339
+            + minus_gfoot_vz_along_y * (t253 + t185);
+        let t347 = minus_gfoot_vx_along_y * t294 + minus_gfoot_vz_along_y * t299;
+        let t351 = minus_gfoot_vx_along_y * t304 + minus_gfoot_vz_along_y * t313;
+        let t355 = minus_gfoot_vy_along_z * t261 - minus_gfoot_vx_along_z * t74;
+        let t358 = t255 - t224;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t259 + t219)
+            + minus_gfoot_vy_along_z * t358;
+        let t364 = minus_gfoot_vx_along_z * t294 - minus_gfoot_vy_along_z * t290;
+        let t368 = minus_gfoot_vy_along_z * t308 - minus_gfoot_vx_along_z * t304;
+        let t370 = minus_s_foot_along_x * actuator_accelerations[0];
+        let t374 = c_foot_along_x * t142
+            + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
+        let t380 = minus_s_foot_along_y * actuator_accelerations[1]
+            - 9.81 * c_foot_along_y;
+        let t385 = c_foot_along_y * t172
+            + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
+        let t388 = minus_s_foot_along_z * t316;
+        let t394 = c_foot_along_z * t210
+            + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
+        let t405 = 9.81 * minus_s_foot_along_y
+            + c_foot_along_y * actuator_accelerations[1];
+        let t413 = c_foot_along_z * t316;
+        let t421 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t422 = minus_rate_left_bar_along_x * t270;
+        let t423 = t421 + t422;
+        let t425 = minus_rate_left_bar_along_x * t269;
+        let t427 = minus_s_left_bar_along_x * t423 + c_left_bar_along_x * t425;
+        let t429 = minus_gleft_bar_vz_along_x * t264;
+        let t432 = minus_gleft_bar_vz_along_x * t299;
+        let t437 = minus_gleft_bar_vz_along_x * t313;
+        let t440 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t441 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t442 = minus_rate_left_bar_along_y * t441;
+        let t443 = t440 + t442;
+        let t445 = 3.225806451612903 * t187;
+        let t446 = minus_rate_left_bar_along_y * t445;
+        let t448 = minus_s_left_bar_along_y * t443 + c_left_bar_along_y * t446;
+        let t450 = minus_gleft_bar_vx_along_y * t74;
+        let t451 = t445 * t441;
+        let t454 = minus_gleft_bar_vx_along_y * t294;
+        let t459 = minus_gleft_bar_vx_along_y * t304;
+        let t462 = minus_gleft_bar_vy_along_z * t261;
+        let t463 = 3.225806451612903 * t221;
+        let t464 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t465 = t463 * t464;
+        let t467 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t468 = minus_rate_left_bar_along_z * t464;
+        let t469 = t467 + t468;
+        let t471 = minus_rate_left_bar_along_z * t463;
+        let t473 = minus_s_left_bar_along_z * t469 + c_left_bar_along_z * t471;
+        let t477 = minus_gleft_bar_vy_along_z * t290;
+        let t480 = minus_gleft_bar_vy_along_z * t308;
+        let t484 = t422 + t423;
+        let t486 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t488 = t425 + t425 - t486;
+        let t490 = c_left_bar_along_x * t484 - minus_s_left_bar_along_x * t488;
+        let t493 = 10.40582726326743 * (t157 * t157);
+        let t495 = t493 - t270 * t270;
+        let t504 = t442 + t443;
+        let t506 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t508 = t446 + t446 - t506;
+        let t510 = c_left_bar_along_y * t504 - minus_s_left_bar_along_y * t508;
+        let t513 = 10.40582726326743 * (t187 * t187);
+        let t515 = t513 - t441 * t441;
+        let t524 = t468 + t469;
+        let t526 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t528 = t471 + t471 - t526;
+        let t530 = c_left_bar_along_z * t524 - minus_s_left_bar_along_z * t528;
+        let t533 = 10.40582726326743 * (t221 * t221);
+        let t535 = t533 - t464 * t464;
+        let t547 = minus_s_left_bar_along_x * t274 + c_left_bar_along_x * (t135 - t493);
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t339;
+        let t560 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t563 = minus_s_left_bar_along_y * (t451 + minus_rate_dot_left_bar_along_y)
+            + c_left_bar_along_y * (t560 - t513);
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t358;
+        let t576 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t579 = minus_s_left_bar_along_z * (t465 + minus_rate_dot_left_bar_along_z)
+            + c_left_bar_along_z * (t576 - t533);
+        let t590 = 3.225806451612903 * t253;
+        let t599 = 3.225806451612903 * t259;
+        let t609 = 3.225806451612903 * t255;
+        let t635 = minus_s_left_bar_along_x * t370;
+        let t639 = t43 * (minus_rate_dot_left_bar_along_x - t271) - t66 * (t493 + t135)
+            - minus_s_foot_along_x * t484 + t322 * t635 + t429 * t280;
+        let t646 = c_left_bar_along_y * t405;
+        let t648 = minus_s_left_bar_along_y * t380;
+        let t661 = t9 * (minus_rate_dot_left_bar_along_y - t451) - t52 * (t513 + t560)
+            - minus_s_foot_along_y * t504 + t347 * t648 - t454 * t646;
+        let t665 = minus_s_left_bar_along_z * t388;
+        let t667 = c_left_bar_along_z * t413;
+        let t683 = t21 * (minus_rate_dot_left_bar_along_z - t465) - t29 * (t533 + t576)
+            - minus_s_foot_along_z * t524 + t368 * t665 - t480 * t667;
+        let t687 = t370 + 0.31 * t488 - 0.31 * t486;
+        let t702 = t380 + 0.31 * t508 - 0.31 * t506;
+        let t715 = t388 + 0.31 * t528 - 0.31 * t526;
         Ok([
             [
-                t65 * t253 + t255 * t249 - t258 * t279, actuator_accelerations[0], 0.0, 0.0, 0.0,
+                t74 * t259 - t261 * t255 - t264 * t285, actuator_accelerations[0], 0.0, 0.0, 0.0,
                 actuator_velocities[0], 0.0, 0.0, ::overact::math::sign(actuator_velocities[0]),
-                0.0, 0.0, 1.0, 0.0, t316 * minus_rate_dot_foot_along_x,
-                t332 * minus_rate_dot_foot_along_y, t349 * minus_rate_dot_foot_along_z,
-                t366 + t316 * t367, t332 * t374, t349 * t382,
-                s_foot_along_x * minus_rate_dot_foot_along_x
-                    + minus_c_foot_along_x * t133 + t316 * t259,
-                t332 * t399,
-                t349 * t407,
-                t415 * t269 - t316 * t423,
-                t434 * t437 - t332 * t445,
-                t456 * t459 - t349 * t467,
-                -(t316 * t484 + t415 * t489),
-                -(t332 * t504 + t434 * t509),
-                -(t349 * t524 + t456 * t529),
-                t415 * t418 - t316 * t542,
-                t434 * t440 - t332 * t558,
-                t456 * t462 - t349 * t574,
-                t316 * t583 + t415 * t480,
-                t332 * t593 + t434 * t500,
-                t349 * t603 + t456 * t520,
-                t415 * minus_rate_dot_left_bar_along_x,
-                t434 * minus_rate_dot_left_bar_along_y,
-                t456 * minus_rate_dot_left_bar_along_z,
-                t633,
-                t434 * t640 - t332 * t642,
-                t456 * t659 - t349 * t661,
-                t366 + t316 * t681 - t415 * t151,
-                t332 * t695 - t434 * t176,
-                t349 * t709 - t456 * t217,
+                0.0, 0.0, 1.0, 0.0, -(t322 * minus_rate_dot_foot_along_x),
+                t338 * minus_rate_dot_foot_along_y, -(t355 * minus_rate_dot_foot_along_z),
+                t322 * t370 - t374, -(t338 * t380), t355 * t388,
+                c_foot_along_x * minus_rate_dot_foot_along_x
+                    - minus_s_foot_along_x * t142 - t322 * t265,
+                t338 * t405,
+                -(t355 * t413),
+                -(t322 * t427 + t429 * t271),
+                t338 * t448 - t450 * t451,
+                t462 * t465 - t355 * t473,
+                t322 * t490 - t429 * t495,
+                -(t338 * t510 + t450 * t515),
+                t355 * t530 + t462 * t535,
+                t322 * t547 - t429 * t421,
+                -(t338 * t563 + t450 * t440),
+                t355 * t579 + t462 * t467,
+                t429 * t486 - t322 * t590,
+                t338 * t599 + t450 * t506,
+                -(t355 * t609 + t462 * t526),
+                t429 * minus_rate_dot_left_bar_along_x,
+                t450 * minus_rate_dot_left_bar_along_y,
+                -(t462 * minus_rate_dot_left_bar_along_z),
+                t639,
+                t450 * t646 - t338 * t648,
+                t355 * t665 - t462 * t667,
+                t322 * t687 - t374 + t429 * t158,
+                t450 * t188 - t338 * t702,
+                t355 * t715 - t462 * t222,
             ],
             [
-                t284 * t253 + t288 * t249 - t293 * t279, 0.0, actuator_accelerations[1], 0.0, 0.0,
+                t290 * t255 - t294 * t259 + t299 * t285, 0.0, actuator_accelerations[1], 0.0, 0.0,
                 0.0, actuator_velocities[1], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[1]), 0.0, 0.0, 1.0,
-                t324 * minus_rate_dot_foot_along_x, t341 * minus_rate_dot_foot_along_y,
-                t358 * minus_rate_dot_foot_along_z, t324 * t367, t378 + t341 * t374, t358 * t382,
-                t324 * t259,
-                s_foot_along_y * minus_rate_dot_foot_along_y
-                    + minus_c_foot_along_y * t165 + t341 * t399,
-                t358 * t407,
-                t426 * t269 - t324 * t423,
-                t448 * t437 - t341 * t445,
-                t470 * t459 - t358 * t467,
-                -(t324 * t484 + t426 * t489),
-                -(t341 * t504 + t448 * t509),
-                -(t358 * t524 + t470 * t529),
-                t426 * t418 - t324 * t542,
-                t448 * t440 - t341 * t558,
-                t470 * t462 - t358 * t574,
-                t324 * t583 + t426 * t480,
-                t341 * t593 + t448 * t500,
-                t358 * t603 + t470 * t520,
-                t426 * minus_rate_dot_left_bar_along_x,
-                t448 * minus_rate_dot_left_bar_along_y,
-                t470 * minus_rate_dot_left_bar_along_z,
-                t426 * t262 - t324 * t629,
-                t655,
-                t470 * t659 - t358 * t661,
-                t324 * t681 - t426 * t151,
-                t378 + t341 * t695 - t448 * t176,
-                t358 * t709 - t470 * t217,
+                -(t330 * minus_rate_dot_foot_along_x), -(t347 * minus_rate_dot_foot_along_y),
+                -(t364 * minus_rate_dot_foot_along_z), t330 * t370, t347 * t380 - t385, t364 * t388,
+                -(t330 * t265),
+                c_foot_along_y * minus_rate_dot_foot_along_y
+                    - minus_s_foot_along_y * t172 - t347 * t405,
+                -(t364 * t413),
+                t432 * t271 - t330 * t427,
+                t454 * t451 - t347 * t448,
+                -(t364 * t473 + t477 * t465),
+                t330 * t490 + t432 * t495,
+                t347 * t510 + t454 * t515,
+                t364 * t530 - t477 * t535,
+                t330 * t547 + t432 * t421,
+                t347 * t563 + t454 * t440,
+                t364 * t579 - t477 * t467,
+                -(t330 * t590 + t432 * t486),
+                -(t347 * t599 + t454 * t506),
+                t477 * t526 - t364 * t609,
+                -(t432 * minus_rate_dot_left_bar_along_x),
+                -(t454 * minus_rate_dot_left_bar_along_y),
+                t477 * minus_rate_dot_left_bar_along_z,
+                t330 * t635 - t432 * t280,
+                t661,
+                t364 * t665 + t477 * t667,
+                t330 * t687 - t432 * t158,
+                t347 * t702 - t385 - t454 * t188,
+                t364 * t715 + t477 * t222,
             ],
             [
-                t298 * t253 + t302 * t249 - t307 * t279, 0.0, 0.0, t310, actuator_accelerations[2],
+                t304 * t259 - t308 * t255 - t313 * t285, 0.0, 0.0, t316, actuator_accelerations[2],
                 0.0, 0.0, actuator_velocities[2], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[2]), 0.0, 0.0,
-                t328 * minus_rate_dot_foot_along_x, t345 * minus_rate_dot_foot_along_y,
-                t362 * minus_rate_dot_foot_along_z, t328 * t367, t345 * t374, t387 + t362 * t382,
-                t328 * t259, t345 * t399,
-                s_foot_along_z * minus_rate_dot_foot_along_z
-                    + minus_c_foot_along_z * t203 + t362 * t407,
-                t430 * t269 - t328 * t423,
-                t452 * t437 - t345 * t445,
-                t474 * t459 - t362 * t467,
-                -(t328 * t484 + t430 * t489),
-                -(t345 * t504 + t452 * t509),
-                -(t362 * t524 + t474 * t529),
-                t430 * t418 - t328 * t542,
-                t452 * t440 - t345 * t558,
-                t474 * t462 - t362 * t574,
-                t328 * t583 + t430 * t480,
-                t345 * t593 + t452 * t500,
-                t362 * t603 + t474 * t520,
-                t430 * minus_rate_dot_left_bar_along_x,
-                t452 * minus_rate_dot_left_bar_along_y,
-                t474 * minus_rate_dot_left_bar_along_z,
-                t430 * t262 - t328 * t629,
-                t452 * t640 - t345 * t642,
-                t677,
-                t328 * t681 - t430 * t151,
-                t345 * t695 - t452 * t176,
-                t387 + t362 * t709 - t474 * t217,
+                -(t334 * minus_rate_dot_foot_along_x), t351 * minus_rate_dot_foot_along_y,
+                -(t368 * minus_rate_dot_foot_along_z), t334 * t370, -(t351 * t380),
+                t368 * t388 - t394, -(t334 * t265), t351 * t405,
+                c_foot_along_z * minus_rate_dot_foot_along_z
+                    - minus_s_foot_along_z * t210 - t368 * t413,
+                -(t334 * t427 + t437 * t271),
+                t351 * t448 - t459 * t451,
+                t480 * t465 - t368 * t473,
+                t334 * t490 - t437 * t495,
+                -(t351 * t510 + t459 * t515),
+                t368 * t530 + t480 * t535,
+                t334 * t547 - t437 * t421,
+                -(t351 * t563 + t459 * t440),
+                t368 * t579 + t480 * t467,
+                t437 * t486 - t334 * t590,
+                t351 * t599 + t459 * t506,
+                -(t368 * t609 + t480 * t526),
+                t437 * minus_rate_dot_left_bar_along_x,
+                t459 * minus_rate_dot_left_bar_along_y,
+                -(t480 * minus_rate_dot_left_bar_along_z),
+                t334 * t635 + t437 * t280,
+                t459 * t646 - t351 * t648,
+                t683,
+                t334 * t687 + t437 * t158,
+                t459 * t188 - t351 * t702,
+                t368 * t715 - t394 - t480 * t222,
             ],
         ])
     }
@@ -4966,7 +6263,7 @@ impl Orthoglide {
     /// Output: 3 x 1.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 70 operations (21 additions, 47 multiplications, 2 divisions), 0 square roots, 2 trigonometric pairs, 0 signs, 73 intermediates.
+    /// 74 operations (23 additions, 48 multiplications, 3 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 75 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4975,8 +6272,50 @@ impl Orthoglide {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 1]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_payload_from_joints(pose, joints, twist, acceleration)
+        let t2 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t2, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t2);
+        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
+        let t8 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t8, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t8);
+        let t10 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t10, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t10;
+        let t14 = 1.0 / c_left_bar_along_x;
+        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
+            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t14);
+        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
+            + minus_gfoot_vz_along_x * twist[2];
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t14;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
+        let t21 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
+        let t23 = pose[2] * (minus_rate_foot_along_x * t21);
+        let t26 = c_foot_along_x * minus_rate_left_bar_along_x;
+        let t28 = t21 * t21 + t26 * t26;
+        let t30 = t28 + minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let t38 = pose[2] * (minus_rate_foot_along_x * t26);
+        let t43 = acceleration[0] - (t23 - 0.31 * t10 * t30 + t23)
+            + gdrive_vy_along_x * (acceleration[1] + pose[1] * t30 + t38 + t38);
+        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x
+            + minus_s_left_bar_along_x * c_foot_along_x * t14;
+        let t48 = pose[2] * minus_rate_foot_along_x;
+        let t52 = acceleration[2] - (minus_rate_foot_along_x * t48 - pose[2] * t30);
+        let rate_dot_drive_along_x = t43 + gdrive_vz_along_x * t52;
+        let t55 = c_foot_along_x * rate_dot_drive_along_x;
+        let t60 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t52;
+        let t75 = c_left_bar_along_x
+            * (minus_s_left_bar_along_x * t55 - 9.81 * c_left_bar_along_x
+                - 0.31
+                    * (3.225806451612903 * t48 * t60 + minus_rate_dot_left_bar_along_x))
+            - minus_s_left_bar_along_x
+                * (c_left_bar_along_x * t55 + 31.64516129032258 * pose[2]
+                    - 0.31 * (t60 * t60 + t28));
+        Ok([[acceleration[0]], [acceleration[1]], [-t75]])
     }
     /// The payload's columns of case 1, eq. (38).
     ///
@@ -5055,7 +6394,7 @@ impl Orthoglide {
     /// Output: 3 x 1.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 251 operations (83 additions, 159 multiplications, 9 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 260 intermediates.
+    /// 263 operations (89 additions, 162 multiplications, 12 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 266 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5066,169 +6405,164 @@ impl Orthoglide {
         start: &[f64; 3],
     ) -> Result<[[f64; 1]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (minus_c_foot_along_y, s_foot_along_y) = ::overact::math::sin_cos(joints[5]);
-        let (s_left_bar_along_y, c_left_bar_along_y) = ::overact::math::sin_cos(
-            joints[6],
-        );
+        let t2 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t2, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let t4 = minus_c_foot_along_y * c_left_bar_along_y;
-        let t5 = 0.31 * t4;
-        let t6 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t6, 1.0, "along_y")?;
-        let t7 = 1.0 / t6;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t7;
-        let t10 = 1.0 / c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let t7 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t7, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t7);
+        let t9 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t9, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t9;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t13 = 1.0 / c_left_bar_along_y;
         let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_c_foot_along_y * s_left_bar_along_y * t10);
-        let minus_gdrive_vx_along_y = t5 * minus_gfoot_vx_along_y
-            + s_foot_along_y * s_left_bar_along_y * t10;
-        let (minus_c_foot_along_z, s_foot_along_z) = ::overact::math::sin_cos(joints[9]);
-        let (s_left_bar_along_z, c_left_bar_along_z) = ::overact::math::sin_cos(
-            joints[10],
-        );
+            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t13);
+        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y
+            + minus_s_left_bar_along_y * c_foot_along_y * t13;
+        let t24 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t24, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t24);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t23 = minus_c_foot_along_z * c_left_bar_along_z;
-        let t24 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t24, 1.0, "along_z")?;
-        let t25 = 1.0 / t24;
-        let minus_gdrive_vx_along_z = t23 * t25;
-        let t28 = 1.0 + minus_gdrive_vx_along_y * minus_gdrive_vx_along_y
-            + minus_gdrive_vx_along_z * minus_gdrive_vx_along_z;
-        ::overact::guard::platform(t28, 1.0, "actuators")?;
-        ::overact::guard::platform(t28, 1.0, "actuators")?;
-        let t29 = 1.0 / t28;
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
-        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t34 = minus_c_foot_along_x * c_left_bar_along_x;
-        let t35 = s_foot_along_x * c_left_bar_along_x;
-        ::overact::guard::leg(t35, 1.0, "along_x")?;
+        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
+        let t29 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t29, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t29);
+        let t31 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t31, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t31;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t35 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vx_along_z;
+        ::overact::guard::platform(t35, 1.0, "actuators")?;
+        ::overact::guard::platform(t35, 1.0, "actuators")?;
         let t36 = 1.0 / t35;
-        let minus_gdrive_vy_along_x = t34 * t36;
-        let t38 = 0.31 * t34;
-        let t39 = 1.0 / c_left_bar_along_x;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t39;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t36;
+        let t39 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t39, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t39);
+        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
+        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
+        let t44 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t44, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t44);
+        let t46 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t46, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t46;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let t49 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t49;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
         let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_c_foot_along_x * s_left_bar_along_x * t39);
-        let minus_gdrive_vz_along_x = t38 * minus_gfoot_vz_along_x
-            + s_foot_along_x * s_left_bar_along_x * t39;
-        let minus_gdrive_vz_along_y = t4 * t7;
-        let t56 = minus_gdrive_vz_along_y * minus_gdrive_vx_along_y
-            - minus_gdrive_vz_along_x - minus_gdrive_vx_along_z;
-        let t57 = t56 * t29;
-        let t62 = 0.31 * t23;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t25;
-        let t65 = 1.0 / c_left_bar_along_z;
+            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t49);
+        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x
+            + minus_s_left_bar_along_x * c_foot_along_x * t49;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t66 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z;
+        let t67 = t66 * t36;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t74 = 1.0 / c_left_bar_along_z;
         let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_c_foot_along_z * s_left_bar_along_z * t65);
-        let minus_gdrive_vy_along_z = t62 * minus_gfoot_vy_along_z
-            + s_foot_along_z * s_left_bar_along_z * t65;
-        let t75 = minus_gdrive_vx_along_z * minus_gdrive_vy_along_z
-            - (minus_gdrive_vy_along_x + minus_gdrive_vx_along_y);
-        let t77 = minus_gdrive_vy_along_x * minus_gdrive_vz_along_x
-            - minus_gdrive_vz_along_y - minus_gdrive_vy_along_z - t75 * t57;
-        let t82 = t75 * t29;
-        let t84 = minus_gdrive_vy_along_x * minus_gdrive_vy_along_x + 1.0
-            + minus_gdrive_vy_along_z * minus_gdrive_vy_along_z - t75 * t82;
-        ::overact::guard::platform(t84, 1.0, "actuators")?;
-        ::overact::guard::platform(t84, 1.0, "actuators")?;
-        let t85 = 1.0 / t84;
-        let t86 = t77 * t85;
-        let t88 = minus_gdrive_vz_along_x * minus_gdrive_vz_along_x
-            + minus_gdrive_vz_along_y * minus_gdrive_vz_along_y + 1.0 - t56 * t57
-            - t77 * t86;
-        ::overact::guard::platform(t88, 1.0, "actuators")?;
-        ::overact::guard::platform(t88, 1.0, "actuators")?;
-        let t89 = 1.0 / t88;
-        let t97 = actuator_velocities[0]
-            - minus_gdrive_vx_along_y * actuator_velocities[1]
-            - minus_gdrive_vx_along_z * actuator_velocities[2];
-        let t105 = actuator_velocities[1]
-            - minus_gdrive_vy_along_x * actuator_velocities[0]
-            - minus_gdrive_vy_along_z * actuator_velocities[2] - t97 * t82;
-        let t108 = t89
-            * (actuator_velocities[2]
-                - (minus_gdrive_vz_along_x * actuator_velocities[0]
-                    + minus_gdrive_vz_along_y * actuator_velocities[1]) - t97 * t57
-                - t86 * t105);
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t108;
-        let t110 = minus_c_foot_along_x * minus_rate_left_bar_along_x;
-        let t112 = s_foot_along_x * minus_rate_left_bar_along_x;
-        let t117 = t85 * t105 - t86 * t108;
-        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t117
-            + minus_gfoot_vz_along_x * t108;
-        let t122 = t110 * t110 + t112 * t112
+            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t74);
+        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z
+            + minus_s_left_bar_along_z * c_foot_along_z * t74;
+        let t84 = gdrive_vy_along_x + gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vy_along_z;
+        let t86 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
+            + gdrive_vy_along_z - t84 * t67;
+        let t91 = t84 * t36;
+        let t93 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
+            + gdrive_vy_along_z * gdrive_vy_along_z - t84 * t91;
+        ::overact::guard::platform(t93, 1.0, "actuators")?;
+        ::overact::guard::platform(t93, 1.0, "actuators")?;
+        let t94 = 1.0 / t93;
+        let t95 = t86 * t94;
+        let t97 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t66 * t67 - t86 * t95;
+        ::overact::guard::platform(t97, 1.0, "actuators")?;
+        ::overact::guard::platform(t97, 1.0, "actuators")?;
+        let t98 = 1.0 / t97;
+        let t106 = actuator_velocities[0] + gdrive_vx_along_y * actuator_velocities[1]
+            + gdrive_vx_along_z * actuator_velocities[2];
+        let t114 = gdrive_vy_along_x * actuator_velocities[0] + actuator_velocities[1]
+            + gdrive_vy_along_z * actuator_velocities[2] - t106 * t91;
+        let t117 = t98
+            * (gdrive_vz_along_x * actuator_velocities[0]
+                + gdrive_vz_along_y * actuator_velocities[1] + actuator_velocities[2]
+                - t106 * t67 - t95 * t114);
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t117;
+        let t119 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
+        let t121 = c_foot_along_x * minus_rate_left_bar_along_x;
+        let t126 = t94 * t114 - t95 * t117;
+        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t126
+            + minus_gfoot_vz_along_x * t117;
+        let t131 = t119 * t119 + t121 * t121
             + minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t124 = 0.31 * s_left_bar_along_x;
-        let t126 = t124 * (minus_rate_foot_along_x * t112);
-        let t131 = t124 * (minus_rate_foot_along_x * t110);
-        let t138 = t124 * minus_rate_foot_along_x;
-        let t140 = t124 * t122 - minus_rate_foot_along_x * t138;
-        let rate_dot_drive_along_x = minus_gdrive_vy_along_x * (t38 * t122 + t126 + t126)
-            - (t131 - 0.31 * t35 * t122 + t131) + minus_gdrive_vz_along_x * t140;
-        let t143 = actuator_accelerations[0] - rate_dot_drive_along_x;
-        let t144 = 0.31 * s_left_bar_along_y;
-        let t149 = t97 * t29 - t82 * t117 - t57 * t108;
-        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t149
-            + minus_gfoot_vz_along_y * t108;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t10;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t149;
-        let t156 = minus_c_foot_along_y * minus_rate_left_bar_along_y;
-        let t159 = s_foot_along_y * minus_rate_left_bar_along_y;
-        let t161 = minus_rate_foot_along_y * minus_rate_foot_along_y + t156 * t156
-            + t159 * t159;
-        let t168 = t144 * (minus_rate_foot_along_y * t156);
-        let t173 = minus_gdrive_vx_along_y
-            * (t144 * t161 - minus_rate_foot_along_y * (t144 * minus_rate_foot_along_y))
-            - (t168 - 0.31 * t6 * t161 + t168);
-        let t176 = t144 * (minus_rate_foot_along_y * t159);
-        let rate_dot_drive_along_y = t173
-            + minus_gdrive_vz_along_y * (t5 * t161 + t176 + t176);
-        let t181 = actuator_accelerations[1] - rate_dot_drive_along_y;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t65;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t117;
-        let t186 = s_foot_along_z * minus_rate_left_bar_along_z;
-        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t149
-            + minus_gfoot_vy_along_z * t117;
-        let t193 = minus_c_foot_along_z * minus_rate_left_bar_along_z;
-        let t195 = t186 * t186 + minus_rate_foot_along_z * minus_rate_foot_along_z
-            + t193 * t193;
-        let t197 = 0.31 * s_left_bar_along_z;
-        let t199 = t197 * (minus_rate_foot_along_z * t186);
-        let t208 = minus_gdrive_vx_along_z * (t62 * t195 + t199 + t199)
-            + minus_gdrive_vy_along_z
-                * (t197 * t195
-                    - minus_rate_foot_along_z * (t197 * minus_rate_foot_along_z));
-        let t210 = t197 * (minus_rate_foot_along_z * t193);
-        let rate_dot_drive_along_z = t208 - (t210 - 0.31 * t24 * t195 + t210);
-        let t216 = actuator_accelerations[2] - rate_dot_drive_along_z;
-        let t218 = t143 - minus_gdrive_vx_along_y * t181
-            - minus_gdrive_vx_along_z * t216;
-        let t225 = t181 - minus_gdrive_vy_along_x * t143 - minus_gdrive_vy_along_z * t216
-            - t82 * t218;
-        let t235 = t89
-            * (t216 - (minus_gdrive_vz_along_x * t143 + minus_gdrive_vz_along_y * t181)
-                - t57 * t218 - t86 * t225);
-        let t237 = t85 * t225 - t86 * t235;
-        let t242 = s_foot_along_x * actuator_accelerations[0];
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * (t235 - t140);
-        let t261 = c_left_bar_along_x
-            * (0.31
-                * (3.225806451612903 * t138
-                    * (c_left_bar_along_x * minus_rate_foot_along_x)
-                    - minus_rate_dot_left_bar_along_x)
-                - (s_left_bar_along_x * t242 + 9.81 * c_left_bar_along_x));
+        let t134 = pose[2] * (minus_rate_foot_along_x * t121);
+        let t139 = pose[2] * (minus_rate_foot_along_x * t119);
+        let t145 = pose[2] * minus_rate_foot_along_x;
+        let t148 = minus_rate_foot_along_x * t145 - pose[2] * t131;
+        let rate_dot_drive_along_x = gdrive_vy_along_x * (pose[1] * t131 + t134 + t134)
+            - (t139 - 0.31 * t46 * t131 + t139) - gdrive_vz_along_x * t148;
+        let t151 = actuator_accelerations[0] - rate_dot_drive_along_x;
+        let t156 = t106 * t36 - t91 * t126 - t67 * t117;
+        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t156
+            + minus_gfoot_vz_along_y * t117;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t13;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t156;
+        let t163 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
+        let t166 = c_foot_along_y * minus_rate_left_bar_along_y;
+        let t168 = minus_rate_foot_along_y * minus_rate_foot_along_y + t163 * t163
+            + t166 * t166;
+        let t171 = pose[0] * (minus_rate_foot_along_y * t166);
+        let t181 = pose[0] * (minus_rate_foot_along_y * t163);
+        let t186 = gdrive_vx_along_y
+            * (minus_rate_foot_along_y * (pose[0] * minus_rate_foot_along_y)
+                - pose[0] * t168) + t181 - 0.31 * t9 * t168 + t181;
+        let rate_dot_drive_along_y = gdrive_vz_along_y * (pose[2] * t168 + t171 + t171)
+            - t186;
+        let t188 = actuator_accelerations[1] - rate_dot_drive_along_y;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t74;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t126;
+        let t193 = c_foot_along_z * minus_rate_left_bar_along_z;
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t156
+            + minus_gfoot_vy_along_z * t126;
+        let t200 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
+        let t202 = t193 * t193 + minus_rate_foot_along_z * minus_rate_foot_along_z
+            + t200 * t200;
+        let t205 = pose[1] * (minus_rate_foot_along_z * t193);
+        let t214 = gdrive_vx_along_z * (pose[0] * t202 + t205 + t205)
+            - gdrive_vy_along_z
+                * (minus_rate_foot_along_z * (pose[1] * minus_rate_foot_along_z)
+                    - pose[1] * t202);
+        let t216 = pose[1] * (minus_rate_foot_along_z * t200);
+        let rate_dot_drive_along_z = t214 - (t216 - 0.31 * t31 * t202 + t216);
+        let t222 = actuator_accelerations[2] - rate_dot_drive_along_z;
+        let t224 = t151 + gdrive_vx_along_y * t188 + gdrive_vx_along_z * t222;
+        let t231 = gdrive_vy_along_x * t151 + t188 + gdrive_vy_along_z * t222
+            - t91 * t224;
+        let t241 = t98
+            * (gdrive_vz_along_x * t151 + gdrive_vz_along_y * t188 + t222 - t67 * t224
+                - t95 * t231);
+        let t243 = t94 * t231 - t95 * t241;
+        let t248 = c_foot_along_x * actuator_accelerations[0];
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * (t241 - t148);
+        let t260 = c_left_bar_along_x
+            * (minus_s_left_bar_along_x * t248 - 9.81 * c_left_bar_along_x
+                - 0.31
+                    * (3.225806451612903 * t145
+                        * (c_left_bar_along_x * minus_rate_foot_along_x)
+                        + minus_rate_dot_left_bar_along_x));
         Ok([
-            [t29 * t218 - t82 * t237 - t57 * t235], [t237],
+            [t36 * t224 - t91 * t243 - t67 * t241], [t243],
             [
-                -(s_left_bar_along_x
-                    * (c_left_bar_along_x * t242 - 9.81 * s_left_bar_along_x
-                        - c_left_bar_along_x * (s_foot_along_x * rate_dot_drive_along_x))
-                    + t261),
+                -(t260
+                    - minus_s_left_bar_along_x
+                        * (c_left_bar_along_x * t248 + 31.64516129032258 * pose[2]
+                            - c_left_bar_along_x
+                                * (c_foot_along_x * rate_dot_drive_along_x))),
             ],
         ])
     }
@@ -5242,7 +6576,7 @@ impl Orthoglide {
     /// Output: 3 x 1.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 145 operations (40 additions, 98 multiplications, 7 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 154 intermediates.
+    /// 159 operations (46 additions, 103 multiplications, 10 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 162 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5251,111 +6585,110 @@ impl Orthoglide {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 1]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (minus_c_foot_along_y, s_foot_along_y) = ::overact::math::sin_cos(joints[5]);
-        let (s_left_bar_along_y, c_left_bar_along_y) = ::overact::math::sin_cos(
-            joints[6],
-        );
+        let t2 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t2, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let t4 = minus_c_foot_along_y * c_left_bar_along_y;
-        let t5 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t5, 1.0, "along_y")?;
-        let t6 = 1.0 / t5;
-        let minus_gdrive_vz_along_y = t4 * t6;
-        let (minus_c_foot_along_z, s_foot_along_z) = ::overact::math::sin_cos(joints[9]);
-        let (s_left_bar_along_z, c_left_bar_along_z) = ::overact::math::sin_cos(
-            joints[10],
-        );
+        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let t7 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t7, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t7);
+        let t9 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t9, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t9;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t14 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t14, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t14);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t12 = minus_c_foot_along_z * c_left_bar_along_z;
-        let t14 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t14, 1.0, "along_z")?;
-        let t15 = 1.0 / t14;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t15;
-        let t18 = 1.0 / c_left_bar_along_z;
+        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
+        let t19 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t19, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t19);
+        let t21 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t21, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t21;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t25 = 1.0 / c_left_bar_along_z;
         let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_c_foot_along_z * s_left_bar_along_z * t18);
-        let minus_gdrive_vy_along_z = 0.31 * t12 * minus_gfoot_vy_along_z
-            + s_foot_along_z * s_left_bar_along_z * t18;
-        let t26 = 1.0 - minus_gdrive_vz_along_y * minus_gdrive_vy_along_z;
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
+            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t25);
+        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z
+            + minus_s_left_bar_along_z * c_foot_along_z * t25;
+        let t33 = 1.0 - gdrive_vz_along_y * gdrive_vy_along_z;
+        let t36 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t36, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t36);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t31 = minus_c_foot_along_x * c_left_bar_along_x;
-        let t32 = s_foot_along_x * c_left_bar_along_x;
-        ::overact::guard::leg(t32, 1.0, "along_x")?;
-        let t33 = 1.0 / t32;
-        let minus_gdrive_vy_along_x = t31 * t33;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t6;
-        let t38 = 1.0 / c_left_bar_along_y;
+        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
+        let t41 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t41, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t41);
+        let t43 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t43, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t43;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t48 = 1.0 / c_left_bar_along_y;
         let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_c_foot_along_y * s_left_bar_along_y * t38);
-        let minus_gdrive_vx_along_y = 0.31 * t4 * minus_gfoot_vx_along_y
-            + s_foot_along_y * s_left_bar_along_y * t38;
-        let minus_gdrive_vx_along_z = t12 * t15;
-        let t47 = minus_gdrive_vx_along_y
-            + minus_gdrive_vz_along_y * minus_gdrive_vx_along_z;
-        let t50 = 0.31 * t31;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t33;
-        let t53 = 1.0 / c_left_bar_along_x;
+            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t48);
+        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y
+            + minus_s_left_bar_along_y * c_foot_along_y * t48;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t57 = gdrive_vx_along_y - gdrive_vz_along_y * gdrive_vx_along_z;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t62 = 1.0 / c_left_bar_along_x;
         let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_c_foot_along_x * s_left_bar_along_x * t53);
-        let minus_gdrive_vz_along_x = t50 * minus_gfoot_vz_along_x
-            + s_foot_along_x * s_left_bar_along_x * t53;
-        let t61 = minus_gdrive_vx_along_y * minus_gdrive_vy_along_z
-            + minus_gdrive_vx_along_z;
-        let t63 = t26 - minus_gdrive_vy_along_x * t47 - minus_gdrive_vz_along_x * t61;
-        ::overact::guard::platform(t63, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t63, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t63, 1.0, "kept actuators")?;
-        let t64 = 1.0 / t63;
-        let t71 = 0.31 * s_left_bar_along_x;
+            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t62);
+        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x
+            + minus_s_left_bar_along_x * c_foot_along_x * t62;
+        let t70 = gdrive_vx_along_y * gdrive_vy_along_z - gdrive_vx_along_z;
+        let t72 = t33 - gdrive_vy_along_x * t57 + gdrive_vz_along_x * t70;
+        ::overact::guard::platform(t72, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t72, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t72, 1.0, "kept actuators")?;
+        let t73 = 1.0 / t72;
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t53;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t62;
         let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t77 = minus_c_foot_along_x * minus_rate_left_bar_along_x;
-        let t79 = t71 * (minus_rate_foot_along_x * t77);
-        let t82 = s_foot_along_x * minus_rate_left_bar_along_x;
-        let t84 = t77 * t77 + t82 * t82;
-        let t86 = t84 + minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t93 = t71 * (minus_rate_foot_along_x * t82);
-        let t98 = acceleration[0] - (t79 - 0.31 * t32 * t86 + t79)
-            - minus_gdrive_vy_along_x * (acceleration[1] - (t50 * t86 + t93 + t93));
-        let t100 = t71 * minus_rate_foot_along_x;
-        let t103 = acceleration[2] - (t71 * t86 - minus_rate_foot_along_x * t100);
-        let rate_dot_drive_along_x = t98 - minus_gdrive_vz_along_x * t103;
-        let t106 = s_foot_along_x * rate_dot_drive_along_x;
-        let t110 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t103;
-        let t126 = s_left_bar_along_x
-            * (c_left_bar_along_x * t106 - 9.81 * s_left_bar_along_x
-                - 0.31 * (t110 * t110 + t84))
-            + c_left_bar_along_x
-                * (0.31
-                    * (3.225806451612903 * t100 * t110 - minus_rate_dot_left_bar_along_x)
-                    - (s_left_bar_along_x * t106 + 9.81 * c_left_bar_along_x));
-        let t142 = (minus_gdrive_vy_along_x
-            + minus_gdrive_vz_along_x * minus_gdrive_vy_along_z) * t64 * acceleration[0]
-            + (1.0 - minus_gdrive_vz_along_x * minus_gdrive_vx_along_z) * t64
+        let t85 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
+        let t87 = pose[2] * (minus_rate_foot_along_x * t85);
+        let t90 = c_foot_along_x * minus_rate_left_bar_along_x;
+        let t92 = t85 * t85 + t90 * t90;
+        let t94 = t92 + minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t101 = pose[2] * (minus_rate_foot_along_x * t90);
+        let t106 = acceleration[0] - (t87 - 0.31 * t43 * t94 + t87)
+            + gdrive_vy_along_x * (acceleration[1] + pose[1] * t94 + t101 + t101);
+        let t107 = pose[2] * minus_rate_foot_along_x;
+        let t111 = acceleration[2] - (minus_rate_foot_along_x * t107 - pose[2] * t94);
+        let rate_dot_drive_along_x = t106 + gdrive_vz_along_x * t111;
+        let t114 = c_foot_along_x * rate_dot_drive_along_x;
+        let t119 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t111;
+        let t134 = c_left_bar_along_x
+            * (minus_s_left_bar_along_x * t114 - 9.81 * c_left_bar_along_x
+                - 0.31
+                    * (3.225806451612903 * t107 * t119
+                        + minus_rate_dot_left_bar_along_x))
+            - minus_s_left_bar_along_x
+                * (c_left_bar_along_x * t114 + 31.64516129032258 * pose[2]
+                    - 0.31 * (t119 * t119 + t92));
+        let t150 = (1.0 - gdrive_vz_along_x * gdrive_vx_along_z) * t73 * acceleration[1]
+            - (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t73
+                * acceleration[0]
+            + (gdrive_vy_along_z - gdrive_vy_along_x * gdrive_vx_along_z) * t73 * t134;
+        let t164 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t73
+            * acceleration[0]
+            - (gdrive_vz_along_y - gdrive_vz_along_x * gdrive_vx_along_y) * t73
                 * acceleration[1]
-            - (minus_gdrive_vy_along_z
-                + minus_gdrive_vy_along_x * minus_gdrive_vx_along_z) * t64 * t126;
-        let t156 = (minus_gdrive_vy_along_x * minus_gdrive_vz_along_y
-            + minus_gdrive_vz_along_x) * t64 * acceleration[0]
-            + (minus_gdrive_vz_along_y
-                + minus_gdrive_vz_along_x * minus_gdrive_vx_along_y) * t64
-                * acceleration[1]
-            - (1.0 - minus_gdrive_vy_along_x * minus_gdrive_vx_along_y) * t64 * t126;
+            - (1.0 - gdrive_vy_along_x * gdrive_vx_along_y) * t73 * t134;
         Ok([
             [
-                t26 * t64 * acceleration[0] + t47 * t64 * acceleration[1]
-                    - t61 * t64 * t126,
+                t33 * t73 * acceleration[0] - t57 * t73 * acceleration[1]
+                    - t70 * t73 * t134,
             ],
-            [t142],
-            [t156],
+            [t150],
+            [t164],
         ])
     }
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
@@ -5366,7 +6699,7 @@ impl Orthoglide {
     ///
     /// Output: 3.
     ///
-    /// 54 operations (9 additions, 39 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 63 intermediates.
+    /// 69 operations (15 additions, 45 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 72 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5374,63 +6707,64 @@ impl Orthoglide {
         pose: &[f64; 3],
         torques: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (minus_c_foot_along_y, s_foot_along_y) = ::overact::math::sin_cos(joints[5]);
-        let (s_left_bar_along_y, c_left_bar_along_y) = ::overact::math::sin_cos(
-            joints[6],
-        );
+        let t2 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t2, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let t4 = minus_c_foot_along_y * c_left_bar_along_y;
-        let t6 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t6, 1.0, "along_y")?;
-        let t7 = 1.0 / t6;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t7;
-        let t10 = 1.0 / c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let t7 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t7, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t7);
+        let t9 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t9, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t9;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t13 = 1.0 / c_left_bar_along_y;
         let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_c_foot_along_y * s_left_bar_along_y * t10);
-        let minus_gdrive_vx_along_y = 0.31 * t4 * minus_gfoot_vx_along_y
-            + s_foot_along_y * s_left_bar_along_y * t10;
-        let (minus_c_foot_along_z, s_foot_along_z) = ::overact::math::sin_cos(joints[9]);
-        let (s_left_bar_along_z, c_left_bar_along_z) = ::overact::math::sin_cos(
-            joints[10],
-        );
+            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t13);
+        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y
+            + minus_s_left_bar_along_y * c_foot_along_y * t13;
+        let t24 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t24, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t24);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t23 = minus_c_foot_along_z * c_left_bar_along_z;
-        let t24 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t24, 1.0, "along_z")?;
-        let t25 = 1.0 / t24;
-        let minus_gdrive_vx_along_z = t23 * t25;
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
+        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
+        let t29 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t29, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t29);
+        let t31 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t31, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t31;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t38 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t38, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t38);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t33 = minus_c_foot_along_x * c_left_bar_along_x;
-        let t34 = s_foot_along_x * c_left_bar_along_x;
-        ::overact::guard::leg(t34, 1.0, "along_x")?;
-        let t35 = 1.0 / t34;
-        let minus_gdrive_vy_along_x = t33 * t35;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t25;
-        let t42 = 1.0 / c_left_bar_along_z;
+        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
+        let t43 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t43, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t43);
+        let t45 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t45, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t45;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t52 = 1.0 / c_left_bar_along_z;
         let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_c_foot_along_z * s_left_bar_along_z * t42);
-        let minus_gdrive_vy_along_z = 0.31 * t23 * minus_gfoot_vy_along_z
-            + s_foot_along_z * s_left_bar_along_z * t42;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t35;
-        let t54 = 1.0 / c_left_bar_along_x;
+            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t52);
+        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z
+            + minus_s_left_bar_along_z * c_foot_along_z * t52;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t63 = 1.0 / c_left_bar_along_x;
         let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_c_foot_along_x * s_left_bar_along_x * t54);
-        let minus_gdrive_vz_along_x = 0.31 * t33 * minus_gfoot_vz_along_x
-            + s_foot_along_x * s_left_bar_along_x * t54;
-        let minus_gdrive_vz_along_y = t4 * t7;
+            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t63);
+        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x
+            + minus_s_left_bar_along_x * c_foot_along_x * t63;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
         Ok([
-            torques[0] - minus_gdrive_vx_along_y * torques[1]
-                - minus_gdrive_vx_along_z * torques[2],
-            torques[1] - minus_gdrive_vy_along_x * torques[0]
-                - minus_gdrive_vy_along_z * torques[2],
-            torques[2]
-                - (minus_gdrive_vz_along_x * torques[0]
-                    + minus_gdrive_vz_along_y * torques[1]),
+            torques[0] + gdrive_vx_along_y * torques[1] + gdrive_vx_along_z * torques[2],
+            gdrive_vy_along_x * torques[0] + torques[1] + gdrive_vy_along_z * torques[2],
+            gdrive_vz_along_x * torques[0] + gdrive_vz_along_y * torques[1] + torques[2],
         ])
     }
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
@@ -5456,7 +6790,7 @@ impl Orthoglide {
     ///
     /// Output: 3.
     ///
-    /// 1011 operations (436 additions, 566 multiplications, 9 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 1023 intermediates.
+    /// 1020 operations (442 additions, 566 multiplications, 12 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 1026 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5466,8 +6800,451 @@ impl Orthoglide {
         acceleration: &[f64; 3],
         parameters: &[f64; 101],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::inverse_dynamics_from_joints(pose, joints, twist, acceleration, parameters)
+        let t2 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t2, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t2);
+        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
+        let t4 = 0.31 * c_left_bar_along_x;
+        let minus_s_foot_along_x = pose[1] / t4;
+        let t7 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t7, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t7);
+        let t9 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t9, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t9;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t14 = 1.0 / c_left_bar_along_x;
+        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
+            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t14);
+        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
+            + minus_gfoot_vz_along_x * twist[2];
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t14;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
+        let t21 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
+        let t23 = pose[2] * (minus_rate_foot_along_x * t21);
+        let t26 = c_foot_along_x * minus_rate_left_bar_along_x;
+        let t28 = t21 * t21 + t26 * t26;
+        let t29 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t30 = t28 + t29;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let t38 = pose[2] * (minus_rate_foot_along_x * t26);
+        let t41 = acceleration[1] + pose[1] * t30 + t38 + t38;
+        let t45 = minus_s_left_bar_along_x * c_foot_along_x;
+        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t45 * t14;
+        let t48 = pose[2] * minus_rate_foot_along_x;
+        let t52 = acceleration[2] - (minus_rate_foot_along_x * t48 - pose[2] * t30);
+        let rate_dot_drive_along_x = acceleration[0] - (t23 - 0.31 * t9 * t30 + t23)
+            + gdrive_vy_along_x * t41 + gdrive_vz_along_x * t52;
+        let rate_drive_along_x = twist[0] + gdrive_vy_along_x * twist[1]
+            + gdrive_vz_along_x * twist[2];
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t41
+            + minus_gfoot_vz_along_x * t52;
+        let t73 = c_foot_along_x * rate_dot_drive_along_x;
+        let t77 = minus_s_foot_along_x * rate_dot_drive_along_x;
+        let t84 = c_foot_along_x
+            * (parameters[7] * minus_rate_dot_foot_along_x - parameters[6] * t29
+                + parameters[8] * t73)
+            + minus_s_foot_along_x
+                * (parameters[8] * t77
+                    - (parameters[6] * minus_rate_dot_foot_along_x
+                        + parameters[7] * t29));
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t52;
+        let t87 = 3.225806451612903 * t48;
+        let t88 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t89 = t87 * t88;
+        let t90 = minus_rate_dot_left_bar_along_x - t89;
+        let t92 = t88 * t88;
+        let t93 = t92 + t28;
+        let t96 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t101 = c_left_bar_along_x * t73 + 31.64516129032258 * pose[2];
+        let t107 = minus_s_left_bar_along_x * t73 - 9.81 * c_left_bar_along_x;
+        let t109 = t89 + minus_rate_dot_left_bar_along_x;
+        let t112 = 10.40582726326743 * (t48 * t48);
+        let t113 = t112 + t28;
+        let t116 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t121 = t9
+            * (parameters[16] * t90 - parameters[15] * t93 - parameters[17] * t96
+                + parameters[18] * t101)
+            + t45
+                * (parameters[18] * t107
+                    - (parameters[15] * t109 + parameters[16] * t113
+                        + parameters[17] * t116));
+        let t122 = minus_rate_left_bar_along_x * t88;
+        let t123 = t116 + t122;
+        let t124 = t122 + t123;
+        let t126 = minus_rate_left_bar_along_x * t87;
+        let t127 = t126 - t96;
+        let t128 = t126 + t127;
+        let t137 = parameters[0] * rate_dot_drive_along_x
+            + parameters[1] * rate_dot_drive_along_x + parameters[2] * rate_drive_along_x
+            + ::overact::math::signed(parameters[3], rate_drive_along_x) + parameters[4]
+            + t84 + t121
+            - minus_s_foot_along_x
+                * (parameters[16] * t124 - parameters[15] * t128 - parameters[17] * t29
+                    - parameters[18] * t77);
+        let t154 = t9
+            * (parameters[26] * t90 - parameters[25] * t93 - parameters[27] * t96
+                + parameters[28] * t101)
+            + t45
+                * (parameters[28] * t107
+                    - (parameters[25] * t109 + parameters[26] * t113
+                        + parameters[27] * t116));
+        let t164 = t137 + t154
+            - minus_s_foot_along_x
+                * (parameters[26] * t124 - parameters[25] * t128 - parameters[27] * t29
+                    - parameters[28] * t77);
+        let t166 = t101 - 0.31 * t93;
+        let t169 = t107 - 0.31 * t109;
+        let t171 = c_left_bar_along_x * t166 + minus_s_left_bar_along_x * t169;
+        let t176 = parameters[32] * t171
+            - (parameters[30] * t29 + parameters[31] * minus_rate_dot_foot_along_x);
+        let t182 = t77 + 0.31 * t128;
+        let t184 = parameters[30] * minus_rate_dot_foot_along_x - parameters[31] * t29
+            - parameters[32] * t182;
+        let t187 = t164 + c_foot_along_x * t176 - minus_s_foot_along_x * t184;
+        let t190 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t190, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t190);
+        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
+        let t192 = 0.31 * c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] / t192;
+        let t195 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t195, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t195);
+        let t197 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t197, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t197;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t201 = 1.0 / c_left_bar_along_y;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
+            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t201);
+        let t205 = minus_s_left_bar_along_y * c_foot_along_y;
+        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t205 * t201;
+        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
+            + minus_gfoot_vz_along_y * twist[2];
+        let t211 = pose[0] * minus_rate_foot_along_y;
+        let t213 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t201;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
+        let t216 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
+        let t219 = c_foot_along_y * minus_rate_left_bar_along_y;
+        let t221 = t213 + t216 * t216 + t219 * t219;
+        let t224 = acceleration[0] - (minus_rate_foot_along_y * t211 - pose[0] * t221);
+        let t227 = pose[0] * (minus_rate_foot_along_y * t216);
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t237 = pose[0] * (minus_rate_foot_along_y * t219);
+        let t240 = acceleration[2] + pose[2] * t221 + t237 + t237;
+        let rate_dot_drive_along_y = gdrive_vx_along_y * t224 + acceleration[1]
+            - (t227 - 0.31 * t197 * t221 + t227) + gdrive_vz_along_y * t240;
+        let rate_drive_along_y = gdrive_vx_along_y * twist[0] + twist[1]
+            + gdrive_vz_along_y * twist[2];
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t224
+            + minus_gfoot_vz_along_y * t240;
+        let t263 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
+        let t269 = minus_s_foot_along_y * rate_dot_drive_along_y - 9.81 * c_foot_along_y;
+        let t276 = c_foot_along_y
+            * (parameters[40] * minus_rate_dot_foot_along_y - parameters[39] * t213
+                + parameters[41] * t263)
+            + minus_s_foot_along_y
+                * (parameters[41] * t269
+                    - (parameters[39] * minus_rate_dot_foot_along_y
+                        + parameters[40] * t213));
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t224;
+        let t279 = 3.225806451612903 * t211;
+        let t280 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t281 = t279 * t280;
+        let t282 = minus_rate_dot_left_bar_along_y - t281;
+        let t284 = t280 * t280;
+        let t285 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t286 = t284 + t285;
+        let t289 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t292 = c_left_bar_along_y * t263;
+        let t296 = minus_s_left_bar_along_y * t263;
+        let t298 = t281 + minus_rate_dot_left_bar_along_y;
+        let t301 = 10.40582726326743 * (t211 * t211);
+        let t302 = t301 + t285;
+        let t305 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t310 = t197
+            * (parameters[49] * t282 - parameters[48] * t286 - parameters[50] * t289
+                + parameters[51] * t292)
+            + t205
+                * (parameters[51] * t296
+                    - (parameters[48] * t298 + parameters[49] * t302
+                        + parameters[50] * t305));
+        let t311 = minus_rate_left_bar_along_y * t280;
+        let t312 = t305 + t311;
+        let t313 = t311 + t312;
+        let t315 = minus_rate_left_bar_along_y * t279;
+        let t316 = t315 - t289;
+        let t317 = t315 + t316;
+        let t326 = parameters[33] * rate_dot_drive_along_y
+            + parameters[34] * rate_dot_drive_along_y
+            + parameters[35] * rate_drive_along_y
+            + ::overact::math::signed(parameters[36], rate_drive_along_y)
+            + parameters[37] + t276 + t310
+            - minus_s_foot_along_y
+                * (parameters[49] * t313 - parameters[48] * t317 - parameters[50] * t213
+                    - parameters[51] * t269);
+        let t343 = t197
+            * (parameters[59] * t282 - parameters[58] * t286 - parameters[60] * t289
+                + parameters[61] * t292)
+            + t205
+                * (parameters[61] * t296
+                    - (parameters[58] * t298 + parameters[59] * t302
+                        + parameters[60] * t305));
+        let t353 = t326 + t343
+            - minus_s_foot_along_y
+                * (parameters[59] * t313 - parameters[58] * t317 - parameters[60] * t213
+                    - parameters[61] * t269);
+        let t360 = c_left_bar_along_y * (t292 - 0.31 * t286)
+            + minus_s_left_bar_along_y * (t296 - 0.31 * t298);
+        let t365 = parameters[65] * t360
+            - (parameters[63] * t213 + parameters[64] * minus_rate_dot_foot_along_y);
+        let t371 = t269 + 0.31 * t317;
+        let t373 = parameters[63] * minus_rate_dot_foot_along_y - parameters[64] * t213
+            - parameters[65] * t371;
+        let t376 = t353 + c_foot_along_y * t365 - minus_s_foot_along_y * t373;
+        let t386 = t285 - t301;
+        let t394 = parameters[43] * t313 - parameters[42] * t315 + parameters[44] * t386
+            + parameters[45] * t316 - parameters[46] * t282 + parameters[47] * t315;
+        let t407 = t284 - t285;
+        let t411 = parameters[42] * t312 + parameters[43] * t317 - parameters[44] * t298
+            - parameters[45] * t311 + parameters[46] * t407 + parameters[47] * t311;
+        let t417 = c_left_bar_along_y
+            * (t394 + parameters[48] * t269 + parameters[50] * t292)
+            - minus_s_left_bar_along_y
+                * (t411 - parameters[49] * t269 - parameters[50] * t296);
+        let t429 = parameters[53] * t313 - parameters[52] * t315 + parameters[54] * t386
+            + parameters[55] * t316 - parameters[56] * t282 + parameters[57] * t315;
+        let t445 = parameters[52] * t312 + parameters[53] * t317 - parameters[54] * t298
+            - parameters[55] * t311 + parameters[56] * t407 + parameters[57] * t311;
+        let t451 = c_left_bar_along_y
+            * (t429 + parameters[58] * t269 + parameters[60] * t292)
+            - minus_s_left_bar_along_y
+                * (t445 - parameters[59] * t269 - parameters[60] * t296);
+        let t460 = parameters[39] * t269 - parameters[38] * minus_rate_dot_foot_along_y
+            - parameters[40] * t263 + t417 + t451 + parameters[63] * t371
+            - parameters[62] * minus_rate_dot_foot_along_y + parameters[64] * t360
+            - t192 * t373;
+        let t464 = t301 - t284;
+        let t474 = parameters[42] * t281 + parameters[43] * t464 + parameters[44] * t305
+            - parameters[45] * t281 - parameters[46] * t289
+            - parameters[47] * minus_rate_dot_left_bar_along_y;
+        let t489 = parameters[52] * t281 + parameters[53] * t464 + parameters[54] * t305
+            - parameters[55] * t281 - parameters[56] * t289
+            - parameters[57] * minus_rate_dot_left_bar_along_y;
+        let t499 = t474 + parameters[48] * t296 - parameters[49] * t292 + t489
+            + parameters[58] * t296 - parameters[59] * t292 + pose[0] * t365
+            - t192 * (acceleration[0] * parameters[65]);
+        let t505 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t505, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t505);
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
+        let t507 = 0.31 * c_left_bar_along_z;
+        let minus_s_foot_along_z = pose[0] / t507;
+        let t510 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t510, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t510);
+        let t512 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t512, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t512;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t515 = 1.0 / c_left_bar_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t515;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
+        let t518 = c_foot_along_z * minus_rate_left_bar_along_z;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
+            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t515);
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
+            + minus_gfoot_vy_along_z * twist[1];
+        let t527 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t529 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
+        let t531 = t518 * t518 + t527 + t529 * t529;
+        let t534 = pose[1] * (minus_rate_foot_along_z * t518);
+        let t537 = acceleration[0] + pose[0] * t531 + t534 + t534;
+        let t540 = minus_s_left_bar_along_z * c_foot_along_z;
+        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t540 * t515;
+        let t543 = pose[1] * minus_rate_foot_along_z;
+        let t547 = acceleration[1] - (minus_rate_foot_along_z * t543 - pose[1] * t531);
+        let t551 = pose[1] * (minus_rate_foot_along_z * t529);
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t537 + gdrive_vy_along_z * t547
+            + acceleration[2] - (t551 - 0.31 * t512 * t531 + t551);
+        let t558 = 9.81 + rate_dot_drive_along_z;
+        let rate_drive_along_z = gdrive_vx_along_z * twist[0]
+            + gdrive_vy_along_z * twist[1] + twist[2];
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t537
+            + minus_gfoot_vy_along_z * t547;
+        let t577 = c_foot_along_z * t558;
+        let t581 = minus_s_foot_along_z * t558;
+        let t588 = c_foot_along_z
+            * (parameters[73] * minus_rate_dot_foot_along_z - parameters[72] * t527
+                + parameters[74] * t577)
+            + minus_s_foot_along_z
+                * (parameters[74] * t581
+                    - (parameters[72] * minus_rate_dot_foot_along_z
+                        + parameters[73] * t527));
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t547;
+        let t591 = 3.225806451612903 * t543;
+        let t592 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t593 = t591 * t592;
+        let t594 = minus_rate_dot_left_bar_along_z - t593;
+        let t596 = t592 * t592;
+        let t597 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t598 = t596 + t597;
+        let t601 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t604 = c_left_bar_along_z * t577;
+        let t608 = minus_s_left_bar_along_z * t577;
+        let t610 = t593 + minus_rate_dot_left_bar_along_z;
+        let t613 = 10.40582726326743 * (t543 * t543);
+        let t614 = t613 + t597;
+        let t617 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t622 = t512
+            * (parameters[82] * t594 - parameters[81] * t598 - parameters[83] * t601
+                + parameters[84] * t604)
+            + t540
+                * (parameters[84] * t608
+                    - (parameters[81] * t610 + parameters[82] * t614
+                        + parameters[83] * t617));
+        let t623 = minus_rate_left_bar_along_z * t592;
+        let t624 = t617 + t623;
+        let t625 = t623 + t624;
+        let t627 = minus_rate_left_bar_along_z * t591;
+        let t628 = t627 - t601;
+        let t629 = t627 + t628;
+        let t638 = parameters[66] * t558 + parameters[67] * rate_dot_drive_along_z
+            + parameters[68] * rate_drive_along_z
+            + ::overact::math::signed(parameters[69], rate_drive_along_z)
+            + parameters[70] + t588 + t622
+            - minus_s_foot_along_z
+                * (parameters[82] * t625 - parameters[81] * t629 - parameters[83] * t527
+                    - parameters[84] * t581);
+        let t655 = t512
+            * (parameters[92] * t594 - parameters[91] * t598 - parameters[93] * t601
+                + parameters[94] * t604)
+            + t540
+                * (parameters[94] * t608
+                    - (parameters[91] * t610 + parameters[92] * t614
+                        + parameters[93] * t617));
+        let t665 = t638 + t655
+            - minus_s_foot_along_z
+                * (parameters[92] * t625 - parameters[91] * t629 - parameters[93] * t527
+                    - parameters[94] * t581);
+        let t672 = c_left_bar_along_z * (t604 - 0.31 * t598)
+            + minus_s_left_bar_along_z * (t608 - 0.31 * t610);
+        let t677 = parameters[98] * t672
+            - (parameters[96] * t527 + parameters[97] * minus_rate_dot_foot_along_z);
+        let t683 = t581 + 0.31 * t629;
+        let t685 = parameters[96] * minus_rate_dot_foot_along_z - parameters[97] * t527
+            - parameters[98] * t683;
+        let t688 = t665 + c_foot_along_z * t677 - minus_s_foot_along_z * t685;
+        let t698 = t597 - t613;
+        let t706 = parameters[76] * t625 - parameters[75] * t627 + parameters[77] * t698
+            + parameters[78] * t628 - parameters[79] * t594 + parameters[80] * t627;
+        let t719 = t596 - t597;
+        let t723 = parameters[75] * t624 + parameters[76] * t629 - parameters[77] * t610
+            - parameters[78] * t623 + parameters[79] * t719 + parameters[80] * t623;
+        let t729 = c_left_bar_along_z
+            * (t706 + parameters[81] * t581 + parameters[83] * t604)
+            - minus_s_left_bar_along_z
+                * (t723 - parameters[82] * t581 - parameters[83] * t608);
+        let t741 = parameters[86] * t625 - parameters[85] * t627 + parameters[87] * t698
+            + parameters[88] * t628 - parameters[89] * t594 + parameters[90] * t627;
+        let t757 = parameters[85] * t624 + parameters[86] * t629 - parameters[87] * t610
+            - parameters[88] * t623 + parameters[89] * t719 + parameters[90] * t623;
+        let t763 = c_left_bar_along_z
+            * (t741 + parameters[91] * t581 + parameters[93] * t604)
+            - minus_s_left_bar_along_z
+                * (t757 - parameters[92] * t581 - parameters[93] * t608);
+        let t772 = parameters[72] * t581 - parameters[71] * minus_rate_dot_foot_along_z
+            - parameters[73] * t577 + t729 + t763 + parameters[96] * t683
+            - parameters[95] * minus_rate_dot_foot_along_z + parameters[97] * t672
+            - t507 * t685;
+        let t775 = t187 + gdrive_vx_along_y * t376 - minus_gfoot_vx_along_y * t460
+            - minus_gleft_bar_vx_along_y * t499 + gdrive_vx_along_z * t688
+            - minus_gfoot_vx_along_z * t772;
+        let t779 = t775 + acceleration[0] * parameters[99]
+            + acceleration[0] * parameters[100];
+        let t783 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vx_along_z;
+        ::overact::guard::platform(t783, 1.0, "actuators")?;
+        let t784 = 1.0 / t783;
+        let t788 = gdrive_vy_along_x + gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vy_along_z;
+        let t789 = t788 * t784;
+        let t795 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
+            + gdrive_vy_along_z * gdrive_vy_along_z - t788 * t789;
+        ::overact::guard::platform(t795, 1.0, "actuators")?;
+        let t796 = 1.0 / t795;
+        let t806 = t28 - t112;
+        let t814 = parameters[10] * t124 - parameters[9] * t126 + parameters[11] * t806
+            + parameters[12] * t127 - parameters[13] * t90 + parameters[14] * t126;
+        let t827 = t92 - t28;
+        let t831 = parameters[9] * t123 + parameters[10] * t128 - parameters[11] * t109
+            - parameters[12] * t122 + parameters[13] * t827 + parameters[14] * t122;
+        let t837 = c_left_bar_along_x
+            * (t814 + parameters[15] * t77 + parameters[17] * t101)
+            - minus_s_left_bar_along_x
+                * (t831 - parameters[16] * t77 - parameters[17] * t107);
+        let t849 = parameters[20] * t124 - parameters[19] * t126 + parameters[21] * t806
+            + parameters[22] * t127 - parameters[23] * t90 + parameters[24] * t126;
+        let t865 = parameters[19] * t123 + parameters[20] * t128 - parameters[21] * t109
+            - parameters[22] * t122 + parameters[23] * t827 + parameters[24] * t122;
+        let t871 = c_left_bar_along_x
+            * (t849 + parameters[25] * t77 + parameters[27] * t101)
+            - minus_s_left_bar_along_x
+                * (t865 - parameters[26] * t77 - parameters[27] * t107);
+        let t880 = parameters[6] * t77 - parameters[5] * minus_rate_dot_foot_along_x
+            - parameters[7] * t73 + t837 + t871 + parameters[30] * t182
+            - parameters[29] * minus_rate_dot_foot_along_x + parameters[31] * t171
+            - t4 * t184;
+        let t888 = t613 - t596;
+        let t898 = parameters[75] * t593 + parameters[76] * t888 + parameters[77] * t617
+            - parameters[78] * t593 - parameters[79] * t601
+            - parameters[80] * minus_rate_dot_left_bar_along_z;
+        let t913 = parameters[85] * t593 + parameters[86] * t888 + parameters[87] * t617
+            - parameters[88] * t593 - parameters[89] * t601
+            - parameters[90] * minus_rate_dot_left_bar_along_z;
+        let t923 = t898 + parameters[81] * t608 - parameters[82] * t604 + t913
+            + parameters[91] * t608 - parameters[92] * t604 + pose[1] * t677
+            - t507 * (acceleration[1] * parameters[98]);
+        let t926 = gdrive_vy_along_x * t187 - minus_gfoot_vy_along_x * t880 + t376
+            + gdrive_vy_along_z * t688 - minus_gfoot_vy_along_z * t772
+            - minus_gleft_bar_vy_along_z * t923;
+        let t932 = t926 + acceleration[1] * parameters[99]
+            + acceleration[1] * parameters[100] - t779 * t789;
+        let t939 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z;
+        let t940 = t939 * t784;
+        let t942 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
+            + gdrive_vy_along_z - t788 * t940;
+        let t943 = t942 * t796;
+        let t951 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t939 * t940 - t942 * t943;
+        ::overact::guard::platform(t951, 1.0, "actuators")?;
+        let t956 = t112 - t92;
+        let t966 = parameters[9] * t89 + parameters[10] * t956 + parameters[11] * t116
+            - parameters[12] * t89 - parameters[13] * t96
+            - parameters[14] * minus_rate_dot_left_bar_along_x;
+        let t981 = parameters[19] * t89 + parameters[20] * t956 + parameters[21] * t116
+            - parameters[22] * t89 - parameters[23] * t96
+            - parameters[24] * minus_rate_dot_left_bar_along_x;
+        let t990 = c_left_bar_along_x * t169 - minus_s_left_bar_along_x * t166;
+        let t994 = t966 + parameters[15] * t107 - parameters[16] * t101 + t981
+            + parameters[25] * t107 - parameters[26] * t101 + pose[2] * t176
+            + t4 * (parameters[32] * t990);
+        let t1001 = gdrive_vz_along_x * t187 - minus_gfoot_vz_along_x * t880
+            - minus_gleft_bar_vz_along_x * t994 + gdrive_vz_along_y * t376
+            - minus_gfoot_vz_along_y * t460 + t688;
+        let t1010 = (t1001 - (parameters[99] * t990 + parameters[100] * t990)
+            - t779 * t940 - t943 * t932) / t951;
+        let t1012 = t796 * t932 - t943 * t1010;
+        let t1016 = t779 * t784 - t789 * t1012 - t940 * t1010;
+        Ok([
+            t1016 + gdrive_vy_along_x * t1012 + gdrive_vz_along_x * t1010,
+            gdrive_vx_along_y * t1016 + t1012 + gdrive_vz_along_y * t1010,
+            gdrive_vx_along_z * t1016 + gdrive_vy_along_z * t1012 + t1010,
+        ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -5944,7 +7721,7 @@ impl Orthoglide {
     ///
     /// Output: 3.
     ///
-    /// 1055 operations (453 additions, 593 multiplications, 9 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 1067 intermediates.
+    /// 1064 operations (459 additions, 593 multiplications, 12 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 1070 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5956,481 +7733,478 @@ impl Orthoglide {
         start: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (minus_c_foot_along_y, s_foot_along_y) = ::overact::math::sin_cos(joints[5]);
-        let (s_left_bar_along_y, c_left_bar_along_y) = ::overact::math::sin_cos(
-            joints[6],
-        );
+        let t2 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t2, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let t4 = minus_c_foot_along_y * c_left_bar_along_y;
-        let t5 = 0.31 * t4;
-        let t6 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t6, 1.0, "along_y")?;
-        let t7 = 1.0 / t6;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t7;
-        let t10 = 1.0 / c_left_bar_along_y;
+        let t4 = 0.31 * c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] / t4;
+        let t7 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t7, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t7);
+        let t9 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t9, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t9;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t13 = 1.0 / c_left_bar_along_y;
         let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_c_foot_along_y * s_left_bar_along_y * t10);
-        let t14 = s_foot_along_y * s_left_bar_along_y;
-        let minus_gdrive_vx_along_y = t5 * minus_gfoot_vx_along_y + t14 * t10;
-        let (minus_c_foot_along_z, s_foot_along_z) = ::overact::math::sin_cos(joints[9]);
-        let (s_left_bar_along_z, c_left_bar_along_z) = ::overact::math::sin_cos(
-            joints[10],
-        );
+            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t13);
+        let t17 = minus_s_left_bar_along_y * c_foot_along_y;
+        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t17 * t13;
+        let t24 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t24, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t24);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t23 = minus_c_foot_along_z * c_left_bar_along_z;
-        let t24 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t24, 1.0, "along_z")?;
-        let t25 = 1.0 / t24;
-        let minus_gdrive_vx_along_z = t23 * t25;
-        let t28 = 1.0 + minus_gdrive_vx_along_y * minus_gdrive_vx_along_y
-            + minus_gdrive_vx_along_z * minus_gdrive_vx_along_z;
-        ::overact::guard::platform(t28, 1.0, "actuators")?;
-        ::overact::guard::platform(t28, 1.0, "actuators")?;
-        ::overact::guard::platform(t28, 1.0, "actuators")?;
-        let t29 = 1.0 / t28;
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
+        let t26 = 0.31 * c_left_bar_along_z;
+        let minus_s_foot_along_z = pose[0] / t26;
+        let t29 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t29, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t29);
+        let t31 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t31, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t31;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t35 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vx_along_z;
+        ::overact::guard::platform(t35, 1.0, "actuators")?;
+        ::overact::guard::platform(t35, 1.0, "actuators")?;
+        ::overact::guard::platform(t35, 1.0, "actuators")?;
+        let t36 = 1.0 / t35;
+        let t47 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t47, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t47);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t42 = s_foot_along_x * c_left_bar_along_x;
-        ::overact::guard::leg(t42, 1.0, "along_x")?;
-        let t43 = 1.0 / t42;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t43;
-        let t45 = minus_c_foot_along_x * c_left_bar_along_x;
-        let minus_gdrive_vy_along_x = t45 * t43;
-        let t49 = 0.31 * t23;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t25;
-        let t52 = 1.0 / c_left_bar_along_z;
+        let t49 = 0.31 * c_left_bar_along_x;
+        let minus_s_foot_along_x = pose[1] / t49;
+        let t52 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t52, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t52);
+        let t54 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t54, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t54;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t61 = 1.0 / c_left_bar_along_z;
         let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_c_foot_along_z * s_left_bar_along_z * t52);
-        let t56 = s_foot_along_z * s_left_bar_along_z;
-        let minus_gdrive_vy_along_z = t49 * minus_gfoot_vy_along_z + t56 * t52;
-        let t63 = minus_gdrive_vx_along_z * minus_gdrive_vy_along_z
-            - (minus_gdrive_vy_along_x + minus_gdrive_vx_along_y);
-        let t64 = t63 * t29;
-        let t66 = minus_gdrive_vy_along_x * minus_gdrive_vy_along_x + 1.0
-            + minus_gdrive_vy_along_z * minus_gdrive_vy_along_z - t63 * t64;
-        ::overact::guard::platform(t66, 1.0, "actuators")?;
-        ::overact::guard::platform(t66, 1.0, "actuators")?;
-        ::overact::guard::platform(t66, 1.0, "actuators")?;
-        let t67 = 1.0 / t66;
-        let t68 = 0.31 * s_left_bar_along_y;
-        let t72 = actuator_velocities[0]
-            - minus_gdrive_vx_along_y * actuator_velocities[1]
-            - minus_gdrive_vx_along_z * actuator_velocities[2];
-        let t79 = actuator_velocities[1]
-            - minus_gdrive_vy_along_x * actuator_velocities[0]
-            - minus_gdrive_vy_along_z * actuator_velocities[2] - t72 * t64;
-        let t81 = 0.31 * t45;
-        let t83 = 1.0 / c_left_bar_along_x;
+            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t61);
+        let t65 = minus_s_left_bar_along_z * c_foot_along_z;
+        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t65 * t61;
+        let t72 = gdrive_vy_along_x + gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vy_along_z;
+        let t73 = t72 * t36;
+        let t75 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
+            + gdrive_vy_along_z * gdrive_vy_along_z - t72 * t73;
+        ::overact::guard::platform(t75, 1.0, "actuators")?;
+        ::overact::guard::platform(t75, 1.0, "actuators")?;
+        ::overact::guard::platform(t75, 1.0, "actuators")?;
+        let t76 = 1.0 / t75;
+        let t77 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t77;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
         let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_c_foot_along_x * s_left_bar_along_x * t83);
-        let t87 = s_foot_along_x * s_left_bar_along_x;
-        let minus_gdrive_vz_along_x = t81 * minus_gfoot_vz_along_x + t87 * t83;
-        let minus_gdrive_vz_along_y = t4 * t7;
-        let t96 = minus_gdrive_vz_along_y * minus_gdrive_vx_along_y
-            - minus_gdrive_vz_along_x - minus_gdrive_vx_along_z;
-        let t97 = t96 * t29;
-        let t99 = minus_gdrive_vy_along_x * minus_gdrive_vz_along_x
-            - minus_gdrive_vz_along_y - minus_gdrive_vy_along_z - t63 * t97;
-        let t100 = t99 * t67;
-        let t108 = minus_gdrive_vz_along_x * minus_gdrive_vz_along_x
-            + minus_gdrive_vz_along_y * minus_gdrive_vz_along_y + 1.0 - t96 * t97
-            - t99 * t100;
-        ::overact::guard::platform(t108, 1.0, "actuators")?;
-        ::overact::guard::platform(t108, 1.0, "actuators")?;
-        ::overact::guard::platform(t108, 1.0, "actuators")?;
-        let t109 = 1.0 / t108;
-        let t118 = t109
-            * (actuator_velocities[2]
-                - (minus_gdrive_vz_along_x * actuator_velocities[0]
-                    + minus_gdrive_vz_along_y * actuator_velocities[1]) - t72 * t97
-                - t100 * t79);
-        let t120 = t67 * t79 - t100 * t118;
-        let t124 = t72 * t29 - t64 * t120 - t97 * t118;
-        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t124
-            + minus_gfoot_vz_along_y * t118;
-        let t128 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t10;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t124;
-        let t131 = minus_c_foot_along_y * minus_rate_left_bar_along_y;
-        let t134 = s_foot_along_y * minus_rate_left_bar_along_y;
-        let t136 = t128 + t131 * t131 + t134 * t134;
-        let t138 = t68 * minus_rate_foot_along_y;
-        let t140 = t68 * t136 - minus_rate_foot_along_y * t138;
-        let t143 = t68 * (minus_rate_foot_along_y * t131);
-        let t151 = t68 * (minus_rate_foot_along_y * t134);
-        let t153 = t5 * t136 + t151 + t151;
-        let rate_dot_drive_along_y = minus_gdrive_vx_along_y * t140
-            - (t143 - 0.31 * t6 * t136 + t143) + minus_gdrive_vz_along_y * t153;
-        let t156 = actuator_accelerations[1] - rate_dot_drive_along_y;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t83;
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t118;
-        let t159 = minus_c_foot_along_x * minus_rate_left_bar_along_x;
-        let t161 = s_foot_along_x * minus_rate_left_bar_along_x;
-        let t163 = t159 * t159 + t161 * t161;
-        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t120
-            + minus_gfoot_vz_along_x * t118;
-        let t167 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t168 = t163 + t167;
-        let t170 = 0.31 * s_left_bar_along_x;
-        let t172 = t170 * (minus_rate_foot_along_x * t161);
-        let t174 = t81 * t168 + t172 + t172;
-        let t177 = t170 * (minus_rate_foot_along_x * t159);
-        let t184 = t170 * minus_rate_foot_along_x;
-        let t186 = t170 * t168 - minus_rate_foot_along_x * t184;
-        let rate_dot_drive_along_x = minus_gdrive_vy_along_x * t174
-            - (t177 - 0.31 * t42 * t168 + t177) + minus_gdrive_vz_along_x * t186;
-        let t189 = actuator_accelerations[0] - rate_dot_drive_along_x;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t52;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t120;
-        let t194 = s_foot_along_z * minus_rate_left_bar_along_z;
-        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t124
-            + minus_gfoot_vy_along_z * t120;
-        let t199 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t201 = minus_c_foot_along_z * minus_rate_left_bar_along_z;
-        let t203 = t194 * t194 + t199 + t201 * t201;
-        let t205 = 0.31 * s_left_bar_along_z;
-        let t207 = t205 * (minus_rate_foot_along_z * t194);
-        let t209 = t49 * t203 + t207 + t207;
-        let t212 = t205 * minus_rate_foot_along_z;
-        let t214 = t205 * t203 - minus_rate_foot_along_z * t212;
-        let t218 = t205 * (minus_rate_foot_along_z * t201);
-        let rate_dot_drive_along_z = minus_gdrive_vx_along_z * t209
-            + minus_gdrive_vy_along_z * t214 - (t218 - 0.31 * t24 * t203 + t218);
-        let t224 = actuator_accelerations[2] - rate_dot_drive_along_z;
-        let t230 = t189 - minus_gdrive_vx_along_y * t156
-            - minus_gdrive_vx_along_z * t224;
-        let t232 = t156 - minus_gdrive_vy_along_x * t189 - minus_gdrive_vy_along_z * t224
-            - t64 * t230;
-        let t242 = t109
-            * (t224 - (minus_gdrive_vz_along_x * t189 + minus_gdrive_vz_along_y * t156)
-                - t97 * t230 - t100 * t232);
-        let t244 = t67 * t232 - t100 * t242;
-        let t247 = t242 - t186;
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * (t244 - t174)
-            + minus_gfoot_vz_along_x * t247;
-        let t253 = s_foot_along_x * actuator_accelerations[0];
-        let t260 = minus_c_foot_along_x * actuator_accelerations[0];
-        let t264 = s_foot_along_x
-            * (parameters[7] * minus_rate_dot_foot_along_x - t167 * parameters[6]
-                + parameters[8] * t253)
-            + minus_c_foot_along_x
-                * (parameters[6] * minus_rate_dot_foot_along_x + t167 * parameters[7]
-                    + parameters[8] * t260);
-        let t266 = 3.225806451612903 * t184;
-        let t267 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t268 = t266 * t267;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t247;
-        let t270 = t268 + minus_rate_dot_left_bar_along_x;
-        let t273 = c_left_bar_along_x * (s_foot_along_x * rate_dot_drive_along_x);
-        let t274 = 3.225806451612903 * t273;
-        let t277 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t282 = c_left_bar_along_x * t253 - 9.81 * s_left_bar_along_x;
-        let t286 = t268 - minus_rate_dot_left_bar_along_x;
-        let t289 = 10.40582726326743 * (t184 * t184);
-        let t290 = t289 + t163;
-        let t293 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t298 = s_left_bar_along_x * t253 + 9.81 * c_left_bar_along_x;
-        let t302 = t42
-            * (parameters[16] * t270 - t274 * parameters[15] - parameters[17] * t277
-                + parameters[18] * t282)
-            - t87
-                * (parameters[15] * t286 - t290 * parameters[16] + parameters[17] * t293
-                    - parameters[18] * t298);
-        let t303 = minus_rate_left_bar_along_x * t266;
-        let t304 = t277 + t303;
-        let t305 = t303 + t304;
-        let t307 = minus_rate_left_bar_along_x * t267;
-        let t308 = t307 - t293;
-        let t309 = t307 + t308;
-        let t318 = actuator_accelerations[0] * parameters[0]
+            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t77);
+        let t84 = minus_s_left_bar_along_x * c_foot_along_x;
+        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t84 * t77;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t94 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z;
+        let t95 = t94 * t36;
+        let t102 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
+            + gdrive_vy_along_z - t72 * t95;
+        let t103 = t102 * t76;
+        let t105 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t94 * t95 - t102 * t103;
+        ::overact::guard::platform(t105, 1.0, "actuators")?;
+        ::overact::guard::platform(t105, 1.0, "actuators")?;
+        ::overact::guard::platform(t105, 1.0, "actuators")?;
+        let t106 = 1.0 / t105;
+        let t114 = actuator_velocities[0] + gdrive_vx_along_y * actuator_velocities[1]
+            + gdrive_vx_along_z * actuator_velocities[2];
+        let t122 = gdrive_vy_along_x * actuator_velocities[0] + actuator_velocities[1]
+            + gdrive_vy_along_z * actuator_velocities[2] - t114 * t73;
+        let t125 = t106
+            * (gdrive_vz_along_x * actuator_velocities[0]
+                + gdrive_vz_along_y * actuator_velocities[1] + actuator_velocities[2]
+                - t114 * t95 - t103 * t122);
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t125;
+        let t127 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
+        let t129 = c_foot_along_x * minus_rate_left_bar_along_x;
+        let t131 = t127 * t127 + t129 * t129;
+        let t134 = t76 * t122 - t103 * t125;
+        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t134
+            + minus_gfoot_vz_along_x * t125;
+        let t138 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t139 = t131 + t138;
+        let t142 = pose[2] * (minus_rate_foot_along_x * t129);
+        let t144 = pose[1] * t139 + t142 + t142;
+        let t147 = pose[2] * (minus_rate_foot_along_x * t127);
+        let t153 = pose[2] * minus_rate_foot_along_x;
+        let t156 = minus_rate_foot_along_x * t153 - pose[2] * t139;
+        let rate_dot_drive_along_x = gdrive_vy_along_x * t144
+            - (t147 - 0.31 * t54 * t139 + t147) - gdrive_vz_along_x * t156;
+        let t159 = actuator_accelerations[0] - rate_dot_drive_along_x;
+        let t165 = t114 * t36 - t73 * t134 - t95 * t125;
+        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t165
+            + minus_gfoot_vz_along_y * t125;
+        let t169 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t13;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t165;
+        let t172 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
+        let t175 = c_foot_along_y * minus_rate_left_bar_along_y;
+        let t177 = t169 + t172 * t172 + t175 * t175;
+        let t180 = pose[0] * (minus_rate_foot_along_y * t175);
+        let t182 = pose[2] * t177 + t180 + t180;
+        let t184 = pose[0] * minus_rate_foot_along_y;
+        let t187 = minus_rate_foot_along_y * t184 - pose[0] * t177;
+        let t190 = pose[0] * (minus_rate_foot_along_y * t172);
+        let rate_dot_drive_along_y = gdrive_vz_along_y * t182
+            - (gdrive_vx_along_y * t187 + t190 - 0.31 * t9 * t177 + t190);
+        let t197 = actuator_accelerations[1] - rate_dot_drive_along_y;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t61;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t134;
+        let t201 = c_foot_along_z * minus_rate_left_bar_along_z;
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t165
+            + minus_gfoot_vy_along_z * t134;
+        let t206 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t208 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
+        let t210 = t201 * t201 + t206 + t208 * t208;
+        let t213 = pose[1] * (minus_rate_foot_along_z * t201);
+        let t215 = pose[0] * t210 + t213 + t213;
+        let t217 = pose[1] * minus_rate_foot_along_z;
+        let t220 = minus_rate_foot_along_z * t217 - pose[1] * t210;
+        let t224 = pose[1] * (minus_rate_foot_along_z * t208);
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t215 - gdrive_vy_along_z * t220
+            - (t224 - 0.31 * t31 * t210 + t224);
+        let t230 = actuator_accelerations[2] - rate_dot_drive_along_z;
+        let t236 = t159 + gdrive_vx_along_y * t197 + gdrive_vx_along_z * t230;
+        let t238 = gdrive_vy_along_x * t159 + t197 + gdrive_vy_along_z * t230
+            - t73 * t236;
+        let t248 = t106
+            * (gdrive_vz_along_x * t159 + gdrive_vz_along_y * t197 + t230 - t95 * t236
+                - t103 * t238);
+        let t250 = t76 * t238 - t103 * t248;
+        let t253 = t248 - t156;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * (t250 + t144)
+            + minus_gfoot_vz_along_x * t253;
+        let t259 = c_foot_along_x * actuator_accelerations[0];
+        let t263 = minus_s_foot_along_x * actuator_accelerations[0];
+        let t270 = c_foot_along_x
+            * (parameters[7] * minus_rate_dot_foot_along_x - t138 * parameters[6]
+                + parameters[8] * t259)
+            + minus_s_foot_along_x
+                * (parameters[8] * t263
+                    - (parameters[6] * minus_rate_dot_foot_along_x
+                        + t138 * parameters[7]));
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t253;
+        let t273 = 3.225806451612903 * t153;
+        let t274 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t275 = t273 * t274;
+        let t276 = minus_rate_dot_left_bar_along_x - t275;
+        let t279 = c_left_bar_along_x * (c_foot_along_x * rate_dot_drive_along_x);
+        let t280 = 3.225806451612903 * t279;
+        let t283 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t288 = c_left_bar_along_x * t259 + 31.64516129032258 * pose[2];
+        let t294 = minus_s_left_bar_along_x * t259 - 9.81 * c_left_bar_along_x;
+        let t296 = t275 + minus_rate_dot_left_bar_along_x;
+        let t299 = 10.40582726326743 * (t153 * t153);
+        let t300 = t299 + t131;
+        let t303 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t308 = t54
+            * (parameters[16] * t276 - t280 * parameters[15] - parameters[17] * t283
+                + parameters[18] * t288)
+            + t84
+                * (parameters[18] * t294
+                    - (parameters[15] * t296 + t300 * parameters[16]
+                        + parameters[17] * t303));
+        let t309 = minus_rate_left_bar_along_x * t274;
+        let t310 = t303 + t309;
+        let t311 = t309 + t310;
+        let t313 = minus_rate_left_bar_along_x * t273;
+        let t314 = t313 - t283;
+        let t315 = t313 + t314;
+        let t324 = actuator_accelerations[0] * parameters[0]
             + actuator_accelerations[0] * parameters[1]
             + actuator_velocities[0] * parameters[2]
             + ::overact::math::signed(parameters[3], actuator_velocities[0])
-            + parameters[4] + t264 + t302
-            + minus_c_foot_along_x
-                * (parameters[15] * t305 + parameters[16] * t309 - t167 * parameters[17]
-                    + parameters[18] * t260);
-        let t335 = t42
-            * (parameters[26] * t270 - t274 * parameters[25] - parameters[27] * t277
-                + parameters[28] * t282)
-            - t87
-                * (parameters[25] * t286 - t290 * parameters[26] + parameters[27] * t293
-                    - parameters[28] * t298);
-        let t345 = t318 + t335
-            + minus_c_foot_along_x
-                * (parameters[25] * t305 + parameters[26] * t309 - t167 * parameters[27]
-                    + parameters[28] * t260);
-        let t346 = t282 - t273;
-        let t349 = 0.31 * t286 - t298;
-        let t351 = c_left_bar_along_x * t346 - s_left_bar_along_x * t349;
-        let t356 = parameters[32] * t351
-            - (t167 * parameters[30] + parameters[31] * minus_rate_dot_foot_along_x);
-        let t362 = t260 + 0.31 * t305;
-        let t364 = parameters[30] * minus_rate_dot_foot_along_x - t167 * parameters[31]
-            + parameters[32] * t362;
-        let t367 = t345 + s_foot_along_x * t356 + minus_c_foot_along_x * t364;
-        let t380 = t29 * t230 - t64 * t244 - t97 * t242;
-        let t381 = t380 - t140;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t381
-            + minus_gfoot_vz_along_y * (t242 - t153);
-        let t391 = s_foot_along_y * actuator_accelerations[1]
-            - 9.81 * minus_c_foot_along_y;
-        let t400 = 9.81 * s_foot_along_y
-            + minus_c_foot_along_y * actuator_accelerations[1];
-        let t404 = s_foot_along_y
-            * (parameters[40] * minus_rate_dot_foot_along_y - t128 * parameters[39]
-                + parameters[41] * t391)
-            + minus_c_foot_along_y
-                * (parameters[39] * minus_rate_dot_foot_along_y + t128 * parameters[40]
-                    + parameters[41] * t400);
-        let t406 = 3.225806451612903 * t138;
-        let t407 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t408 = t406 * t407;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t381;
-        let t410 = t408 + minus_rate_dot_left_bar_along_y;
-        let t412 = t407 * t407;
-        let t413 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t414 = t412 + t413;
-        let t417 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t420 = c_left_bar_along_y * t391;
-        let t424 = t408 - minus_rate_dot_left_bar_along_y;
-        let t427 = 10.40582726326743 * (t138 * t138);
-        let t428 = t427 + t413;
-        let t431 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t434 = s_left_bar_along_y * t391;
-        let t438 = t6
-            * (parameters[49] * t410 - t414 * parameters[48] - parameters[50] * t417
-                + parameters[51] * t420)
-            - t14
-                * (parameters[48] * t424 - t428 * parameters[49] + parameters[50] * t431
-                    - parameters[51] * t434);
-        let t439 = minus_rate_left_bar_along_y * t406;
-        let t440 = t417 + t439;
-        let t441 = t439 + t440;
-        let t443 = minus_rate_left_bar_along_y * t407;
-        let t444 = t443 - t431;
-        let t445 = t443 + t444;
-        let t454 = actuator_accelerations[1] * parameters[33]
+            + parameters[4] + t270 + t308
+            - minus_s_foot_along_x
+                * (parameters[16] * t311 - parameters[15] * t315 - t138 * parameters[17]
+                    - parameters[18] * t263);
+        let t341 = t54
+            * (parameters[26] * t276 - t280 * parameters[25] - parameters[27] * t283
+                + parameters[28] * t288)
+            + t84
+                * (parameters[28] * t294
+                    - (parameters[25] * t296 + t300 * parameters[26]
+                        + parameters[27] * t303));
+        let t351 = t324 + t341
+            - minus_s_foot_along_x
+                * (parameters[26] * t311 - parameters[25] * t315 - t138 * parameters[27]
+                    - parameters[28] * t263);
+        let t352 = t288 - t279;
+        let t355 = t294 - 0.31 * t296;
+        let t357 = c_left_bar_along_x * t352 + minus_s_left_bar_along_x * t355;
+        let t362 = parameters[32] * t357
+            - (t138 * parameters[30] + parameters[31] * minus_rate_dot_foot_along_x);
+        let t368 = t263 + 0.31 * t315;
+        let t370 = parameters[30] * minus_rate_dot_foot_along_x - t138 * parameters[31]
+            - parameters[32] * t368;
+        let t373 = t351 + c_foot_along_x * t362 - minus_s_foot_along_x * t370;
+        let t386 = t36 * t236 - t73 * t250 - t95 * t248;
+        let t387 = t386 - t187;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t387
+            + minus_gfoot_vz_along_y * (t248 + t182);
+        let t397 = 9.81 * minus_s_foot_along_y
+            + c_foot_along_y * actuator_accelerations[1];
+        let t403 = minus_s_foot_along_y * actuator_accelerations[1]
+            - 9.81 * c_foot_along_y;
+        let t410 = c_foot_along_y
+            * (parameters[40] * minus_rate_dot_foot_along_y - t169 * parameters[39]
+                + parameters[41] * t397)
+            + minus_s_foot_along_y
+                * (parameters[41] * t403
+                    - (parameters[39] * minus_rate_dot_foot_along_y
+                        + t169 * parameters[40]));
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t387;
+        let t413 = 3.225806451612903 * t184;
+        let t414 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t415 = t413 * t414;
+        let t416 = minus_rate_dot_left_bar_along_y - t415;
+        let t418 = t414 * t414;
+        let t419 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t420 = t418 + t419;
+        let t423 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t426 = c_left_bar_along_y * t397;
+        let t430 = minus_s_left_bar_along_y * t397;
+        let t432 = t415 + minus_rate_dot_left_bar_along_y;
+        let t435 = 10.40582726326743 * (t184 * t184);
+        let t436 = t435 + t419;
+        let t439 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t444 = t9
+            * (parameters[49] * t416 - t420 * parameters[48] - parameters[50] * t423
+                + parameters[51] * t426)
+            + t17
+                * (parameters[51] * t430
+                    - (parameters[48] * t432 + t436 * parameters[49]
+                        + parameters[50] * t439));
+        let t445 = minus_rate_left_bar_along_y * t414;
+        let t446 = t439 + t445;
+        let t447 = t445 + t446;
+        let t449 = minus_rate_left_bar_along_y * t413;
+        let t450 = t449 - t423;
+        let t451 = t449 + t450;
+        let t460 = actuator_accelerations[1] * parameters[33]
             + actuator_accelerations[1] * parameters[34]
             + actuator_velocities[1] * parameters[35]
             + ::overact::math::signed(parameters[36], actuator_velocities[1])
-            + parameters[37] + t404 + t438
-            + minus_c_foot_along_y
-                * (parameters[48] * t441 + parameters[49] * t445 - t128 * parameters[50]
-                    + parameters[51] * t400);
-        let t471 = t6
-            * (parameters[59] * t410 - t414 * parameters[58] - parameters[60] * t417
-                + parameters[61] * t420)
-            - t14
-                * (parameters[58] * t424 - t428 * parameters[59] + parameters[60] * t431
-                    - parameters[61] * t434);
-        let t481 = t454 + t471
-            + minus_c_foot_along_y
-                * (parameters[58] * t441 + parameters[59] * t445 - t128 * parameters[60]
-                    + parameters[61] * t400);
-        let t488 = c_left_bar_along_y * (t420 - 0.31 * t414)
-            - s_left_bar_along_y * (0.31 * t424 - t434);
-        let t493 = parameters[65] * t488
-            - (t128 * parameters[63] + parameters[64] * minus_rate_dot_foot_along_y);
-        let t499 = t400 + 0.31 * t441;
-        let t501 = parameters[63] * minus_rate_dot_foot_along_y - t128 * parameters[64]
-            + parameters[65] * t499;
-        let t504 = t481 + s_foot_along_y * t493 + minus_c_foot_along_y * t501;
-        let t513 = t412 - t413;
-        let t517 = parameters[42] * t444 - parameters[43] * t441 + parameters[44] * t424
-            - t443 * parameters[45] + parameters[46] * t513 + t443 * parameters[47];
-        let t526 = t413 - t427;
-        let t534 = t439 * parameters[42] + parameters[43] * t445 + parameters[44] * t526
-            - parameters[45] * t440 - parameters[46] * t410 - t439 * parameters[47];
-        let t540 = s_left_bar_along_y
-            * (t517 + parameters[49] * t400 + parameters[50] * t434)
-            + c_left_bar_along_y
-                * (t534 - parameters[48] * t400 + parameters[50] * t420);
-        let t557 = parameters[52] * t444 - parameters[53] * t441 + parameters[54] * t424
-            - t443 * parameters[55] + parameters[56] * t513 + t443 * parameters[57];
-        let t573 = t439 * parameters[52] + parameters[53] * t445 + parameters[54] * t526
-            - parameters[55] * t440 - parameters[56] * t410 - t439 * parameters[57];
-        let t579 = s_left_bar_along_y
-            * (t557 + parameters[59] * t400 + parameters[60] * t434)
-            + c_left_bar_along_y
-                * (t573 - parameters[58] * t400 + parameters[60] * t420);
-        let t586 = 0.31 * c_left_bar_along_y;
-        let t589 = t540
-            - (parameters[38] * minus_rate_dot_foot_along_y + parameters[39] * t400
-                + parameters[40] * t391) + t579 + parameters[64] * t488
-            - (parameters[62] * minus_rate_dot_foot_along_y + parameters[63] * t499)
-            - t586 * t501;
-        let t592 = t427 - t412;
-        let t603 = parameters[43] * t592 - t408 * parameters[42] - parameters[44] * t431
-            + t408 * parameters[45] - parameters[46] * t417
+            + parameters[37] + t410 + t444
+            - minus_s_foot_along_y
+                * (parameters[49] * t447 - parameters[48] * t451 - t169 * parameters[50]
+                    - parameters[51] * t403);
+        let t477 = t9
+            * (parameters[59] * t416 - t420 * parameters[58] - parameters[60] * t423
+                + parameters[61] * t426)
+            + t17
+                * (parameters[61] * t430
+                    - (parameters[58] * t432 + t436 * parameters[59]
+                        + parameters[60] * t439));
+        let t487 = t460 + t477
+            - minus_s_foot_along_y
+                * (parameters[59] * t447 - parameters[58] * t451 - t169 * parameters[60]
+                    - parameters[61] * t403);
+        let t494 = c_left_bar_along_y * (t426 - 0.31 * t420)
+            + minus_s_left_bar_along_y * (t430 - 0.31 * t432);
+        let t499 = parameters[65] * t494
+            - (t169 * parameters[63] + parameters[64] * minus_rate_dot_foot_along_y);
+        let t505 = t403 + 0.31 * t451;
+        let t507 = parameters[63] * minus_rate_dot_foot_along_y - t169 * parameters[64]
+            - parameters[65] * t505;
+        let t510 = t487 + c_foot_along_y * t499 - minus_s_foot_along_y * t507;
+        let t520 = t419 - t435;
+        let t528 = parameters[43] * t447 - t449 * parameters[42] + parameters[44] * t520
+            + parameters[45] * t450 - parameters[46] * t416 + t449 * parameters[47];
+        let t541 = t418 - t419;
+        let t545 = parameters[42] * t446 + parameters[43] * t451 - parameters[44] * t432
+            - t445 * parameters[45] + parameters[46] * t541 + t445 * parameters[47];
+        let t551 = c_left_bar_along_y
+            * (t528 + parameters[48] * t403 + parameters[50] * t426)
+            - minus_s_left_bar_along_y
+                * (t545 - parameters[49] * t403 - parameters[50] * t430);
+        let t563 = parameters[53] * t447 - t449 * parameters[52] + parameters[54] * t520
+            + parameters[55] * t450 - parameters[56] * t416 + t449 * parameters[57];
+        let t579 = parameters[52] * t446 + parameters[53] * t451 - parameters[54] * t432
+            - t445 * parameters[55] + parameters[56] * t541 + t445 * parameters[57];
+        let t585 = c_left_bar_along_y
+            * (t563 + parameters[58] * t403 + parameters[60] * t426)
+            - minus_s_left_bar_along_y
+                * (t579 - parameters[59] * t403 - parameters[60] * t430);
+        let t594 = parameters[39] * t403 - parameters[38] * minus_rate_dot_foot_along_y
+            - parameters[40] * t397 + t551 + t585 + parameters[63] * t505
+            - parameters[62] * minus_rate_dot_foot_along_y + parameters[64] * t494
+            - t4 * t507;
+        let t598 = t435 - t418;
+        let t608 = t415 * parameters[42] + parameters[43] * t598 + parameters[44] * t439
+            - t415 * parameters[45] - parameters[46] * t423
             - parameters[47] * minus_rate_dot_left_bar_along_y;
-        let t618 = parameters[53] * t592 - t408 * parameters[52] - parameters[54] * t431
-            + t408 * parameters[55] - parameters[56] * t417
+        let t623 = t415 * parameters[52] + parameters[53] * t598 + parameters[54] * t439
+            - t415 * parameters[55] - parameters[56] * t423
             - parameters[57] * minus_rate_dot_left_bar_along_y;
-        let t628 = t603 - parameters[48] * t434 - parameters[49] * t420 + t618
-            - parameters[58] * t434 - parameters[59] * t420
-            - (t68 * t493 + t586 * (t380 * parameters[65]));
-        let t632 = 9.81 + actuator_accelerations[2];
-        let t643 = t244 - t214;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t380 - t209)
-            + minus_gfoot_vy_along_z * t643;
-        let t649 = s_foot_along_z * t632;
-        let t656 = minus_c_foot_along_z * t632;
-        let t660 = s_foot_along_z
-            * (parameters[73] * minus_rate_dot_foot_along_z - t199 * parameters[72]
-                + parameters[74] * t649)
-            + minus_c_foot_along_z
-                * (parameters[72] * minus_rate_dot_foot_along_z + t199 * parameters[73]
-                    + parameters[74] * t656);
-        let t662 = 3.225806451612903 * t212;
-        let t663 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t664 = t662 * t663;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t643;
-        let t666 = t664 + minus_rate_dot_left_bar_along_z;
-        let t668 = t663 * t663;
-        let t669 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t670 = t668 + t669;
-        let t673 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t676 = c_left_bar_along_z * t649;
-        let t680 = t664 - minus_rate_dot_left_bar_along_z;
-        let t683 = 10.40582726326743 * (t212 * t212);
-        let t684 = t683 + t669;
-        let t687 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t690 = s_left_bar_along_z * t649;
-        let t694 = t24
-            * (parameters[82] * t666 - t670 * parameters[81] - parameters[83] * t673
-                + parameters[84] * t676)
-            - t56
-                * (parameters[81] * t680 - t684 * parameters[82] + parameters[83] * t687
-                    - parameters[84] * t690);
-        let t695 = minus_rate_left_bar_along_z * t662;
-        let t696 = t673 + t695;
-        let t697 = t695 + t696;
-        let t699 = minus_rate_left_bar_along_z * t663;
-        let t700 = t699 - t687;
-        let t701 = t699 + t700;
-        let t710 = parameters[66] * t632 + actuator_accelerations[2] * parameters[67]
+        let t633 = t608 + parameters[48] * t430 - parameters[49] * t426 + t623
+            + parameters[58] * t430 - parameters[59] * t426 + pose[0] * t499
+            - t4 * (t386 * parameters[65]);
+        let t637 = 9.81 + actuator_accelerations[2];
+        let t648 = t250 - t220;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t386 + t215)
+            + minus_gfoot_vy_along_z * t648;
+        let t654 = c_foot_along_z * t637;
+        let t658 = minus_s_foot_along_z * t637;
+        let t665 = c_foot_along_z
+            * (parameters[73] * minus_rate_dot_foot_along_z - t206 * parameters[72]
+                + parameters[74] * t654)
+            + minus_s_foot_along_z
+                * (parameters[74] * t658
+                    - (parameters[72] * minus_rate_dot_foot_along_z
+                        + t206 * parameters[73]));
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t648;
+        let t668 = 3.225806451612903 * t217;
+        let t669 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t670 = t668 * t669;
+        let t671 = minus_rate_dot_left_bar_along_z - t670;
+        let t673 = t669 * t669;
+        let t674 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t675 = t673 + t674;
+        let t678 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t681 = c_left_bar_along_z * t654;
+        let t685 = minus_s_left_bar_along_z * t654;
+        let t687 = t670 + minus_rate_dot_left_bar_along_z;
+        let t690 = 10.40582726326743 * (t217 * t217);
+        let t691 = t690 + t674;
+        let t694 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t699 = t31
+            * (parameters[82] * t671 - t675 * parameters[81] - parameters[83] * t678
+                + parameters[84] * t681)
+            + t65
+                * (parameters[84] * t685
+                    - (parameters[81] * t687 + t691 * parameters[82]
+                        + parameters[83] * t694));
+        let t700 = minus_rate_left_bar_along_z * t669;
+        let t701 = t694 + t700;
+        let t702 = t700 + t701;
+        let t704 = minus_rate_left_bar_along_z * t668;
+        let t705 = t704 - t678;
+        let t706 = t704 + t705;
+        let t715 = parameters[66] * t637 + actuator_accelerations[2] * parameters[67]
             + actuator_velocities[2] * parameters[68]
             + ::overact::math::signed(parameters[69], actuator_velocities[2])
-            + parameters[70] + t660 + t694
-            + minus_c_foot_along_z
-                * (parameters[81] * t697 + parameters[82] * t701 - t199 * parameters[83]
-                    + parameters[84] * t656);
-        let t727 = t24
-            * (parameters[92] * t666 - t670 * parameters[91] - parameters[93] * t673
-                + parameters[94] * t676)
-            - t56
-                * (parameters[91] * t680 - t684 * parameters[92] + parameters[93] * t687
-                    - parameters[94] * t690);
-        let t737 = t710 + t727
-            + minus_c_foot_along_z
-                * (parameters[91] * t697 + parameters[92] * t701 - t199 * parameters[93]
-                    + parameters[94] * t656);
-        let t744 = c_left_bar_along_z * (t676 - 0.31 * t670)
-            - s_left_bar_along_z * (0.31 * t680 - t690);
-        let t749 = parameters[98] * t744
-            - (t199 * parameters[96] + parameters[97] * minus_rate_dot_foot_along_z);
-        let t755 = t656 + 0.31 * t697;
-        let t757 = parameters[96] * minus_rate_dot_foot_along_z - t199 * parameters[97]
-            + parameters[98] * t755;
-        let t760 = t737 + s_foot_along_z * t749 + minus_c_foot_along_z * t757;
-        let t769 = t668 - t669;
-        let t773 = parameters[75] * t700 - parameters[76] * t697 + parameters[77] * t680
-            - t699 * parameters[78] + parameters[79] * t769 + t699 * parameters[80];
-        let t782 = t669 - t683;
-        let t790 = t695 * parameters[75] + parameters[76] * t701 + parameters[77] * t782
-            - parameters[78] * t696 - parameters[79] * t666 - t695 * parameters[80];
-        let t796 = s_left_bar_along_z
-            * (t773 + parameters[82] * t656 + parameters[83] * t690)
-            + c_left_bar_along_z
-                * (t790 - parameters[81] * t656 + parameters[83] * t676);
-        let t813 = parameters[85] * t700 - parameters[86] * t697 + parameters[87] * t680
-            - t699 * parameters[88] + parameters[89] * t769 + t699 * parameters[90];
-        let t829 = t695 * parameters[85] + parameters[86] * t701 + parameters[87] * t782
-            - parameters[88] * t696 - parameters[89] * t666 - t695 * parameters[90];
-        let t835 = s_left_bar_along_z
-            * (t813 + parameters[92] * t656 + parameters[93] * t690)
-            + c_left_bar_along_z
-                * (t829 - parameters[91] * t656 + parameters[93] * t676);
-        let t842 = 0.31 * c_left_bar_along_z;
-        let t845 = t796
-            - (parameters[71] * minus_rate_dot_foot_along_z + parameters[72] * t656
-                + parameters[73] * t649) + t835 + parameters[97] * t744
-            - (parameters[95] * minus_rate_dot_foot_along_z + parameters[96] * t755)
-            - t842 * t757;
-        let t848 = t367
-            - (minus_gdrive_vx_along_y * t504 + minus_gfoot_vx_along_y * t589
-                + minus_gleft_bar_vx_along_y * t628)
-            - (minus_gdrive_vx_along_z * t760 + minus_gfoot_vx_along_z * t845);
-        let t852 = t848 + t380 * parameters[99] + t380 * parameters[100];
-        let t862 = t267 * t267;
-        let t863 = t862 - t163;
-        let t867 = parameters[9] * t308 - parameters[10] * t305 + parameters[11] * t286
-            - t307 * parameters[12] + parameters[13] * t863 + t307 * parameters[14];
-        let t876 = t163 - t289;
-        let t884 = t303 * parameters[9] + parameters[10] * t309 + parameters[11] * t876
-            - parameters[12] * t304 - parameters[13] * t270 - t303 * parameters[14];
-        let t890 = s_left_bar_along_x
-            * (t867 + parameters[16] * t260 + parameters[17] * t298)
-            + c_left_bar_along_x
-                * (t884 - parameters[15] * t260 + parameters[17] * t282);
-        let t907 = parameters[19] * t308 - parameters[20] * t305 + parameters[21] * t286
-            - t307 * parameters[22] + parameters[23] * t863 + t307 * parameters[24];
-        let t923 = t303 * parameters[19] + parameters[20] * t309 + parameters[21] * t876
-            - parameters[22] * t304 - parameters[23] * t270 - t303 * parameters[24];
-        let t929 = s_left_bar_along_x
-            * (t907 + parameters[26] * t260 + parameters[27] * t298)
-            + c_left_bar_along_x
-                * (t923 - parameters[25] * t260 + parameters[27] * t282);
-        let t936 = 0.31 * c_left_bar_along_x;
-        let t939 = t890
-            - (parameters[5] * minus_rate_dot_foot_along_x + parameters[6] * t260
-                + parameters[7] * t253) + t929 + parameters[31] * t351
-            - (parameters[29] * minus_rate_dot_foot_along_x + parameters[30] * t362)
-            - t936 * t364;
-        let t946 = t683 - t668;
-        let t957 = parameters[76] * t946 - t664 * parameters[75] - parameters[77] * t687
-            + t664 * parameters[78] - parameters[79] * t673
+            + parameters[70] + t665 + t699
+            - minus_s_foot_along_z
+                * (parameters[82] * t702 - parameters[81] * t706 - t206 * parameters[83]
+                    - parameters[84] * t658);
+        let t732 = t31
+            * (parameters[92] * t671 - t675 * parameters[91] - parameters[93] * t678
+                + parameters[94] * t681)
+            + t65
+                * (parameters[94] * t685
+                    - (parameters[91] * t687 + t691 * parameters[92]
+                        + parameters[93] * t694));
+        let t742 = t715 + t732
+            - minus_s_foot_along_z
+                * (parameters[92] * t702 - parameters[91] * t706 - t206 * parameters[93]
+                    - parameters[94] * t658);
+        let t749 = c_left_bar_along_z * (t681 - 0.31 * t675)
+            + minus_s_left_bar_along_z * (t685 - 0.31 * t687);
+        let t754 = parameters[98] * t749
+            - (t206 * parameters[96] + parameters[97] * minus_rate_dot_foot_along_z);
+        let t760 = t658 + 0.31 * t706;
+        let t762 = parameters[96] * minus_rate_dot_foot_along_z - t206 * parameters[97]
+            - parameters[98] * t760;
+        let t765 = t742 + c_foot_along_z * t754 - minus_s_foot_along_z * t762;
+        let t775 = t674 - t690;
+        let t783 = parameters[76] * t702 - t704 * parameters[75] + parameters[77] * t775
+            + parameters[78] * t705 - parameters[79] * t671 + t704 * parameters[80];
+        let t796 = t673 - t674;
+        let t800 = parameters[75] * t701 + parameters[76] * t706 - parameters[77] * t687
+            - t700 * parameters[78] + parameters[79] * t796 + t700 * parameters[80];
+        let t806 = c_left_bar_along_z
+            * (t783 + parameters[81] * t658 + parameters[83] * t681)
+            - minus_s_left_bar_along_z
+                * (t800 - parameters[82] * t658 - parameters[83] * t685);
+        let t818 = parameters[86] * t702 - t704 * parameters[85] + parameters[87] * t775
+            + parameters[88] * t705 - parameters[89] * t671 + t704 * parameters[90];
+        let t834 = parameters[85] * t701 + parameters[86] * t706 - parameters[87] * t687
+            - t700 * parameters[88] + parameters[89] * t796 + t700 * parameters[90];
+        let t840 = c_left_bar_along_z
+            * (t818 + parameters[91] * t658 + parameters[93] * t681)
+            - minus_s_left_bar_along_z
+                * (t834 - parameters[92] * t658 - parameters[93] * t685);
+        let t849 = parameters[72] * t658 - parameters[71] * minus_rate_dot_foot_along_z
+            - parameters[73] * t654 + t806 + t840 + parameters[96] * t760
+            - parameters[95] * minus_rate_dot_foot_along_z + parameters[97] * t749
+            - t26 * t762;
+        let t852 = t373 + gdrive_vx_along_y * t510 - minus_gfoot_vx_along_y * t594
+            - minus_gleft_bar_vx_along_y * t633 + gdrive_vx_along_z * t765
+            - minus_gfoot_vx_along_z * t849;
+        let t856 = t852 + t386 * parameters[99] + t386 * parameters[100];
+        let t867 = t131 - t299;
+        let t875 = parameters[10] * t311 - t313 * parameters[9] + parameters[11] * t867
+            + parameters[12] * t314 - parameters[13] * t276 + t313 * parameters[14];
+        let t888 = t274 * t274;
+        let t889 = t888 - t131;
+        let t893 = parameters[9] * t310 + parameters[10] * t315 - parameters[11] * t296
+            - t309 * parameters[12] + parameters[13] * t889 + t309 * parameters[14];
+        let t899 = c_left_bar_along_x
+            * (t875 + parameters[15] * t263 + parameters[17] * t288)
+            - minus_s_left_bar_along_x
+                * (t893 - parameters[16] * t263 - parameters[17] * t294);
+        let t911 = parameters[20] * t311 - t313 * parameters[19] + parameters[21] * t867
+            + parameters[22] * t314 - parameters[23] * t276 + t313 * parameters[24];
+        let t927 = parameters[19] * t310 + parameters[20] * t315 - parameters[21] * t296
+            - t309 * parameters[22] + parameters[23] * t889 + t309 * parameters[24];
+        let t933 = c_left_bar_along_x
+            * (t911 + parameters[25] * t263 + parameters[27] * t288)
+            - minus_s_left_bar_along_x
+                * (t927 - parameters[26] * t263 - parameters[27] * t294);
+        let t942 = parameters[6] * t263 - parameters[5] * minus_rate_dot_foot_along_x
+            - parameters[7] * t259 + t899 + t933 + parameters[30] * t368
+            - parameters[29] * minus_rate_dot_foot_along_x + parameters[31] * t357
+            - t49 * t370;
+        let t950 = t690 - t673;
+        let t960 = t670 * parameters[75] + parameters[76] * t950 + parameters[77] * t694
+            - t670 * parameters[78] - parameters[79] * t678
             - parameters[80] * minus_rate_dot_left_bar_along_z;
-        let t972 = parameters[86] * t946 - t664 * parameters[85] - parameters[87] * t687
-            + t664 * parameters[88] - parameters[89] * t673
+        let t975 = t670 * parameters[85] + parameters[86] * t950 + parameters[87] * t694
+            - t670 * parameters[88] - parameters[89] * t678
             - parameters[90] * minus_rate_dot_left_bar_along_z;
-        let t982 = t957 - parameters[81] * t690 - parameters[82] * t676 + t972
-            - parameters[91] * t690 - parameters[92] * t676
-            - (t205 * t749 + t842 * (t244 * parameters[98]));
-        let t985 = t504
-            - (minus_gdrive_vy_along_x * t367 + minus_gfoot_vy_along_x * t939)
-            - (minus_gdrive_vy_along_z * t760 + minus_gfoot_vy_along_z * t845
-                + minus_gleft_bar_vy_along_z * t982);
-        let t991 = t985 + t244 * parameters[99] + t244 * parameters[100] - t64 * t852;
-        let t996 = t289 - t862;
-        let t1007 = parameters[10] * t996 - t268 * parameters[9] - parameters[11] * t293
-            + t268 * parameters[12] - parameters[13] * t277
+        let t985 = t960 + parameters[81] * t685 - parameters[82] * t681 + t975
+            + parameters[91] * t685 - parameters[92] * t681 + pose[1] * t754
+            - t26 * (t250 * parameters[98]);
+        let t988 = gdrive_vy_along_x * t373 - minus_gfoot_vy_along_x * t942 + t510
+            + gdrive_vy_along_z * t765 - minus_gfoot_vy_along_z * t849
+            - minus_gleft_bar_vy_along_z * t985;
+        let t994 = t988 + t250 * parameters[99] + t250 * parameters[100] - t73 * t856;
+        let t1000 = t299 - t888;
+        let t1010 = t275 * parameters[9] + parameters[10] * t1000 + parameters[11] * t303
+            - t275 * parameters[12] - parameters[13] * t283
             - parameters[14] * minus_rate_dot_left_bar_along_x;
-        let t1022 = parameters[20] * t996 - t268 * parameters[19] - parameters[21] * t293
-            + t268 * parameters[22] - parameters[23] * t277
+        let t1025 = t275 * parameters[19] + parameters[20] * t1000
+            + parameters[21] * t303 - t275 * parameters[22] - parameters[23] * t283
             - parameters[24] * minus_rate_dot_left_bar_along_x;
-        let t1030 = s_left_bar_along_x * t346 + c_left_bar_along_x * t349;
-        let t1035 = t1007 - parameters[15] * t298 - parameters[16] * t282 + t1022
-            - parameters[25] * t298 - parameters[26] * t282
-            + t936 * (parameters[32] * t1030) - t170 * t356;
-        let t1042 = t760
-            - (minus_gdrive_vz_along_x * t367 + minus_gfoot_vz_along_x * t939
-                + minus_gleft_bar_vz_along_x * t1035 + minus_gdrive_vz_along_y * t504
-                + minus_gfoot_vz_along_y * t589);
-        let t1051 = t109
-            * (t1042 - (parameters[99] * t1030 + parameters[100] * t1030) - t97 * t852
-                - t100 * t991);
-        let t1053 = t67 * t991 - t100 * t1051;
-        let t1057 = t29 * t852 - t64 * t1053 - t97 * t1051;
+        let t1034 = c_left_bar_along_x * t355 - minus_s_left_bar_along_x * t352;
+        let t1038 = t1010 + parameters[15] * t294 - parameters[16] * t288 + t1025
+            + parameters[25] * t294 - parameters[26] * t288 + pose[2] * t362
+            + t49 * (parameters[32] * t1034);
+        let t1045 = gdrive_vz_along_x * t373 - minus_gfoot_vz_along_x * t942
+            - minus_gleft_bar_vz_along_x * t1038 + gdrive_vz_along_y * t510
+            - minus_gfoot_vz_along_y * t594 + t765;
+        let t1054 = t106
+            * (t1045 - (parameters[99] * t1034 + parameters[100] * t1034) - t95 * t856
+                - t103 * t994);
+        let t1056 = t76 * t994 - t103 * t1054;
+        let t1060 = t36 * t856 - t73 * t1056 - t95 * t1054;
         Ok([
-            t1057 - minus_gdrive_vy_along_x * t1053 - minus_gdrive_vz_along_x * t1051,
-            t1053 - minus_gdrive_vx_along_y * t1057 - minus_gdrive_vz_along_y * t1051,
-            t1051 - (minus_gdrive_vx_along_z * t1057 + minus_gdrive_vy_along_z * t1053),
+            t1060 + gdrive_vy_along_x * t1056 + gdrive_vz_along_x * t1054,
+            gdrive_vx_along_y * t1060 + t1056 + gdrive_vz_along_y * t1054,
+            gdrive_vx_along_z * t1060 + gdrive_vy_along_z * t1056 + t1054,
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -6441,7 +8215,7 @@ impl Orthoglide {
     ///
     /// Output: 3 x 3.
     ///
-    /// 887 operations (370 additions, 511 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 893 intermediates.
+    /// 896 operations (376 additions, 511 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 896 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6449,385 +8223,411 @@ impl Orthoglide {
         pose: &[f64; 3],
         parameters: &[f64; 101],
     ) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s_left_bar_along_y, c_left_bar_along_y) = ::overact::math::sin_cos(
-            joints[6],
-        );
+        let t7 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t7, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t7);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let t7 = 1.0 / c_left_bar_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t7;
-        let (minus_c_foot_along_y, s_foot_along_y) = ::overact::math::sin_cos(joints[5]);
-        let t11 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t11, 1.0, "along_y")?;
-        let t12 = 1.0 / t11;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t12;
-        let t14 = minus_c_foot_along_y * s_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * (t14 * t7);
-        let t17 = s_left_bar_along_y * minus_gfoot_vx_along_y;
-        let t19 = c_left_bar_along_y * minus_gfoot_vx_along_y;
-        let t24 = minus_c_foot_along_y * c_left_bar_along_y;
-        let t27 = s_foot_along_y * s_left_bar_along_y;
-        let minus_gdrive_vx_along_y = 0.31 * t24 * minus_gfoot_vx_along_y + t27 * t7;
-        let t30 = s_foot_along_y * minus_gdrive_vx_along_y;
-        let t31 = s_left_bar_along_y * t30;
-        let t45 = parameters[44] * t17 + parameters[46] * t19
-            + minus_gleft_bar_vx_along_y * parameters[47] - parameters[48] * t31
-            - s_left_bar_along_y * parameters[49] + parameters[54] * t17
-            + parameters[56] * t19 + minus_gleft_bar_vx_along_y * parameters[57]
-            - parameters[58] * t31 - s_left_bar_along_y * parameters[59];
-        let t46 = 0.31 * c_left_bar_along_y;
-        let t48 = 0.31 * s_left_bar_along_y;
-        let t49 = minus_gfoot_vx_along_y * parameters[64];
-        let t59 = 0.31 * t19;
-        let t67 = s_foot_along_y
-            * (minus_gfoot_vx_along_y * parameters[40] - parameters[41] * t30)
-            + minus_c_foot_along_y
-                * (minus_gfoot_vx_along_y * parameters[39] - parameters[41] * t59)
-            - (minus_gdrive_vx_along_y * parameters[33]
-                + minus_gdrive_vx_along_y * parameters[34]);
-        let t80 = t11
-            * (minus_gleft_bar_vx_along_y * parameters[49] - parameters[50] * t19
-                - s_left_bar_along_y * parameters[51])
-            - t27
-                * (parameters[50] * t17 - minus_gleft_bar_vx_along_y * parameters[48]
-                    + parameters[51] * t31);
-        let t81 = parameters[48] * t19;
-        let t101 = t11
-            * (minus_gleft_bar_vx_along_y * parameters[59] - parameters[60] * t19
-                - s_left_bar_along_y * parameters[61])
-            - t27
-                * (parameters[60] * t17 - minus_gleft_bar_vx_along_y * parameters[58]
-                    + parameters[61] * t31);
-        let t102 = parameters[58] * t19;
-        let t109 = t67 + t80
-            + minus_c_foot_along_y * (t81 - parameters[49] * t17 - parameters[51] * t59)
-            + t101
-            + minus_c_foot_along_y
-                * (t102 - parameters[59] * t17 - parameters[61] * t59);
-        let t110 = minus_gfoot_vx_along_y * parameters[63];
-        let t114 = t109 + minus_c_foot_along_y * t110 - s_foot_along_y * t49;
-        let t125 = s_left_bar_along_y
-            * (parameters[49] * t59 + parameters[42] * t17 + parameters[43] * t19
-                + minus_gleft_bar_vx_along_y * parameters[44] + parameters[50] * t31);
-        let t135 = c_left_bar_along_y
-            * (s_left_bar_along_y * parameters[50] + parameters[43] * t17
-                + parameters[45] * t19 + minus_gleft_bar_vx_along_y * parameters[46]
-                - 0.31 * t81);
-        let t152 = s_left_bar_along_y
-            * (parameters[59] * t59 + parameters[52] * t17 + parameters[53] * t19
-                + minus_gleft_bar_vx_along_y * parameters[54] + parameters[60] * t31);
-        let t162 = c_left_bar_along_y
-            * (s_left_bar_along_y * parameters[60] + parameters[53] * t17
-                + parameters[55] * t19 + minus_gleft_bar_vx_along_y * parameters[56]
-                - 0.31 * t102);
-        let t168 = t125 + t135 + minus_gfoot_vx_along_y * parameters[38]
-            - parameters[39] * t59 - parameters[40] * t30 + t152 + t162
-            + minus_gfoot_vx_along_y * parameters[62] + t46 * t110;
-        let t172 = parameters[0] + parameters[1] + parameters[8] + parameters[18]
-            + parameters[28] + parameters[32]
-            + minus_gleft_bar_vx_along_y * (t45 + t46 * parameters[65] - t48 * t49)
-            - (minus_gdrive_vx_along_y * t114 - minus_gfoot_vx_along_y * t168);
-        let (minus_c_foot_along_z, s_foot_along_z) = ::overact::math::sin_cos(joints[9]);
-        let (s_left_bar_along_z, c_left_bar_along_z) = ::overact::math::sin_cos(
-            joints[10],
-        );
+        let t9 = 0.31 * c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] / t9;
+        let t12 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t12, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t12);
+        let t14 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t14, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t14;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t17 = minus_s_left_bar_along_y * minus_s_foot_along_y;
+        let t18 = 1.0 / c_left_bar_along_y;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * (t17 * t18);
+        let t22 = minus_s_left_bar_along_y * c_foot_along_y;
+        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t22 * t18;
+        let t29 = c_foot_along_y * gdrive_vx_along_y;
+        let t33 = minus_s_foot_along_y * gdrive_vx_along_y;
+        let t39 = gdrive_vx_along_y * parameters[33] + gdrive_vx_along_y * parameters[34]
+            + c_foot_along_y
+                * (minus_gfoot_vx_along_y * parameters[40] + parameters[41] * t29)
+            + minus_s_foot_along_y
+                * (parameters[41] * t33 - minus_gfoot_vx_along_y * parameters[39]);
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t18;
+        let t42 = 3.225806451612903 * t33;
+        let t48 = minus_s_left_bar_along_y * t29;
+        let t51 = minus_s_left_bar_along_y * minus_gfoot_vx_along_y;
+        let t56 = t14
+            * (minus_gleft_bar_vx_along_y * parameters[49] - parameters[50] * t42
+                + minus_s_left_bar_along_y * parameters[51])
+            + t22
+                * (parameters[51] * t48
+                    - (minus_gleft_bar_vx_along_y * parameters[48]
+                        + parameters[50] * t51));
+        let t57 = parameters[48] * t42;
+        let t77 = t14
+            * (minus_gleft_bar_vx_along_y * parameters[59] - parameters[60] * t42
+                + minus_s_left_bar_along_y * parameters[61])
+            + t22
+                * (parameters[61] * t48
+                    - (minus_gleft_bar_vx_along_y * parameters[58]
+                        + parameters[60] * t51));
+        let t78 = parameters[58] * t42;
+        let t85 = t39 + t56
+            - minus_s_foot_along_y * (t57 + parameters[49] * t51 - parameters[51] * t33)
+            + t77
+            - minus_s_foot_along_y * (t78 + parameters[59] * t51 - parameters[61] * t33);
+        let t86 = minus_gfoot_vx_along_y * parameters[64];
+        let t88 = minus_gfoot_vx_along_y * parameters[63];
+        let t91 = t85 - (c_foot_along_y * t86 + minus_s_foot_along_y * t88);
+        let t107 = c_left_bar_along_y
+            * (parameters[43] * t51 - parameters[45] * t42
+                - minus_gleft_bar_vx_along_y * parameters[46] + 0.31 * t57
+                + minus_s_left_bar_along_y * parameters[50]);
+        let t117 = minus_s_left_bar_along_y
+            * (parameters[42] * t51 - parameters[43] * t42
+                - minus_gleft_bar_vx_along_y * parameters[44] - parameters[49] * t33
+                - parameters[50] * t48);
+        let t129 = c_left_bar_along_y
+            * (parameters[53] * t51 - parameters[55] * t42
+                - minus_gleft_bar_vx_along_y * parameters[56] + 0.31 * t78
+                + minus_s_left_bar_along_y * parameters[60]);
+        let t139 = minus_s_left_bar_along_y
+            * (parameters[52] * t51 - parameters[53] * t42
+                - minus_gleft_bar_vx_along_y * parameters[54] - parameters[59] * t33
+                - parameters[60] * t48);
+        let t145 = parameters[39] * t33 - minus_gfoot_vx_along_y * parameters[38]
+            - parameters[40] * t29 + t107 - t117 + t129 - t139
+            - (minus_gfoot_vx_along_y * parameters[62] + t9 * t88);
+        let t166 = parameters[44] * t51 - parameters[46] * t42
+            - minus_gleft_bar_vx_along_y * parameters[47] + parameters[48] * t48
+            - minus_s_left_bar_along_y * parameters[49] + parameters[54] * t51
+            - parameters[56] * t42 - minus_gleft_bar_vx_along_y * parameters[57]
+            + parameters[58] * t48 - minus_s_left_bar_along_y * parameters[59];
+        let t173 = parameters[0] + parameters[1] + parameters[8] + parameters[18]
+            + parameters[28] + parameters[32] + gdrive_vx_along_y * t91
+            - minus_gfoot_vx_along_y * t145
+            - minus_gleft_bar_vx_along_y
+                * (t166 - (pose[0] * t86 + t9 * parameters[65]));
+        let t176 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t176, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t176);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t177 = minus_c_foot_along_z * c_left_bar_along_z;
-        let t178 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t178, 1.0, "along_z")?;
-        let t179 = 1.0 / t178;
-        let minus_gdrive_vx_along_z = t177 * t179;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t179;
-        let t187 = minus_c_foot_along_z * minus_gdrive_vx_along_z;
-        let t195 = s_foot_along_z
-            * (minus_gfoot_vx_along_z * parameters[73]
-                - minus_c_foot_along_z * parameters[74])
-            + minus_c_foot_along_z
-                * (minus_gfoot_vx_along_z * parameters[72] - parameters[74] * t187)
-            - (minus_gdrive_vx_along_z * parameters[66]
-                + minus_gdrive_vx_along_z * parameters[67]);
-        let t196 = c_left_bar_along_z * minus_gfoot_vx_along_z;
-        let t199 = minus_c_foot_along_z * s_left_bar_along_z;
-        let t200 = 1.0 / c_left_bar_along_z;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z * (t199 * t200);
-        let t204 = s_foot_along_z * s_left_bar_along_z;
-        let minus_gdrive_vy_along_z = 0.31 * t177 * minus_gfoot_vy_along_z + t204 * t200;
-        let t207 = 3.225806451612903 * minus_gdrive_vy_along_z;
-        let t222 = minus_c_foot_along_z
-            * (parameters[81] * t196 - parameters[82] * t207 - parameters[84] * t187)
-            - (t178 * (parameters[83] * t196 + t177 * parameters[84])
-                + t204 * (parameters[83] * t207 + t199 * parameters[84]));
-        let t239 = minus_c_foot_along_z
-            * (parameters[91] * t196 - parameters[92] * t207 - parameters[94] * t187)
-            - (t178 * (parameters[93] * t196 + t177 * parameters[94])
-                + t204 * (parameters[93] * t207 + t199 * parameters[94]));
-        let t243 = minus_gfoot_vx_along_z * parameters[96]
-            + s_foot_along_z * parameters[98];
-        let t250 = t195 + t222 + t239 + minus_c_foot_along_z * t243
-            - s_foot_along_z
-                * (minus_c_foot_along_z * parameters[98]
-                    + minus_gfoot_vx_along_z * parameters[97]);
-        let t268 = s_left_bar_along_z
-            * (parameters[82] * t187 + parameters[75] * t207 + parameters[76] * t196
-                + t199 * parameters[83])
-            + c_left_bar_along_z
-                * (t177 * parameters[83] + parameters[76] * t207 + parameters[78] * t196
-                    - parameters[81] * t187);
-        let t291 = s_left_bar_along_z
-            * (parameters[92] * t187 + parameters[85] * t207 + parameters[86] * t196
-                + t199 * parameters[93])
-            + c_left_bar_along_z
-                * (t177 * parameters[93] + parameters[86] * t207 + parameters[88] * t196
-                    - parameters[91] * t187);
-        let t298 = 0.31 * c_left_bar_along_z;
-        let t301 = t268 + minus_gfoot_vx_along_z * parameters[71] - parameters[72] * t187
-            - minus_c_foot_along_z * parameters[73] + t291
-            + minus_c_foot_along_z * parameters[97]
-            + minus_gfoot_vx_along_z * parameters[95] + s_foot_along_z * parameters[96]
-            + t298 * t243;
-        let t305 = parameters[99] + parameters[100];
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
+        let t178 = 0.31 * c_left_bar_along_z;
+        let minus_s_foot_along_z = pose[0] / t178;
+        let t181 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t181, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t181);
+        let t183 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t183, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t183;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t193 = minus_s_foot_along_z * gdrive_vx_along_z;
+        let t199 = gdrive_vx_along_z * parameters[66]
+            + gdrive_vx_along_z * parameters[67]
+            + c_foot_along_z
+                * (minus_gfoot_vx_along_z * parameters[73]
+                    + minus_s_foot_along_z * parameters[74])
+            + minus_s_foot_along_z
+                * (parameters[74] * t193 - minus_gfoot_vx_along_z * parameters[72]);
+        let t201 = c_left_bar_along_z * minus_gfoot_vx_along_z;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t206 = minus_s_left_bar_along_z * c_foot_along_z;
+        let t207 = minus_s_left_bar_along_z * minus_s_foot_along_z;
+        let t209 = 1.0 / c_left_bar_along_z;
+        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z * (t207 * t209);
+        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t206 * t209;
+        let t215 = 3.225806451612903 * gdrive_vy_along_z;
+        let t226 = t183
+            * (minus_s_left_bar_along_y * parameters[84] - parameters[83] * t201)
+            + t206 * (t207 * parameters[84] - parameters[83] * t215)
+            - minus_s_foot_along_z
+                * (parameters[81] * t201 + parameters[82] * t215
+                    - parameters[84] * t193);
+        let t243 = t183
+            * (minus_s_left_bar_along_y * parameters[94] - parameters[93] * t201)
+            + t206 * (t207 * parameters[94] - parameters[93] * t215)
+            - minus_s_foot_along_z
+                * (parameters[91] * t201 + parameters[92] * t215
+                    - parameters[94] * t193);
+        let t251 = minus_gfoot_vx_along_z * parameters[96]
+            + c_foot_along_z * parameters[98];
+        let t254 = t199 + t226 + t243
+            + c_foot_along_z
+                * (minus_s_foot_along_z * parameters[98]
+                    - minus_gfoot_vx_along_z * parameters[97])
+            - minus_s_foot_along_z * t251;
+        let t277 = c_left_bar_along_z
+            * (parameters[76] * t215 - parameters[78] * t201 + parameters[81] * t193
+                + minus_s_left_bar_along_y * parameters[83])
+            - minus_s_left_bar_along_z
+                * (parameters[75] * t215 - parameters[76] * t201 - parameters[82] * t193
+                    - t207 * parameters[83]);
+        let t295 = c_left_bar_along_z
+            * (parameters[86] * t215 - parameters[88] * t201 + parameters[91] * t193
+                + minus_s_left_bar_along_y * parameters[93])
+            - minus_s_left_bar_along_z
+                * (parameters[85] * t215 - parameters[86] * t201 - parameters[92] * t193
+                    - t207 * parameters[93]);
+        let t304 = parameters[72] * t193 - minus_gfoot_vx_along_z * parameters[71]
+            - minus_s_foot_along_z * parameters[73] + t277 + t295
+            + minus_s_foot_along_z * parameters[97]
+            - (minus_gfoot_vx_along_z * parameters[95] + c_foot_along_z * parameters[96])
+            - t178 * t251;
+        let t308 = parameters[99] + parameters[100];
+        let t312 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t312, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t312);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t311 = s_foot_along_x * c_left_bar_along_x;
-        ::overact::guard::leg(t311, 1.0, "along_x")?;
-        let t312 = 1.0 / t311;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t312;
-        let t319 = minus_c_foot_along_x * c_left_bar_along_x;
-        let minus_gdrive_vy_along_x = t319 * t312;
-        let t321 = minus_c_foot_along_x * minus_gdrive_vy_along_x;
-        let t329 = s_foot_along_x
-            * (minus_gfoot_vy_along_x * parameters[7]
-                - minus_c_foot_along_x * parameters[8])
-            + minus_c_foot_along_x
-                * (minus_gfoot_vy_along_x * parameters[6] - parameters[8] * t321)
-            - (minus_gdrive_vy_along_x * parameters[0]
-                + minus_gdrive_vy_along_x * parameters[1]);
-        let t330 = c_left_bar_along_x * minus_gfoot_vy_along_x;
-        let t333 = minus_c_foot_along_x * s_left_bar_along_x;
-        let t334 = 1.0 / c_left_bar_along_x;
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x * (t333 * t334);
-        let t338 = s_foot_along_x * s_left_bar_along_x;
-        let minus_gdrive_vz_along_x = 0.31 * t319 * minus_gfoot_vz_along_x + t338 * t334;
-        let t341 = 3.225806451612903 * minus_gdrive_vz_along_x;
-        let t356 = minus_c_foot_along_x
-            * (parameters[15] * t330 - parameters[16] * t341 - parameters[18] * t321)
-            - (t311 * (parameters[17] * t330 + t319 * parameters[18])
-                + t338 * (parameters[17] * t341 + t333 * parameters[18]));
-        let t373 = minus_c_foot_along_x
-            * (parameters[25] * t330 - parameters[26] * t341 - parameters[28] * t321)
-            - (t311 * (parameters[27] * t330 + t319 * parameters[28])
-                + t338 * (parameters[27] * t341 + t333 * parameters[28]));
-        let t377 = minus_gfoot_vy_along_x * parameters[30]
-            + s_foot_along_x * parameters[32];
-        let t384 = t329 + t356 + t373 + minus_c_foot_along_x * t377
-            - s_foot_along_x
-                * (minus_c_foot_along_x * parameters[32]
-                    + minus_gfoot_vy_along_x * parameters[31]);
-        let t387 = s_foot_along_z * minus_gdrive_vy_along_z;
-        let t392 = minus_c_foot_along_z * minus_gdrive_vy_along_z;
-        let t400 = s_foot_along_z
-            * (minus_gfoot_vy_along_z * parameters[73] - parameters[74] * t387)
-            + minus_c_foot_along_z
-                * (minus_gfoot_vy_along_z * parameters[72] - parameters[74] * t392)
-            - (minus_gdrive_vy_along_z * parameters[66]
-                + minus_gdrive_vy_along_z * parameters[67]);
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t200;
-        let t403 = 3.225806451612903 * t392;
-        let t409 = s_left_bar_along_z * minus_gfoot_vy_along_z;
-        let t413 = s_left_bar_along_z * t387;
-        let t417 = t178
-            * (minus_gleft_bar_vy_along_z * parameters[82] - parameters[83] * t403
-                - s_left_bar_along_z * parameters[84])
-            - t204
-                * (parameters[83] * t409 - minus_gleft_bar_vy_along_z * parameters[81]
-                    + parameters[84] * t413);
-        let t418 = parameters[81] * t403;
-        let t438 = t178
-            * (minus_gleft_bar_vy_along_z * parameters[92] - parameters[93] * t403
-                - s_left_bar_along_z * parameters[94])
-            - t204
-                * (parameters[93] * t409 - minus_gleft_bar_vy_along_z * parameters[91]
-                    + parameters[94] * t413);
-        let t439 = parameters[91] * t403;
-        let t446 = t400 + t417
-            + minus_c_foot_along_z
-                * (t418 - parameters[82] * t409 - parameters[84] * t392) + t438
-            + minus_c_foot_along_z
-                * (t439 - parameters[92] * t409 - parameters[94] * t392);
-        let t447 = minus_gfoot_vy_along_z * parameters[96];
-        let t449 = minus_gfoot_vy_along_z * parameters[97];
-        let t452 = t446 + minus_c_foot_along_z * t447 - s_foot_along_z * t449;
-        let t463 = s_left_bar_along_z
-            * (parameters[82] * t392 + parameters[75] * t409 + parameters[76] * t403
-                + minus_gleft_bar_vy_along_z * parameters[77] + parameters[83] * t413);
-        let t473 = c_left_bar_along_z
-            * (s_left_bar_along_z * parameters[83] + parameters[76] * t409
-                + parameters[78] * t403 + minus_gleft_bar_vy_along_z * parameters[79]
-                - 0.31 * t418);
-        let t490 = s_left_bar_along_z
-            * (parameters[92] * t392 + parameters[85] * t409 + parameters[86] * t403
-                + minus_gleft_bar_vy_along_z * parameters[87] + parameters[93] * t413);
-        let t500 = c_left_bar_along_z
-            * (s_left_bar_along_z * parameters[93] + parameters[86] * t409
-                + parameters[88] * t403 + minus_gleft_bar_vy_along_z * parameters[89]
-                - 0.31 * t439);
-        let t506 = t463 + t473 + minus_gfoot_vy_along_z * parameters[71]
-            - parameters[72] * t392 - parameters[73] * t387 + t490 + t500
-            + minus_gfoot_vy_along_z * parameters[95] + t298 * t447;
-        let t509 = t384 + t114
-            - (minus_gdrive_vx_along_z * t452 - minus_gfoot_vx_along_z * t506);
-        let t511 = s_foot_along_x * minus_gdrive_vz_along_x;
-        let t516 = minus_c_foot_along_x * minus_gdrive_vz_along_x;
-        let t524 = s_foot_along_x
-            * (minus_gfoot_vz_along_x * parameters[7] - parameters[8] * t511)
-            + minus_c_foot_along_x
-                * (minus_gfoot_vz_along_x * parameters[6] - parameters[8] * t516)
-            - (minus_gdrive_vz_along_x * parameters[0]
-                + minus_gdrive_vz_along_x * parameters[1]);
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t334;
-        let t527 = 3.225806451612903 * t516;
-        let t533 = s_left_bar_along_x * minus_gfoot_vz_along_x;
-        let t537 = s_left_bar_along_x * t511;
-        let t541 = t311
-            * (minus_gleft_bar_vz_along_x * parameters[16] - parameters[17] * t527
-                - s_left_bar_along_x * parameters[18])
-            - t338
-                * (parameters[17] * t533 - minus_gleft_bar_vz_along_x * parameters[15]
-                    + parameters[18] * t537);
-        let t542 = parameters[15] * t527;
-        let t562 = t311
-            * (minus_gleft_bar_vz_along_x * parameters[26] - parameters[27] * t527
-                - s_left_bar_along_x * parameters[28])
-            - t338
-                * (parameters[27] * t533 - minus_gleft_bar_vz_along_x * parameters[25]
-                    + parameters[28] * t537);
-        let t563 = parameters[25] * t527;
-        let t570 = t524 + t541
-            + minus_c_foot_along_x
-                * (t542 - parameters[16] * t533 - parameters[18] * t516) + t562
-            + minus_c_foot_along_x
-                * (t563 - parameters[26] * t533 - parameters[28] * t516);
-        let t571 = minus_gfoot_vz_along_x * parameters[30];
-        let t573 = minus_gfoot_vz_along_x * parameters[31];
-        let t576 = t570 + minus_c_foot_along_x * t571 - s_foot_along_x * t573;
-        let t577 = 3.225806451612903 * minus_gdrive_vx_along_y;
-        let t579 = c_left_bar_along_y * minus_gfoot_vz_along_y;
-        let t593 = parameters[44] * t577 + parameters[46] * t579 - t14 * parameters[48]
-            - t24 * parameters[49] + parameters[54] * t577 + parameters[56] * t579
-            - t14 * parameters[58] - t24 * parameters[59];
-        let t596 = minus_c_foot_along_y * parameters[65]
-            + minus_gfoot_vz_along_y * parameters[64];
-        let minus_gdrive_vz_along_y = t24 * t12;
-        let t606 = minus_c_foot_along_y * minus_gdrive_vz_along_y;
-        let t614 = s_foot_along_y
-            * (minus_gfoot_vz_along_y * parameters[40]
-                - minus_c_foot_along_y * parameters[41])
-            + minus_c_foot_along_y
-                * (minus_gfoot_vz_along_y * parameters[39] - parameters[41] * t606)
-            - (minus_gdrive_vz_along_y * parameters[33]
-                + minus_gdrive_vz_along_y * parameters[34]);
-        let t630 = minus_c_foot_along_y
-            * (parameters[48] * t579 - parameters[49] * t577 - parameters[51] * t606)
-            - (t11 * (parameters[50] * t579 + t24 * parameters[51])
-                + t27 * (parameters[50] * t577 + t14 * parameters[51]));
-        let t647 = minus_c_foot_along_y
-            * (parameters[58] * t579 - parameters[59] * t577 - parameters[61] * t606)
-            - (t11 * (parameters[60] * t579 + t24 * parameters[61])
-                + t27 * (parameters[60] * t577 + t14 * parameters[61]));
-        let t651 = minus_gfoot_vz_along_y * parameters[63]
-            + s_foot_along_y * parameters[65];
-        let t655 = t614 + t630 + t647 + minus_c_foot_along_y * t651
-            - s_foot_along_y * t596;
-        let t673 = s_left_bar_along_y
-            * (parameters[49] * t606 + parameters[42] * t577 + parameters[43] * t579
-                + t14 * parameters[50])
-            + c_left_bar_along_y
-                * (t24 * parameters[50] + parameters[43] * t577 + parameters[45] * t579
-                    - parameters[48] * t606);
-        let t696 = s_left_bar_along_y
-            * (parameters[59] * t606 + parameters[52] * t577 + parameters[53] * t579
-                + t14 * parameters[60])
-            + c_left_bar_along_y
-                * (t24 * parameters[60] + parameters[53] * t577 + parameters[55] * t579
-                    - parameters[58] * t606);
-        let t705 = t673 + minus_gfoot_vz_along_y * parameters[38] - parameters[39] * t606
-            - minus_c_foot_along_y * parameters[40] + t696
-            + minus_c_foot_along_y * parameters[64]
-            + minus_gfoot_vz_along_y * parameters[62] + s_foot_along_y * parameters[63]
-            + t46 * t651;
-        let t710 = t576 + minus_gleft_bar_vx_along_y * (t593 - t48 * t596)
-            - (minus_gdrive_vx_along_y * t655 - minus_gfoot_vx_along_y * t705) + t250;
-        let t733 = s_left_bar_along_x
-            * (parameters[16] * t321 + parameters[9] * t341 + parameters[10] * t330
-                + t333 * parameters[17])
-            + c_left_bar_along_x
-                * (t319 * parameters[17] + parameters[10] * t341 + parameters[12] * t330
-                    - parameters[15] * t321);
-        let t756 = s_left_bar_along_x
-            * (parameters[26] * t321 + parameters[19] * t341 + parameters[20] * t330
-                + t333 * parameters[27])
-            + c_left_bar_along_x
-                * (t319 * parameters[27] + parameters[20] * t341 + parameters[22] * t330
-                    - parameters[25] * t321);
-        let t763 = 0.31 * c_left_bar_along_x;
-        let t766 = t733 + minus_gfoot_vy_along_x * parameters[5] - parameters[6] * t321
-            - minus_c_foot_along_x * parameters[7] + t756
-            + minus_c_foot_along_x * parameters[31]
-            + minus_gfoot_vy_along_x * parameters[29] + s_foot_along_x * parameters[30]
-            + t763 * t377;
-        let t788 = parameters[77] * t409 + parameters[79] * t403
-            + minus_gleft_bar_vy_along_z * parameters[80] - parameters[81] * t413
-            - s_left_bar_along_z * parameters[82] + parameters[87] * t409
-            + parameters[89] * t403 + minus_gleft_bar_vy_along_z * parameters[90]
-            - parameters[91] * t413 - s_left_bar_along_z * parameters[92];
-        let t798 = minus_gleft_bar_vy_along_z
-            * (t788 + t298 * parameters[98] - 0.31 * s_left_bar_along_z * t449)
-            - (minus_gdrive_vy_along_z * t452 - minus_gfoot_vy_along_z * t506);
-        let t799 = parameters[33] + parameters[34] + parameters[41] + parameters[51]
-            + parameters[61] + parameters[65]
-            - (minus_gdrive_vy_along_x * t384 - minus_gfoot_vy_along_x * t766) + t798;
-        let t811 = s_left_bar_along_x
-            * (parameters[16] * t516 + parameters[9] * t533 + parameters[10] * t527
-                + minus_gleft_bar_vz_along_x * parameters[11] + parameters[17] * t537);
-        let t821 = c_left_bar_along_x
-            * (s_left_bar_along_x * parameters[17] + parameters[10] * t533
-                + parameters[12] * t527 + minus_gleft_bar_vz_along_x * parameters[13]
-                - 0.31 * t542);
-        let t838 = s_left_bar_along_x
-            * (parameters[26] * t516 + parameters[19] * t533 + parameters[20] * t527
-                + minus_gleft_bar_vz_along_x * parameters[21] + parameters[27] * t537);
-        let t848 = c_left_bar_along_x
-            * (s_left_bar_along_x * parameters[27] + parameters[20] * t533
-                + parameters[22] * t527 + minus_gleft_bar_vz_along_x * parameters[23]
-                - 0.31 * t563);
-        let t854 = t811 + t821 + minus_gfoot_vz_along_x * parameters[5]
-            - parameters[6] * t516 - parameters[7] * t511 + t838 + t848
-            + minus_gfoot_vz_along_x * parameters[29] + t763 * t571;
-        let t858 = t655
-            - (minus_gdrive_vy_along_x * t576 - minus_gfoot_vy_along_x * t854) + t452;
-        let t889 = parameters[11] * t533 + parameters[13] * t527
-            + minus_gleft_bar_vz_along_x * parameters[14] - parameters[15] * t537
-            - s_left_bar_along_x * parameters[16] + parameters[21] * t533
-            + parameters[23] * t527 + minus_gleft_bar_vz_along_x * parameters[24]
-            - parameters[25] * t537 - s_left_bar_along_x * parameters[26];
-        let t892 = minus_gdrive_vz_along_x * t576 - minus_gfoot_vz_along_x * t854
-            + minus_gleft_bar_vz_along_x
-                * (0.31 * s_left_bar_along_x * t573 - t763 * parameters[32] - t889);
-        let t897 = parameters[66] + parameters[67] + parameters[74] + parameters[84]
-            + parameters[94] + parameters[98]
-            - (t892 + minus_gdrive_vz_along_y * t655 - minus_gfoot_vz_along_y * t705);
+        let t314 = 0.31 * c_left_bar_along_x;
+        let minus_s_foot_along_x = pose[1] / t314;
+        let t317 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t317, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t317);
+        let t319 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t319, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t319;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let t329 = minus_s_foot_along_x * gdrive_vy_along_x;
+        let t335 = gdrive_vy_along_x * parameters[0] + gdrive_vy_along_x * parameters[1]
+            + c_foot_along_x
+                * (minus_gfoot_vy_along_x * parameters[7]
+                    + minus_s_foot_along_x * parameters[8])
+            + minus_s_foot_along_x
+                * (parameters[8] * t329 - minus_gfoot_vy_along_x * parameters[6]);
+        let t337 = c_left_bar_along_x * minus_gfoot_vy_along_x;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t342 = minus_s_left_bar_along_x * c_foot_along_x;
+        let t343 = minus_s_left_bar_along_x * minus_s_foot_along_x;
+        let t345 = 1.0 / c_left_bar_along_x;
+        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x * (t343 * t345);
+        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t342 * t345;
+        let t351 = 3.225806451612903 * gdrive_vz_along_x;
+        let t362 = t319
+            * (minus_s_left_bar_along_z * parameters[18] - parameters[17] * t337)
+            + t342 * (t343 * parameters[18] - parameters[17] * t351)
+            - minus_s_foot_along_x
+                * (parameters[15] * t337 + parameters[16] * t351
+                    - parameters[18] * t329);
+        let t379 = t319
+            * (minus_s_left_bar_along_z * parameters[28] - parameters[27] * t337)
+            + t342 * (t343 * parameters[28] - parameters[27] * t351)
+            - minus_s_foot_along_x
+                * (parameters[25] * t337 + parameters[26] * t351
+                    - parameters[28] * t329);
+        let t387 = minus_gfoot_vy_along_x * parameters[30]
+            + c_foot_along_x * parameters[32];
+        let t390 = t335 + t362 + t379
+            + c_foot_along_x
+                * (minus_s_foot_along_x * parameters[32]
+                    - minus_gfoot_vy_along_x * parameters[31])
+            - minus_s_foot_along_x * t387;
+        let t396 = c_foot_along_z * gdrive_vy_along_z;
+        let t400 = minus_s_foot_along_z * gdrive_vy_along_z;
+        let t406 = gdrive_vy_along_z * parameters[66]
+            + gdrive_vy_along_z * parameters[67]
+            + c_foot_along_z
+                * (minus_gfoot_vy_along_z * parameters[73] + parameters[74] * t396)
+            + minus_s_foot_along_z
+                * (parameters[74] * t400 - minus_gfoot_vy_along_z * parameters[72]);
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t209;
+        let t409 = 3.225806451612903 * t400;
+        let t415 = minus_s_left_bar_along_z * t396;
+        let t418 = minus_s_left_bar_along_z * minus_gfoot_vy_along_z;
+        let t423 = t183
+            * (minus_gleft_bar_vy_along_z * parameters[82] - parameters[83] * t409
+                + minus_s_left_bar_along_z * parameters[84])
+            + t206
+                * (parameters[84] * t415
+                    - (minus_gleft_bar_vy_along_z * parameters[81]
+                        + parameters[83] * t418));
+        let t424 = parameters[81] * t409;
+        let t444 = t183
+            * (minus_gleft_bar_vy_along_z * parameters[92] - parameters[93] * t409
+                + minus_s_left_bar_along_z * parameters[94])
+            + t206
+                * (parameters[94] * t415
+                    - (minus_gleft_bar_vy_along_z * parameters[91]
+                        + parameters[93] * t418));
+        let t445 = parameters[91] * t409;
+        let t452 = t406 + t423
+            - minus_s_foot_along_z
+                * (t424 + parameters[82] * t418 - parameters[84] * t400) + t444
+            - minus_s_foot_along_z
+                * (t445 + parameters[92] * t418 - parameters[94] * t400);
+        let t453 = minus_gfoot_vy_along_z * parameters[97];
+        let t455 = minus_gfoot_vy_along_z * parameters[96];
+        let t458 = t452 - (c_foot_along_z * t453 + minus_s_foot_along_z * t455);
+        let t474 = c_left_bar_along_z
+            * (parameters[76] * t418 - parameters[78] * t409
+                - minus_gleft_bar_vy_along_z * parameters[79] + 0.31 * t424
+                + minus_s_left_bar_along_z * parameters[83]);
+        let t484 = minus_s_left_bar_along_z
+            * (parameters[75] * t418 - parameters[76] * t409
+                - minus_gleft_bar_vy_along_z * parameters[77] - parameters[82] * t400
+                - parameters[83] * t415);
+        let t496 = c_left_bar_along_z
+            * (parameters[86] * t418 - parameters[88] * t409
+                - minus_gleft_bar_vy_along_z * parameters[89] + 0.31 * t445
+                + minus_s_left_bar_along_z * parameters[93]);
+        let t506 = minus_s_left_bar_along_z
+            * (parameters[85] * t418 - parameters[86] * t409
+                - minus_gleft_bar_vy_along_z * parameters[87] - parameters[92] * t400
+                - parameters[93] * t415);
+        let t512 = parameters[72] * t400 - minus_gfoot_vy_along_z * parameters[71]
+            - parameters[73] * t396 + t474 - t484 + t496 - t506
+            - (minus_gfoot_vy_along_z * parameters[95] + t178 * t455);
+        let t515 = t390 + t91 + gdrive_vx_along_z * t458 - minus_gfoot_vx_along_z * t512;
+        let t520 = c_foot_along_x * gdrive_vz_along_x;
+        let t524 = minus_s_foot_along_x * gdrive_vz_along_x;
+        let t530 = gdrive_vz_along_x * parameters[0] + gdrive_vz_along_x * parameters[1]
+            + c_foot_along_x
+                * (minus_gfoot_vz_along_x * parameters[7] + parameters[8] * t520)
+            + minus_s_foot_along_x
+                * (parameters[8] * t524 - minus_gfoot_vz_along_x * parameters[6]);
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t345;
+        let t533 = 3.225806451612903 * t524;
+        let t539 = minus_s_left_bar_along_x * t520;
+        let t542 = minus_s_left_bar_along_x * minus_gfoot_vz_along_x;
+        let t547 = t319
+            * (minus_gleft_bar_vz_along_x * parameters[16] - parameters[17] * t533
+                + minus_s_left_bar_along_x * parameters[18])
+            + t342
+                * (parameters[18] * t539
+                    - (minus_gleft_bar_vz_along_x * parameters[15]
+                        + parameters[17] * t542));
+        let t548 = parameters[15] * t533;
+        let t568 = t319
+            * (minus_gleft_bar_vz_along_x * parameters[26] - parameters[27] * t533
+                + minus_s_left_bar_along_x * parameters[28])
+            + t342
+                * (parameters[28] * t539
+                    - (minus_gleft_bar_vz_along_x * parameters[25]
+                        + parameters[27] * t542));
+        let t569 = parameters[25] * t533;
+        let t576 = t530 + t547
+            - minus_s_foot_along_x
+                * (t548 + parameters[16] * t542 - parameters[18] * t524) + t568
+            - minus_s_foot_along_x
+                * (t569 + parameters[26] * t542 - parameters[28] * t524);
+        let t577 = minus_gfoot_vz_along_x * parameters[31];
+        let t579 = minus_gfoot_vz_along_x * parameters[30];
+        let t582 = t576 - (c_foot_along_x * t577 + minus_s_foot_along_x * t579);
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t591 = minus_s_foot_along_y * gdrive_vz_along_y;
+        let t597 = gdrive_vz_along_y * parameters[33]
+            + gdrive_vz_along_y * parameters[34]
+            + c_foot_along_y
+                * (minus_gfoot_vz_along_y * parameters[40]
+                    + minus_s_foot_along_y * parameters[41])
+            + minus_s_foot_along_y
+                * (parameters[41] * t591 - minus_gfoot_vz_along_y * parameters[39]);
+        let t599 = c_left_bar_along_y * minus_gfoot_vz_along_y;
+        let t604 = 3.225806451612903 * gdrive_vx_along_y;
+        let t615 = t14
+            * (minus_s_left_bar_along_x * parameters[51] - parameters[50] * t599)
+            + t22 * (t17 * parameters[51] - parameters[50] * t604)
+            - minus_s_foot_along_y
+                * (parameters[48] * t599 + parameters[49] * t604
+                    - parameters[51] * t591);
+        let t632 = t14
+            * (minus_s_left_bar_along_x * parameters[61] - parameters[60] * t599)
+            + t22 * (t17 * parameters[61] - parameters[60] * t604)
+            - minus_s_foot_along_y
+                * (parameters[58] * t599 + parameters[59] * t604
+                    - parameters[61] * t591);
+        let t636 = minus_s_foot_along_y * parameters[65]
+            - minus_gfoot_vz_along_y * parameters[64];
+        let t640 = minus_gfoot_vz_along_y * parameters[63]
+            + c_foot_along_y * parameters[65];
+        let t643 = t597 + t615 + t632 + c_foot_along_y * t636
+            - minus_s_foot_along_y * t640;
+        let t666 = c_left_bar_along_y
+            * (parameters[43] * t604 - parameters[45] * t599 + parameters[48] * t591
+                + minus_s_left_bar_along_x * parameters[50])
+            - minus_s_left_bar_along_y
+                * (parameters[42] * t604 - parameters[43] * t599 - parameters[49] * t591
+                    - t17 * parameters[50]);
+        let t684 = c_left_bar_along_y
+            * (parameters[53] * t604 - parameters[55] * t599 + parameters[58] * t591
+                + minus_s_left_bar_along_x * parameters[60])
+            - minus_s_left_bar_along_y
+                * (parameters[52] * t604 - parameters[53] * t599 - parameters[59] * t591
+                    - t17 * parameters[60]);
+        let t693 = parameters[39] * t591 - minus_gfoot_vz_along_y * parameters[38]
+            - minus_s_foot_along_y * parameters[40] + t666 + t684
+            + minus_s_foot_along_y * parameters[64]
+            - (minus_gfoot_vz_along_y * parameters[62] + c_foot_along_y * parameters[63])
+            - t9 * t640;
+        let t710 = parameters[44] * t604 - parameters[46] * t599 + t17 * parameters[48]
+            - minus_s_left_bar_along_x * parameters[49] + parameters[54] * t604
+            - parameters[56] * t599 + t17 * parameters[58]
+            - minus_s_left_bar_along_x * parameters[59];
+        let t716 = t582 + gdrive_vx_along_y * t643 - minus_gfoot_vx_along_y * t693
+            - minus_gleft_bar_vx_along_y * (t710 + pose[0] * t636) + t254;
+        let t739 = c_left_bar_along_x
+            * (parameters[10] * t351 - parameters[12] * t337 + parameters[15] * t329
+                + minus_s_left_bar_along_z * parameters[17])
+            - minus_s_left_bar_along_x
+                * (parameters[9] * t351 - parameters[10] * t337 - parameters[16] * t329
+                    - t343 * parameters[17]);
+        let t757 = c_left_bar_along_x
+            * (parameters[20] * t351 - parameters[22] * t337 + parameters[25] * t329
+                + minus_s_left_bar_along_z * parameters[27])
+            - minus_s_left_bar_along_x
+                * (parameters[19] * t351 - parameters[20] * t337 - parameters[26] * t329
+                    - t343 * parameters[27]);
+        let t766 = parameters[6] * t329 - minus_gfoot_vy_along_x * parameters[5]
+            - minus_s_foot_along_x * parameters[7] + t739 + t757
+            + minus_s_foot_along_x * parameters[31]
+            - (minus_gfoot_vy_along_x * parameters[29] + c_foot_along_x * parameters[30])
+            - t314 * t387;
+        let t796 = parameters[77] * t418 - parameters[79] * t409
+            - minus_gleft_bar_vy_along_z * parameters[80] + parameters[81] * t415
+            - minus_s_left_bar_along_z * parameters[82] + parameters[87] * t418
+            - parameters[89] * t409 - minus_gleft_bar_vy_along_z * parameters[90]
+            + parameters[91] * t415 - minus_s_left_bar_along_z * parameters[92];
+        let t803 = gdrive_vy_along_x * t390 - minus_gfoot_vy_along_x * t766
+            + parameters[33] + parameters[34] + parameters[41] + parameters[51]
+            + parameters[61] + parameters[65] + gdrive_vy_along_z * t458
+            - minus_gfoot_vy_along_z * t512
+            - minus_gleft_bar_vy_along_z
+                * (t796 - (pose[1] * t453 + t178 * parameters[98]));
+        let t820 = c_left_bar_along_x
+            * (parameters[10] * t542 - parameters[12] * t533
+                - minus_gleft_bar_vz_along_x * parameters[13] + 0.31 * t548
+                + minus_s_left_bar_along_x * parameters[17]);
+        let t830 = minus_s_left_bar_along_x
+            * (parameters[9] * t542 - parameters[10] * t533
+                - minus_gleft_bar_vz_along_x * parameters[11] - parameters[16] * t524
+                - parameters[17] * t539);
+        let t842 = c_left_bar_along_x
+            * (parameters[20] * t542 - parameters[22] * t533
+                - minus_gleft_bar_vz_along_x * parameters[23] + 0.31 * t569
+                + minus_s_left_bar_along_x * parameters[27]);
+        let t852 = minus_s_left_bar_along_x
+            * (parameters[19] * t542 - parameters[20] * t533
+                - minus_gleft_bar_vz_along_x * parameters[21] - parameters[26] * t524
+                - parameters[27] * t539);
+        let t858 = parameters[6] * t524 - minus_gfoot_vz_along_x * parameters[5]
+            - parameters[7] * t520 + t820 - t830 + t842 - t852
+            - (minus_gfoot_vz_along_x * parameters[29] + t314 * t579);
+        let t862 = gdrive_vy_along_x * t582 - minus_gfoot_vy_along_x * t858 + t643
+            + t458;
+        let t884 = parameters[11] * t542 - parameters[13] * t533
+            - minus_gleft_bar_vz_along_x * parameters[14] + parameters[15] * t539
+            - minus_s_left_bar_along_x * parameters[16] + parameters[21] * t542
+            - parameters[23] * t533 - minus_gleft_bar_vz_along_x * parameters[24]
+            + parameters[25] * t539 - minus_s_left_bar_along_x * parameters[26];
+        let t894 = gdrive_vz_along_x * t582 - minus_gfoot_vz_along_x * t858
+            - minus_gleft_bar_vz_along_x
+                * (t884 - (pose[2] * t577 + t314 * parameters[32]))
+            + gdrive_vz_along_y * t643 - minus_gfoot_vz_along_y * t693;
         Ok([
             [
-                t172 - (minus_gdrive_vx_along_z * t250 - minus_gfoot_vx_along_z * t301)
-                    + t305,
-                t509,
-                t710,
+                t173 + gdrive_vx_along_z * t254 - minus_gfoot_vx_along_z * t304 + t308, t515, t716,
             ],
-            [t509, t799 + t305, t858],
-            [t710, t858, t897 + t305],
+            [t515, t803 + t308, t862],
+            [
+                t716, t862,
+                t894 + parameters[66] + parameters[67] + parameters[74] + parameters[84]
+                    + parameters[94] + parameters[98] + t308,
+            ],
         ])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -6839,7 +8639,7 @@ impl Orthoglide {
     ///
     /// Output: 3.
     ///
-    /// 890 operations (372 additions, 512 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 902 intermediates.
+    /// 899 operations (378 additions, 512 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 905 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6848,402 +8648,403 @@ impl Orthoglide {
         twist: &[f64; 3],
         parameters: &[f64; 101],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
+        let t2 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t2, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t4 = minus_c_foot_along_x * c_left_bar_along_x;
-        let t5 = s_foot_along_x * c_left_bar_along_x;
-        ::overact::guard::leg(t5, 1.0, "along_x")?;
-        let t6 = 1.0 / t5;
-        let minus_gdrive_vy_along_x = t4 * t6;
-        let t8 = 0.31 * t4;
-        let t9 = 1.0 / c_left_bar_along_x;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t9;
+        let t4 = 0.31 * c_left_bar_along_x;
+        let minus_s_foot_along_x = pose[1] / t4;
+        let t7 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t7, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t7);
+        let t9 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t9, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t9;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let t12 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t12;
         let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t12 = minus_c_foot_along_x * minus_rate_left_bar_along_x;
-        let t14 = s_foot_along_x * minus_rate_left_bar_along_x;
-        let t16 = t12 * t12 + t14 * t14;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t6;
+        let t15 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
+        let t17 = c_foot_along_x * minus_rate_left_bar_along_x;
+        let t19 = t15 * t15 + t17 * t17;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
         let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_c_foot_along_x * s_left_bar_along_x * t9);
+            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t12);
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let t24 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t25 = t16 + t24;
-        let t27 = 0.31 * s_left_bar_along_x;
-        let t29 = t27 * (minus_rate_foot_along_x * t14);
-        let t31 = t8 * t25 + t29 + t29;
-        let t34 = t27 * (minus_rate_foot_along_x * t12);
-        let t41 = s_foot_along_x * s_left_bar_along_x;
-        let minus_gdrive_vz_along_x = t8 * minus_gfoot_vz_along_x + t41 * t9;
-        let t45 = t27 * minus_rate_foot_along_x;
-        let t47 = t27 * t25 - minus_rate_foot_along_x * t45;
-        let rate_dot_drive_along_x = minus_gdrive_vy_along_x * t31
-            - (t34 - 0.31 * t5 * t25 + t34) + minus_gdrive_vz_along_x * t47;
-        let rate_drive_along_x = twist[0] - minus_gdrive_vy_along_x * twist[1]
-            - minus_gdrive_vz_along_x * twist[2];
-        let t62 = s_foot_along_x * rate_dot_drive_along_x;
-        let rate_dot_foot_along_x = minus_gfoot_vy_along_x * t31
-            + minus_gfoot_vz_along_x * t47;
-        let t75 = minus_c_foot_along_x * rate_dot_drive_along_x;
-        let t79 = s_foot_along_x
-            * (parameters[8] * t62
-                - (parameters[6] * t24 + parameters[7] * rate_dot_foot_along_x))
-            - minus_c_foot_along_x
-                * (parameters[6] * rate_dot_foot_along_x - parameters[7] * t24
-                    - parameters[8] * t75);
-        let t81 = 3.225806451612903 * t45;
-        let t82 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t83 = t81 * t82;
-        let rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t47;
-        let t85 = t83 - rate_dot_left_bar_along_x;
-        let t87 = c_left_bar_along_x * t62;
-        let t88 = 3.225806451612903 * t87;
-        let t91 = c_left_bar_along_x * rate_dot_foot_along_x;
-        let t95 = t87 - 9.81 * s_left_bar_along_x;
-        let t99 = s_left_bar_along_x * t62;
-        let t100 = 3.225806451612903 * t99;
-        let t103 = 10.40582726326743 * (t45 * t45);
-        let t104 = t103 + t16;
-        let t107 = s_left_bar_along_x * rate_dot_foot_along_x;
-        let t111 = t99 + 9.81 * c_left_bar_along_x;
-        let t115 = t5
-            * (parameters[16] * t85 - parameters[15] * t88 + parameters[17] * t91
-                + parameters[18] * t95)
-            - t41
-                * (parameters[15] * t100 - parameters[16] * t104 - parameters[17] * t107
-                    - parameters[18] * t111);
-        let t116 = minus_rate_left_bar_along_x * t82;
-        let t117 = t107 + t116;
-        let t118 = t116 + t117;
-        let t120 = 3.225806451612903 * t75;
-        let t121 = parameters[15] * t120;
-        let t129 = parameters[0] * rate_dot_drive_along_x
+        let t27 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t28 = t19 + t27;
+        let t31 = pose[2] * (minus_rate_foot_along_x * t17);
+        let t33 = pose[1] * t28 + t31 + t31;
+        let t36 = pose[2] * (minus_rate_foot_along_x * t15);
+        let t43 = minus_s_left_bar_along_x * c_foot_along_x;
+        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t43 * t12;
+        let t46 = pose[2] * minus_rate_foot_along_x;
+        let t49 = minus_rate_foot_along_x * t46 - pose[2] * t28;
+        let rate_dot_drive_along_x = gdrive_vy_along_x * t33
+            - (t36 - 0.31 * t9 * t28 + t36) - gdrive_vz_along_x * t49;
+        let rate_drive_along_x = twist[0] + gdrive_vy_along_x * twist[1]
+            + gdrive_vz_along_x * twist[2];
+        let t64 = c_foot_along_x * rate_dot_drive_along_x;
+        let rate_dot_foot_along_x = minus_gfoot_vz_along_x * t49
+            - minus_gfoot_vy_along_x * t33;
+        let t77 = minus_s_foot_along_x * rate_dot_drive_along_x;
+        let t81 = c_foot_along_x
+            * (parameters[8] * t64
+                - (parameters[6] * t27 + parameters[7] * rate_dot_foot_along_x))
+            + minus_s_foot_along_x
+                * (parameters[6] * rate_dot_foot_along_x - parameters[7] * t27
+                    + parameters[8] * t77);
+        let t83 = c_left_bar_along_x * rate_dot_foot_along_x;
+        let t85 = c_left_bar_along_x * t64;
+        let t86 = 3.225806451612903 * t85;
+        let t88 = 3.225806451612903 * t46;
+        let t89 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t90 = t88 * t89;
+        let rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t49;
+        let t92 = t90 + rate_dot_left_bar_along_x;
+        let t97 = t85 + 31.64516129032258 * pose[2];
+        let t101 = minus_s_left_bar_along_x * rate_dot_foot_along_x;
+        let t103 = minus_s_left_bar_along_x * t64;
+        let t104 = 3.225806451612903 * t103;
+        let t107 = 10.40582726326743 * (t46 * t46);
+        let t108 = t107 + t19;
+        let t113 = t103 - 9.81 * c_left_bar_along_x;
+        let t117 = t9
+            * (parameters[17] * t83 - (parameters[15] * t86 + parameters[16] * t92)
+                + parameters[18] * t97)
+            + t43
+                * (parameters[17] * t101
+                    - (parameters[15] * t104 + parameters[16] * t108)
+                    + parameters[18] * t113);
+        let t118 = 3.225806451612903 * t77;
+        let t119 = parameters[15] * t118;
+        let t120 = minus_rate_left_bar_along_x * t89;
+        let t121 = t120 - t101;
+        let t122 = t120 + t121;
+        let t131 = parameters[0] * rate_dot_drive_along_x
             + parameters[1] * rate_dot_drive_along_x + parameters[2] * rate_drive_along_x
             + ::overact::math::signed(parameters[3], rate_drive_along_x) + parameters[4]
-            + t79 + t115
-            + minus_c_foot_along_x
-                * (parameters[16] * t118 - t121 - parameters[17] * t24
-                    + parameters[18] * t75);
-        let t146 = t5
-            * (parameters[26] * t85 - parameters[25] * t88 + parameters[27] * t91
-                + parameters[28] * t95)
-            - t41
-                * (parameters[25] * t100 - parameters[26] * t104 - parameters[27] * t107
-                    - parameters[28] * t111);
-        let t148 = parameters[25] * t120;
-        let t159 = parameters[31] * rate_dot_foot_along_x - parameters[30] * t24;
-        let t163 = parameters[30] * rate_dot_foot_along_x + parameters[31] * t24;
-        let t166 = t129 + t146
-            + minus_c_foot_along_x
-                * (parameters[26] * t118 - t148 - parameters[27] * t24
-                    + parameters[28] * t75) + s_foot_along_x * t159
-            - minus_c_foot_along_x * t163;
-        let (minus_c_foot_along_y, s_foot_along_y) = ::overact::math::sin_cos(joints[5]);
-        let (s_left_bar_along_y, c_left_bar_along_y) = ::overact::math::sin_cos(
-            joints[6],
-        );
+            + t81 + t117
+            - minus_s_foot_along_x
+                * (t119 + parameters[16] * t122 - parameters[17] * t27
+                    - parameters[18] * t77);
+        let t148 = t9
+            * (parameters[27] * t83 - (parameters[25] * t86 + parameters[26] * t92)
+                + parameters[28] * t97)
+            + t43
+                * (parameters[27] * t101
+                    - (parameters[25] * t104 + parameters[26] * t108)
+                    + parameters[28] * t113);
+        let t149 = parameters[25] * t118;
+        let t161 = parameters[31] * rate_dot_foot_along_x - parameters[30] * t27;
+        let t165 = parameters[30] * rate_dot_foot_along_x + parameters[31] * t27;
+        let t168 = t131 + t148
+            - minus_s_foot_along_x
+                * (t149 + parameters[26] * t122 - parameters[27] * t27
+                    - parameters[28] * t77) + c_foot_along_x * t161
+            + minus_s_foot_along_x * t165;
+        let t171 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t171, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t171);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let t171 = minus_c_foot_along_y * c_left_bar_along_y;
-        let t172 = 0.31 * t171;
-        let t173 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t173, 1.0, "along_y")?;
-        let t174 = 1.0 / t173;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t174;
-        let t177 = 1.0 / c_left_bar_along_y;
+        let t173 = 0.31 * c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] / t173;
+        let t176 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t176, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t176);
+        let t178 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t178, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t178;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t182 = 1.0 / c_left_bar_along_y;
         let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_c_foot_along_y * s_left_bar_along_y * t177);
-        let t181 = s_foot_along_y * s_left_bar_along_y;
-        let minus_gdrive_vx_along_y = t172 * minus_gfoot_vx_along_y + t181 * t177;
-        let t184 = 0.31 * s_left_bar_along_y;
+            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t182);
+        let t186 = minus_s_left_bar_along_y * c_foot_along_y;
+        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t186 * t182;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let t188 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t177;
+        let t193 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t182;
         let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t191 = minus_c_foot_along_y * minus_rate_left_bar_along_y;
-        let t194 = s_foot_along_y * minus_rate_left_bar_along_y;
-        let t196 = t188 + t191 * t191 + t194 * t194;
-        let t198 = t184 * minus_rate_foot_along_y;
-        let t200 = t184 * t196 - minus_rate_foot_along_y * t198;
-        let t203 = t184 * (minus_rate_foot_along_y * t191);
-        let minus_gdrive_vz_along_y = t171 * t174;
-        let t212 = t184 * (minus_rate_foot_along_y * t194);
-        let t214 = t172 * t196 + t212 + t212;
-        let rate_dot_drive_along_y = minus_gdrive_vx_along_y * t200
-            - (t203 - 0.31 * t173 * t196 + t203) + minus_gdrive_vz_along_y * t214;
-        let rate_drive_along_y = twist[1] - minus_gdrive_vx_along_y * twist[0]
-            - minus_gdrive_vz_along_y * twist[2];
-        let t230 = 9.81 * minus_c_foot_along_y;
-        let t231 = s_foot_along_y * rate_dot_drive_along_y - t230;
-        let rate_dot_foot_along_y = minus_gfoot_vx_along_y * t200
-            + minus_gfoot_vz_along_y * t214;
-        let t244 = 9.81 * s_foot_along_y;
-        let t245 = minus_c_foot_along_y * rate_dot_drive_along_y;
-        let t246 = t244 + t245;
-        let t250 = s_foot_along_y
-            * (parameters[41] * t231
-                - (parameters[39] * t188 + parameters[40] * rate_dot_foot_along_y))
-            - minus_c_foot_along_y
-                * (parameters[39] * rate_dot_foot_along_y - parameters[40] * t188
-                    - parameters[41] * t246);
-        let t252 = 3.225806451612903 * t198;
-        let t253 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t254 = t252 * t253;
-        let rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t200;
-        let t256 = t254 - rate_dot_left_bar_along_y;
-        let t258 = t253 * t253;
-        let t259 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t260 = t258 + t259;
-        let t263 = c_left_bar_along_y * rate_dot_foot_along_y;
-        let t266 = c_left_bar_along_y * t231;
-        let t270 = t254 + rate_dot_left_bar_along_y;
-        let t273 = 10.40582726326743 * (t198 * t198);
-        let t274 = t273 + t259;
-        let t277 = s_left_bar_along_y * rate_dot_foot_along_y;
-        let t280 = s_left_bar_along_y * t231;
-        let t284 = t173
-            * (parameters[49] * t256 - parameters[48] * t260 + parameters[50] * t263
-                + parameters[51] * t266)
-            - t181
-                * (parameters[48] * t270 - parameters[49] * t274 - parameters[50] * t277
-                    - parameters[51] * t280);
-        let t285 = minus_rate_left_bar_along_y * t253;
-        let t286 = t277 + t285;
-        let t287 = t285 + t286;
-        let t289 = 3.225806451612903 * t245;
-        let t298 = parameters[33] * rate_dot_drive_along_y
+        let t196 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
+        let t199 = c_foot_along_y * minus_rate_left_bar_along_y;
+        let t201 = t193 + t196 * t196 + t199 * t199;
+        let t204 = pose[0] * (minus_rate_foot_along_y * t199);
+        let t206 = pose[2] * t201 + t204 + t204;
+        let t208 = pose[0] * minus_rate_foot_along_y;
+        let t211 = minus_rate_foot_along_y * t208 - pose[0] * t201;
+        let t214 = pose[0] * (minus_rate_foot_along_y * t196);
+        let rate_dot_drive_along_y = gdrive_vz_along_y * t206
+            - (gdrive_vx_along_y * t211 + t214 - 0.31 * t178 * t201 + t214);
+        let rate_drive_along_y = gdrive_vx_along_y * twist[0] + twist[1]
+            + gdrive_vz_along_y * twist[2];
+        let t233 = 9.81 * minus_s_foot_along_y;
+        let t235 = t233 + c_foot_along_y * rate_dot_drive_along_y;
+        let rate_dot_foot_along_y = minus_gfoot_vx_along_y * t211
+            - minus_gfoot_vz_along_y * t206;
+        let t248 = minus_s_foot_along_y * rate_dot_drive_along_y;
+        let t249 = 9.81 * c_foot_along_y;
+        let t250 = t248 - t249;
+        let t254 = c_foot_along_y
+            * (parameters[41] * t235
+                - (parameters[39] * t193 + parameters[40] * rate_dot_foot_along_y))
+            + minus_s_foot_along_y
+                * (parameters[39] * rate_dot_foot_along_y - parameters[40] * t193
+                    + parameters[41] * t250);
+        let t256 = c_left_bar_along_y * rate_dot_foot_along_y;
+        let t258 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t259 = t258 * t258;
+        let t260 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t261 = t259 + t260;
+        let t263 = 3.225806451612903 * t208;
+        let t264 = t263 * t258;
+        let rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t211;
+        let t266 = t264 + rate_dot_left_bar_along_y;
+        let t270 = c_left_bar_along_y * t235;
+        let t274 = rate_dot_left_bar_along_y - t264;
+        let t277 = 10.40582726326743 * (t208 * t208);
+        let t278 = t277 + t260;
+        let t281 = minus_s_left_bar_along_y * rate_dot_foot_along_y;
+        let t284 = minus_s_left_bar_along_y * t235;
+        let t288 = t178
+            * (parameters[50] * t256 - (parameters[48] * t261 + parameters[49] * t266)
+                + parameters[51] * t270)
+            + t186
+                * (parameters[48] * t274 - parameters[49] * t278 + parameters[50] * t281
+                    + parameters[51] * t284);
+        let t289 = 3.225806451612903 * t248;
+        let t291 = minus_rate_left_bar_along_y * t258;
+        let t292 = t291 - t281;
+        let t293 = t291 + t292;
+        let t302 = parameters[33] * rate_dot_drive_along_y
             + parameters[34] * rate_dot_drive_along_y
             + parameters[35] * rate_drive_along_y
             + ::overact::math::signed(parameters[36], rate_drive_along_y)
-            + parameters[37] + t250 + t284
-            + minus_c_foot_along_y
-                * (parameters[49] * t287 - parameters[48] * t289 - parameters[50] * t188
-                    + parameters[51] * t246);
-        let t315 = t173
-            * (parameters[59] * t256 - parameters[58] * t260 + parameters[60] * t263
-                + parameters[61] * t266)
-            - t181
-                * (parameters[58] * t270 - parameters[59] * t274 - parameters[60] * t277
-                    - parameters[61] * t280);
-        let t325 = t298 + t315
-            + minus_c_foot_along_y
-                * (parameters[59] * t287 - parameters[58] * t289 - parameters[60] * t188
-                    + parameters[61] * t246);
-        let t330 = parameters[64] * rate_dot_foot_along_y - parameters[63] * t188
-            - parameters[65] * t230;
-        let t336 = parameters[65] * t244
-            - (parameters[63] * rate_dot_foot_along_y + parameters[64] * t188);
-        let t339 = t325 + s_foot_along_y * t330 + minus_c_foot_along_y * t336;
-        let t353 = t258 - t259;
-        let t357 = parameters[42] * t286 + parameters[43] * t289 + parameters[44] * t270
-            - parameters[45] * t285 + parameters[46] * t353 + parameters[47] * t285;
-        let t363 = minus_rate_left_bar_along_y * t252;
-        let t367 = t259 - t273;
-        let t370 = t263 - t363;
-        let t376 = parameters[42] * t363 + parameters[43] * t287 + parameters[44] * t367
-            + parameters[45] * t370 - parameters[46] * t256 - parameters[47] * t363;
-        let t382 = s_left_bar_along_y
-            * (t357 + parameters[49] * t246 + parameters[50] * t280)
-            + c_left_bar_along_y
-                * (t376 - parameters[48] * t246 + parameters[50] * t266);
-        let t394 = parameters[52] * t286 + parameters[53] * t289 + parameters[54] * t270
-            - parameters[55] * t285 + parameters[56] * t353 + parameters[57] * t285;
-        let t410 = parameters[52] * t363 + parameters[53] * t287 + parameters[54] * t367
-            + parameters[55] * t370 - parameters[56] * t256 - parameters[57] * t363;
-        let t416 = s_left_bar_along_y
-            * (t394 + parameters[59] * t246 + parameters[60] * t280)
-            + c_left_bar_along_y
-                * (t410 - parameters[58] * t246 + parameters[60] * t266);
-        let t426 = parameters[38] * rate_dot_foot_along_y - parameters[39] * t246
-            - parameters[40] * t231 + t382 + t416
-            + parameters[62] * rate_dot_foot_along_y - parameters[63] * t244
-            - parameters[64] * t230 - 0.31 * c_left_bar_along_y * t336;
-        let t429 = t273 - t258;
-        let t440 = parameters[43] * t429 - parameters[42] * t254 + parameters[44] * t277
-            + parameters[45] * t254 + parameters[46] * t263
+            + parameters[37] + t254 + t288
+            - minus_s_foot_along_y
+                * (parameters[48] * t289 + parameters[49] * t293 - parameters[50] * t193
+                    - parameters[51] * t250);
+        let t319 = t178
+            * (parameters[60] * t256 - (parameters[58] * t261 + parameters[59] * t266)
+                + parameters[61] * t270)
+            + t186
+                * (parameters[58] * t274 - parameters[59] * t278 + parameters[60] * t281
+                    + parameters[61] * t284);
+        let t329 = t302 + t319
+            - minus_s_foot_along_y
+                * (parameters[58] * t289 + parameters[59] * t293 - parameters[60] * t193
+                    - parameters[61] * t250);
+        let t334 = parameters[64] * rate_dot_foot_along_y - parameters[63] * t193
+            + parameters[65] * t233;
+        let t340 = parameters[65] * t249
+            - (parameters[63] * rate_dot_foot_along_y + parameters[64] * t193);
+        let t343 = t329 + c_foot_along_y * t334 - minus_s_foot_along_y * t340;
+        let t351 = minus_rate_left_bar_along_y * t263;
+        let t354 = t260 - t277;
+        let t357 = t256 + t351;
+        let t363 = parameters[43] * t293 - parameters[42] * t351 + parameters[44] * t354
+            + parameters[45] * t357 + parameters[46] * t266 + parameters[47] * t351;
+        let t376 = t259 - t260;
+        let t380 = parameters[42] * t292 - parameters[43] * t289 + parameters[44] * t274
+            - parameters[45] * t291 + parameters[46] * t376 + parameters[47] * t291;
+        let t386 = c_left_bar_along_y
+            * (t363 + parameters[48] * t250 + parameters[50] * t270)
+            - minus_s_left_bar_along_y
+                * (t380 - parameters[49] * t250 - parameters[50] * t284);
+        let t398 = parameters[53] * t293 - parameters[52] * t351 + parameters[54] * t354
+            + parameters[55] * t357 + parameters[56] * t266 + parameters[57] * t351;
+        let t414 = parameters[52] * t292 - parameters[53] * t289 + parameters[54] * t274
+            - parameters[55] * t291 + parameters[56] * t376 + parameters[57] * t291;
+        let t420 = c_left_bar_along_y
+            * (t398 + parameters[58] * t250 + parameters[60] * t270)
+            - minus_s_left_bar_along_y
+                * (t414 - parameters[59] * t250 - parameters[60] * t284);
+        let t429 = parameters[38] * rate_dot_foot_along_y + parameters[39] * t250
+            - parameters[40] * t235 + t386 + t420
+            + parameters[62] * rate_dot_foot_along_y - parameters[63] * t249
+            + parameters[64] * t233 - t173 * t340;
+        let t433 = t277 - t259;
+        let t443 = parameters[42] * t264 + parameters[43] * t433 - parameters[44] * t281
+            - parameters[45] * t264 + parameters[46] * t256
             + parameters[47] * rate_dot_left_bar_along_y;
-        let t455 = parameters[53] * t429 - parameters[52] * t254 + parameters[54] * t277
-            + parameters[55] * t254 + parameters[56] * t263
+        let t458 = parameters[52] * t264 + parameters[53] * t433 - parameters[54] * t281
+            - parameters[55] * t264 + parameters[56] * t256
             + parameters[57] * rate_dot_left_bar_along_y;
-        let t462 = t440 - parameters[48] * t280 - parameters[49] * t266 + t455
-            - parameters[58] * t280 - parameters[59] * t266 - t184 * t330;
-        let (minus_c_foot_along_z, s_foot_along_z) = ::overact::math::sin_cos(joints[9]);
-        let (s_left_bar_along_z, c_left_bar_along_z) = ::overact::math::sin_cos(
-            joints[10],
-        );
+        let t465 = t443 + parameters[48] * t284 - parameters[49] * t270 + t458
+            + parameters[58] * t284 - parameters[59] * t270 + pose[0] * t334;
+        let t471 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t471, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t471);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t470 = minus_c_foot_along_z * c_left_bar_along_z;
-        let t471 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t471, 1.0, "along_z")?;
-        let t472 = 1.0 / t471;
-        let minus_gdrive_vx_along_z = t470 * t472;
-        let t474 = 0.31 * t470;
-        let t475 = 1.0 / c_left_bar_along_z;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t475;
+        let t473 = 0.31 * c_left_bar_along_z;
+        let minus_s_foot_along_z = pose[0] / t473;
+        let t476 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t476, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t476);
+        let t478 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t478, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t478;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t481 = 1.0 / c_left_bar_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t481;
         let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t478 = s_foot_along_z * minus_rate_left_bar_along_z;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t472;
+        let t484 = c_foot_along_z * minus_rate_left_bar_along_z;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
         let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_c_foot_along_z * s_left_bar_along_z * t475);
+            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t481);
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let t487 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t489 = minus_c_foot_along_z * minus_rate_left_bar_along_z;
-        let t491 = t478 * t478 + t487 + t489 * t489;
-        let t493 = 0.31 * s_left_bar_along_z;
-        let t495 = t493 * (minus_rate_foot_along_z * t478);
-        let t497 = t474 * t491 + t495 + t495;
-        let t500 = s_foot_along_z * s_left_bar_along_z;
-        let minus_gdrive_vy_along_z = t474 * minus_gfoot_vy_along_z + t500 * t475;
-        let t504 = t493 * minus_rate_foot_along_z;
-        let t506 = t493 * t491 - minus_rate_foot_along_z * t504;
-        let t510 = t493 * (minus_rate_foot_along_z * t489);
-        let rate_dot_drive_along_z = minus_gdrive_vx_along_z * t497
-            + minus_gdrive_vy_along_z * t506 - (t510 - 0.31 * t471 * t491 + t510);
-        let t516 = 9.81 + rate_dot_drive_along_z;
-        let rate_drive_along_z = twist[2]
-            - (minus_gdrive_vx_along_z * twist[0] + minus_gdrive_vy_along_z * twist[1]);
-        let t529 = s_foot_along_z * t516;
-        let rate_dot_foot_along_z = minus_gfoot_vx_along_z * t497
-            + minus_gfoot_vy_along_z * t506;
-        let t542 = minus_c_foot_along_z * t516;
-        let t546 = s_foot_along_z
-            * (parameters[74] * t529
-                - (parameters[72] * t487 + parameters[73] * rate_dot_foot_along_z))
-            - minus_c_foot_along_z
-                * (parameters[72] * rate_dot_foot_along_z - parameters[73] * t487
-                    - parameters[74] * t542);
-        let t548 = 3.225806451612903 * t504;
-        let t549 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t550 = t548 * t549;
-        let rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t506;
-        let t552 = t550 - rate_dot_left_bar_along_z;
-        let t554 = t549 * t549;
-        let t555 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t556 = t554 + t555;
-        let t559 = c_left_bar_along_z * rate_dot_foot_along_z;
-        let t562 = c_left_bar_along_z * t529;
-        let t566 = t550 + rate_dot_left_bar_along_z;
-        let t569 = 10.40582726326743 * (t504 * t504);
-        let t570 = t569 + t555;
-        let t573 = s_left_bar_along_z * rate_dot_foot_along_z;
-        let t576 = s_left_bar_along_z * t529;
-        let t580 = t471
-            * (parameters[82] * t552 - parameters[81] * t556 + parameters[83] * t559
-                + parameters[84] * t562)
-            - t500
-                * (parameters[81] * t566 - parameters[82] * t570 - parameters[83] * t573
-                    - parameters[84] * t576);
-        let t581 = minus_rate_left_bar_along_z * t548;
-        let t582 = t559 - t581;
-        let t583 = t581 - t582;
-        let t585 = minus_rate_left_bar_along_z * t549;
-        let t586 = t573 + t585;
-        let t587 = t585 + t586;
-        let t596 = parameters[66] * t516 + parameters[67] * rate_dot_drive_along_z
+        let t493 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t495 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
+        let t497 = t484 * t484 + t493 + t495 * t495;
+        let t500 = pose[1] * (minus_rate_foot_along_z * t484);
+        let t502 = pose[0] * t497 + t500 + t500;
+        let t505 = minus_s_left_bar_along_z * c_foot_along_z;
+        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t505 * t481;
+        let t508 = pose[1] * minus_rate_foot_along_z;
+        let t511 = minus_rate_foot_along_z * t508 - pose[1] * t497;
+        let t515 = pose[1] * (minus_rate_foot_along_z * t495);
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t502 - gdrive_vy_along_z * t511
+            - (t515 - 0.31 * t478 * t497 + t515);
+        let t521 = 9.81 + rate_dot_drive_along_z;
+        let rate_drive_along_z = gdrive_vx_along_z * twist[0]
+            + gdrive_vy_along_z * twist[1] + twist[2];
+        let t534 = c_foot_along_z * t521;
+        let rate_dot_foot_along_z = minus_gfoot_vy_along_z * t511
+            - minus_gfoot_vx_along_z * t502;
+        let t547 = minus_s_foot_along_z * t521;
+        let t551 = c_foot_along_z
+            * (parameters[74] * t534
+                - (parameters[72] * t493 + parameters[73] * rate_dot_foot_along_z))
+            + minus_s_foot_along_z
+                * (parameters[72] * rate_dot_foot_along_z - parameters[73] * t493
+                    + parameters[74] * t547);
+        let t553 = c_left_bar_along_z * rate_dot_foot_along_z;
+        let t555 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t556 = t555 * t555;
+        let t557 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t558 = t556 + t557;
+        let t560 = 3.225806451612903 * t508;
+        let t561 = t560 * t555;
+        let rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t511;
+        let t563 = t561 + rate_dot_left_bar_along_z;
+        let t567 = c_left_bar_along_z * t534;
+        let t571 = rate_dot_left_bar_along_z - t561;
+        let t574 = 10.40582726326743 * (t508 * t508);
+        let t575 = t574 + t557;
+        let t578 = minus_s_left_bar_along_z * rate_dot_foot_along_z;
+        let t581 = minus_s_left_bar_along_z * t534;
+        let t585 = t478
+            * (parameters[83] * t553 - (parameters[81] * t558 + parameters[82] * t563)
+                + parameters[84] * t567)
+            + t505
+                * (parameters[81] * t571 - parameters[82] * t575 + parameters[83] * t578
+                    + parameters[84] * t581);
+        let t586 = minus_rate_left_bar_along_z * t555;
+        let t587 = t586 - t578;
+        let t588 = t586 + t587;
+        let t590 = minus_rate_left_bar_along_z * t560;
+        let t591 = t553 + t590;
+        let t592 = t590 + t591;
+        let t601 = parameters[66] * t521 + parameters[67] * rate_dot_drive_along_z
             + parameters[68] * rate_drive_along_z
             + ::overact::math::signed(parameters[69], rate_drive_along_z)
-            + parameters[70] + t546 + t580
-            + minus_c_foot_along_z
-                * (parameters[81] * t583 + parameters[82] * t587 - parameters[83] * t487
-                    + parameters[84] * t542);
-        let t613 = t471
-            * (parameters[92] * t552 - parameters[91] * t556 + parameters[93] * t559
-                + parameters[94] * t562)
-            - t500
-                * (parameters[91] * t566 - parameters[92] * t570 - parameters[93] * t573
-                    - parameters[94] * t576);
-        let t623 = t596 + t613
-            + minus_c_foot_along_z
-                * (parameters[91] * t583 + parameters[92] * t587 - parameters[93] * t487
-                    + parameters[94] * t542);
-        let t627 = 9.81 * s_foot_along_z;
-        let t629 = parameters[97] * rate_dot_foot_along_z - parameters[96] * t487
-            + parameters[98] * t627;
-        let t631 = 9.81 * minus_c_foot_along_z;
-        let t636 = parameters[98] * t631
-            - (parameters[96] * rate_dot_foot_along_z + parameters[97] * t487);
-        let t639 = t623 + s_foot_along_z * t629 + minus_c_foot_along_z * t636;
-        let t653 = t554 - t555;
-        let t657 = parameters[75] * t586 - parameters[76] * t583 + parameters[77] * t566
-            - parameters[78] * t585 + parameters[79] * t653 + parameters[80] * t585;
-        let t666 = t555 - t569;
-        let t674 = parameters[75] * t581 + parameters[76] * t587 + parameters[77] * t666
-            + parameters[78] * t582 - parameters[79] * t552 - parameters[80] * t581;
-        let t680 = s_left_bar_along_z
-            * (t657 + parameters[82] * t542 + parameters[83] * t576)
-            + c_left_bar_along_z
-                * (t674 - parameters[81] * t542 + parameters[83] * t562);
-        let t692 = parameters[85] * t586 - parameters[86] * t583 + parameters[87] * t566
-            - parameters[88] * t585 + parameters[89] * t653 + parameters[90] * t585;
-        let t708 = parameters[85] * t581 + parameters[86] * t587 + parameters[87] * t666
-            + parameters[88] * t582 - parameters[89] * t552 - parameters[90] * t581;
-        let t714 = s_left_bar_along_z
-            * (t692 + parameters[92] * t542 + parameters[93] * t576)
-            + c_left_bar_along_z
-                * (t708 - parameters[91] * t542 + parameters[93] * t562);
-        let t724 = parameters[71] * rate_dot_foot_along_z - parameters[72] * t542
-            - parameters[73] * t529 + t680 + t714
-            + parameters[95] * rate_dot_foot_along_z - parameters[96] * t631
-            + parameters[97] * t627 - 0.31 * c_left_bar_along_z * t636;
-        let t727 = t166
-            - (minus_gdrive_vx_along_y * t339 + minus_gfoot_vx_along_y * t426
-                + minus_gleft_bar_vx_along_y * t462)
-            - (minus_gdrive_vx_along_z * t639 + minus_gfoot_vx_along_z * t724);
-        let t741 = t82 * t82;
-        let t742 = t741 - t16;
-        let t746 = parameters[9] * t117 + parameters[10] * t120 + parameters[11] * t100
-            - parameters[12] * t116 + parameters[13] * t742 + parameters[14] * t116;
-        let t752 = minus_rate_left_bar_along_x * t81;
-        let t756 = t16 - t103;
-        let t759 = t91 - t752;
-        let t765 = parameters[9] * t752 + parameters[10] * t118 + parameters[11] * t756
-            + parameters[12] * t759 - parameters[13] * t85 - parameters[14] * t752;
-        let t771 = s_left_bar_along_x
-            * (t746 + parameters[16] * t75 + parameters[17] * t111)
-            + c_left_bar_along_x * (t765 - 0.31 * t121 + parameters[17] * t95);
-        let t783 = parameters[19] * t117 + parameters[20] * t120 + parameters[21] * t100
-            - parameters[22] * t116 + parameters[23] * t742 + parameters[24] * t116;
-        let t799 = parameters[19] * t752 + parameters[20] * t118 + parameters[21] * t756
-            + parameters[22] * t759 - parameters[23] * t85 - parameters[24] * t752;
-        let t805 = s_left_bar_along_x
-            * (t783 + parameters[26] * t75 + parameters[27] * t111)
-            + c_left_bar_along_x * (t799 - 0.31 * t148 + parameters[27] * t95);
-        let t811 = parameters[5] * rate_dot_foot_along_x - parameters[6] * t75
-            - parameters[7] * t62 + t771 + t805 + 0.31 * c_left_bar_along_x * t163
+            + parameters[70] + t551 + t585
+            - minus_s_foot_along_z
+                * (parameters[82] * t588 - parameters[81] * t592 - parameters[83] * t493
+                    - parameters[84] * t547);
+        let t618 = t478
+            * (parameters[93] * t553 - (parameters[91] * t558 + parameters[92] * t563)
+                + parameters[94] * t567)
+            + t505
+                * (parameters[91] * t571 - parameters[92] * t575 + parameters[93] * t578
+                    + parameters[94] * t581);
+        let t628 = t601 + t618
+            - minus_s_foot_along_z
+                * (parameters[92] * t588 - parameters[91] * t592 - parameters[93] * t493
+                    - parameters[94] * t547);
+        let t632 = 9.81 * c_foot_along_z;
+        let t634 = parameters[97] * rate_dot_foot_along_z - parameters[96] * t493
+            + parameters[98] * t632;
+        let t639 = 9.81 * minus_s_foot_along_z;
+        let t641 = parameters[96] * rate_dot_foot_along_z + parameters[97] * t493
+            + parameters[98] * t639;
+        let t644 = t628 + c_foot_along_z * t634 + minus_s_foot_along_z * t641;
+        let t654 = t557 - t574;
+        let t662 = parameters[76] * t588 - parameters[75] * t590 + parameters[77] * t654
+            + parameters[78] * t591 + parameters[79] * t563 + parameters[80] * t590;
+        let t675 = t556 - t557;
+        let t679 = parameters[75] * t587 + parameters[76] * t592 + parameters[77] * t571
+            - parameters[78] * t586 + parameters[79] * t675 + parameters[80] * t586;
+        let t685 = c_left_bar_along_z
+            * (t662 + parameters[81] * t547 + parameters[83] * t567)
+            - minus_s_left_bar_along_z
+                * (t679 - parameters[82] * t547 - parameters[83] * t581);
+        let t697 = parameters[86] * t588 - parameters[85] * t590 + parameters[87] * t654
+            + parameters[88] * t591 + parameters[89] * t563 + parameters[90] * t590;
+        let t713 = parameters[85] * t587 + parameters[86] * t592 + parameters[87] * t571
+            - parameters[88] * t586 + parameters[89] * t675 + parameters[90] * t586;
+        let t719 = c_left_bar_along_z
+            * (t697 + parameters[91] * t547 + parameters[93] * t567)
+            - minus_s_left_bar_along_z
+                * (t713 - parameters[92] * t547 - parameters[93] * t581);
+        let t728 = parameters[71] * rate_dot_foot_along_z + parameters[72] * t547
+            - parameters[73] * t534 + t685 + t719 + t473 * t641
+            + parameters[95] * rate_dot_foot_along_z + parameters[96] * t639
+            + parameters[97] * t632;
+        let t731 = t168 + gdrive_vx_along_y * t343 - minus_gfoot_vx_along_y * t429
+            - minus_gleft_bar_vx_along_y * t465 + gdrive_vx_along_z * t644
+            - minus_gfoot_vx_along_z * t728;
+        let t739 = minus_rate_left_bar_along_x * t88;
+        let t742 = t19 - t107;
+        let t745 = t83 + t739;
+        let t751 = parameters[10] * t122 - parameters[9] * t739 + parameters[11] * t742
+            + parameters[12] * t745 + parameters[13] * t92 + parameters[14] * t739;
+        let t764 = t89 * t89;
+        let t765 = t764 - t19;
+        let t769 = parameters[9] * t121 - parameters[10] * t118 - parameters[11] * t104
+            - parameters[12] * t120 + parameters[13] * t765 + parameters[14] * t120;
+        let t775 = c_left_bar_along_x * (t751 + 0.31 * t119 + parameters[17] * t97)
+            - minus_s_left_bar_along_x
+                * (t769 - parameters[16] * t77 - parameters[17] * t113);
+        let t787 = parameters[20] * t122 - parameters[19] * t739 + parameters[21] * t742
+            + parameters[22] * t745 + parameters[23] * t92 + parameters[24] * t739;
+        let t803 = parameters[19] * t121 - parameters[20] * t118 - parameters[21] * t104
+            - parameters[22] * t120 + parameters[23] * t765 + parameters[24] * t120;
+        let t809 = c_left_bar_along_x * (t787 + 0.31 * t149 + parameters[27] * t97)
+            - minus_s_left_bar_along_x
+                * (t803 - parameters[26] * t77 - parameters[27] * t113);
+        let t814 = parameters[5] * rate_dot_foot_along_x + parameters[6] * t77
+            - parameters[7] * t64 + t775 + t809 + t4 * t165
             + parameters[29] * rate_dot_foot_along_x;
-        let t818 = t569 - t554;
-        let t829 = parameters[76] * t818 - parameters[75] * t550 + parameters[77] * t573
-            + parameters[78] * t550 + parameters[79] * t559
+        let t822 = t574 - t556;
+        let t832 = parameters[75] * t561 + parameters[76] * t822 - parameters[77] * t578
+            - parameters[78] * t561 + parameters[79] * t553
             + parameters[80] * rate_dot_left_bar_along_z;
-        let t844 = parameters[86] * t818 - parameters[85] * t550 + parameters[87] * t573
-            + parameters[88] * t550 + parameters[89] * t559
+        let t847 = parameters[85] * t561 + parameters[86] * t822 - parameters[87] * t578
+            - parameters[88] * t561 + parameters[89] * t553
             + parameters[90] * rate_dot_left_bar_along_z;
-        let t851 = t829 - parameters[81] * t576 - parameters[82] * t562 + t844
-            - parameters[91] * t576 - parameters[92] * t562 - t493 * t629;
-        let t854 = t339
-            - (minus_gdrive_vy_along_x * t166 + minus_gfoot_vy_along_x * t811)
-            - (minus_gdrive_vy_along_z * t639 + minus_gfoot_vy_along_z * t724
-                + minus_gleft_bar_vy_along_z * t851);
-        let t858 = t103 - t741;
-        let t869 = parameters[10] * t858 - parameters[9] * t83 + parameters[11] * t107
-            + parameters[12] * t83 + parameters[13] * t91
+        let t854 = t832 + parameters[81] * t581 - parameters[82] * t567 + t847
+            + parameters[91] * t581 - parameters[92] * t567 + pose[1] * t634;
+        let t857 = gdrive_vy_along_x * t168 - minus_gfoot_vy_along_x * t814 + t343
+            + gdrive_vy_along_z * t644 - minus_gfoot_vy_along_z * t728
+            - minus_gleft_bar_vy_along_z * t854;
+        let t862 = t107 - t764;
+        let t872 = parameters[9] * t90 + parameters[10] * t862 - parameters[11] * t101
+            - parameters[12] * t90 + parameters[13] * t83
             + parameters[14] * rate_dot_left_bar_along_x;
-        let t884 = parameters[20] * t858 - parameters[19] * t83 + parameters[21] * t107
-            + parameters[22] * t83 + parameters[23] * t91
+        let t887 = parameters[19] * t90 + parameters[20] * t862 - parameters[21] * t101
+            - parameters[22] * t90 + parameters[23] * t83
             + parameters[24] * rate_dot_left_bar_along_x;
-        let t894 = t869 - parameters[15] * t111 - parameters[16] * t95 + t884
-            - parameters[25] * t111 - parameters[26] * t95
-            - (t27 * t159 + 3.0411 * (c_left_bar_along_x * parameters[32]));
-        let t901 = t639
-            - (minus_gdrive_vz_along_x * t166 + minus_gfoot_vz_along_x * t811
-                + minus_gleft_bar_vz_along_x * t894 + minus_gdrive_vz_along_y * t339
-                + minus_gfoot_vz_along_y * t426);
-        Ok([t727, t854, t901 + 9.81 * (parameters[99] + parameters[100])])
+        let t897 = t872 + parameters[15] * t113 - parameters[16] * t97 + t887
+            + parameters[25] * t113 - parameters[26] * t97 + pose[2] * t161
+            - 3.0411 * (c_left_bar_along_x * parameters[32]);
+        let t904 = gdrive_vz_along_x * t168 - minus_gfoot_vz_along_x * t814
+            - minus_gleft_bar_vz_along_x * t897 + gdrive_vz_along_y * t343
+            - minus_gfoot_vz_along_y * t429 + t644;
+        Ok([t731, t857, t904 + 9.81 * (parameters[99] + parameters[100])])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
     ///
@@ -7255,26 +9056,27 @@ impl Orthoglide {
     ) -> Result<[f64; Self::POSE], ::overact::Error> {
         let mut pose = *start;
         ::overact::forward::gauss_newton(
-            ::overact::forward::Measured {
-                positions: actuators,
-                is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
-            },
-            &mut pose,
-            ::overact::forward::Workspace {
-                actuators: &mut [0.0; Self::ACTUATORS],
-                inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
-                normal: &mut [0.0; Self::DOF * Self::DOF],
-                step: &mut [0.0; Self::DOF],
-            },
-            |pose, positions, jacobian| {
-                let pose = ::overact::block::array(pose)?;
-                positions.copy_from_slice(&Self::actuator_positions(pose)?);
-                jacobian.copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
-                Ok(())
-            },
-            ::overact::forward::displace,
-        )?;
-        Ok(pose)
+                ::overact::forward::Measured {
+                    positions: actuators,
+                    is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
+                },
+                &mut pose,
+                ::overact::forward::Workspace {
+                    actuators: &mut [0.0; Self::ACTUATORS],
+                    inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
+                    normal: &mut [0.0; Self::DOF * Self::DOF],
+                    step: &mut [0.0; Self::DOF],
+                },
+                |pose, positions, jacobian| {
+                    let pose = ::overact::block::array(pose)?;
+                    positions.copy_from_slice(&Self::actuator_positions(pose)?);
+                    jacobian
+                        .copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
+                    Ok(())
+                },
+                ::overact::forward::displace,
+            )
+            .map(|()| pose)
     }
 }
 impl ::overact::Model for Orthoglide {

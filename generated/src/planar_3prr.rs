@@ -178,46 +178,85 @@ impl Planar3Prr {
             BaseParameter::new("fs_3_leg3", "fs_3_leg3", &[]),
         ]
     };
-    /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration; by Newton's method.
+    /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    ///
+    /// Output: 9.
+    ///
+    /// 133 operations (55 additions, 78 multiplications, 0 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 135 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration on the way from home.
-    pub fn joints(
-        pose: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::JOINTS], ::overact::Error> {
-        let mut joints = Self::HOME_JOINTS;
-        ::overact::inverse::solve(
-            ::overact::inverse::Legs {
-                names: &Self::LEGS,
-                joints: &[3, 3, 3],
-                home_pose: &Self::HOME_POSE,
-                home_joints: &Self::HOME_JOINTS,
-                has_quaternion: false,
-            },
-            pose,
-            &mut joints,
-            ::overact::inverse::Workspace {
-                error: &mut [0.0; Self::JOINTS],
-                jacobian: &mut [0.0; Self::JOINTS * Self::JOINTS],
-                pose: &mut [0.0; Self::POSE],
-            },
-            |pose, joints, error, jacobian| {
-                let (pose, joints) = (
-                    ::overact::block::array(pose)?,
-                    ::overact::block::array(joints)?,
-                );
-                ::overact::block::write(
-                    &Self::closure_error_from_joints(pose, joints),
-                    error,
-                );
-                ::overact::block::write(
-                    &Self::legs_jacobian_from_joints(pose, joints),
-                    jacobian,
-                );
-                Ok(())
-            },
-        )?;
-        Ok(joints)
+    /// A pose out of reach, or a singular configuration.
+    pub fn joints(pose: &[f64; 3]) -> Result<[f64; 9], ::overact::Error> {
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let t3 = pose[0] - 0.08 * s_phi;
+        let t4 = t3 * t3;
+        let t7 = pose[1] + 0.08 * c_phi - 0.3;
+        let t12 = 8.650519031141869 * (t4 - (t4 + t7 * t7 - 0.1156));
+        ::overact::guard::reach(t12, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t12);
+        let s3_leg1 = s_phi * minus_s2_leg1 - 2.9411764705882355 * (c_phi * t7);
+        let c3_leg1 = 2.9411764705882355 * (s_phi * t7) + c_phi * minus_s2_leg1;
+        let t42 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
+        let t44 = pose[0] + t42 + 0.25980762113533157;
+        let t48 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
+        let t50 = pose[1] - t48 + 0.15;
+        let t52 = 0.5 * t44 - 0.8660254037844386 * t50;
+        let t59 = 8.650519031141869 * (t52 * t52 - (t44 * t44 + t50 * t50 - 0.1156));
+        ::overact::guard::reach(t59, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t59);
+        let t66 = 0.8660254037844386 * t44 + 0.5 * t50;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let s3_leg2 = 2.9411764705882355 * (t66 * minus_s23_leg2)
+            - minus_c23_leg2 * minus_s2_leg2;
+        let c3_leg2 = 2.9411764705882355 * (t66 * minus_c23_leg2)
+            + minus_s23_leg2 * minus_s2_leg2;
+        let t98 = pose[0] + 0.08 * minus_c23_leg2 - 0.25980762113533157;
+        let t102 = pose[1] + 0.08 * minus_s23_leg2 + 0.15;
+        let t104 = 0.5 * t98 + 0.8660254037844386 * t102;
+        let t111 = 8.650519031141869
+            * (t104 * t104 - (t98 * t98 + t102 * t102 - 0.1156));
+        ::overact::guard::reach(t111, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t111);
+        let t118 = 0.8660254037844386 * t98 - 0.5 * t102;
+        let minus_c23_leg3 = 12.5 * t42;
+        let s23_leg3 = 12.5 * t48;
+        let minus_c3_leg3 = 2.9411764705882355 * (t118 * minus_c23_leg3)
+            + s23_leg3 * minus_s2_leg3;
+        let s3_leg3 = 2.9411764705882355 * (t118 * s23_leg3)
+            - minus_c23_leg3 * minus_s2_leg3;
+        Ok([
+            -(t3 - 0.34 * minus_s2_leg1),
+            ::overact::math::atan2(
+                0.6470588235292607 * minus_s2_leg1 + 2.242470829899291 * t7,
+                0.7624400821657589 * minus_s2_leg1 - 1.9031141868507668 * t7,
+            ) + 4.008668472301665,
+            ::overact::math::atan2(
+                0.7624400821657629 * s3_leg1 - 0.6470588235292559 * c3_leg1,
+                0.7624400821657629 * c3_leg1 + 0.6470588235292559 * s3_leg1,
+            ) - 5.579464799096567,
+            t52 + 0.34 * minus_s2_leg2,
+            ::overact::math::atan2(
+                0.6470588235292607 * minus_s2_leg2 - 2.242470829899291 * t66,
+                1.9031141868507668 * t66 + 0.7624400821657589 * minus_s2_leg2,
+            ) + 4.008668472301665,
+            ::overact::math::atan2(
+                0.1791493378363261 * s3_leg2 + 0.9838218917836734 * c3_leg2,
+                0.1791493378363261 * c3_leg2 - 0.9838218917836734 * s3_leg2,
+            ) - 7.673859901489763,
+            t104 + 0.34 * minus_s2_leg3,
+            ::overact::math::atan2(
+                0.6470588235292614 * minus_s2_leg3 + 2.2424708298992893 * t118,
+                0.7624400821657583 * minus_s2_leg3 - 1.9031141868507688 * t118,
+            ) + 4.008668472301664,
+            ::overact::math::atan2(
+                0.33676306825441693 * minus_c3_leg3 - 0.9415894200020893 * s3_leg3,
+                0.9415894200020893 * minus_c3_leg3 + 0.33676306825441693 * s3_leg3,
+            ) - 9.768255003882958,
+        ])
     }
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
@@ -226,13 +265,36 @@ impl Planar3Prr {
     ///
     /// Output: 3.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 59 operations (29 additions, 30 multiplications, 0 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 61 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn actuator_positions(pose: &[f64; 3]) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Ok([joints[0], joints[3], joints[6]])
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let t3 = pose[0] - 0.08 * s_phi;
+        let t4 = t3 * t3;
+        let t7 = pose[1] + 0.08 * c_phi - 0.3;
+        let t12 = 8.650519031141869 * (t4 - (t4 + t7 * t7 - 0.1156));
+        ::overact::guard::reach(t12, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t12);
+        let t20 = pose[0] + 0.04 * s_phi - 0.06928203230275509 * c_phi
+            + 0.25980762113533157;
+        let t26 = pose[1] - (0.06928203230275509 * s_phi + 0.04 * c_phi) + 0.15;
+        let t28 = 0.5 * t20 - 0.8660254037844386 * t26;
+        let t35 = 8.650519031141869 * (t28 * t28 - (t20 * t20 + t26 * t26 - 0.1156));
+        ::overact::guard::reach(t35, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t35);
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t44 = pose[0] + 0.08 * minus_c23_leg2 - 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t51 = pose[1] + 0.08 * minus_s23_leg2 + 0.15;
+        let t53 = 0.5 * t44 + 0.8660254037844386 * t51;
+        let t60 = 8.650519031141869 * (t53 * t53 - (t44 * t44 + t51 * t51 - 0.1156));
+        ::overact::guard::reach(t60, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t60);
+        Ok([
+            -(t3 - 0.34 * minus_s2_leg1), t28 + 0.34 * minus_s2_leg2, t53 + 0.34 * minus_s2_leg3,
+        ])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -241,13 +303,61 @@ impl Planar3Prr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 37 operations (11 additions, 23 multiplications, 3 divisions), 0 square roots, 4 trigonometric pairs, 0 signs, 37 intermediates.
+    /// 87 operations (35 additions, 49 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 84 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::inverse_jacobian_from_joints(pose, joints)
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let t4 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
+        let t6 = pose[0] + t4 + 0.25980762113533157;
+        let t10 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
+        let t12 = pose[1] - t10 + 0.15;
+        let t14 = 0.8660254037844386 * t6 + 0.5 * t12;
+        let t18 = 0.5 * t6 - 0.8660254037844386 * t12;
+        let t25 = 8.650519031141869 * (t18 * t18 - (t6 * t6 + t12 * t12 - 0.1156));
+        ::overact::guard::reach(t25, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t25);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t29 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = (2.5471335405424664 * t14 - 0.5 * minus_s2_leg2) * t29;
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t34 = 0.08 * minus_c23_leg2;
+        let t36 = pose[0] + t34 - 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t41 = 0.08 * minus_s23_leg2;
+        let t43 = pose[1] + t41 + 0.15;
+        let t45 = 0.8660254037844386 * t36 - 0.5 * t43;
+        let t49 = 0.5 * t36 + 0.8660254037844386 * t43;
+        let t56 = 8.650519031141869 * (t49 * t49 - (t36 * t36 + t43 * t43 - 0.1156));
+        ::overact::guard::reach(t56, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t56);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
+        let t60 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = (2.5471335405424664 * t45 - 0.5 * minus_s2_leg3) * t60;
+        let t62 = 0.08 * c_phi;
+        let t64 = pose[1] + t62 - 0.3;
+        let t65 = 0.08 * s_phi;
+        let t66 = pose[0] - t65;
+        let t67 = t66 * t66;
+        let t72 = 8.650519031141869 * (t67 - (t67 + t64 * t64 - 0.1156));
+        ::overact::guard::reach(t72, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t72);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
+        let g2_vy_leg1 = 2.9411764705882355 / minus_s2_leg1;
+        let minus_g1_vy_leg1 = t64 * g2_vy_leg1;
+        let minus_g1_vy_leg2 = (0.8660254037844386 * minus_s2_leg2
+            + 1.4705882352941178 * t14) * t29;
+        let g1_vy_leg3 = (0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t45)
+            * t60;
+        let g1_wz_leg1 = t65 * minus_g1_vy_leg1 + t62;
+        let minus_g1_wz_leg2 = t4 * minus_g1_vy_leg2 + t10 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = t34 * g1_vy_leg3 + t41 * minus_g1_vx_leg3;
+        Ok([
+            [-1.0, -minus_g1_vy_leg1, g1_wz_leg1],
+            [-minus_g1_vx_leg2, -minus_g1_vy_leg2, -minus_g1_wz_leg2],
+            [-minus_g1_vx_leg3, g1_vy_leg3, g1_wz_leg3],
+        ])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -298,68 +408,94 @@ impl Planar3Prr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 120 operations (45 additions, 69 multiplications, 6 divisions), 0 square roots, 4 trigonometric pairs, 0 signs, 119 intermediates.
+    /// 170 operations (69 additions, 95 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 166 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
-        let g1_vy_leg1 = c2_leg1 / s2_leg1;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t8 = 1.0 / s2_leg2;
-        let g1_vx_leg2 = (0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2) * t8;
-        let minus_g1_vy_leg2 = (0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2) * t8;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
-        let t21 = 1.0 / s2_leg3;
-        let g1_vx_leg3 = (0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3) * t21;
-        let minus_g1_vy_leg3 = (0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3) * t21;
-        let t28 = g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t32 = 1.0 + g1_vx_leg2 * g1_vx_leg2 + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t32, 2.580357142856278, "actuators")?;
-        let t33 = 1.0 / t32;
-        let t34 = t28 * t33;
-        let t41 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t28 * t34;
-        ::overact::guard::platform(t41, 2.5803571428562737, "actuators")?;
-        let t42 = 1.0 / t41;
-        let t43 = g1_vy_leg1 - t34;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let g1_wz_leg1 = 0.08 * c_phi - g1_vy_leg1 * (0.08 * s_phi);
-        let t52 = 0.06928203230275509 * s_phi;
-        let t53 = 0.04 * c_phi;
-        let t56 = 0.04 * s_phi;
-        let t57 = 0.06928203230275509 * c_phi;
-        let g1_wz_leg2 = g1_vx_leg2 * (t52 + t53) - minus_g1_vy_leg2 * (t56 - t57);
-        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * (t57 + t56) + g1_vx_leg3 * (t52 - t53);
-        let t73 = g1_vx_leg2 * g1_wz_leg2 - g1_wz_leg1 - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t74 = t73 * t33;
-        let t76 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t28 * t74;
-        let t77 = t76 * t42;
-        let t86 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t73 * t74 - t76 * t77;
-        ::overact::guard::platform(t86, 0.019200000000000002, "actuators")?;
-        let t87 = 1.0 / t86;
-        let t91 = t87 * (g1_wz_leg1 + t74 - t77 * t43);
-        let t93 = t42 * t43 - t77 * t91;
-        let t100 = g1_vx_leg2 * t34 - minus_g1_vy_leg2;
-        let t106 = t87 * (g1_wz_leg2 - g1_vx_leg2 * t74 - t77 * t100);
-        let t108 = t42 * t100 - t77 * t106;
-        let t115 = g1_vx_leg3 * t34 - minus_g1_vy_leg3;
-        let t121 = t87 * (minus_g1_wz_leg3 + g1_vx_leg3 * t74 + t77 * t115);
-        let t123 = t42 * t115 + t77 * t121;
+        let t4 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
+        let t6 = pose[0] + t4 + 0.25980762113533157;
+        let t10 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
+        let t12 = pose[1] - t10 + 0.15;
+        let t14 = 0.8660254037844386 * t6 + 0.5 * t12;
+        let t18 = 0.5 * t6 - 0.8660254037844386 * t12;
+        let t25 = 8.650519031141869 * (t18 * t18 - (t6 * t6 + t12 * t12 - 0.1156));
+        ::overact::guard::reach(t25, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t25);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t29 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = (2.5471335405424664 * t14 - 0.5 * minus_s2_leg2) * t29;
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t36 = 0.08 * minus_c23_leg2;
+        let t38 = pose[0] + t36 - 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t43 = 0.08 * minus_s23_leg2;
+        let t45 = pose[1] + t43 + 0.15;
+        let t47 = 0.8660254037844386 * t38 - 0.5 * t45;
+        let t51 = 0.5 * t38 + 0.8660254037844386 * t45;
+        let t58 = 8.650519031141869 * (t51 * t51 - (t38 * t38 + t45 * t45 - 0.1156));
+        ::overact::guard::reach(t58, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t58);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
+        let t62 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = (2.5471335405424664 * t47 - 0.5 * minus_s2_leg3) * t62;
+        let t65 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + minus_g1_vx_leg3 * minus_g1_vx_leg3;
+        ::overact::guard::platform(t65, 2.5803571428571423, "actuators")?;
+        let t66 = 1.0 / t65;
+        let t67 = 0.08 * c_phi;
+        let t69 = pose[1] + t67 - 0.3;
+        let t70 = 0.08 * s_phi;
+        let t71 = pose[0] - t70;
+        let t72 = t71 * t71;
+        let t77 = 8.650519031141869 * (t72 - (t72 + t69 * t69 - 0.1156));
+        ::overact::guard::reach(t77, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t77);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
+        let g2_vy_leg1 = 2.9411764705882355 / minus_s2_leg1;
+        let minus_g1_vy_leg1 = t69 * g2_vy_leg1;
+        let minus_g1_vy_leg2 = (0.8660254037844386 * minus_s2_leg2
+            + 1.4705882352941178 * t14) * t29;
+        let g1_vy_leg3 = (0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t47)
+            * t62;
+        let t92 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            - minus_g1_vx_leg3 * g1_vy_leg3;
+        let t93 = t92 * t66;
+        let t100 = minus_g1_vy_leg1 * minus_g1_vy_leg1
+            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3 - t92 * t93;
+        ::overact::guard::platform(t100, 2.580357142857142, "actuators")?;
+        let t101 = 1.0 / t100;
+        let t102 = t93 - minus_g1_vy_leg1;
+        let minus_g1_wz_leg2 = t4 * minus_g1_vy_leg2 + t10 * minus_g1_vx_leg2;
+        let g1_wz_leg1 = t70 * minus_g1_vy_leg1 + t67;
+        let g1_wz_leg3 = t36 * g1_vy_leg3 + t43 * minus_g1_vx_leg3;
+        let t120 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
+            - minus_g1_vx_leg3 * g1_wz_leg3;
+        let t121 = t120 * t66;
+        let t123 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
+            + g1_vy_leg3 * g1_wz_leg3 - t92 * t121;
+        let t124 = t123 * t101;
+        let t133 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 - t120 * t121 - t123 * t124;
+        ::overact::guard::platform(t133, 0.0192, "actuators")?;
+        let t134 = 1.0 / t133;
+        let t138 = t134 * (g1_wz_leg1 + t121 - t124 * t102);
+        let t140 = t101 * t102 - t124 * t138;
+        let t147 = minus_g1_vx_leg2 * t93 - minus_g1_vy_leg2;
+        let t153 = t134 * (minus_g1_vx_leg2 * t121 - minus_g1_wz_leg2 - t124 * t147);
+        let t155 = t101 * t147 - t124 * t153;
+        let t162 = g1_vy_leg3 + minus_g1_vx_leg3 * t93;
+        let t168 = t134 * (g1_wz_leg3 + minus_g1_vx_leg3 * t121 - t124 * t162);
+        let t170 = t101 * t162 - t124 * t168;
         Ok([
             [
-                t34 * t93 - t33 - t74 * t91, g1_vx_leg2 * t33 + t34 * t108 - t74 * t106,
-                g1_vx_leg3 * t33 + t34 * t123 + t74 * t121,
+                -(t66 + t93 * t140 + t121 * t138),
+                -(minus_g1_vx_leg2 * t66 + t93 * t155 + t121 * t153),
+                -(minus_g1_vx_leg3 * t66 + t93 * t170 + t121 * t168),
             ],
-            [t93, t108, t123],
-            [t91, t106, -t121],
+            [t140, t155, t170],
+            [t138, t153, t168],
         ])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -498,52 +634,6 @@ impl Planar3Prr {
             [0.0, 0.0, -(0.34 * s2_leg3)],
         ]
     }
-    /// By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m, rad).
-    ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
-    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    ///
-    /// Output: 9.
-    ///
-    /// 78 operations (40 additions, 38 multiplications, 0 divisions), 0 square roots, 7 trigonometric pairs, 0 signs, 83 intermediates.
-    #[must_use]
-    pub fn closure_error_from_joints(pose: &[f64; 3], joints: &[f64; 9]) -> [f64; 9] {
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        let t14 = joints[1] + joints[2];
-        let (s23_leg1, c23_leg1) = ::overact::math::sin_cos(t14);
-        let t20 = 0.04 * s_phi;
-        let t21 = 0.06928203230275509 * c_phi;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        let t33 = pose[0] + t20 - t21 + 0.25980762113533157
-            - (0.5 * joints[3] + 0.34 * (0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2));
-        let t34 = 0.06928203230275509 * s_phi;
-        let t35 = 0.04 * c_phi;
-        let t45 = pose[1] - (t34 + t35) + 0.15 + 0.8660254037844386 * joints[3]
-            + 0.34 * (0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2);
-        let t46 = joints[4] + joints[5];
-        let (s23_leg2, c23_leg2) = ::overact::math::sin_cos(t46);
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        let t69 = pose[0] + t21 + t20 - 0.25980762113533157
-            - (0.5 * joints[6] + 0.34 * (0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3));
-        let t79 = pose[1] + t34 - t35 + 0.15
-            - (0.8660254037844386 * joints[6]
-                - 0.34 * (0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3));
-        let t80 = joints[7] + joints[8];
-        let (s23_leg3, c23_leg3) = ::overact::math::sin_cos(t80);
-        [
-            pose[0] - 0.08 * s_phi + joints[0] + 0.34 * s2_leg1,
-            pose[1] + 0.08 * c_phi - 0.3 - 0.34 * c2_leg1, -(c_phi * c23_leg1 + s_phi * s23_leg1),
-            t33, t45,
-            c_phi * (0.8660254037844386 * s23_leg2 + 0.5 * c23_leg2)
-                + s_phi * (0.5 * s23_leg2 - 0.8660254037844386 * c23_leg2),
-            t69,
-            t79,
-            c_phi * (0.5 * c23_leg3 - 0.8660254037844386 * s23_leg3)
-                + s_phi * (0.8660254037844386 * c23_leg3 + 0.5 * s23_leg3),
-        ]
-    }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
     /// From the platform's pose and motion.
@@ -552,7 +642,7 @@ impl Planar3Prr {
     ///
     /// Output: 9.
     ///
-    /// 65 operations (22 additions, 40 multiplications, 3 divisions), 0 square roots, 4 trigonometric pairs, 0 signs, 64 intermediates.
+    /// 113 operations (46 additions, 64 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 109 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -560,45 +650,67 @@ impl Planar3Prr {
         pose: &[f64; 3],
         twist: &[f64; 3],
     ) -> Result<[f64; 9], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
-        let t2 = 1.0 / s2_leg1;
-        let g1_vy_leg1 = c2_leg1 * t2;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t8 = twist[1] - 0.08 * s_phi * twist[2];
-        let rate_1_leg1 = g1_vy_leg1 * t8 - (twist[0] - 0.08 * c_phi * twist[2]);
-        let minus_g2_vy_leg1 = 2.9411764705882355 * t2;
-        let minus_rate_2_leg1 = minus_g2_vy_leg1 * t8;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t22 = 1.0 / s2_leg2;
-        let g1_vx_leg2 = (0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2) * t22;
-        let t24 = 0.06928203230275509 * s_phi;
-        let t25 = 0.04 * c_phi;
-        let t28 = twist[0] + (t24 + t25) * twist[2];
-        let minus_g1_vy_leg2 = (0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2) * t22;
-        let t34 = 0.04 * s_phi;
-        let t35 = 0.06928203230275509 * c_phi;
-        let t38 = twist[1] + (t34 - t35) * twist[2];
-        let rate_1_leg2 = g1_vx_leg2 * t28 - minus_g1_vy_leg2 * t38;
-        let g2_vx_leg2 = 2.5471335405424664 * t22;
-        let g2_vy_leg2 = 1.4705882352941178 * t22;
-        let rate_2_leg2 = g2_vx_leg2 * t28 + g2_vy_leg2 * t38;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
-        let t52 = 1.0 / s2_leg3;
-        let g1_vx_leg3 = (0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3) * t52;
-        let t56 = twist[0] - (t24 - t25) * twist[2];
-        let minus_g1_vy_leg3 = (0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3) * t52;
-        let t64 = twist[1] + (t35 + t34) * twist[2];
-        let rate_1_leg3 = g1_vx_leg3 * t56 - minus_g1_vy_leg3 * t64;
-        let g2_vy_leg3 = 1.4705882352941178 * t52;
-        let minus_g2_vx_leg3 = 2.5471335405424664 * t52;
-        let rate_2_leg3 = g2_vy_leg3 * t64 - minus_g2_vx_leg3 * t56;
+        let t2 = 0.08 * c_phi;
+        let t6 = pose[1] + t2 - 0.3;
+        let t7 = 0.08 * s_phi;
+        let t8 = pose[0] - t7;
+        let t9 = t8 * t8;
+        let t14 = 8.650519031141869 * (t9 - (t9 + t6 * t6 - 0.1156));
+        ::overact::guard::reach(t14, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t14);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
+        let g2_vy_leg1 = 2.9411764705882355 / minus_s2_leg1;
+        let minus_g1_vy_leg1 = t6 * g2_vy_leg1;
+        let t19 = twist[1] - t7 * twist[2];
+        let minus_rate_1_leg1 = twist[0] - t2 * twist[2] + minus_g1_vy_leg1 * t19;
+        let rate_2_leg1 = g2_vy_leg1 * t19;
+        let t26 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
+        let t28 = pose[0] + t26 + 0.25980762113533157;
+        let t32 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
+        let t34 = pose[1] - t32 + 0.15;
+        let t36 = 0.8660254037844386 * t28 + 0.5 * t34;
+        let t40 = 0.5 * t28 - 0.8660254037844386 * t34;
+        let t47 = 8.650519031141869 * (t40 * t40 - (t28 * t28 + t34 * t34 - 0.1156));
+        ::overact::guard::reach(t47, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t47);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t51 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = (2.5471335405424664 * t36 - 0.5 * minus_s2_leg2) * t51;
+        let t54 = twist[0] + t32 * twist[2];
+        let minus_g1_vy_leg2 = (0.8660254037844386 * minus_s2_leg2
+            + 1.4705882352941178 * t36) * t51;
+        let t61 = twist[1] + t26 * twist[2];
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t54 + minus_g1_vy_leg2 * t61;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t51;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t51;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t54 + minus_g2_vy_leg2 * t61;
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t73 = 0.08 * minus_c23_leg2;
+        let t75 = pose[0] + t73 - 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t80 = 0.08 * minus_s23_leg2;
+        let t82 = pose[1] + t80 + 0.15;
+        let t84 = 0.5 * t75 + 0.8660254037844386 * t82;
+        let t91 = 8.650519031141869 * (t84 * t84 - (t75 * t75 + t82 * t82 - 0.1156));
+        ::overact::guard::reach(t91, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t91);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
+        let t96 = 0.8660254037844386 * t75 - 0.5 * t82;
+        let t99 = 1.0 / minus_s2_leg3;
+        let g1_vy_leg3 = (0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t96)
+            * t99;
+        let t102 = twist[1] + t73 * twist[2];
+        let minus_g1_vx_leg3 = (2.5471335405424664 * t96 - 0.5 * minus_s2_leg3) * t99;
+        let t109 = twist[0] - t80 * twist[2];
+        let rate_1_leg3 = g1_vy_leg3 * t102 - minus_g1_vx_leg3 * t109;
+        let g2_vx_leg3 = 2.5471335405424664 * t99;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t99;
+        let rate_2_leg3 = g2_vx_leg3 * t109 - minus_g2_vy_leg3 * t102;
         Ok([
-            rate_1_leg1, -minus_rate_2_leg1, minus_rate_2_leg1 + twist[2], rate_1_leg2, rate_2_leg2,
-            twist[2] - rate_2_leg2, rate_1_leg3, rate_2_leg3, twist[2] - rate_2_leg3,
+            -minus_rate_1_leg1, rate_2_leg1, twist[2] - rate_2_leg1, -minus_rate_1_leg2,
+            -minus_rate_2_leg2, minus_rate_2_leg2 + twist[2], rate_1_leg3, rate_2_leg3,
+            twist[2] - rate_2_leg3,
         ])
     }
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
@@ -610,7 +722,7 @@ impl Planar3Prr {
     ///
     /// Output: 9.
     ///
-    /// 116 operations (41 additions, 72 multiplications, 3 divisions), 0 square roots, 4 trigonometric pairs, 0 signs, 115 intermediates.
+    /// 162 operations (65 additions, 94 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 158 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -619,67 +731,85 @@ impl Planar3Prr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[f64; 9], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.08 * c_phi;
         let t5 = 0.08 * s_phi;
         let t6 = t5 * twist[2];
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
-        let t11 = 1.0 / s2_leg1;
-        let g1_vy_leg1 = c2_leg1 * t11;
-        let t17 = acceleration[1] - t5 * acceleration[2] - twist[2] * (t2 * twist[2]);
-        let minus_g2_vy_leg1 = 2.9411764705882355 * t11;
-        let minus_rate_2_leg1 = minus_g2_vy_leg1 * (twist[1] - t6);
-        let t23 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t10 = pose[1] + t2 - 0.3;
+        let t11 = pose[0] - t5;
+        let t12 = t11 * t11;
+        let t17 = 8.650519031141869 * (t12 - (t12 + t10 * t10 - 0.1156));
+        ::overact::guard::reach(t17, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t17);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
+        let t19 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t19;
+        let minus_g1_vy_leg1 = t10 * g2_vy_leg1;
+        let t26 = acceleration[1] - t5 * acceleration[2] - twist[2] * (t2 * twist[2]);
+        let rate_2_leg1 = g2_vy_leg1 * (twist[1] - t6);
+        let t31 = rate_2_leg1 * rate_2_leg1;
         let minus_rate_dot_1_leg1 = acceleration[0] - t2 * acceleration[2]
-            + twist[2] * t6 - g1_vy_leg1 * t17 - t23 * (0.34 * t11);
-        let minus_rate_dot_2_leg1 = minus_g2_vy_leg1 * (t17 + 0.34 * c2_leg1 * t23);
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t34 = 1.0 / s2_leg2;
-        let t38 = 0.04 * s_phi;
-        let t39 = 0.06928203230275509 * c_phi;
-        let t40 = t38 - t39;
-        let t43 = 0.06928203230275509 * s_phi;
-        let t44 = 0.04 * c_phi;
-        let t45 = t43 + t44;
-        let t46 = t45 * twist[2];
-        let t48 = acceleration[1] + t40 * acceleration[2] + twist[2] * t46;
-        let t55 = t40 * twist[2];
-        let t57 = acceleration[0] + t45 * acceleration[2] - twist[2] * t55;
-        let g2_vx_leg2 = 2.5471335405424664 * t34;
-        let g2_vy_leg2 = 1.4705882352941178 * t34;
-        let rate_2_leg2 = g2_vx_leg2 * (twist[0] + t46) + g2_vy_leg2 * (twist[1] + t55);
-        let t67 = rate_2_leg2 * rate_2_leg2;
-        let t69 = (0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2) * t48
-            - (0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2) * t57 - 0.34 * t67;
-        let minus_rate_dot_1_leg2 = t34 * t69;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t34
-            * (t67 * (0.34 * c2_leg2) - (0.8660254037844386 * t57 + 0.5 * t48));
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
-        let t82 = 1.0 / s2_leg3;
-        let t86 = t43 - t44;
-        let t89 = t39 + t38;
-        let t90 = t89 * twist[2];
-        let t92 = acceleration[0] - t86 * acceleration[2] - twist[2] * t90;
-        let t99 = t86 * twist[2];
-        let t101 = acceleration[1] + t89 * acceleration[2] - twist[2] * t99;
-        let g2_vy_leg3 = 1.4705882352941178 * t82;
-        let minus_g2_vx_leg3 = 2.5471335405424664 * t82;
-        let rate_2_leg3 = g2_vy_leg3 * (twist[1] + t90)
-            - minus_g2_vx_leg3 * (twist[0] - t99);
-        let t111 = rate_2_leg3 * rate_2_leg3;
-        let t113 = (0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3) * t92
-            - (0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3) * t101 + 0.34 * t111;
-        let rate_dot_1_leg3 = t82 * t113;
-        let rate_dot_2_leg3 = 2.9411764705882355 * t82
-            * (0.5 * t101 - 0.8660254037844386 * t92 - t111 * (0.34 * c2_leg3));
+            + twist[2] * t6 + minus_g1_vy_leg1 * t26 + t31 * (0.34 * t19);
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t26 + t10 * t31);
+        let t41 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
+        let t43 = pose[0] + t41 + 0.25980762113533157;
+        let t47 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
+        let t49 = pose[1] - t47 + 0.15;
+        let t51 = 0.5 * t43 - 0.8660254037844386 * t49;
+        let t58 = 8.650519031141869 * (t51 * t51 - (t43 * t43 + t49 * t49 - 0.1156));
+        ::overact::guard::reach(t58, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t58);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t60 = 1.0 / minus_s2_leg2;
+        let t63 = 0.8660254037844386 * t43 + 0.5 * t49;
+        let t69 = t41 * twist[2];
+        let t71 = acceleration[0] + t47 * acceleration[2] - twist[2] * t69;
+        let t78 = t47 * twist[2];
+        let t80 = acceleration[1] + t41 * acceleration[2] + twist[2] * t78;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t60;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t60;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (twist[0] + t78)
+            + minus_g2_vy_leg2 * (twist[1] + t69);
+        let t90 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t92 = (2.5471335405424664 * t63 - 0.5 * minus_s2_leg2) * t71
+            + (0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t63) * t80
+            + 0.34 * t90;
+        let minus_rate_dot_1_leg2 = t60 * t92;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t60
+            * (0.8660254037844386 * t71 + 0.5 * t80 + t63 * t90);
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t105 = 0.08 * minus_c23_leg2;
+        let t107 = pose[0] + t105 - 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t112 = 0.08 * minus_s23_leg2;
+        let t114 = pose[1] + t112 + 0.15;
+        let t116 = 0.5 * t107 + 0.8660254037844386 * t114;
+        let t123 = 8.650519031141869
+            * (t116 * t116 - (t107 * t107 + t114 * t114 - 0.1156));
+        ::overact::guard::reach(t123, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t123);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
+        let t125 = 1.0 / minus_s2_leg3;
+        let t128 = 0.8660254037844386 * t107 - 0.5 * t114;
+        let t134 = t105 * twist[2];
+        let t136 = acceleration[0] - t112 * acceleration[2] - twist[2] * t134;
+        let t143 = t112 * twist[2];
+        let t145 = acceleration[1] + t105 * acceleration[2] - twist[2] * t143;
+        let g2_vx_leg3 = 2.5471335405424664 * t125;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t125;
+        let rate_2_leg3 = g2_vx_leg3 * (twist[0] - t143)
+            - minus_g2_vy_leg3 * (twist[1] + t134);
+        let t155 = rate_2_leg3 * rate_2_leg3;
+        let t157 = (2.5471335405424664 * t128 - 0.5 * minus_s2_leg3) * t136
+            - (0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t128) * t145
+            + 0.34 * t155;
+        let minus_rate_dot_1_leg3 = t125 * t157;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t125
+            * (0.5 * t145 - 0.8660254037844386 * t136 - t128 * t155);
         Ok([
-            -minus_rate_dot_1_leg1, -minus_rate_dot_2_leg1, minus_rate_dot_2_leg1 + acceleration[2],
+            -minus_rate_dot_1_leg1, rate_dot_2_leg1, acceleration[2] - rate_dot_2_leg1,
             -minus_rate_dot_1_leg2, -minus_rate_dot_2_leg2, minus_rate_dot_2_leg2 + acceleration[2],
-            rate_dot_1_leg3, rate_dot_2_leg3, acceleration[2] - rate_dot_2_leg3,
+            -minus_rate_dot_1_leg3, -minus_rate_dot_2_leg3, minus_rate_dot_2_leg3 + acceleration[2],
         ])
     }
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
@@ -690,7 +820,7 @@ impl Planar3Prr {
     ///
     /// Output: 3.
     ///
-    /// 106 operations (39 additions, 61 multiplications, 6 divisions), 0 square roots, 4 trigonometric pairs, 0 signs, 111 intermediates.
+    /// 156 operations (63 additions, 87 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 158 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -698,56 +828,81 @@ impl Planar3Prr {
         pose: &[f64; 3],
         actuator_velocities: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t5 = 1.0 / s2_leg2;
-        let g1_vx_leg2 = (0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2) * t5;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
-        let t14 = 1.0 / s2_leg3;
-        let g1_vx_leg3 = (0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3) * t14;
-        let t17 = g1_vx_leg2 * actuator_velocities[1] - actuator_velocities[0]
-            + g1_vx_leg3 * actuator_velocities[2];
-        let t21 = 1.0 + g1_vx_leg2 * g1_vx_leg2 + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t21, 2.580357142856278, "actuators")?;
-        let t22 = 1.0 / t21;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
-        let g1_vy_leg1 = c2_leg1 / s2_leg1;
-        let minus_g1_vy_leg2 = (0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2) * t5;
-        let minus_g1_vy_leg3 = (0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3) * t14;
-        let t38 = g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t39 = t38 * t22;
-        let t46 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t38 * t39;
-        ::overact::guard::platform(t46, 2.5803571428562737, "actuators")?;
-        let t47 = 1.0 / t46;
-        let t54 = g1_vy_leg1 * actuator_velocities[0]
-            - minus_g1_vy_leg2 * actuator_velocities[1]
-            - minus_g1_vy_leg3 * actuator_velocities[2] + t17 * t39;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let g1_wz_leg1 = 0.08 * c_phi - g1_vy_leg1 * (0.08 * s_phi);
-        let t63 = 0.06928203230275509 * s_phi;
-        let t64 = 0.04 * c_phi;
-        let t67 = 0.04 * s_phi;
-        let t68 = 0.06928203230275509 * c_phi;
-        let g1_wz_leg2 = g1_vx_leg2 * (t63 + t64) - minus_g1_vy_leg2 * (t67 - t68);
-        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * (t68 + t67) + g1_vx_leg3 * (t63 - t64);
-        let t84 = g1_vx_leg2 * g1_wz_leg2 - g1_wz_leg1 - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t85 = t84 * t22;
-        let t87 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t38 * t85;
-        let t88 = t87 * t47;
-        let t97 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t84 * t85 - t87 * t88;
-        ::overact::guard::platform(t97, 0.019200000000000002, "actuators")?;
-        let t107 = (g1_wz_leg1 * actuator_velocities[0]
-            + g1_wz_leg2 * actuator_velocities[1]
-            - minus_g1_wz_leg3 * actuator_velocities[2] - t17 * t85 - t88 * t54) / t97;
-        let t109 = t47 * t54 - t88 * t107;
-        Ok([t17 * t22 + t39 * t109 - t85 * t107, t109, t107])
+        let t4 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
+        let t6 = pose[0] + t4 + 0.25980762113533157;
+        let t10 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
+        let t12 = pose[1] - t10 + 0.15;
+        let t14 = 0.8660254037844386 * t6 + 0.5 * t12;
+        let t18 = 0.5 * t6 - 0.8660254037844386 * t12;
+        let t25 = 8.650519031141869 * (t18 * t18 - (t6 * t6 + t12 * t12 - 0.1156));
+        ::overact::guard::reach(t25, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t25);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t29 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = (2.5471335405424664 * t14 - 0.5 * minus_s2_leg2) * t29;
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t36 = 0.08 * minus_c23_leg2;
+        let t38 = pose[0] + t36 - 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t43 = 0.08 * minus_s23_leg2;
+        let t45 = pose[1] + t43 + 0.15;
+        let t47 = 0.8660254037844386 * t38 - 0.5 * t45;
+        let t51 = 0.5 * t38 + 0.8660254037844386 * t45;
+        let t58 = 8.650519031141869 * (t51 * t51 - (t38 * t38 + t45 * t45 - 0.1156));
+        ::overact::guard::reach(t58, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t58);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
+        let t62 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = (2.5471335405424664 * t47 - 0.5 * minus_s2_leg3) * t62;
+        let t65 = actuator_velocities[0] + minus_g1_vx_leg2 * actuator_velocities[1]
+            + minus_g1_vx_leg3 * actuator_velocities[2];
+        let t69 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + minus_g1_vx_leg3 * minus_g1_vx_leg3;
+        ::overact::guard::platform(t69, 2.5803571428571423, "actuators")?;
+        let t70 = 1.0 / t69;
+        let t72 = 0.08 * c_phi;
+        let t74 = pose[1] + t72 - 0.3;
+        let t75 = 0.08 * s_phi;
+        let t76 = pose[0] - t75;
+        let t77 = t76 * t76;
+        let t82 = 8.650519031141869 * (t77 - (t77 + t74 * t74 - 0.1156));
+        ::overact::guard::reach(t82, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t82);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
+        let g2_vy_leg1 = 2.9411764705882355 / minus_s2_leg1;
+        let minus_g1_vy_leg1 = t74 * g2_vy_leg1;
+        let minus_g1_vy_leg2 = (0.8660254037844386 * minus_s2_leg2
+            + 1.4705882352941178 * t14) * t29;
+        let g1_vy_leg3 = (0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t47)
+            * t62;
+        let t97 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            - minus_g1_vx_leg3 * g1_vy_leg3;
+        let t98 = t97 * t70;
+        let t105 = minus_g1_vy_leg1 * minus_g1_vy_leg1
+            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3 - t97 * t98;
+        ::overact::guard::platform(t105, 2.580357142857142, "actuators")?;
+        let t106 = 1.0 / t105;
+        let t113 = g1_vy_leg3 * actuator_velocities[2]
+            - (minus_g1_vy_leg1 * actuator_velocities[0]
+                + minus_g1_vy_leg2 * actuator_velocities[1]) + t65 * t98;
+        let minus_g1_wz_leg2 = t4 * minus_g1_vy_leg2 + t10 * minus_g1_vx_leg2;
+        let g1_wz_leg1 = t75 * minus_g1_vy_leg1 + t72;
+        let g1_wz_leg3 = t36 * g1_vy_leg3 + t43 * minus_g1_vx_leg3;
+        let t131 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
+            - minus_g1_vx_leg3 * g1_wz_leg3;
+        let t132 = t131 * t70;
+        let t134 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
+            + g1_vy_leg3 * g1_wz_leg3 - t97 * t132;
+        let t135 = t134 * t106;
+        let t144 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 - t131 * t132 - t134 * t135;
+        ::overact::guard::platform(t144, 0.0192, "actuators")?;
+        let t154 = (g1_wz_leg1 * actuator_velocities[0]
+            - minus_g1_wz_leg2 * actuator_velocities[1]
+            + g1_wz_leg3 * actuator_velocities[2] + t65 * t132 - t135 * t113) / t144;
+        let t156 = t106 * t113 - t135 * t154;
+        Ok([-(t65 * t70 + t98 * t156 + t132 * t154), t156, t154])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -758,7 +913,7 @@ impl Planar3Prr {
     ///
     /// Output: 3.
     ///
-    /// 159 operations (55 additions, 98 multiplications, 6 divisions), 0 square roots, 4 trigonometric pairs, 0 signs, 164 intermediates.
+    /// 208 operations (79 additions, 123 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 210 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -767,90 +922,108 @@ impl Planar3Prr {
         twist: &[f64; 3],
         actuator_accelerations: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t4 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
-        let t5 = 1.0 / s2_leg2;
-        let g1_vx_leg2 = t4 * t5;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t9 = 0.04 * s_phi;
-        let t10 = 0.06928203230275509 * c_phi;
-        let t11 = t9 - t10;
-        let t12 = t11 * twist[2];
-        let t17 = 0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2;
-        let t18 = 0.06928203230275509 * s_phi;
-        let t19 = 0.04 * c_phi;
-        let t20 = t18 + t19;
-        let t21 = t20 * twist[2];
-        let g2_vx_leg2 = 2.5471335405424664 * t5;
-        let g2_vy_leg2 = 1.4705882352941178 * t5;
-        let rate_2_leg2 = g2_vx_leg2 * (twist[0] + t21) + g2_vy_leg2 * (twist[1] + t12);
-        let minus_rate_dot_1_leg2 = t5
-            * (t4 * (twist[2] * t12) + t17 * (twist[2] * t21)
-                - 0.34 * (rate_2_leg2 * rate_2_leg2));
-        let t36 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let t38 = 0.08 * s_phi;
-        let t39 = t38 * twist[2];
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
-        let t43 = 1.0 / s2_leg1;
-        let g1_vy_leg1 = c2_leg1 * t43;
-        let t45 = 0.08 * c_phi;
-        let minus_g2_vy_leg1 = 2.9411764705882355 * t43;
-        let minus_rate_2_leg1 = minus_g2_vy_leg1 * (twist[1] - t39);
-        let minus_rate_dot_1_leg1 = twist[2] * t39
-            + g1_vy_leg1 * (twist[2] * (t45 * twist[2]))
-            - minus_rate_2_leg1 * minus_rate_2_leg1 * (0.34 * t43);
-        let t57 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
-        let t63 = 0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3;
-        let t64 = 1.0 / s2_leg3;
-        let g1_vx_leg3 = t63 * t64;
-        let t68 = 0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3;
-        let t69 = t18 - t19;
-        let t70 = t69 * twist[2];
-        let t73 = t10 + t9;
-        let t74 = t73 * twist[2];
-        let g2_vy_leg3 = 1.4705882352941178 * t64;
-        let minus_g2_vx_leg3 = 2.5471335405424664 * t64;
-        let rate_2_leg3 = g2_vy_leg3 * (twist[1] + t74)
-            - minus_g2_vx_leg3 * (twist[0] - t70);
-        let rate_dot_1_leg3 = t64
-            * (t68 * (twist[2] * t70) - t63 * (twist[2] * t74)
+        let t2 = 0.08 * s_phi;
+        let t3 = t2 * twist[2];
+        let t5 = 0.08 * c_phi;
+        let t7 = pose[1] + t5 - 0.3;
+        let t8 = pose[0] - t2;
+        let t9 = t8 * t8;
+        let t14 = 8.650519031141869 * (t9 - (t9 + t7 * t7 - 0.1156));
+        ::overact::guard::reach(t14, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t14);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
+        let t16 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t16;
+        let minus_g1_vy_leg1 = t7 * g2_vy_leg1;
+        let rate_2_leg1 = g2_vy_leg1 * (twist[1] - t3);
+        let minus_rate_dot_1_leg1 = twist[2] * t3
+            - minus_g1_vy_leg1 * (twist[2] * (t5 * twist[2]))
+            + rate_2_leg1 * rate_2_leg1 * (0.34 * t16);
+        let t29 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let t32 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
+        let t34 = pose[0] + t32 + 0.25980762113533157;
+        let t38 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
+        let t40 = pose[1] - t38 + 0.15;
+        let t42 = 0.8660254037844386 * t34 + 0.5 * t40;
+        let t46 = 0.5 * t34 - 0.8660254037844386 * t40;
+        let t53 = 8.650519031141869 * (t46 * t46 - (t34 * t34 + t40 * t40 - 0.1156));
+        ::overact::guard::reach(t53, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t53);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t56 = 2.5471335405424664 * t42 - 0.5 * minus_s2_leg2;
+        let t57 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t56 * t57;
+        let t59 = t32 * twist[2];
+        let t64 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t42;
+        let t65 = t38 * twist[2];
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t57;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t57;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (twist[0] + t65)
+            + minus_g2_vy_leg2 * (twist[1] + t59);
+        let rate_dot_1_leg2 = t57
+            * (t56 * (twist[2] * t59) - t64 * (twist[2] * t65)
+                - 0.34 * (minus_rate_2_leg2 * minus_rate_2_leg2));
+        let t80 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t86 = 0.08 * minus_c23_leg2;
+        let t88 = pose[0] + t86 - 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t93 = 0.08 * minus_s23_leg2;
+        let t95 = pose[1] + t93 + 0.15;
+        let t97 = 0.8660254037844386 * t88 - 0.5 * t95;
+        let t101 = 0.5 * t88 + 0.8660254037844386 * t95;
+        let t108 = 8.650519031141869 * (t101 * t101 - (t88 * t88 + t95 * t95 - 0.1156));
+        ::overact::guard::reach(t108, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t108);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
+        let t111 = 2.5471335405424664 * t97 - 0.5 * minus_s2_leg3;
+        let t112 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t111 * t112;
+        let t116 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t97;
+        let t117 = t93 * twist[2];
+        let t120 = t86 * twist[2];
+        let g2_vx_leg3 = 2.5471335405424664 * t112;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t112;
+        let rate_2_leg3 = g2_vx_leg3 * (twist[0] - t117)
+            - minus_g2_vy_leg3 * (twist[1] + t120);
+        let minus_rate_dot_1_leg3 = t112
+            * (t116 * (twist[2] * t117) - t111 * (twist[2] * t120)
                 + 0.34 * (rate_2_leg3 * rate_2_leg3));
-        let t89 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t91 = g1_vx_leg2 * t36 - t57 + g1_vx_leg3 * t89;
-        let t95 = 1.0 + g1_vx_leg2 * g1_vx_leg2 + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t95, 2.580357142856278, "actuators")?;
-        let t96 = 1.0 / t95;
-        let minus_g1_vy_leg2 = t17 * t5;
-        let minus_g1_vy_leg3 = t68 * t64;
-        let t103 = g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t104 = t103 * t96;
-        let t111 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t103 * t104;
-        ::overact::guard::platform(t111, 2.5803571428562737, "actuators")?;
-        let t112 = 1.0 / t111;
-        let t119 = g1_vy_leg1 * t57 - minus_g1_vy_leg2 * t36 - minus_g1_vy_leg3 * t89
-            + t91 * t104;
-        let g1_wz_leg1 = t45 - g1_vy_leg1 * t38;
-        let g1_wz_leg2 = g1_vx_leg2 * t20 - minus_g1_vy_leg2 * t11;
-        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t73 + g1_vx_leg3 * t69;
-        let t137 = g1_vx_leg2 * g1_wz_leg2 - g1_wz_leg1 - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t138 = t137 * t96;
-        let t140 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t103 * t138;
-        let t141 = t140 * t112;
-        let t150 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t137 * t138 - t140 * t141;
-        ::overact::guard::platform(t150, 0.019200000000000002, "actuators")?;
-        let t160 = (g1_wz_leg1 * t57 + g1_wz_leg2 * t36 - minus_g1_wz_leg3 * t89
-            - t91 * t138 - t141 * t119) / t150;
-        let t162 = t112 * t119 - t141 * t160;
-        Ok([t91 * t96 + t104 * t162 - t138 * t160, t162, t160])
+        let t135 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let t137 = t29 + minus_g1_vx_leg2 * t80 + minus_g1_vx_leg3 * t135;
+        let t141 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + minus_g1_vx_leg3 * minus_g1_vx_leg3;
+        ::overact::guard::platform(t141, 2.5803571428571423, "actuators")?;
+        let t142 = 1.0 / t141;
+        let minus_g1_vy_leg2 = t64 * t57;
+        let g1_vy_leg3 = t116 * t112;
+        let t149 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            - minus_g1_vx_leg3 * g1_vy_leg3;
+        let t150 = t149 * t142;
+        let t157 = minus_g1_vy_leg1 * minus_g1_vy_leg1
+            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3
+            - t149 * t150;
+        ::overact::guard::platform(t157, 2.580357142857142, "actuators")?;
+        let t158 = 1.0 / t157;
+        let t165 = g1_vy_leg3 * t135 - (minus_g1_vy_leg1 * t29 + minus_g1_vy_leg2 * t80)
+            + t137 * t150;
+        let minus_g1_wz_leg2 = t32 * minus_g1_vy_leg2 + t38 * minus_g1_vx_leg2;
+        let g1_wz_leg1 = t2 * minus_g1_vy_leg1 + t5;
+        let g1_wz_leg3 = t86 * g1_vy_leg3 + t93 * minus_g1_vx_leg3;
+        let t183 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
+            - minus_g1_vx_leg3 * g1_wz_leg3;
+        let t184 = t183 * t142;
+        let t186 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
+            + g1_vy_leg3 * g1_wz_leg3 - t149 * t184;
+        let t187 = t186 * t158;
+        let t196 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 - t183 * t184 - t186 * t187;
+        ::overact::guard::platform(t196, 0.0192, "actuators")?;
+        let t206 = (g1_wz_leg1 * t29 - minus_g1_wz_leg2 * t80 + g1_wz_leg3 * t135
+            + t137 * t184 - t187 * t165) / t196;
+        let t208 = t158 * t165 - t187 * t206;
+        Ok([-(t137 * t142 + t150 * t208 + t184 * t206), t208, t206])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -862,7 +1035,7 @@ impl Planar3Prr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 245 operations (76 additions, 166 multiplications, 3 divisions), 0 square roots, 4 trigonometric pairs, 25 signs, 197 intermediates.
+    /// 296 operations (100 additions, 193 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 245 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -871,8 +1044,205 @@ impl Planar3Prr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 37]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_platform_from_joints(pose, joints, twist, acceleration)
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let t2 = 0.08 * c_phi;
+        let t3 = t2 * acceleration[2];
+        let t5 = 0.08 * s_phi;
+        let t6 = t5 * twist[2];
+        let t7 = twist[2] * t6;
+        let t10 = pose[1] + t2 - 0.3;
+        let t11 = pose[0] - t5;
+        let t12 = t11 * t11;
+        let t17 = 8.650519031141869 * (t12 - (t12 + t10 * t10 - 0.1156));
+        ::overact::guard::reach(t17, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t17);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
+        let t19 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t19;
+        let minus_g1_vy_leg1 = t10 * g2_vy_leg1;
+        let t22 = t5 * acceleration[2];
+        let t24 = t2 * twist[2];
+        let t25 = twist[2] * t24;
+        let t26 = acceleration[1] - t22 - t25;
+        let t27 = minus_g1_vy_leg1 * t26;
+        let t29 = twist[1] - t6;
+        let rate_2_leg1 = g2_vy_leg1 * t29;
+        let t31 = rate_2_leg1 * rate_2_leg1;
+        let minus_rate_dot_1_leg1 = acceleration[0] - t3 + t7 + t27 + t31 * (0.34 * t19);
+        let t35 = minus_g1_vy_leg1 * minus_rate_dot_1_leg1;
+        let g1_wz_leg1 = t5 * minus_g1_vy_leg1 + t2;
+        let t38 = g1_wz_leg1 * minus_rate_dot_1_leg1;
+        let minus_rate_1_leg1 = twist[0] - t24 + minus_g1_vy_leg1 * t29;
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t26 + t10 * t31);
+        let minus_g2_wz_leg1 = 0.23529411764705882 * (s_phi * t19);
+        let c2_leg1 = 2.9411764705882355 * t10;
+        let t57 = minus_s2_leg1 * t31 + c2_leg1 * rate_dot_2_leg1;
+        let t65 = 2.9411764705882355 * t26;
+        let t74 = twist[2] - rate_2_leg1;
+        let t80 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
+        let t82 = pose[0] + t80 + 0.25980762113533157;
+        let t86 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
+        let t88 = pose[1] - t86 + 0.15;
+        let t90 = 0.8660254037844386 * t82 + 0.5 * t88;
+        let t94 = 0.5 * t82 - 0.8660254037844386 * t88;
+        let t101 = 8.650519031141869 * (t94 * t94 - (t82 * t82 + t88 * t88 - 0.1156));
+        ::overact::guard::reach(t101, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t101);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t104 = 2.5471335405424664 * t90 - 0.5 * minus_s2_leg2;
+        let t105 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t104 * t105;
+        let t109 = t80 * twist[2];
+        let t111 = acceleration[0] + t86 * acceleration[2] - twist[2] * t109;
+        let t115 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t90;
+        let t118 = t86 * twist[2];
+        let t120 = acceleration[1] + t80 * acceleration[2] + twist[2] * t118;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t105;
+        let t124 = twist[0] + t118;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t105;
+        let t127 = twist[1] + t109;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t124 + minus_g2_vy_leg2 * t127;
+        let t130 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t132 = t104 * t111 + t115 * t120 + 0.34 * t130;
+        let minus_rate_dot_1_leg2 = t105 * t132;
+        let t134 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let minus_g1_vy_leg2 = t115 * t105;
+        let t136 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let minus_g1_wz_leg2 = t80 * minus_g1_vy_leg2 + t86 * minus_g1_vx_leg2;
+        let t140 = minus_g1_wz_leg2 * minus_rate_dot_1_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t124 + minus_g1_vy_leg2 * t127;
+        let t153 = 0.8660254037844386 * t111 + 0.5 * t120;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t105 * (t153 + t90 * t130);
+        let minus_g2_wz_leg2 = t80 * minus_g2_vy_leg2 + t86 * minus_g2_vx_leg2;
+        let minus_c2_leg2 = 2.9411764705882355 * t90;
+        let t166 = minus_s2_leg2 * t130 + minus_c2_leg2 * minus_rate_dot_2_leg2;
+        let t168 = minus_c2_leg2 * minus_rate_dot_1_leg2;
+        let t177 = 2.9411764705882355 * t153;
+        let t190 = minus_rate_2_leg2 + twist[2];
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t198 = 0.08 * minus_c23_leg2;
+        let t200 = pose[0] + t198 - 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t205 = 0.08 * minus_s23_leg2;
+        let t207 = pose[1] + t205 + 0.15;
+        let t209 = 0.8660254037844386 * t200 - 0.5 * t207;
+        let t213 = 0.5 * t200 + 0.8660254037844386 * t207;
+        let t220 = 8.650519031141869
+            * (t213 * t213 - (t200 * t200 + t207 * t207 - 0.1156));
+        ::overact::guard::reach(t220, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t220);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
+        let t223 = 2.5471335405424664 * t209 - 0.5 * minus_s2_leg3;
+        let t224 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t223 * t224;
+        let t228 = t198 * twist[2];
+        let t230 = acceleration[0] - t205 * acceleration[2] - twist[2] * t228;
+        let t234 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t209;
+        let t237 = t205 * twist[2];
+        let t239 = acceleration[1] + t198 * acceleration[2] - twist[2] * t237;
+        let g2_vx_leg3 = 2.5471335405424664 * t224;
+        let t243 = twist[0] - t237;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t224;
+        let t246 = twist[1] + t228;
+        let rate_2_leg3 = g2_vx_leg3 * t243 - minus_g2_vy_leg3 * t246;
+        let t249 = rate_2_leg3 * rate_2_leg3;
+        let t251 = t223 * t230 - t234 * t239 + 0.34 * t249;
+        let minus_rate_dot_1_leg3 = t224 * t251;
+        let t253 = minus_g1_vx_leg3 * minus_rate_dot_1_leg3;
+        let g1_vy_leg3 = t234 * t224;
+        let t255 = g1_vy_leg3 * minus_rate_dot_1_leg3;
+        let g1_wz_leg3 = t198 * g1_vy_leg3 + t205 * minus_g1_vx_leg3;
+        let t259 = g1_wz_leg3 * minus_rate_dot_1_leg3;
+        let rate_1_leg3 = g1_vy_leg3 * t246 - minus_g1_vx_leg3 * t243;
+        let t272 = 0.5 * t239 - 0.8660254037844386 * t230;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t224 * (t272 - t209 * t249);
+        let minus_g2_wz_leg3 = 0.11764705882352941 * (minus_c23_leg2 * t224)
+            + 0.2037706832433973 * (minus_s23_leg2 * t224);
+        let c2_leg3 = 2.9411764705882355 * t209;
+        let t287 = minus_s2_leg3 * t249 - c2_leg3 * minus_rate_dot_2_leg3;
+        let t289 = c2_leg3 * minus_rate_dot_1_leg3;
+        let t298 = 2.9411764705882355 * t272;
+        let t311 = twist[2] - rate_2_leg3;
+        let t317 = 12.5 * (t25 + t22);
+        let t319 = 12.5 * (t3 - t7);
+        Ok([
+            [
+                minus_rate_dot_1_leg1, minus_rate_dot_1_leg1, minus_rate_1_leg1,
+                ::overact::math::sign(minus_rate_1_leg1), -1.0, 0.0, -t57, -t65,
+                minus_rate_dot_1_leg1, 0.0, 0.0, t134, t134, minus_g1_vx_leg2 * minus_rate_1_leg2,
+                ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
+                minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
+                -(minus_g1_vx_leg2 * t166 + minus_g2_vx_leg2 * t168),
+                minus_g1_vx_leg2 * t177 + minus_g2_vx_leg2 * t132, t134,
+                ::overact::math::signed(minus_g2_vx_leg2, minus_rate_2_leg2),
+                ::overact::math::signed(minus_g2_vx_leg2, t190), t253, t253,
+                -(minus_g1_vx_leg3 * rate_1_leg3),
+                -::overact::math::signed(minus_g1_vx_leg3, rate_1_leg3), -minus_g1_vx_leg3,
+                -(g2_vx_leg3 * minus_rate_dot_2_leg3),
+                -(minus_g1_vx_leg3 * t287 + g2_vx_leg3 * t289),
+                minus_g1_vx_leg3 * t298 - g2_vx_leg3 * t251, t253,
+                ::overact::math::signed(g2_vx_leg3, rate_2_leg3),
+                -::overact::math::signed(g2_vx_leg3, t311), 0.0, -t317, -t319, acceleration[0],
+            ],
+            [
+                t35, t35, minus_g1_vy_leg1 * minus_rate_1_leg1,
+                ::overact::math::signed(minus_g1_vy_leg1, minus_rate_1_leg1), -minus_g1_vy_leg1,
+                g2_vy_leg1 * rate_dot_2_leg1, -(minus_g1_vy_leg1 * t57 + 2.9411764705882355 * t35),
+                -(2.9411764705882355 * (t27 + minus_rate_dot_1_leg1)), t35,
+                ::overact::math::signed(g2_vy_leg1, rate_2_leg1),
+                -::overact::math::signed(g2_vy_leg1, t74), t136, t136,
+                minus_g1_vy_leg2 * minus_rate_1_leg2,
+                ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
+                minus_g2_vy_leg2 * minus_rate_dot_2_leg2,
+                -(minus_g1_vy_leg2 * t166 + minus_g2_vy_leg2 * t168),
+                minus_g1_vy_leg2 * t177 + 1.4705882352941178 * minus_rate_dot_1_leg2, t136,
+                ::overact::math::signed(minus_g2_vy_leg2, minus_rate_2_leg2),
+                ::overact::math::signed(minus_g2_vy_leg2, t190), -t255, -t255,
+                g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
+                g1_vy_leg3, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
+                g1_vy_leg3 * t287 + minus_g2_vy_leg3 * t289,
+                1.4705882352941178 * minus_rate_dot_1_leg3 - g1_vy_leg3 * t298, -t255,
+                -::overact::math::signed(minus_g2_vy_leg3, rate_2_leg3),
+                ::overact::math::signed(minus_g2_vy_leg3, t311), 0.0, t319, -t317, acceleration[1],
+            ],
+            [
+                -t38, -t38, -(g1_wz_leg1 * minus_rate_1_leg1),
+                -::overact::math::signed(g1_wz_leg1, minus_rate_1_leg1), g1_wz_leg1,
+                -(minus_g2_wz_leg1 * rate_dot_2_leg1),
+                g1_wz_leg1 * t57 + minus_g2_wz_leg1 * (c2_leg1 * minus_rate_dot_1_leg1),
+                g1_wz_leg1 * t65
+                    + minus_g2_wz_leg1 * (minus_s2_leg1 * minus_rate_dot_1_leg1),
+                -t38,
+                -::overact::math::signed(minus_g2_wz_leg1, rate_2_leg1),
+                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t74),
+                t140,
+                t140,
+                minus_g1_wz_leg2 * minus_rate_1_leg2,
+                ::overact::math::signed(minus_g1_wz_leg2, minus_rate_1_leg2),
+                -minus_g1_wz_leg2,
+                minus_g2_wz_leg2 * minus_rate_dot_2_leg2,
+                -(minus_g1_wz_leg2 * t166 + minus_g2_wz_leg2 * t168),
+                minus_g1_wz_leg2 * t177 + minus_g2_wz_leg2 * t132,
+                t140,
+                ::overact::math::signed(minus_g2_wz_leg2, minus_rate_2_leg2),
+                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t190),
+                -t259,
+                -t259,
+                g1_wz_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
+                g1_wz_leg3,
+                minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
+                g1_wz_leg3 * t287 + minus_g2_wz_leg3 * t289,
+                minus_g2_wz_leg3 * t251 - g1_wz_leg3 * t298,
+                -t259,
+                -::overact::math::signed(minus_g2_wz_leg3, rate_2_leg3),
+                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t311),
+                acceleration[2],
+                c_phi * acceleration[1] - s_phi * acceleration[0],
+                -(c_phi * acceleration[0] + s_phi * acceleration[1]),
+                0.0,
+            ],
+        ])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1070,7 +1440,7 @@ impl Planar3Prr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 337 operations (117 additions, 214 multiplications, 6 divisions), 0 square roots, 4 trigonometric pairs, 25 signs, 288 intermediates.
+    /// 388 operations (141 additions, 241 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 336 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1081,206 +1451,263 @@ impl Planar3Prr {
         start: &[f64; 3],
     ) -> Result<[[f64; 37]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
-        let t2 = 1.0 / s2_leg1;
-        let g1_vy_leg1 = c2_leg1 * t2;
-        let t4 = g1_vy_leg1 * actuator_accelerations[0];
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t7 = 0.08 * c_phi;
-        let t8 = 0.08 * s_phi;
-        let g1_wz_leg1 = t7 - g1_vy_leg1 * t8;
-        let t11 = g1_wz_leg1 * actuator_accelerations[0];
-        let t12 = g1_vy_leg1 * actuator_velocities[0];
-        let t13 = g1_wz_leg1 * actuator_velocities[0];
-        let minus_g2_vy_leg1 = 2.9411764705882355 * t2;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t23 = 0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2;
-        let t24 = 1.0 / s2_leg2;
-        let minus_g1_vy_leg2 = t23 * t24;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
-        let t32 = 0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3;
-        let t33 = 1.0 / s2_leg3;
-        let minus_g1_vy_leg3 = t32 * t33;
-        let t39 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
-        let g1_vx_leg2 = t39 * t24;
-        let t45 = 0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3;
-        let g1_vx_leg3 = t45 * t33;
-        let t48 = g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t52 = 1.0 + g1_vx_leg2 * g1_vx_leg2 + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t52, 2.580357142856278, "actuators")?;
-        ::overact::guard::platform(t52, 2.580357142856278, "actuators")?;
-        let t53 = 1.0 / t52;
-        let t54 = t48 * t53;
-        let t56 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t48 * t54;
-        ::overact::guard::platform(t56, 2.5803571428562737, "actuators")?;
-        ::overact::guard::platform(t56, 2.5803571428562737, "actuators")?;
-        let t57 = 1.0 / t56;
-        let t59 = 0.06928203230275509 * s_phi;
-        let t60 = 0.04 * c_phi;
-        let t61 = t59 + t60;
-        let t63 = 0.04 * s_phi;
-        let t64 = 0.06928203230275509 * c_phi;
-        let t65 = t63 - t64;
-        let g1_wz_leg2 = g1_vx_leg2 * t61 - minus_g1_vy_leg2 * t65;
-        let t70 = t64 + t63;
-        let t72 = t59 - t60;
-        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t70 + g1_vx_leg3 * t72;
-        let t80 = g1_vx_leg2 * g1_wz_leg2 - g1_wz_leg1 - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t81 = t80 * t53;
-        let t90 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t48 * t81;
-        let t91 = t90 * t57;
-        let t93 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t80 * t81 - t90 * t91;
-        ::overact::guard::platform(t93, 0.019200000000000002, "actuators")?;
-        ::overact::guard::platform(t93, 0.019200000000000002, "actuators")?;
-        let t94 = 1.0 / t93;
-        let t95 = g1_wz_leg2 * actuator_velocities[1];
-        let t97 = minus_g1_wz_leg3 * actuator_velocities[2];
-        let t99 = g1_vx_leg2 * actuator_velocities[1];
-        let t101 = g1_vx_leg3 * actuator_velocities[2];
-        let t102 = t99 - actuator_velocities[0] + t101;
-        let t105 = minus_g1_vy_leg2 * actuator_velocities[1];
-        let t107 = minus_g1_vy_leg3 * actuator_velocities[2];
-        let t110 = t12 - t105 - t107 + t102 * t54;
-        let rate_3_leg1 = t94 * (t13 + t95 - t97 - t102 * t81 - t91 * t110);
-        let t114 = t8 * rate_3_leg1;
-        let t115 = rate_3_leg1 * t114;
-        let t117 = rate_3_leg1 * (t7 * rate_3_leg1);
-        let t122 = t57 * t110 - t91 * rate_3_leg1;
-        let minus_rate_2_leg1 = minus_g2_vy_leg1 * (t122 - t114);
-        let t125 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_rate_dot_1_leg1 = t115 + g1_vy_leg1 * t117 - t125 * (0.34 * t2);
-        let t129 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let t131 = t65 * rate_3_leg1;
-        let t132 = rate_3_leg1 * t131;
-        let t134 = t61 * rate_3_leg1;
-        let t135 = rate_3_leg1 * t134;
-        let g2_vx_leg2 = 2.5471335405424664 * t24;
-        let t143 = t102 * t53 + t54 * t122 - t81 * rate_3_leg1;
-        let g2_vy_leg2 = 1.4705882352941178 * t24;
-        let rate_2_leg2 = g2_vx_leg2 * (t143 + t134) + g2_vy_leg2 * (t122 + t131);
-        let t150 = rate_2_leg2 * rate_2_leg2;
-        let t151 = 0.34 * t150;
-        let minus_rate_dot_1_leg2 = t24 * (t39 * t132 + t23 * t135 - t151);
-        let t154 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let t157 = t72 * rate_3_leg1;
-        let t158 = rate_3_leg1 * t157;
-        let t160 = t70 * rate_3_leg1;
+        let t2 = 0.08 * c_phi;
+        let t4 = pose[1] + t2 - 0.3;
+        let t5 = 0.08 * s_phi;
+        let t6 = pose[0] - t5;
+        let t7 = t6 * t6;
+        let t12 = 8.650519031141869 * (t7 - (t7 + t4 * t4 - 0.1156));
+        ::overact::guard::reach(t12, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t12);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
+        let t14 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t14;
+        let minus_g1_vy_leg1 = t4 * g2_vy_leg1;
+        let t17 = minus_g1_vy_leg1 * actuator_accelerations[0];
+        let g1_wz_leg1 = t5 * minus_g1_vy_leg1 + t2;
+        let t20 = g1_wz_leg1 * actuator_accelerations[0];
+        let t21 = minus_g1_vy_leg1 * actuator_velocities[0];
+        let t22 = g1_wz_leg1 * actuator_velocities[0];
+        let t29 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
+        let t31 = pose[0] + t29 + 0.25980762113533157;
+        let t35 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
+        let t37 = pose[1] - t35 + 0.15;
+        let t39 = 0.5 * t31 - 0.8660254037844386 * t37;
+        let t46 = 8.650519031141869 * (t39 * t39 - (t31 * t31 + t37 * t37 - 0.1156));
+        ::overact::guard::reach(t46, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t46);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t51 = 0.8660254037844386 * t31 + 0.5 * t37;
+        let t53 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t51;
+        let t54 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t53 * t54;
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t61 = 0.08 * minus_c23_leg2;
+        let t63 = pose[0] + t61 - 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t68 = 0.08 * minus_s23_leg2;
+        let t70 = pose[1] + t68 + 0.15;
+        let t72 = 0.5 * t63 + 0.8660254037844386 * t70;
+        let t79 = 8.650519031141869 * (t72 * t72 - (t63 * t63 + t70 * t70 - 0.1156));
+        ::overact::guard::reach(t79, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t79);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
+        let t84 = 0.8660254037844386 * t63 - 0.5 * t70;
+        let t86 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t84;
+        let t87 = 1.0 / minus_s2_leg3;
+        let g1_vy_leg3 = t86 * t87;
+        let t93 = 2.5471335405424664 * t51 - 0.5 * minus_s2_leg2;
+        let minus_g1_vx_leg2 = t93 * t54;
+        let t99 = 2.5471335405424664 * t84 - 0.5 * minus_s2_leg3;
+        let minus_g1_vx_leg3 = t99 * t87;
+        let t102 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            - minus_g1_vx_leg3 * g1_vy_leg3;
+        let t106 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + minus_g1_vx_leg3 * minus_g1_vx_leg3;
+        ::overact::guard::platform(t106, 2.5803571428571423, "actuators")?;
+        ::overact::guard::platform(t106, 2.5803571428571423, "actuators")?;
+        let t107 = 1.0 / t106;
+        let t108 = t102 * t107;
+        let t110 = minus_g1_vy_leg1 * minus_g1_vy_leg1
+            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3
+            - t102 * t108;
+        ::overact::guard::platform(t110, 2.580357142857142, "actuators")?;
+        ::overact::guard::platform(t110, 2.580357142857142, "actuators")?;
+        let t111 = 1.0 / t110;
+        let minus_g1_wz_leg2 = t29 * minus_g1_vy_leg2 + t35 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = t61 * g1_vy_leg3 + t68 * minus_g1_vx_leg3;
+        let t126 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
+            - minus_g1_vx_leg3 * g1_wz_leg3;
+        let t127 = t126 * t107;
+        let t136 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
+            + g1_vy_leg3 * g1_wz_leg3 - t102 * t127;
+        let t137 = t136 * t111;
+        let t139 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 - t126 * t127 - t136 * t137;
+        ::overact::guard::platform(t139, 0.0192, "actuators")?;
+        ::overact::guard::platform(t139, 0.0192, "actuators")?;
+        let t140 = 1.0 / t139;
+        let t141 = minus_g1_wz_leg2 * actuator_velocities[1];
+        let t143 = g1_wz_leg3 * actuator_velocities[2];
+        let t145 = minus_g1_vx_leg2 * actuator_velocities[1];
+        let t147 = minus_g1_vx_leg3 * actuator_velocities[2];
+        let t148 = actuator_velocities[0] + t145 + t147;
+        let t151 = g1_vy_leg3 * actuator_velocities[2];
+        let t152 = minus_g1_vy_leg2 * actuator_velocities[1];
+        let t156 = t151 - (t21 + t152) + t148 * t108;
+        let rate_3_leg1 = t140 * (t22 - t141 + t143 + t148 * t127 - t137 * t156);
+        let t160 = t68 * rate_3_leg1;
         let t161 = rate_3_leg1 * t160;
-        let g2_vy_leg3 = 1.4705882352941178 * t33;
-        let minus_g2_vx_leg3 = 2.5471335405424664 * t33;
-        let rate_2_leg3 = g2_vy_leg3 * (t122 + t160) - minus_g2_vx_leg3 * (t143 - t157);
-        let t171 = rate_2_leg3 * rate_2_leg3;
-        let t172 = 0.34 * t171;
-        let rate_dot_1_leg3 = t33 * (t32 * t158 - t45 * t161 + t172);
-        let t175 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t181 = g1_vx_leg2 * t154 - t129 + g1_vx_leg3 * t175;
-        let t183 = g1_vy_leg1 * t129 - minus_g1_vy_leg2 * t154 - minus_g1_vy_leg3 * t175
-            + t54 * t181;
-        let rate_dot_3_leg1 = t94
-            * (g1_wz_leg1 * t129 + g1_wz_leg2 * t154 - minus_g1_wz_leg3 * t175
-                - t81 * t181 - t91 * t183);
-        let t196 = t57 * t183 - t91 * rate_dot_3_leg1;
-        let t197 = t8 * rate_dot_3_leg1;
-        let t199 = t196 - t197 - t117;
-        let minus_rate_dot_2_leg1 = minus_g2_vy_leg1 * (t199 + 0.34 * c2_leg1 * t125);
-        let g2_wz_leg1 = 0.23529411764705882 * (s_phi * t2);
-        let t210 = s2_leg1 * t125 + c2_leg1 * minus_rate_dot_2_leg1;
-        let t218 = 2.9411764705882355 * t199;
-        let t228 = minus_rate_2_leg1 + rate_3_leg1;
-        let t232 = g1_vx_leg2 * actuator_accelerations[1];
-        let t233 = minus_g1_vy_leg2 * actuator_accelerations[1];
-        let t234 = g1_wz_leg2 * actuator_accelerations[1];
-        let t245 = t53 * t181 + t54 * t196 - t81 * rate_dot_3_leg1;
-        let t248 = t245 + t61 * rate_dot_3_leg1 - t132;
-        let t252 = t196 + t65 * rate_dot_3_leg1 + t135;
-        let t254 = 0.8660254037844386 * t248 + 0.5 * t252;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t24
-            * (t150 * (0.34 * c2_leg2) - t254);
-        let g2_wz_leg2 = g2_vy_leg2 * t65 + g2_vx_leg2 * t61;
-        let t263 = c2_leg2 * actuator_accelerations[1];
-        let t267 = s2_leg2 * t150 + c2_leg2 * minus_rate_dot_2_leg2;
-        let t279 = t23 * t252 - t39 * t248 - t151;
-        let t281 = 2.9411764705882355 * t254;
-        let t293 = rate_3_leg1 - rate_2_leg2;
-        let t298 = g1_vx_leg3 * actuator_accelerations[2];
-        let t299 = minus_g1_vy_leg3 * actuator_accelerations[2];
-        let t300 = minus_g1_wz_leg3 * actuator_accelerations[2];
-        let t307 = t196 + t70 * rate_dot_3_leg1 - t158;
-        let t311 = t245 - t72 * rate_dot_3_leg1 - t161;
-        let t313 = 0.5 * t307 - 0.8660254037844386 * t311;
-        let rate_dot_2_leg3 = 2.9411764705882355 * t33
-            * (t313 - t171 * (0.34 * c2_leg3));
-        let g2_wz_leg3 = g2_vy_leg3 * t70 + minus_g2_vx_leg3 * t72;
-        let t326 = c2_leg3 * rate_dot_2_leg3 - s2_leg3 * t171;
-        let t328 = c2_leg3 * actuator_accelerations[2];
-        let t340 = t45 * t311 - t32 * t307 + t172;
-        let t342 = 2.9411764705882355 * t313;
-        let t354 = rate_3_leg1 - rate_2_leg3;
-        let t360 = 12.5 * (t117 + t197);
-        let t363 = 12.5 * (t7 * rate_dot_3_leg1 - t115);
+        let t163 = t61 * rate_3_leg1;
+        let t164 = rate_3_leg1 * t163;
+        let g2_vx_leg3 = 2.5471335405424664 * t87;
+        let t171 = t111 * t156 - t137 * rate_3_leg1;
+        let t175 = t148 * t107 + t108 * t171 + t127 * rate_3_leg1;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t87;
+        let minus_rate_2_leg3 = g2_vx_leg3 * (t175 + t160)
+            + minus_g2_vy_leg3 * (t171 + t163);
+        let t182 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t183 = 0.34 * t182;
+        let minus_rate_dot_1_leg3 = t87 * (t86 * t161 - t99 * t164 + t183);
+        let t186 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let t188 = t5 * rate_3_leg1;
+        let t189 = rate_3_leg1 * t188;
+        let t191 = rate_3_leg1 * (t2 * rate_3_leg1);
+        let rate_2_leg1 = g2_vy_leg1 * (t171 - t188);
+        let t196 = rate_2_leg1 * rate_2_leg1;
+        let minus_rate_dot_1_leg1 = t189 - minus_g1_vy_leg1 * t191 + t196 * (0.34 * t14);
+        let t200 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let t202 = t29 * rate_3_leg1;
+        let t203 = rate_3_leg1 * t202;
+        let t205 = t35 * rate_3_leg1;
+        let t206 = rate_3_leg1 * t205;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t54;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t54;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (t205 - t175)
+            + minus_g2_vy_leg2 * (t171 + t202);
+        let t216 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t217 = 0.34 * t216;
+        let rate_dot_1_leg2 = t54 * (t93 * t203 - t53 * t206 - t217);
+        let t220 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let t227 = t200 + minus_g1_vx_leg2 * t220 + minus_g1_vx_leg3 * t186;
+        let t229 = g1_vy_leg3 * t186
+            - (minus_g1_vy_leg1 * t200 + minus_g1_vy_leg2 * t220) + t108 * t227;
+        let rate_dot_3_leg1 = t140
+            * (g1_wz_leg1 * t200 - minus_g1_wz_leg2 * t220 + g1_wz_leg3 * t186
+                + t127 * t227 - t137 * t229);
+        let t242 = t111 * t229 - t137 * rate_dot_3_leg1;
+        let t243 = t5 * rate_dot_3_leg1;
+        let t245 = t242 - t243 - t191;
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t245 + t4 * t196);
+        let minus_g2_wz_leg1 = 0.23529411764705882 * (s_phi * t14);
+        let c2_leg1 = 2.9411764705882355 * t4;
+        let t256 = minus_s2_leg1 * t196 + c2_leg1 * rate_dot_2_leg1;
+        let t264 = 2.9411764705882355 * t245;
+        let t274 = rate_3_leg1 - rate_2_leg1;
+        let t278 = minus_g1_vx_leg2 * actuator_accelerations[1];
+        let t279 = minus_g1_vy_leg2 * actuator_accelerations[1];
+        let t280 = minus_g1_wz_leg2 * actuator_accelerations[1];
+        let t290 = t107 * t227 + t108 * t242 + t127 * rate_dot_3_leg1;
+        let t292 = t35 * rate_dot_3_leg1 - t290 - t203;
+        let t296 = t242 + t29 * rate_dot_3_leg1 + t206;
+        let t298 = 0.8660254037844386 * t292 + 0.5 * t296;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t54 * (t298 + t51 * t216);
+        let minus_g2_wz_leg2 = t29 * minus_g2_vy_leg2 + t35 * minus_g2_vx_leg2;
+        let minus_c2_leg2 = 2.9411764705882355 * t51;
+        let t309 = minus_c2_leg2 * actuator_accelerations[1];
+        let t313 = minus_s2_leg2 * t216 + minus_c2_leg2 * minus_rate_dot_2_leg2;
+        let t322 = 2.9411764705882355 * t298;
+        let t327 = t93 * t292 + t53 * t296 + t217;
+        let t339 = minus_rate_2_leg2 + rate_3_leg1;
+        let t344 = minus_g1_vx_leg3 * actuator_accelerations[2];
+        let t345 = g1_vy_leg3 * actuator_accelerations[2];
+        let t346 = g1_wz_leg3 * actuator_accelerations[2];
+        let t353 = t290 + t68 * rate_dot_3_leg1 + t164;
+        let t357 = t242 + t61 * rate_dot_3_leg1 - t161;
+        let t359 = 0.8660254037844386 * t353 + 0.5 * t357;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t87 * (t359 - t84 * t182);
+        let minus_g2_wz_leg3 = 0.11764705882352941 * (minus_c23_leg2 * t87)
+            + 0.2037706832433973 * (minus_s23_leg2 * t87);
+        let c2_leg3 = 2.9411764705882355 * t84;
+        let t372 = c2_leg3 * actuator_accelerations[2];
+        let t376 = minus_s2_leg3 * t182 - c2_leg3 * minus_rate_dot_2_leg3;
+        let t385 = 2.9411764705882355 * t359;
+        let t390 = t183 - (t99 * t353 + t86 * t357);
+        let t402 = minus_rate_2_leg3 + rate_3_leg1;
+        let t408 = 12.5 * (t191 + t243);
+        let t411 = 12.5 * (t2 * rate_dot_3_leg1 - t189);
         Ok([
             [
                 -actuator_accelerations[0], -actuator_accelerations[0], -actuator_velocities[0],
-                -::overact::math::sign(actuator_velocities[0]), -1.0, 0.0, t210, -t218,
-                -actuator_accelerations[0], 0.0, 0.0, t232, t232, t99,
-                ::overact::math::signed(g1_vx_leg2, actuator_velocities[1]), g1_vx_leg2,
-                -(g2_vx_leg2 * minus_rate_dot_2_leg2), g2_vx_leg2 * t263 - g1_vx_leg2 * t267,
-                g2_vx_leg2 * t279 - g1_vx_leg2 * t281, t232,
-                ::overact::math::signed(g2_vx_leg2, rate_2_leg2),
-                -::overact::math::signed(g2_vx_leg2, t293), t298, t298, t101,
-                ::overact::math::signed(g1_vx_leg3, actuator_velocities[2]), g1_vx_leg3,
-                -(minus_g2_vx_leg3 * rate_dot_2_leg3), g1_vx_leg3 * t326 - minus_g2_vx_leg3 * t328,
-                minus_g2_vx_leg3 * t340 - g1_vx_leg3 * t342, t298,
-                -::overact::math::signed(minus_g2_vx_leg3, rate_2_leg3),
-                ::overact::math::signed(minus_g2_vx_leg3, t354), 0.0, -t360, -t363, t245,
+                -::overact::math::sign(actuator_velocities[0]), -1.0, 0.0, -t256, -t264,
+                -actuator_accelerations[0], 0.0, 0.0, -t278, -t278, -t145,
+                -::overact::math::signed(minus_g1_vx_leg2, actuator_velocities[1]),
+                -minus_g1_vx_leg2, minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
+                minus_g2_vx_leg2 * t309 - minus_g1_vx_leg2 * t313,
+                minus_g1_vx_leg2 * t322 + minus_g2_vx_leg2 * t327, -t278,
+                ::overact::math::signed(minus_g2_vx_leg2, minus_rate_2_leg2),
+                ::overact::math::signed(minus_g2_vx_leg2, t339), -t344, -t344, -t147,
+                -::overact::math::signed(minus_g1_vx_leg3, actuator_velocities[2]),
+                -minus_g1_vx_leg3, -(g2_vx_leg3 * minus_rate_dot_2_leg3),
+                g2_vx_leg3 * t372 - minus_g1_vx_leg3 * t376,
+                minus_g1_vx_leg3 * t385 - g2_vx_leg3 * t390, -t344,
+                -::overact::math::signed(g2_vx_leg3, minus_rate_2_leg3),
+                -::overact::math::signed(g2_vx_leg3, t402), 0.0, -t408, -t411, -t290,
             ],
             [
-                t4, t4, t12, ::overact::math::signed(g1_vy_leg1, actuator_velocities[0]),
-                g1_vy_leg1, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
-                -(g1_vy_leg1 * t210 + 2.9411764705882355 * t4),
-                2.9411764705882355 * (g1_vy_leg1 * t199 + actuator_accelerations[0]), t4,
-                ::overact::math::signed(minus_g2_vy_leg1, minus_rate_2_leg1),
-                ::overact::math::signed(minus_g2_vy_leg1, t228), -t233, -t233, -t105,
+                -t17, -t17, -t21,
+                -::overact::math::signed(minus_g1_vy_leg1, actuator_velocities[0]),
+                -minus_g1_vy_leg1, g2_vy_leg1 * rate_dot_2_leg1,
+                2.9411764705882355 * t17 - minus_g1_vy_leg1 * t256,
+                2.9411764705882355
+                    * (actuator_accelerations[0] - minus_g1_vy_leg1 * t245),
+                -t17,
+                ::overact::math::signed(g2_vy_leg1, rate_2_leg1),
+                -::overact::math::signed(g2_vy_leg1, t274),
+                -t279,
+                -t279,
+                -t152,
                 -::overact::math::signed(minus_g1_vy_leg2, actuator_velocities[1]),
-                -minus_g1_vy_leg2, -(g2_vy_leg2 * minus_rate_dot_2_leg2),
-                minus_g1_vy_leg2 * t267 + g2_vy_leg2 * t263,
-                minus_g1_vy_leg2 * t281 - 1.4705882352941178 * actuator_accelerations[1], -t233,
-                ::overact::math::signed(g2_vy_leg2, rate_2_leg2),
-                -::overact::math::signed(g2_vy_leg2, t293), -t299, -t299, -t107,
-                -::overact::math::signed(minus_g1_vy_leg3, actuator_velocities[2]),
-                -minus_g1_vy_leg3, g2_vy_leg3 * rate_dot_2_leg3,
-                g2_vy_leg3 * t328 - minus_g1_vy_leg3 * t326,
-                minus_g1_vy_leg3 * t342 - 1.4705882352941178 * actuator_accelerations[2], -t299,
-                ::overact::math::signed(g2_vy_leg3, rate_2_leg3),
-                -::overact::math::signed(g2_vy_leg3, t354), 0.0, t363, -t360, t196,
+                -minus_g1_vy_leg2,
+                minus_g2_vy_leg2 * minus_rate_dot_2_leg2,
+                minus_g2_vy_leg2 * t309 - minus_g1_vy_leg2 * t313,
+                minus_g1_vy_leg2 * t322 - 1.4705882352941178 * actuator_accelerations[1],
+                -t279,
+                ::overact::math::signed(minus_g2_vy_leg2, minus_rate_2_leg2),
+                ::overact::math::signed(minus_g2_vy_leg2, t339),
+                t345,
+                t345,
+                t151,
+                ::overact::math::signed(g1_vy_leg3, actuator_velocities[2]),
+                g1_vy_leg3,
+                minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
+                g1_vy_leg3 * t376 - minus_g2_vy_leg3 * t372,
+                -(g1_vy_leg3 * t385 + 1.4705882352941178 * actuator_accelerations[2]),
+                t345,
+                ::overact::math::signed(minus_g2_vy_leg3, minus_rate_2_leg3),
+                ::overact::math::signed(minus_g2_vy_leg3, t402),
+                0.0,
+                t411,
+                -t408,
+                t242,
             ],
             [
-                t11, t11, t13, ::overact::math::signed(g1_wz_leg1, actuator_velocities[0]),
-                g1_wz_leg1, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
-                g2_wz_leg1 * (c2_leg1 * actuator_accelerations[0]) - g1_wz_leg1 * t210,
-                g1_wz_leg1 * t218 - g2_wz_leg1 * (s2_leg1 * actuator_accelerations[0]), t11,
-                -::overact::math::signed(g2_wz_leg1, minus_rate_2_leg1),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t228), t234, t234, t95,
-                ::overact::math::signed(g1_wz_leg2, actuator_velocities[1]), g1_wz_leg2,
-                -(g2_wz_leg2 * minus_rate_dot_2_leg2), g2_wz_leg2 * t263 - g1_wz_leg2 * t267,
-                g2_wz_leg2 * t279 - g1_wz_leg2 * t281, t234,
-                ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t293), -t300, -t300, -t97,
-                -::overact::math::signed(minus_g1_wz_leg3, actuator_velocities[2]),
-                -minus_g1_wz_leg3, g2_wz_leg3 * rate_dot_2_leg3,
-                g2_wz_leg3 * t328 - minus_g1_wz_leg3 * t326,
-                minus_g1_wz_leg3 * t342 - g2_wz_leg3 * t340, -t300,
-                ::overact::math::signed(g2_wz_leg3, rate_2_leg3),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t354), rate_dot_3_leg1,
-                c_phi * t196 - s_phi * t245, -(c_phi * t245 + s_phi * t196), 0.0,
+                t20, t20, t22, ::overact::math::signed(g1_wz_leg1, actuator_velocities[0]),
+                g1_wz_leg1, -(minus_g2_wz_leg1 * rate_dot_2_leg1),
+                g1_wz_leg1 * t256
+                    - minus_g2_wz_leg1 * (c2_leg1 * actuator_accelerations[0]),
+                g1_wz_leg1 * t264
+                    - minus_g2_wz_leg1 * (minus_s2_leg1 * actuator_accelerations[0]),
+                t20,
+                -::overact::math::signed(minus_g2_wz_leg1, rate_2_leg1),
+                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t274),
+                -t280,
+                -t280,
+                -t141,
+                -::overact::math::signed(minus_g1_wz_leg2, actuator_velocities[1]),
+                -minus_g1_wz_leg2,
+                minus_g2_wz_leg2 * minus_rate_dot_2_leg2,
+                minus_g2_wz_leg2 * t309 - minus_g1_wz_leg2 * t313,
+                minus_g1_wz_leg2 * t322 + minus_g2_wz_leg2 * t327,
+                -t280,
+                ::overact::math::signed(minus_g2_wz_leg2, minus_rate_2_leg2),
+                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t339),
+                t346,
+                t346,
+                t143,
+                ::overact::math::signed(g1_wz_leg3, actuator_velocities[2]),
+                g1_wz_leg3,
+                minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
+                g1_wz_leg3 * t376 - minus_g2_wz_leg3 * t372,
+                minus_g2_wz_leg3 * t390 - g1_wz_leg3 * t385,
+                t346,
+                ::overact::math::signed(minus_g2_wz_leg3, minus_rate_2_leg3),
+                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t402),
+                rate_dot_3_leg1,
+                s_phi * t290 + c_phi * t242,
+                -(s_phi * t242 - c_phi * t290),
+                0.0,
             ],
         ])
     }
@@ -1294,7 +1721,7 @@ impl Planar3Prr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 332 operations (113 additions, 215 multiplications, 4 divisions), 0 square roots, 4 trigonometric pairs, 21 signs, 295 intermediates.
+    /// 383 operations (137 additions, 242 multiplications, 4 divisions), 3 square roots, 1 trigonometric pairs, 21 signs, 343 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1303,8 +1730,211 @@ impl Planar3Prr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 37]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_actuators_from_joints(pose, joints, twist, acceleration)
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let t2 = 0.08 * c_phi;
+        let t3 = t2 * acceleration[2];
+        let t5 = 0.08 * s_phi;
+        let t6 = t5 * twist[2];
+        let t7 = twist[2] * t6;
+        let t10 = pose[1] + t2 - 0.3;
+        let t11 = pose[0] - t5;
+        let t12 = t11 * t11;
+        let t17 = 8.650519031141869 * (t12 - (t12 + t10 * t10 - 0.1156));
+        ::overact::guard::reach(t17, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t17);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
+        let t19 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t19;
+        let minus_g1_vy_leg1 = t10 * g2_vy_leg1;
+        let t22 = t5 * acceleration[2];
+        let t24 = t2 * twist[2];
+        let t25 = twist[2] * t24;
+        let t26 = acceleration[1] - t22 - t25;
+        let t29 = twist[1] - t6;
+        let rate_2_leg1 = g2_vy_leg1 * t29;
+        let t31 = rate_2_leg1 * rate_2_leg1;
+        let minus_rate_dot_1_leg1 = acceleration[0] - t3 + t7 + minus_g1_vy_leg1 * t26
+            + t31 * (0.34 * t19);
+        let minus_rate_1_leg1 = twist[0] - t24 + minus_g1_vy_leg1 * t29;
+        let t41 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
+        let t43 = pose[0] + t41 + 0.25980762113533157;
+        let t47 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
+        let t49 = pose[1] - t47 + 0.15;
+        let t51 = 0.5 * t43 - 0.8660254037844386 * t49;
+        let t58 = 8.650519031141869 * (t51 * t51 - (t43 * t43 + t49 * t49 - 0.1156));
+        ::overact::guard::reach(t58, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t58);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t63 = 0.8660254037844386 * t43 + 0.5 * t49;
+        let t65 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t63;
+        let t66 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t65 * t66;
+        let t71 = 2.5471335405424664 * t63 - 0.5 * minus_s2_leg2;
+        let minus_g1_vx_leg2 = t71 * t66;
+        let minus_g1_wz_leg2 = t41 * minus_g1_vy_leg2 + t47 * minus_g1_vx_leg2;
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t78 = 0.08 * minus_c23_leg2;
+        let t80 = pose[0] + t78 - 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t85 = 0.08 * minus_s23_leg2;
+        let t87 = pose[1] + t85 + 0.15;
+        let t89 = 0.8660254037844386 * t80 - 0.5 * t87;
+        let t93 = 0.5 * t80 + 0.8660254037844386 * t87;
+        let t100 = 8.650519031141869 * (t93 * t93 - (t80 * t80 + t87 * t87 - 0.1156));
+        ::overact::guard::reach(t100, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t100);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
+        let t103 = 2.5471335405424664 * t89 - 0.5 * minus_s2_leg3;
+        let t104 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t103 * t104;
+        let t109 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t89;
+        let g1_vy_leg3 = t109 * t104;
+        let g1_wz_leg3 = t78 * g1_vy_leg3 + t85 * minus_g1_vx_leg3;
+        let g1_wz_leg1 = t5 * minus_g1_vy_leg1 + t2;
+        let t120 = g1_wz_leg1 * minus_g1_vy_leg2 + minus_g1_vy_leg1 * minus_g1_wz_leg2;
+        let t123 = g1_wz_leg1 * minus_g1_vx_leg2 + minus_g1_wz_leg2;
+        let t127 = minus_g1_vy_leg1 * minus_g1_vx_leg2 - minus_g1_vy_leg2;
+        let t129 = minus_g1_vx_leg3 * t120 + g1_vy_leg3 * t123 + g1_wz_leg3 * t127;
+        ::overact::guard::platform(t129, 0.35754477384814676, "kept actuators")?;
+        ::overact::guard::platform(t129, 0.35754477384814676, "kept actuators")?;
+        ::overact::guard::platform(t129, 0.35754477384814676, "kept actuators")?;
+        let t130 = 1.0 / t129;
+        let t131 = (minus_g1_wz_leg2 * minus_g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
+            * t130;
+        let minus_g2_wz_leg1 = 0.23529411764705882 * (s_phi * t19);
+        let t138 = (minus_g1_vy_leg2 * minus_g1_vx_leg3 + minus_g1_vx_leg2 * g1_vy_leg3)
+            * t130;
+        let t140 = g2_vy_leg1 * t131 + minus_g2_wz_leg1 * t138;
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t26 + t10 * t31);
+        let t147 = (g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3) * t130;
+        let t151 = (minus_g1_vy_leg1 * minus_g1_vx_leg3 + g1_vy_leg3) * t130;
+        let t153 = g2_vy_leg1 * t147 + minus_g2_wz_leg1 * t151;
+        let t155 = t123 * t130;
+        let t157 = t127 * t130;
+        let t159 = g2_vy_leg1 * t155 - minus_g2_wz_leg1 * t157;
+        let c2_leg1 = 2.9411764705882355 * t10;
+        let t165 = c2_leg1 * minus_rate_dot_1_leg1;
+        let t171 = minus_s2_leg1 * minus_rate_dot_1_leg1;
+        let t180 = twist[2] - rate_2_leg1;
+        let t188 = t41 * twist[2];
+        let t190 = acceleration[0] + t47 * acceleration[2] - twist[2] * t188;
+        let t194 = t47 * twist[2];
+        let t196 = acceleration[1] + t41 * acceleration[2] + twist[2] * t194;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t66;
+        let t200 = twist[0] + t194;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t66;
+        let t203 = twist[1] + t188;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t200 + minus_g2_vy_leg2 * t203;
+        let t206 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t208 = t71 * t190 + t65 * t196 + 0.34 * t206;
+        let minus_rate_dot_1_leg2 = t66 * t208;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t200 + minus_g1_vy_leg2 * t203;
+        let t218 = (minus_g1_vy_leg2 * g1_wz_leg3 - minus_g1_wz_leg2 * g1_vy_leg3)
+            * t130;
+        let minus_g2_wz_leg2 = t41 * minus_g2_vy_leg2 + t47 * minus_g2_vx_leg2;
+        let t225 = minus_g2_vy_leg2 * t131 - minus_g2_vx_leg2 * t218
+            - minus_g2_wz_leg2 * t138;
+        let t229 = 0.8660254037844386 * t190 + 0.5 * t196;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t66 * (t229 + t63 * t206);
+        let t237 = (g1_wz_leg1 * g1_vy_leg3 + minus_g1_vy_leg1 * g1_wz_leg3) * t130;
+        let t242 = minus_g2_vx_leg2 * t237 - minus_g2_vy_leg2 * t147
+            + minus_g2_wz_leg2 * t151;
+        let t244 = t120 * t130;
+        let t249 = minus_g2_vx_leg2 * t244 - minus_g2_vy_leg2 * t155
+            - minus_g2_wz_leg2 * t157;
+        let minus_c2_leg2 = 2.9411764705882355 * t63;
+        let t252 = minus_c2_leg2 * minus_rate_dot_1_leg2;
+        let t269 = minus_rate_2_leg2 + twist[2];
+        let t277 = t78 * twist[2];
+        let t279 = acceleration[0] - t85 * acceleration[2] - twist[2] * t277;
+        let t283 = t85 * twist[2];
+        let t285 = acceleration[1] + t78 * acceleration[2] - twist[2] * t283;
+        let g2_vx_leg3 = 2.5471335405424664 * t104;
+        let t289 = twist[0] - t283;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t104;
+        let t292 = twist[1] + t277;
+        let rate_2_leg3 = g2_vx_leg3 * t289 - minus_g2_vy_leg3 * t292;
+        let t295 = rate_2_leg3 * rate_2_leg3;
+        let t297 = t103 * t279 - t109 * t285 + 0.34 * t295;
+        let minus_rate_dot_1_leg3 = t104 * t297;
+        let rate_1_leg3 = g1_vy_leg3 * t292 - minus_g1_vx_leg3 * t289;
+        let minus_g2_wz_leg3 = 0.11764705882352941 * (minus_c23_leg2 * t104)
+            + 0.2037706832433973 * (minus_s23_leg2 * t104);
+        let t312 = g2_vx_leg3 * t218 + minus_g2_vy_leg3 * t131 - minus_g2_wz_leg3 * t138;
+        let t316 = 0.5 * t285 - 0.8660254037844386 * t279;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t104 * (t316 - t89 * t295);
+        let t325 = minus_g2_wz_leg3 * t151
+            - (g2_vx_leg3 * t237 + minus_g2_vy_leg3 * t147);
+        let t331 = g2_vx_leg3 * t244 + minus_g2_vy_leg3 * t155 + minus_g2_wz_leg3 * t157;
+        let c2_leg3 = 2.9411764705882355 * t89;
+        let t334 = c2_leg3 * minus_rate_dot_1_leg3;
+        let t351 = twist[2] - rate_2_leg3;
+        let t362 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t365 = 12.5 * (t25 + t22);
+        let t368 = 12.5 * (t3 - t7);
+        let t387 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        Ok([
+            [
+                -minus_rate_dot_1_leg1, -minus_rate_dot_1_leg1, -minus_rate_1_leg1,
+                -::overact::math::sign(minus_rate_1_leg1), 1.0, -(t140 * rate_dot_2_leg1),
+                minus_s2_leg1 * t31 + c2_leg1 * rate_dot_2_leg1 + t140 * t165,
+                2.9411764705882355 * t26 + t140 * t171, -minus_rate_dot_1_leg1,
+                -::overact::math::signed(t140, rate_2_leg1),
+                ::overact::math::signed(t140 + t138, t180), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t225 * minus_rate_dot_2_leg2), t225 * t252, -(t225 * t208), 0.0,
+                -::overact::math::signed(t225, minus_rate_2_leg2),
+                ::overact::math::signed(t138 - t225, t269), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t312 * minus_rate_dot_2_leg3), -(t312 * t334), -(t312 * t297), 0.0,
+                ::overact::math::signed(t312, rate_2_leg3),
+                ::overact::math::signed(t138 - t312, t351), t138 * acceleration[2],
+                t138 * t362 - (t218 * t365 + t131 * t368), t131 * t365 - t218 * t368 - t138 * t387,
+                t218 * acceleration[0] - t131 * acceleration[1],
+            ],
+            [
+                0.0, 0.0, 0.0, 0.0, 0.0, t153 * rate_dot_2_leg1, -(t153 * t165), -(t153 * t171),
+                0.0, ::overact::math::signed(t153, rate_2_leg1),
+                -::overact::math::signed(t153 + t151, t180), -minus_rate_dot_1_leg2,
+                -minus_rate_dot_1_leg2, -minus_rate_1_leg2,
+                -::overact::math::sign(minus_rate_1_leg2), 1.0, -(t242 * minus_rate_dot_2_leg2),
+                minus_s2_leg2 * t206 + minus_c2_leg2 * minus_rate_dot_2_leg2
+                    + t242 * t252,
+                -(2.9411764705882355 * t229 + t242 * t208),
+                -minus_rate_dot_1_leg2,
+                -::overact::math::signed(t242, minus_rate_2_leg2),
+                -::overact::math::signed(t242 + t151, t269),
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                -(t325 * minus_rate_dot_2_leg3),
+                -(t325 * t334),
+                -(t325 * t297),
+                0.0,
+                ::overact::math::signed(t325, rate_2_leg3),
+                -::overact::math::signed(t325 + t151, t351),
+                -(t151 * acceleration[2]),
+                t237 * t365 + t147 * t368 - t151 * t362,
+                t237 * t368 - t147 * t365 + t151 * t387,
+                t147 * acceleration[1] - t237 * acceleration[0],
+            ],
+            [
+                0.0, 0.0, 0.0, 0.0, 0.0, t159 * rate_dot_2_leg1, -(t159 * t165), -(t159 * t171),
+                0.0, ::overact::math::signed(t159, rate_2_leg1),
+                ::overact::math::signed(t157 - t159, t180), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t249 * minus_rate_dot_2_leg2), t249 * t252, -(t249 * t208), 0.0,
+                -::overact::math::signed(t249, minus_rate_2_leg2),
+                ::overact::math::signed(t157 - t249, t269), -minus_rate_dot_1_leg3,
+                -minus_rate_dot_1_leg3, rate_1_leg3, ::overact::math::sign(rate_1_leg3), 1.0,
+                t331 * minus_rate_dot_2_leg3,
+                minus_s2_leg3 * t295 - c2_leg3 * minus_rate_dot_2_leg3 + t331 * t334,
+                t331 * t297 - 2.9411764705882355 * t316, -minus_rate_dot_1_leg3,
+                -::overact::math::signed(t331, rate_2_leg3),
+                ::overact::math::signed(t331 + t157, t351), t157 * acceleration[2],
+                t244 * t365 + t155 * t368 + t157 * t362, t244 * t368 - t155 * t365 - t157 * t387,
+                t155 * acceleration[1] - t244 * acceleration[0],
+            ],
+        ])
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -1508,7 +2138,7 @@ impl Planar3Prr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 431 operations (154 additions, 270 multiplications, 7 divisions), 0 square roots, 4 trigonometric pairs, 21 signs, 400 intermediates.
+    /// 482 operations (178 additions, 297 multiplications, 7 divisions), 3 square roots, 1 trigonometric pairs, 21 signs, 448 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1519,213 +2149,253 @@ impl Planar3Prr {
         start: &[f64; 3],
     ) -> Result<[[f64; 37]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
-        let t3 = 1.0 / s2_leg1;
-        let minus_g2_vy_leg1 = 2.9411764705882355 * t3;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t9 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
-        let t10 = 1.0 / s2_leg2;
-        let g1_vx_leg2 = t9 * t10;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t14 = 0.06928203230275509 * s_phi;
-        let t15 = 0.04 * c_phi;
-        let t16 = t14 + t15;
-        let t20 = 0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2;
-        let minus_g1_vy_leg2 = t20 * t10;
-        let t22 = 0.04 * s_phi;
-        let t23 = 0.06928203230275509 * c_phi;
-        let t24 = t22 - t23;
-        let g1_wz_leg2 = g1_vx_leg2 * t16 - minus_g1_vy_leg2 * t24;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
-        let t31 = 0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3;
-        let t32 = 1.0 / s2_leg3;
-        let g1_vx_leg3 = t31 * t32;
-        let t37 = 0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3;
-        let minus_g1_vy_leg3 = t37 * t32;
-        let t39 = t23 + t22;
-        let t41 = t14 - t15;
-        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t39 + g1_vx_leg3 * t41;
-        let t46 = 0.08 * c_phi;
-        let g1_vy_leg1 = c2_leg1 * t3;
-        let t48 = 0.08 * s_phi;
-        let g1_wz_leg1 = t46 - g1_vy_leg1 * t48;
-        let t52 = g1_wz_leg1 * g1_vx_leg2 + g1_wz_leg2;
-        let t56 = g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2;
-        let t60 = g1_vy_leg1 * g1_vx_leg2 - minus_g1_vy_leg2;
-        let t62 = minus_g1_vy_leg3 * t52 - g1_vx_leg3 * t56 - minus_g1_wz_leg3 * t60;
-        ::overact::guard::platform(t62, 0.3575447738480267, "kept actuators")?;
-        ::overact::guard::platform(t62, 0.3575447738480267, "kept actuators")?;
-        ::overact::guard::platform(t62, 0.3575447738480267, "kept actuators")?;
-        let t63 = 1.0 / t62;
-        let t64 = (g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * minus_g1_wz_leg3) * t63;
-        let g2_wz_leg1 = 0.23529411764705882 * (s_phi * t3);
-        let t71 = (g1_vx_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3) * t63;
-        let t73 = minus_g2_vy_leg1 * t64 + g2_wz_leg1 * t71;
-        let t82 = g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t86 = 1.0 + g1_vx_leg2 * g1_vx_leg2 + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t86, 2.580357142856278, "actuators")?;
-        ::overact::guard::platform(t86, 2.580357142856278, "actuators")?;
-        let t87 = 1.0 / t86;
-        let t88 = t82 * t87;
-        let t90 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t82 * t88;
-        ::overact::guard::platform(t90, 2.5803571428562737, "actuators")?;
-        ::overact::guard::platform(t90, 2.5803571428562737, "actuators")?;
-        let t91 = 1.0 / t90;
-        let t100 = g1_vx_leg2 * g1_wz_leg2 - g1_wz_leg1 - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t101 = t100 * t87;
-        let t110 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t82 * t101;
-        let t111 = t110 * t91;
-        let t113 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t100 * t101 - t110 * t111;
-        ::overact::guard::platform(t113, 0.019200000000000002, "actuators")?;
-        ::overact::guard::platform(t113, 0.019200000000000002, "actuators")?;
-        let t114 = 1.0 / t113;
-        let t123 = g1_vx_leg2 * actuator_velocities[1] - actuator_velocities[0]
-            + g1_vx_leg3 * actuator_velocities[2];
-        let t132 = g1_vy_leg1 * actuator_velocities[0]
-            - minus_g1_vy_leg2 * actuator_velocities[1]
-            - minus_g1_vy_leg3 * actuator_velocities[2] + t123 * t88;
-        let rate_3_leg1 = t114
-            * (g1_wz_leg1 * actuator_velocities[0] + g1_wz_leg2 * actuator_velocities[1]
-                - minus_g1_wz_leg3 * actuator_velocities[2] - t123 * t101 - t111 * t132);
-        let t136 = t48 * rate_3_leg1;
-        let t137 = rate_3_leg1 * t136;
-        let t139 = rate_3_leg1 * (t46 * rate_3_leg1);
-        let t144 = t91 * t132 - t111 * rate_3_leg1;
-        let minus_rate_2_leg1 = minus_g2_vy_leg1 * (t144 - t136);
-        let t147 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_rate_dot_1_leg1 = t137 + g1_vy_leg1 * t139 - t147 * (0.34 * t3);
-        let t151 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let t153 = t24 * rate_3_leg1;
-        let t154 = rate_3_leg1 * t153;
-        let t156 = t16 * rate_3_leg1;
-        let t157 = rate_3_leg1 * t156;
-        let g2_vx_leg2 = 2.5471335405424664 * t10;
-        let t165 = t123 * t87 + t88 * t144 - t101 * rate_3_leg1;
-        let g2_vy_leg2 = 1.4705882352941178 * t10;
-        let rate_2_leg2 = g2_vx_leg2 * (t165 + t156) + g2_vy_leg2 * (t144 + t153);
-        let t172 = rate_2_leg2 * rate_2_leg2;
-        let t173 = 0.34 * t172;
-        let minus_rate_dot_1_leg2 = t10 * (t9 * t154 + t20 * t157 - t173);
-        let t176 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let t179 = t41 * rate_3_leg1;
-        let t180 = rate_3_leg1 * t179;
-        let t182 = t39 * rate_3_leg1;
+        let t3 = 0.08 * s_phi;
+        let t4 = pose[0] - t3;
+        let t5 = t4 * t4;
+        let t6 = 0.08 * c_phi;
+        let t8 = pose[1] + t6 - 0.3;
+        let t13 = 8.650519031141869 * (t5 - (t5 + t8 * t8 - 0.1156));
+        ::overact::guard::reach(t13, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t13);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
+        let t15 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t15;
+        let t19 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
+        let t21 = pose[0] + t19 + 0.25980762113533157;
+        let t25 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
+        let t27 = pose[1] - t25 + 0.15;
+        let t29 = 0.5 * t21 - 0.8660254037844386 * t27;
+        let t36 = 8.650519031141869 * (t29 * t29 - (t21 * t21 + t27 * t27 - 0.1156));
+        ::overact::guard::reach(t36, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t36);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t41 = 0.8660254037844386 * t21 + 0.5 * t27;
+        let t43 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t41;
+        let t44 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t43 * t44;
+        let t49 = 2.5471335405424664 * t41 - 0.5 * minus_s2_leg2;
+        let minus_g1_vx_leg2 = t49 * t44;
+        let minus_g1_wz_leg2 = t19 * minus_g1_vy_leg2 + t25 * minus_g1_vx_leg2;
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t56 = 0.08 * minus_c23_leg2;
+        let t58 = pose[0] + t56 - 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t63 = 0.08 * minus_s23_leg2;
+        let t65 = pose[1] + t63 + 0.15;
+        let t67 = 0.8660254037844386 * t58 - 0.5 * t65;
+        let t71 = 0.5 * t58 + 0.8660254037844386 * t65;
+        let t78 = 8.650519031141869 * (t71 * t71 - (t58 * t58 + t65 * t65 - 0.1156));
+        ::overact::guard::reach(t78, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t78);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
+        let t81 = 2.5471335405424664 * t67 - 0.5 * minus_s2_leg3;
+        let t82 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t81 * t82;
+        let t87 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t67;
+        let g1_vy_leg3 = t87 * t82;
+        let g1_wz_leg3 = t56 * g1_vy_leg3 + t63 * minus_g1_vx_leg3;
+        let minus_g1_vy_leg1 = t8 * g2_vy_leg1;
+        let g1_wz_leg1 = t3 * minus_g1_vy_leg1 + t6;
+        let t99 = g1_wz_leg1 * minus_g1_vy_leg2 + minus_g1_vy_leg1 * minus_g1_wz_leg2;
+        let t102 = g1_wz_leg1 * minus_g1_vx_leg2 + minus_g1_wz_leg2;
+        let t106 = minus_g1_vy_leg1 * minus_g1_vx_leg2 - minus_g1_vy_leg2;
+        let t108 = minus_g1_vx_leg3 * t99 + g1_vy_leg3 * t102 + g1_wz_leg3 * t106;
+        ::overact::guard::platform(t108, 0.35754477384814676, "kept actuators")?;
+        ::overact::guard::platform(t108, 0.35754477384814676, "kept actuators")?;
+        ::overact::guard::platform(t108, 0.35754477384814676, "kept actuators")?;
+        let t109 = 1.0 / t108;
+        let t110 = (minus_g1_wz_leg2 * minus_g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
+            * t109;
+        let minus_g2_wz_leg1 = 0.23529411764705882 * (s_phi * t15);
+        let t117 = (minus_g1_vy_leg2 * minus_g1_vx_leg3 + minus_g1_vx_leg2 * g1_vy_leg3)
+            * t109;
+        let t119 = g2_vy_leg1 * t110 + minus_g2_wz_leg1 * t117;
+        let t128 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            - minus_g1_vx_leg3 * g1_vy_leg3;
+        let t132 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + minus_g1_vx_leg3 * minus_g1_vx_leg3;
+        ::overact::guard::platform(t132, 2.5803571428571423, "actuators")?;
+        ::overact::guard::platform(t132, 2.5803571428571423, "actuators")?;
+        let t133 = 1.0 / t132;
+        let t134 = t128 * t133;
+        let t136 = minus_g1_vy_leg1 * minus_g1_vy_leg1
+            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3
+            - t128 * t134;
+        ::overact::guard::platform(t136, 2.580357142857142, "actuators")?;
+        ::overact::guard::platform(t136, 2.580357142857142, "actuators")?;
+        let t137 = 1.0 / t136;
+        let t146 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
+            - minus_g1_vx_leg3 * g1_wz_leg3;
+        let t147 = t146 * t133;
+        let t156 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
+            + g1_vy_leg3 * g1_wz_leg3 - t128 * t147;
+        let t157 = t156 * t137;
+        let t159 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 - t146 * t147 - t156 * t157;
+        ::overact::guard::platform(t159, 0.0192, "actuators")?;
+        ::overact::guard::platform(t159, 0.0192, "actuators")?;
+        let t160 = 1.0 / t159;
+        let t169 = actuator_velocities[0] + minus_g1_vx_leg2 * actuator_velocities[1]
+            + minus_g1_vx_leg3 * actuator_velocities[2];
+        let t178 = g1_vy_leg3 * actuator_velocities[2]
+            - (minus_g1_vy_leg1 * actuator_velocities[0]
+                + minus_g1_vy_leg2 * actuator_velocities[1]) + t169 * t134;
+        let rate_3_leg1 = t160
+            * (g1_wz_leg1 * actuator_velocities[0]
+                - minus_g1_wz_leg2 * actuator_velocities[1]
+                + g1_wz_leg3 * actuator_velocities[2] + t169 * t147 - t157 * t178);
+        let t182 = t63 * rate_3_leg1;
         let t183 = rate_3_leg1 * t182;
-        let g2_vy_leg3 = 1.4705882352941178 * t32;
-        let minus_g2_vx_leg3 = 2.5471335405424664 * t32;
-        let rate_2_leg3 = g2_vy_leg3 * (t144 + t182) - minus_g2_vx_leg3 * (t165 - t179);
-        let t193 = rate_2_leg3 * rate_2_leg3;
-        let t194 = 0.34 * t193;
-        let rate_dot_1_leg3 = t32 * (t37 * t180 - t31 * t183 + t194);
-        let t197 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t203 = g1_vx_leg2 * t176 - t151 + g1_vx_leg3 * t197;
-        let t205 = g1_vy_leg1 * t151 - minus_g1_vy_leg2 * t176 - minus_g1_vy_leg3 * t197
-            + t88 * t203;
-        let rate_dot_3_leg1 = t114
-            * (g1_wz_leg1 * t151 + g1_wz_leg2 * t176 - minus_g1_wz_leg3 * t197
-                - t101 * t203 - t111 * t205);
-        let t218 = t91 * t205 - t111 * rate_dot_3_leg1;
-        let t219 = t48 * rate_dot_3_leg1;
-        let t221 = t218 - t219 - t139;
-        let minus_rate_dot_2_leg1 = minus_g2_vy_leg1 * (t221 + 0.34 * c2_leg1 * t147);
-        let t229 = (g1_wz_leg1 * g1_vx_leg3 - minus_g1_wz_leg3) * t63;
-        let t233 = (g1_vy_leg1 * g1_vx_leg3 - minus_g1_vy_leg3) * t63;
-        let t235 = minus_g2_vy_leg1 * t229 + g2_wz_leg1 * t233;
-        let t237 = t52 * t63;
-        let t239 = t60 * t63;
-        let t241 = minus_g2_vy_leg1 * t237 + g2_wz_leg1 * t239;
-        let t243 = c2_leg1 * actuator_accelerations[0];
-        let t252 = s2_leg1 * actuator_accelerations[0];
-        let t261 = minus_rate_2_leg1 + rate_3_leg1;
-        let g2_wz_leg2 = g2_vy_leg2 * t24 + g2_vx_leg2 * t16;
-        let t275 = (g1_wz_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * minus_g1_wz_leg3)
-            * t63;
-        let t279 = g2_wz_leg2 * t71 - (g2_vx_leg2 * t275 + g2_vy_leg2 * t64);
-        let t287 = t87 * t203 + t88 * t218 - t101 * rate_dot_3_leg1;
-        let t290 = t287 + t16 * rate_dot_3_leg1 - t154;
-        let t294 = t218 + t24 * rate_dot_3_leg1 + t157;
-        let t296 = 0.8660254037844386 * t290 + 0.5 * t294;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t10
-            * (t172 * (0.34 * c2_leg2) - t296);
-        let t304 = (g1_vy_leg1 * minus_g1_wz_leg3 - g1_wz_leg1 * minus_g1_vy_leg3) * t63;
-        let t308 = g2_vy_leg2 * t229 - g2_vx_leg2 * t304 - g2_wz_leg2 * t233;
-        let t311 = t56 * t63;
-        let t315 = g2_wz_leg2 * t239 - (g2_vx_leg2 * t311 + g2_vy_leg2 * t237);
-        let t317 = c2_leg2 * actuator_accelerations[1];
-        let t328 = t20 * t294 - t9 * t290 - t173;
-        let t338 = rate_3_leg1 - rate_2_leg2;
-        let g2_wz_leg3 = g2_vy_leg3 * t39 + minus_g2_vx_leg3 * t41;
-        let t352 = minus_g2_vx_leg3 * t275 - g2_vy_leg3 * t64 + g2_wz_leg3 * t71;
-        let t356 = t218 + t39 * rate_dot_3_leg1 - t180;
-        let t360 = t287 - t41 * rate_dot_3_leg1 - t183;
-        let t362 = 0.5 * t356 - 0.8660254037844386 * t360;
-        let rate_dot_2_leg3 = 2.9411764705882355 * t32
-            * (t362 - t193 * (0.34 * c2_leg3));
-        let t372 = minus_g2_vx_leg3 * t304 + g2_vy_leg3 * t229 - g2_wz_leg3 * t233;
-        let t378 = minus_g2_vx_leg3 * t311 - g2_vy_leg3 * t237 + g2_wz_leg3 * t239;
-        let t380 = c2_leg3 * actuator_accelerations[2];
-        let t391 = t31 * t360 - t37 * t356 + t194;
-        let t401 = rate_3_leg1 - rate_2_leg3;
-        let t411 = 12.5 * (t139 + t219);
-        let t415 = 12.5 * (t46 * rate_dot_3_leg1 - t137);
-        let t420 = c_phi * t218 - s_phi * t287;
-        let t438 = c_phi * t287 + s_phi * t218;
+        let t185 = t56 * rate_3_leg1;
+        let t186 = rate_3_leg1 * t185;
+        let g2_vx_leg3 = 2.5471335405424664 * t82;
+        let t193 = t137 * t178 - t157 * rate_3_leg1;
+        let t197 = t169 * t133 + t134 * t193 + t147 * rate_3_leg1;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t82;
+        let minus_rate_2_leg3 = g2_vx_leg3 * (t197 + t182)
+            + minus_g2_vy_leg3 * (t193 + t185);
+        let t204 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t205 = 0.34 * t204;
+        let minus_rate_dot_1_leg3 = t82 * (t87 * t183 - t81 * t186 + t205);
+        let t208 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let t210 = t3 * rate_3_leg1;
+        let t211 = rate_3_leg1 * t210;
+        let t213 = rate_3_leg1 * (t6 * rate_3_leg1);
+        let rate_2_leg1 = g2_vy_leg1 * (t193 - t210);
+        let t218 = rate_2_leg1 * rate_2_leg1;
+        let minus_rate_dot_1_leg1 = t211 - minus_g1_vy_leg1 * t213 + t218 * (0.34 * t15);
+        let t222 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let t224 = t19 * rate_3_leg1;
+        let t225 = rate_3_leg1 * t224;
+        let t227 = t25 * rate_3_leg1;
+        let t228 = rate_3_leg1 * t227;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t44;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t44;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (t227 - t197)
+            + minus_g2_vy_leg2 * (t193 + t224);
+        let t238 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t239 = 0.34 * t238;
+        let rate_dot_1_leg2 = t44 * (t49 * t225 - t43 * t228 - t239);
+        let t242 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let t249 = t222 + minus_g1_vx_leg2 * t242 + minus_g1_vx_leg3 * t208;
+        let t251 = g1_vy_leg3 * t208
+            - (minus_g1_vy_leg1 * t222 + minus_g1_vy_leg2 * t242) + t134 * t249;
+        let rate_dot_3_leg1 = t160
+            * (g1_wz_leg1 * t222 - minus_g1_wz_leg2 * t242 + g1_wz_leg3 * t208
+                + t147 * t249 - t157 * t251);
+        let t264 = t137 * t251 - t157 * rate_dot_3_leg1;
+        let t265 = t3 * rate_dot_3_leg1;
+        let t267 = t264 - t265 - t213;
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t267 + t8 * t218);
+        let t274 = (g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3) * t109;
+        let t278 = (minus_g1_vy_leg1 * minus_g1_vx_leg3 + g1_vy_leg3) * t109;
+        let t280 = g2_vy_leg1 * t274 + minus_g2_wz_leg1 * t278;
+        let t282 = t102 * t109;
+        let t284 = t106 * t109;
+        let t286 = g2_vy_leg1 * t282 - minus_g2_wz_leg1 * t284;
+        let c2_leg1 = 2.9411764705882355 * t8;
+        let t292 = c2_leg1 * actuator_accelerations[0];
+        let t298 = minus_s2_leg1 * actuator_accelerations[0];
+        let t307 = rate_3_leg1 - rate_2_leg1;
+        let t318 = (minus_g1_vy_leg2 * g1_wz_leg3 - minus_g1_wz_leg2 * g1_vy_leg3)
+            * t109;
+        let minus_g2_wz_leg2 = t19 * minus_g2_vy_leg2 + t25 * minus_g2_vx_leg2;
+        let t325 = minus_g2_vy_leg2 * t110 - minus_g2_vx_leg2 * t318
+            - minus_g2_wz_leg2 * t117;
+        let t332 = t133 * t249 + t134 * t264 + t147 * rate_dot_3_leg1;
+        let t334 = t25 * rate_dot_3_leg1 - t332 - t225;
+        let t338 = t264 + t19 * rate_dot_3_leg1 + t228;
+        let t340 = 0.8660254037844386 * t334 + 0.5 * t338;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t44 * (t340 + t41 * t238);
+        let t348 = (g1_wz_leg1 * g1_vy_leg3 + minus_g1_vy_leg1 * g1_wz_leg3) * t109;
+        let t353 = minus_g2_vx_leg2 * t348 - minus_g2_vy_leg2 * t274
+            + minus_g2_wz_leg2 * t278;
+        let t355 = t99 * t109;
+        let t360 = minus_g2_vx_leg2 * t355 - minus_g2_vy_leg2 * t282
+            - minus_g2_wz_leg2 * t284;
+        let minus_c2_leg2 = 2.9411764705882355 * t41;
+        let t363 = minus_c2_leg2 * actuator_accelerations[1];
+        let t374 = t49 * t334 + t43 * t338 + t239;
+        let t384 = minus_rate_2_leg2 + rate_3_leg1;
+        let minus_g2_wz_leg3 = 0.11764705882352941 * (minus_c23_leg2 * t82)
+            + 0.2037706832433973 * (minus_s23_leg2 * t82);
+        let t400 = g2_vx_leg3 * t318 + minus_g2_vy_leg3 * t110 - minus_g2_wz_leg3 * t117;
+        let t404 = t332 + t63 * rate_dot_3_leg1 + t186;
+        let t408 = t264 + t56 * rate_dot_3_leg1 - t183;
+        let t410 = 0.8660254037844386 * t404 + 0.5 * t408;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t82 * (t410 - t67 * t204);
+        let t419 = minus_g2_wz_leg3 * t278
+            - (g2_vx_leg3 * t348 + minus_g2_vy_leg3 * t274);
+        let t425 = g2_vx_leg3 * t355 + minus_g2_vy_leg3 * t282 + minus_g2_wz_leg3 * t284;
+        let c2_leg3 = 2.9411764705882355 * t67;
+        let t428 = c2_leg3 * actuator_accelerations[2];
+        let t439 = t205 - (t81 * t404 + t87 * t408);
+        let t449 = minus_rate_2_leg3 + rate_3_leg1;
+        let t460 = s_phi * t332 + c_phi * t264;
+        let t463 = 12.5 * (t213 + t265);
+        let t467 = 12.5 * (t6 * rate_dot_3_leg1 - t211);
+        let t486 = s_phi * t264 - c_phi * t332;
         Ok([
             [
                 actuator_accelerations[0], actuator_accelerations[0], actuator_velocities[0],
-                ::overact::math::sign(actuator_velocities[0]), 1.0, -(t73 * minus_rate_dot_2_leg1),
-                t73 * t243 - (s2_leg1 * t147 + c2_leg1 * minus_rate_dot_2_leg1),
-                2.9411764705882355 * t221 - t73 * t252, actuator_accelerations[0],
-                -::overact::math::signed(t73, minus_rate_2_leg1),
-                ::overact::math::signed(t71 - t73, t261), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t279 * minus_rate_dot_2_leg2), t279 * t317, t279 * t328, 0.0,
-                ::overact::math::signed(t279, rate_2_leg2),
-                ::overact::math::signed(t71 - t279, t338), 0.0, 0.0, 0.0, 0.0, 0.0,
-                t352 * rate_dot_2_leg3, t352 * t380, -(t352 * t391), 0.0,
-                ::overact::math::signed(t352, rate_2_leg3),
-                ::overact::math::signed(t71 - t352, t401), t71 * rate_dot_3_leg1,
-                t275 * t411 - t64 * t415 + t71 * t420, t275 * t415 + t64 * t411 - t71 * t438,
-                -(t275 * t287 + t64 * t218),
+                ::overact::math::sign(actuator_velocities[0]), 1.0, -(t119 * rate_dot_2_leg1),
+                minus_s2_leg1 * t218 + c2_leg1 * rate_dot_2_leg1 - t119 * t292,
+                2.9411764705882355 * t267 - t119 * t298, actuator_accelerations[0],
+                -::overact::math::signed(t119, rate_2_leg1),
+                ::overact::math::signed(t119 + t117, t307), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t325 * minus_rate_dot_2_leg2), -(t325 * t363), -(t325 * t374), 0.0,
+                -::overact::math::signed(t325, minus_rate_2_leg2),
+                ::overact::math::signed(t117 - t325, t384), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t400 * minus_rate_dot_2_leg3), t400 * t428, -(t400 * t439), 0.0,
+                -::overact::math::signed(t400, minus_rate_2_leg3),
+                ::overact::math::signed(t117 - t400, t449), t117 * rate_dot_3_leg1,
+                t117 * t460 - (t318 * t463 + t110 * t467), t110 * t463 - t318 * t467 - t117 * t486,
+                -(t318 * t332 + t110 * t264),
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, t235 * minus_rate_dot_2_leg1, -(t235 * t243), t235 * t252,
-                0.0, ::overact::math::signed(t235, minus_rate_2_leg1),
-                ::overact::math::signed(t235 - t233, t261), actuator_accelerations[1],
+                0.0, 0.0, 0.0, 0.0, 0.0, t280 * rate_dot_2_leg1, t280 * t292, t280 * t298, 0.0,
+                ::overact::math::signed(t280, rate_2_leg1),
+                -::overact::math::signed(t280 + t278, t307), actuator_accelerations[1],
                 actuator_accelerations[1], actuator_velocities[1],
-                ::overact::math::sign(actuator_velocities[1]), 1.0, -(t308 * minus_rate_dot_2_leg2),
-                t308 * t317 - (s2_leg2 * t172 + c2_leg2 * minus_rate_dot_2_leg2),
-                t308 * t328 - 2.9411764705882355 * t296, actuator_accelerations[1],
-                ::overact::math::signed(t308, rate_2_leg2),
-                -::overact::math::signed(t308 + t233, t338), 0.0, 0.0, 0.0, 0.0, 0.0,
-                t372 * rate_dot_2_leg3, t372 * t380, -(t372 * t391), 0.0,
-                ::overact::math::signed(t372, rate_2_leg3),
-                -::overact::math::signed(t372 + t233, t401), -(t233 * rate_dot_3_leg1),
-                t304 * t411 + t229 * t415 - t233 * t420, t304 * t415 - t229 * t411 + t233 * t438,
-                t229 * t218 - t304 * t287,
+                ::overact::math::sign(actuator_velocities[1]), 1.0, -(t353 * minus_rate_dot_2_leg2),
+                minus_s2_leg2 * t238 + minus_c2_leg2 * minus_rate_dot_2_leg2
+                    - t353 * t363,
+                -(2.9411764705882355 * t340 + t353 * t374),
+                actuator_accelerations[1],
+                -::overact::math::signed(t353, minus_rate_2_leg2),
+                -::overact::math::signed(t353 + t278, t384),
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                -(t419 * minus_rate_dot_2_leg3),
+                t419 * t428,
+                -(t419 * t439),
+                0.0,
+                -::overact::math::signed(t419, minus_rate_2_leg3),
+                -::overact::math::signed(t419 + t278, t449),
+                -(t278 * rate_dot_3_leg1),
+                t348 * t463 + t274 * t467 - t278 * t460,
+                t348 * t467 - t274 * t463 + t278 * t486,
+                t348 * t332 + t274 * t264,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -(t241 * minus_rate_dot_2_leg1), t241 * t243,
-                -(t241 * t252), 0.0, -::overact::math::signed(t241, minus_rate_2_leg1),
-                ::overact::math::signed(t239 - t241, t261), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t315 * minus_rate_dot_2_leg2), t315 * t317, t315 * t328, 0.0,
-                ::overact::math::signed(t315, rate_2_leg2),
-                ::overact::math::signed(t239 - t315, t338), actuator_accelerations[2],
+                0.0, 0.0, 0.0, 0.0, 0.0, t286 * rate_dot_2_leg1, t286 * t292, t286 * t298, 0.0,
+                ::overact::math::signed(t286, rate_2_leg1),
+                ::overact::math::signed(t284 - t286, t307), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t360 * minus_rate_dot_2_leg2), -(t360 * t363), -(t360 * t374), 0.0,
+                -::overact::math::signed(t360, minus_rate_2_leg2),
+                ::overact::math::signed(t284 - t360, t384), actuator_accelerations[2],
                 actuator_accelerations[2], actuator_velocities[2],
-                ::overact::math::sign(actuator_velocities[2]), 1.0, t378 * rate_dot_2_leg3,
-                c2_leg3 * rate_dot_2_leg3 - s2_leg3 * t193 + t378 * t380,
-                -(2.9411764705882355 * t362 + t378 * t391), actuator_accelerations[2],
-                ::overact::math::signed(t378, rate_2_leg3),
-                ::overact::math::signed(t239 - t378, t401), t239 * rate_dot_3_leg1,
-                t311 * t411 - t237 * t415 + t239 * t420, t311 * t415 + t237 * t411 - t239 * t438,
-                -(t311 * t287 + t237 * t218),
+                ::overact::math::sign(actuator_velocities[2]), 1.0, t425 * minus_rate_dot_2_leg3,
+                minus_s2_leg3 * t204 - c2_leg3 * minus_rate_dot_2_leg3 - t425 * t428,
+                t425 * t439 - 2.9411764705882355 * t410, actuator_accelerations[2],
+                ::overact::math::signed(t425, minus_rate_2_leg3),
+                ::overact::math::signed(t425 + t284, t449), t284 * rate_dot_3_leg1,
+                t355 * t463 + t282 * t467 + t284 * t460, t355 * t467 - t282 * t463 - t284 * t486,
+                t355 * t332 + t282 * t264,
             ],
         ])
     }
@@ -1739,7 +2409,7 @@ impl Planar3Prr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 209 operations (65 additions, 141 multiplications, 3 divisions), 0 square roots, 4 trigonometric pairs, 25 signs, 170 intermediates.
+    /// 257 operations (89 additions, 165 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 215 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1748,8 +2418,172 @@ impl Planar3Prr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 28]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_platform_base_from_joints(pose, joints, twist, acceleration)
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let t2 = 0.08 * c_phi;
+        let t3 = t2 * twist[2];
+        let t4 = twist[2] * t3;
+        let t5 = 0.08 * s_phi;
+        let t6 = t5 * acceleration[2];
+        let t8 = 12.5 * (t4 + t6);
+        let t9 = t2 * acceleration[2];
+        let t10 = t5 * twist[2];
+        let t11 = twist[2] * t10;
+        let t13 = 12.5 * (t9 - t11);
+        let t23 = pose[1] + t2 - 0.3;
+        let t24 = pose[0] - t5;
+        let t25 = t24 * t24;
+        let t30 = 8.650519031141869 * (t25 - (t25 + t23 * t23 - 0.1156));
+        ::overact::guard::reach(t30, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t30);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
+        let t32 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t32;
+        let minus_g1_vy_leg1 = t23 * g2_vy_leg1;
+        let t36 = acceleration[1] - t6 - t4;
+        let t37 = minus_g1_vy_leg1 * t36;
+        let t39 = twist[1] - t10;
+        let rate_2_leg1 = g2_vy_leg1 * t39;
+        let t41 = rate_2_leg1 * rate_2_leg1;
+        let minus_rate_dot_1_leg1 = acceleration[0] - t9 + t11 + t37
+            + t41 * (0.34 * t32);
+        let g1_wz_leg1 = t5 * minus_g1_vy_leg1 + t2;
+        let t51 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
+        let t53 = pose[0] + t51 + 0.25980762113533157;
+        let t57 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
+        let t59 = pose[1] - t57 + 0.15;
+        let t61 = 0.8660254037844386 * t53 + 0.5 * t59;
+        let t65 = 0.5 * t53 - 0.8660254037844386 * t59;
+        let t72 = 8.650519031141869 * (t65 * t65 - (t53 * t53 + t59 * t59 - 0.1156));
+        ::overact::guard::reach(t72, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t72);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t75 = 2.5471335405424664 * t61 - 0.5 * minus_s2_leg2;
+        let t76 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t75 * t76;
+        let t80 = t51 * twist[2];
+        let t82 = acceleration[0] + t57 * acceleration[2] - twist[2] * t80;
+        let t86 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t61;
+        let t89 = t57 * twist[2];
+        let t91 = acceleration[1] + t51 * acceleration[2] + twist[2] * t89;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t76;
+        let t95 = twist[0] + t89;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t76;
+        let t98 = twist[1] + t80;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t95 + minus_g2_vy_leg2 * t98;
+        let t101 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t103 = t75 * t82 + t86 * t91 + 0.34 * t101;
+        let minus_rate_dot_1_leg2 = t76 * t103;
+        let minus_g1_vy_leg2 = t86 * t76;
+        let minus_g1_wz_leg2 = t51 * minus_g1_vy_leg2 + t57 * minus_g1_vx_leg2;
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t115 = 0.08 * minus_c23_leg2;
+        let t117 = pose[0] + t115 - 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t122 = 0.08 * minus_s23_leg2;
+        let t124 = pose[1] + t122 + 0.15;
+        let t126 = 0.8660254037844386 * t117 - 0.5 * t124;
+        let t130 = 0.5 * t117 + 0.8660254037844386 * t124;
+        let t137 = 8.650519031141869
+            * (t130 * t130 - (t117 * t117 + t124 * t124 - 0.1156));
+        ::overact::guard::reach(t137, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t137);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
+        let t140 = 2.5471335405424664 * t126 - 0.5 * minus_s2_leg3;
+        let t141 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t140 * t141;
+        let t145 = t115 * twist[2];
+        let t147 = acceleration[0] - t122 * acceleration[2] - twist[2] * t145;
+        let t151 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t126;
+        let t154 = t122 * twist[2];
+        let t156 = acceleration[1] + t115 * acceleration[2] - twist[2] * t154;
+        let g2_vx_leg3 = 2.5471335405424664 * t141;
+        let t160 = twist[0] - t154;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t141;
+        let t163 = twist[1] + t145;
+        let rate_2_leg3 = g2_vx_leg3 * t160 - minus_g2_vy_leg3 * t163;
+        let t166 = rate_2_leg3 * rate_2_leg3;
+        let t168 = t140 * t147 - t151 * t156 + 0.34 * t166;
+        let minus_rate_dot_1_leg3 = t141 * t168;
+        let g1_vy_leg3 = t151 * t141;
+        let g1_wz_leg3 = t115 * g1_vy_leg3 + t122 * minus_g1_vx_leg3;
+        let minus_rate_1_leg1 = twist[0] - t3 + minus_g1_vy_leg1 * t39;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t95 + minus_g1_vy_leg2 * t98;
+        let rate_1_leg3 = g1_vy_leg3 * t163 - minus_g1_vx_leg3 * t160;
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t36 + t23 * t41);
+        let minus_g2_wz_leg1 = 0.23529411764705882 * (s_phi * t32);
+        let t213 = 0.8660254037844386 * t82 + 0.5 * t91;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t76 * (t213 + t61 * t101);
+        let minus_g2_wz_leg2 = t51 * minus_g2_vy_leg2 + t57 * minus_g2_vx_leg2;
+        let t226 = 0.5 * t156 - 0.8660254037844386 * t147;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t141 * (t226 - t126 * t166);
+        let minus_g2_wz_leg3 = 0.11764705882352941 * (minus_c23_leg2 * t141)
+            + 0.2037706832433973 * (minus_s23_leg2 * t141);
+        let t238 = 2.9411764705882355 * t36;
+        let t245 = 2.9411764705882355 * t213;
+        let t255 = 2.9411764705882355 * t226;
+        let t273 = twist[2] - rate_2_leg1;
+        let t277 = minus_rate_2_leg2 + twist[2];
+        let t282 = twist[2] - rate_2_leg3;
+        Ok([
+            [
+                0.0, -t8, -t13, acceleration[0], minus_rate_dot_1_leg1,
+                minus_g1_vx_leg2 * minus_rate_dot_1_leg2, minus_g1_vx_leg3 * minus_rate_dot_1_leg3,
+                minus_rate_1_leg1, minus_g1_vx_leg2 * minus_rate_1_leg2,
+                -(minus_g1_vx_leg3 * rate_1_leg3), ::overact::math::sign(minus_rate_1_leg1),
+                ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2),
+                -::overact::math::signed(minus_g1_vx_leg3, rate_1_leg3), -1.0, -minus_g1_vx_leg2,
+                -minus_g1_vx_leg3, 0.0, minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
+                -(g2_vx_leg3 * minus_rate_dot_2_leg3), -t238,
+                minus_g1_vx_leg2 * t245 + minus_g2_vx_leg2 * t103,
+                minus_g1_vx_leg3 * t255 - g2_vx_leg3 * t168, 0.0,
+                ::overact::math::signed(minus_g2_vx_leg2, minus_rate_2_leg2),
+                ::overact::math::signed(g2_vx_leg3, rate_2_leg3), 0.0,
+                ::overact::math::signed(minus_g2_vx_leg2, t277),
+                -::overact::math::signed(g2_vx_leg3, t282),
+            ],
+            [
+                0.0, t13, -t8, acceleration[1], minus_g1_vy_leg1 * minus_rate_dot_1_leg1,
+                minus_g1_vy_leg2 * minus_rate_dot_1_leg2, -(g1_vy_leg3 * minus_rate_dot_1_leg3),
+                minus_g1_vy_leg1 * minus_rate_1_leg1, minus_g1_vy_leg2 * minus_rate_1_leg2,
+                g1_vy_leg3 * rate_1_leg3,
+                ::overact::math::signed(minus_g1_vy_leg1, minus_rate_1_leg1),
+                ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2),
+                ::overact::math::signed(g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg1,
+                -minus_g1_vy_leg2, g1_vy_leg3, g2_vy_leg1 * rate_dot_2_leg1,
+                minus_g2_vy_leg2 * minus_rate_dot_2_leg2, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
+                -(2.9411764705882355 * (t37 + minus_rate_dot_1_leg1)),
+                minus_g1_vy_leg2 * t245 + 1.4705882352941178 * minus_rate_dot_1_leg2,
+                1.4705882352941178 * minus_rate_dot_1_leg3 - g1_vy_leg3 * t255,
+                ::overact::math::signed(g2_vy_leg1, rate_2_leg1),
+                ::overact::math::signed(minus_g2_vy_leg2, minus_rate_2_leg2),
+                -::overact::math::signed(minus_g2_vy_leg3, rate_2_leg3),
+                -::overact::math::signed(g2_vy_leg1, t273),
+                ::overact::math::signed(minus_g2_vy_leg2, t277),
+                ::overact::math::signed(minus_g2_vy_leg3, t282),
+            ],
+            [
+                acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
+                -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
+                -(g1_wz_leg1 * minus_rate_dot_1_leg1), minus_g1_wz_leg2 * minus_rate_dot_1_leg2,
+                -(g1_wz_leg3 * minus_rate_dot_1_leg3), -(g1_wz_leg1 * minus_rate_1_leg1),
+                minus_g1_wz_leg2 * minus_rate_1_leg2, g1_wz_leg3 * rate_1_leg3,
+                -::overact::math::signed(g1_wz_leg1, minus_rate_1_leg1),
+                ::overact::math::signed(minus_g1_wz_leg2, minus_rate_1_leg2),
+                ::overact::math::signed(g1_wz_leg3, rate_1_leg3), g1_wz_leg1, -minus_g1_wz_leg2,
+                g1_wz_leg3, -(minus_g2_wz_leg1 * rate_dot_2_leg1),
+                minus_g2_wz_leg2 * minus_rate_dot_2_leg2, minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
+                g1_wz_leg1 * t238
+                    + minus_g2_wz_leg1 * (minus_s2_leg1 * minus_rate_dot_1_leg1),
+                minus_g1_wz_leg2 * t245 + minus_g2_wz_leg2 * t103,
+                minus_g2_wz_leg3 * t168 - g1_wz_leg3 * t255,
+                -::overact::math::signed(minus_g2_wz_leg1, rate_2_leg1),
+                ::overact::math::signed(minus_g2_wz_leg2, minus_rate_2_leg2),
+                -::overact::math::signed(minus_g2_wz_leg3, rate_2_leg3),
+                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t273),
+                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t277),
+                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t282),
+            ],
+        ])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1930,7 +2764,7 @@ impl Planar3Prr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 301 operations (106 additions, 189 multiplications, 6 divisions), 0 square roots, 4 trigonometric pairs, 25 signs, 261 intermediates.
+    /// 349 operations (130 additions, 213 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 306 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1941,189 +2775,213 @@ impl Planar3Prr {
         start: &[f64; 3],
     ) -> Result<[[f64; 28]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.08 * c_phi;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
-        let t5 = 1.0 / s2_leg1;
-        let g1_vy_leg1 = c2_leg1 * t5;
-        let t7 = 0.08 * s_phi;
-        let g1_wz_leg1 = t2 - g1_vy_leg1 * t7;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t15 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
-        let t16 = 1.0 / s2_leg2;
-        let g1_vx_leg2 = t15 * t16;
-        let t18 = 0.06928203230275509 * s_phi;
-        let t19 = 0.04 * c_phi;
-        let t20 = t18 + t19;
-        let t24 = 0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2;
-        let minus_g1_vy_leg2 = t24 * t16;
-        let t26 = 0.04 * s_phi;
-        let t27 = 0.06928203230275509 * c_phi;
-        let t28 = t26 - t27;
-        let g1_wz_leg2 = g1_vx_leg2 * t20 - minus_g1_vy_leg2 * t28;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
-        let t37 = 0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3;
-        let t38 = 1.0 / s2_leg3;
-        let minus_g1_vy_leg3 = t37 * t38;
-        let t40 = t27 + t26;
-        let t44 = 0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3;
-        let g1_vx_leg3 = t44 * t38;
-        let t46 = t18 - t19;
-        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t40 + g1_vx_leg3 * t46;
-        let t54 = g1_vx_leg2 * g1_wz_leg2 - g1_wz_leg1 - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t58 = 1.0 + g1_vx_leg2 * g1_vx_leg2 + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t58, 2.580357142856278, "actuators")?;
-        ::overact::guard::platform(t58, 2.580357142856278, "actuators")?;
-        let t59 = 1.0 / t58;
-        let t60 = t54 * t59;
-        let t71 = g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t73 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t71 * t60;
-        let t79 = t71 * t59;
-        let t81 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t71 * t79;
-        ::overact::guard::platform(t81, 2.5803571428562737, "actuators")?;
-        ::overact::guard::platform(t81, 2.5803571428562737, "actuators")?;
-        let t82 = 1.0 / t81;
-        let t83 = t73 * t82;
-        let t85 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t54 * t60 - t73 * t83;
-        ::overact::guard::platform(t85, 0.019200000000000002, "actuators")?;
-        ::overact::guard::platform(t85, 0.019200000000000002, "actuators")?;
-        let t86 = 1.0 / t85;
-        let t87 = g1_wz_leg1 * actuator_velocities[0];
-        let t88 = g1_wz_leg2 * actuator_velocities[1];
-        let t90 = minus_g1_wz_leg3 * actuator_velocities[2];
-        let t92 = g1_vx_leg2 * actuator_velocities[1];
-        let t94 = g1_vx_leg3 * actuator_velocities[2];
-        let t95 = t92 - actuator_velocities[0] + t94;
-        let t98 = g1_vy_leg1 * actuator_velocities[0];
-        let t99 = minus_g1_vy_leg2 * actuator_velocities[1];
-        let t101 = minus_g1_vy_leg3 * actuator_velocities[2];
-        let t104 = t98 - t99 - t101 + t95 * t79;
-        let rate_3_leg1 = t86 * (t87 + t88 - t90 - t95 * t60 - t83 * t104);
-        let t108 = t7 * rate_3_leg1;
-        let t109 = rate_3_leg1 * t108;
-        let t111 = rate_3_leg1 * (t2 * rate_3_leg1);
-        let minus_g2_vy_leg1 = 2.9411764705882355 * t5;
-        let t117 = t82 * t104 - t83 * rate_3_leg1;
-        let minus_rate_2_leg1 = minus_g2_vy_leg1 * (t117 - t108);
-        let t120 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_rate_dot_1_leg1 = t109 + g1_vy_leg1 * t111 - t120 * (0.34 * t5);
-        let t124 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let t126 = t28 * rate_3_leg1;
-        let t127 = rate_3_leg1 * t126;
-        let t129 = t20 * rate_3_leg1;
-        let t130 = rate_3_leg1 * t129;
-        let g2_vx_leg2 = 2.5471335405424664 * t16;
-        let t138 = t95 * t59 + t79 * t117 - t60 * rate_3_leg1;
-        let g2_vy_leg2 = 1.4705882352941178 * t16;
-        let rate_2_leg2 = g2_vx_leg2 * (t138 + t129) + g2_vy_leg2 * (t117 + t126);
-        let t145 = rate_2_leg2 * rate_2_leg2;
-        let t146 = 0.34 * t145;
-        let minus_rate_dot_1_leg2 = t16 * (t15 * t127 + t24 * t130 - t146);
-        let t149 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let t152 = t46 * rate_3_leg1;
-        let t153 = rate_3_leg1 * t152;
-        let t155 = t40 * rate_3_leg1;
+        let t2 = 0.08 * s_phi;
+        let t3 = 0.08 * c_phi;
+        let t5 = pose[1] + t3 - 0.3;
+        let t6 = pose[0] - t2;
+        let t7 = t6 * t6;
+        let t12 = 8.650519031141869 * (t7 - (t7 + t5 * t5 - 0.1156));
+        ::overact::guard::reach(t12, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t12);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
+        let t14 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t14;
+        let minus_g1_vy_leg1 = t5 * g2_vy_leg1;
+        let g1_wz_leg1 = t2 * minus_g1_vy_leg1 + t3;
+        let t22 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
+        let t24 = pose[0] + t22 + 0.25980762113533157;
+        let t28 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
+        let t30 = pose[1] - t28 + 0.15;
+        let t32 = 0.5 * t24 - 0.8660254037844386 * t30;
+        let t39 = 8.650519031141869 * (t32 * t32 - (t24 * t24 + t30 * t30 - 0.1156));
+        ::overact::guard::reach(t39, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t39);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t44 = 0.8660254037844386 * t24 + 0.5 * t30;
+        let t46 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t44;
+        let t47 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t46 * t47;
+        let t52 = 2.5471335405424664 * t44 - 0.5 * minus_s2_leg2;
+        let minus_g1_vx_leg2 = t52 * t47;
+        let minus_g1_wz_leg2 = t22 * minus_g1_vy_leg2 + t28 * minus_g1_vx_leg2;
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t61 = 0.08 * minus_c23_leg2;
+        let t63 = pose[0] + t61 - 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t68 = 0.08 * minus_s23_leg2;
+        let t70 = pose[1] + t68 + 0.15;
+        let t72 = 0.5 * t63 + 0.8660254037844386 * t70;
+        let t79 = 8.650519031141869 * (t72 * t72 - (t63 * t63 + t70 * t70 - 0.1156));
+        ::overact::guard::reach(t79, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t79);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
+        let t84 = 0.8660254037844386 * t63 - 0.5 * t70;
+        let t86 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t84;
+        let t87 = 1.0 / minus_s2_leg3;
+        let g1_vy_leg3 = t86 * t87;
+        let t92 = 2.5471335405424664 * t84 - 0.5 * minus_s2_leg3;
+        let minus_g1_vx_leg3 = t92 * t87;
+        let g1_wz_leg3 = t61 * g1_vy_leg3 + t68 * minus_g1_vx_leg3;
+        let t101 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
+            - minus_g1_vx_leg3 * g1_wz_leg3;
+        let t105 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + minus_g1_vx_leg3 * minus_g1_vx_leg3;
+        ::overact::guard::platform(t105, 2.5803571428571423, "actuators")?;
+        ::overact::guard::platform(t105, 2.5803571428571423, "actuators")?;
+        let t106 = 1.0 / t105;
+        let t107 = t101 * t106;
+        let t118 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            - minus_g1_vx_leg3 * g1_vy_leg3;
+        let t120 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
+            + g1_vy_leg3 * g1_wz_leg3 - t118 * t107;
+        let t126 = t118 * t106;
+        let t128 = minus_g1_vy_leg1 * minus_g1_vy_leg1
+            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3
+            - t118 * t126;
+        ::overact::guard::platform(t128, 2.580357142857142, "actuators")?;
+        ::overact::guard::platform(t128, 2.580357142857142, "actuators")?;
+        let t129 = 1.0 / t128;
+        let t130 = t120 * t129;
+        let t132 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 - t101 * t107 - t120 * t130;
+        ::overact::guard::platform(t132, 0.0192, "actuators")?;
+        ::overact::guard::platform(t132, 0.0192, "actuators")?;
+        let t133 = 1.0 / t132;
+        let t134 = g1_wz_leg1 * actuator_velocities[0];
+        let t135 = minus_g1_wz_leg2 * actuator_velocities[1];
+        let t137 = g1_wz_leg3 * actuator_velocities[2];
+        let t139 = minus_g1_vx_leg2 * actuator_velocities[1];
+        let t141 = minus_g1_vx_leg3 * actuator_velocities[2];
+        let t142 = actuator_velocities[0] + t139 + t141;
+        let t145 = g1_vy_leg3 * actuator_velocities[2];
+        let t146 = minus_g1_vy_leg1 * actuator_velocities[0];
+        let t147 = minus_g1_vy_leg2 * actuator_velocities[1];
+        let t151 = t145 - (t146 + t147) + t142 * t126;
+        let rate_3_leg1 = t133 * (t134 - t135 + t137 + t142 * t107 - t130 * t151);
+        let t155 = t2 * rate_3_leg1;
         let t156 = rate_3_leg1 * t155;
-        let g2_vy_leg3 = 1.4705882352941178 * t38;
-        let minus_g2_vx_leg3 = 2.5471335405424664 * t38;
-        let rate_2_leg3 = g2_vy_leg3 * (t117 + t155) - minus_g2_vx_leg3 * (t138 - t152);
-        let t166 = rate_2_leg3 * rate_2_leg3;
-        let t167 = 0.34 * t166;
-        let rate_dot_1_leg3 = t38 * (t37 * t153 - t44 * t156 + t167);
-        let t170 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t176 = g1_vx_leg2 * t149 - t124 + g1_vx_leg3 * t170;
-        let t185 = g1_vy_leg1 * t124 - minus_g1_vy_leg2 * t149 - minus_g1_vy_leg3 * t170
-            + t79 * t176;
-        let rate_dot_3_leg1 = t86
-            * (g1_wz_leg1 * t124 + g1_wz_leg2 * t149 - minus_g1_wz_leg3 * t170
-                - t60 * t176 - t83 * t185);
-        let t189 = t7 * rate_dot_3_leg1;
-        let t191 = 12.5 * (t111 + t189);
-        let t194 = 12.5 * (t2 * rate_dot_3_leg1 - t109);
-        let t197 = t82 * t185 - t83 * rate_dot_3_leg1;
-        let t203 = t59 * t176 + t79 * t197 - t60 * rate_dot_3_leg1;
-        let t227 = t197 - t189 - t111;
-        let minus_rate_dot_2_leg1 = minus_g2_vy_leg1 * (t227 + 0.34 * c2_leg1 * t120);
-        let g2_wz_leg1 = 0.23529411764705882 * (s_phi * t5);
-        let t241 = t203 + t20 * rate_dot_3_leg1 - t127;
-        let t245 = t197 + t28 * rate_dot_3_leg1 + t130;
-        let t247 = 0.8660254037844386 * t241 + 0.5 * t245;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t16
-            * (t145 * (0.34 * c2_leg2) - t247);
-        let g2_wz_leg2 = g2_vy_leg2 * t28 + g2_vx_leg2 * t20;
-        let t259 = t197 + t40 * rate_dot_3_leg1 - t153;
-        let t263 = t203 - t46 * rate_dot_3_leg1 - t156;
-        let t265 = 0.5 * t259 - 0.8660254037844386 * t263;
-        let rate_dot_2_leg3 = 2.9411764705882355 * t38
-            * (t265 - t166 * (0.34 * c2_leg3));
-        let g2_wz_leg3 = g2_vy_leg3 * t40 + minus_g2_vx_leg3 * t46;
-        let t276 = 2.9411764705882355 * t227;
-        let t287 = t24 * t245 - t15 * t241 - t146;
-        let t289 = 2.9411764705882355 * t247;
-        let t301 = t44 * t263 - t37 * t259 + t167;
-        let t303 = 2.9411764705882355 * t265;
-        let t320 = minus_rate_2_leg1 + rate_3_leg1;
-        let t324 = rate_3_leg1 - rate_2_leg2;
-        let t329 = rate_3_leg1 - rate_2_leg3;
+        let t158 = rate_3_leg1 * (t3 * rate_3_leg1);
+        let t163 = t129 * t151 - t130 * rate_3_leg1;
+        let rate_2_leg1 = g2_vy_leg1 * (t163 - t155);
+        let t166 = rate_2_leg1 * rate_2_leg1;
+        let minus_rate_dot_1_leg1 = t156 - minus_g1_vy_leg1 * t158 + t166 * (0.34 * t14);
+        let t170 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let t172 = t22 * rate_3_leg1;
+        let t173 = rate_3_leg1 * t172;
+        let t175 = t28 * rate_3_leg1;
+        let t176 = rate_3_leg1 * t175;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t47;
+        let t184 = t142 * t106 + t126 * t163 + t107 * rate_3_leg1;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t47;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (t175 - t184)
+            + minus_g2_vy_leg2 * (t163 + t172);
+        let t191 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t192 = 0.34 * t191;
+        let rate_dot_1_leg2 = t47 * (t52 * t173 - t46 * t176 - t192);
+        let t195 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let t198 = t68 * rate_3_leg1;
+        let t199 = rate_3_leg1 * t198;
+        let t201 = t61 * rate_3_leg1;
+        let t202 = rate_3_leg1 * t201;
+        let g2_vx_leg3 = 2.5471335405424664 * t87;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t87;
+        let minus_rate_2_leg3 = g2_vx_leg3 * (t184 + t198)
+            + minus_g2_vy_leg3 * (t163 + t201);
+        let t212 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t213 = 0.34 * t212;
+        let minus_rate_dot_1_leg3 = t87 * (t86 * t199 - t92 * t202 + t213);
+        let t216 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let t222 = t170 + minus_g1_vx_leg2 * t195 + minus_g1_vx_leg3 * t216;
+        let t231 = g1_vy_leg3 * t216
+            - (minus_g1_vy_leg1 * t170 + minus_g1_vy_leg2 * t195) + t126 * t222;
+        let rate_dot_3_leg1 = t133
+            * (g1_wz_leg1 * t170 - minus_g1_wz_leg2 * t195 + g1_wz_leg3 * t216
+                + t107 * t222 - t130 * t231);
+        let t235 = t2 * rate_dot_3_leg1;
+        let t237 = 12.5 * (t158 + t235);
+        let t240 = 12.5 * (t3 * rate_dot_3_leg1 - t156);
+        let t244 = t129 * t231 - t130 * rate_dot_3_leg1;
+        let t248 = t106 * t222 + t126 * t244 + t107 * rate_dot_3_leg1;
+        let t273 = t244 - t235 - t158;
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t273 + t5 * t166);
+        let minus_g2_wz_leg1 = 0.23529411764705882 * (s_phi * t14);
+        let t284 = t28 * rate_dot_3_leg1 - t248 - t173;
+        let t288 = t244 + t22 * rate_dot_3_leg1 + t176;
+        let t290 = 0.8660254037844386 * t284 + 0.5 * t288;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t47 * (t290 + t44 * t191);
+        let minus_g2_wz_leg2 = t22 * minus_g2_vy_leg2 + t28 * minus_g2_vx_leg2;
+        let t303 = t248 + t68 * rate_dot_3_leg1 + t202;
+        let t307 = t244 + t61 * rate_dot_3_leg1 - t199;
+        let t309 = 0.8660254037844386 * t303 + 0.5 * t307;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t87 * (t309 - t84 * t212);
+        let minus_g2_wz_leg3 = 0.11764705882352941 * (minus_c23_leg2 * t87)
+            + 0.2037706832433973 * (minus_s23_leg2 * t87);
+        let t321 = 2.9411764705882355 * t273;
+        let t329 = 2.9411764705882355 * t290;
+        let t334 = t52 * t284 + t46 * t288 + t192;
+        let t343 = 2.9411764705882355 * t309;
+        let t348 = t213 - (t92 * t303 + t86 * t307);
+        let t365 = rate_3_leg1 - rate_2_leg1;
+        let t369 = minus_rate_2_leg2 + rate_3_leg1;
+        let t374 = minus_rate_2_leg3 + rate_3_leg1;
         Ok([
             [
-                0.0, -t191, -t194, t203, -actuator_accelerations[0],
-                g1_vx_leg2 * actuator_accelerations[1], g1_vx_leg3 * actuator_accelerations[2],
-                -actuator_velocities[0], t92, t94, -::overact::math::sign(actuator_velocities[0]),
-                ::overact::math::signed(g1_vx_leg2, actuator_velocities[1]),
-                ::overact::math::signed(g1_vx_leg3, actuator_velocities[2]), -1.0, g1_vx_leg2,
-                g1_vx_leg3, 0.0, -(g2_vx_leg2 * minus_rate_dot_2_leg2),
-                -(minus_g2_vx_leg3 * rate_dot_2_leg3), -t276, g2_vx_leg2 * t287 - g1_vx_leg2 * t289,
-                minus_g2_vx_leg3 * t301 - g1_vx_leg3 * t303, 0.0,
-                ::overact::math::signed(g2_vx_leg2, rate_2_leg2),
-                -::overact::math::signed(minus_g2_vx_leg3, rate_2_leg3), 0.0,
-                -::overact::math::signed(g2_vx_leg2, t324),
-                ::overact::math::signed(minus_g2_vx_leg3, t329),
+                0.0, -t237, -t240, -t248, -actuator_accelerations[0],
+                -(minus_g1_vx_leg2 * actuator_accelerations[1]),
+                -(minus_g1_vx_leg3 * actuator_accelerations[2]), -actuator_velocities[0], -t139,
+                -t141, -::overact::math::sign(actuator_velocities[0]),
+                -::overact::math::signed(minus_g1_vx_leg2, actuator_velocities[1]),
+                -::overact::math::signed(minus_g1_vx_leg3, actuator_velocities[2]), -1.0,
+                -minus_g1_vx_leg2, -minus_g1_vx_leg3, 0.0, minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
+                -(g2_vx_leg3 * minus_rate_dot_2_leg3), -t321,
+                minus_g1_vx_leg2 * t329 + minus_g2_vx_leg2 * t334,
+                minus_g1_vx_leg3 * t343 - g2_vx_leg3 * t348, 0.0,
+                ::overact::math::signed(minus_g2_vx_leg2, minus_rate_2_leg2),
+                -::overact::math::signed(g2_vx_leg3, minus_rate_2_leg3), 0.0,
+                ::overact::math::signed(minus_g2_vx_leg2, t369),
+                -::overact::math::signed(g2_vx_leg3, t374),
             ],
             [
-                0.0, t194, -t191, t197, g1_vy_leg1 * actuator_accelerations[0],
+                0.0, t240, -t237, t244, -(minus_g1_vy_leg1 * actuator_accelerations[0]),
                 -(minus_g1_vy_leg2 * actuator_accelerations[1]),
-                -(minus_g1_vy_leg3 * actuator_accelerations[2]), t98, -t99, -t101,
-                ::overact::math::signed(g1_vy_leg1, actuator_velocities[0]),
+                g1_vy_leg3 * actuator_accelerations[2], -t146, -t147, t145,
+                -::overact::math::signed(minus_g1_vy_leg1, actuator_velocities[0]),
                 -::overact::math::signed(minus_g1_vy_leg2, actuator_velocities[1]),
-                -::overact::math::signed(minus_g1_vy_leg3, actuator_velocities[2]), g1_vy_leg1,
-                -minus_g1_vy_leg2, -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
-                -(g2_vy_leg2 * minus_rate_dot_2_leg2), g2_vy_leg3 * rate_dot_2_leg3,
-                2.9411764705882355 * (g1_vy_leg1 * t227 + actuator_accelerations[0]),
-                minus_g1_vy_leg2 * t289 - 1.4705882352941178 * actuator_accelerations[1],
-                minus_g1_vy_leg3 * t303 - 1.4705882352941178 * actuator_accelerations[2],
-                ::overact::math::signed(minus_g2_vy_leg1, minus_rate_2_leg1),
-                ::overact::math::signed(g2_vy_leg2, rate_2_leg2),
-                ::overact::math::signed(g2_vy_leg3, rate_2_leg3),
-                ::overact::math::signed(minus_g2_vy_leg1, t320),
-                -::overact::math::signed(g2_vy_leg2, t324),
-                -::overact::math::signed(g2_vy_leg3, t329),
+                ::overact::math::signed(g1_vy_leg3, actuator_velocities[2]), -minus_g1_vy_leg1,
+                -minus_g1_vy_leg2, g1_vy_leg3, g2_vy_leg1 * rate_dot_2_leg1,
+                minus_g2_vy_leg2 * minus_rate_dot_2_leg2, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
+                2.9411764705882355
+                    * (actuator_accelerations[0] - minus_g1_vy_leg1 * t273),
+                minus_g1_vy_leg2 * t329 - 1.4705882352941178 * actuator_accelerations[1],
+                -(g1_vy_leg3 * t343 + 1.4705882352941178 * actuator_accelerations[2]),
+                ::overact::math::signed(g2_vy_leg1, rate_2_leg1),
+                ::overact::math::signed(minus_g2_vy_leg2, minus_rate_2_leg2),
+                ::overact::math::signed(minus_g2_vy_leg3, minus_rate_2_leg3),
+                -::overact::math::signed(g2_vy_leg1, t365),
+                ::overact::math::signed(minus_g2_vy_leg2, t369),
+                ::overact::math::signed(minus_g2_vy_leg3, t374),
             ],
             [
-                rate_dot_3_leg1, c_phi * t197 - s_phi * t203, -(c_phi * t203 + s_phi * t197), 0.0,
-                g1_wz_leg1 * actuator_accelerations[0], g1_wz_leg2 * actuator_accelerations[1],
-                -(minus_g1_wz_leg3 * actuator_accelerations[2]), t87, t88, -t90,
+                rate_dot_3_leg1, s_phi * t248 + c_phi * t244, -(s_phi * t244 - c_phi * t248), 0.0,
+                g1_wz_leg1 * actuator_accelerations[0],
+                -(minus_g1_wz_leg2 * actuator_accelerations[1]),
+                g1_wz_leg3 * actuator_accelerations[2], t134, -t135, t137,
                 ::overact::math::signed(g1_wz_leg1, actuator_velocities[0]),
-                ::overact::math::signed(g1_wz_leg2, actuator_velocities[1]),
-                -::overact::math::signed(minus_g1_wz_leg3, actuator_velocities[2]), g1_wz_leg1,
-                g1_wz_leg2, -minus_g1_wz_leg3, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
-                -(g2_wz_leg2 * minus_rate_dot_2_leg2), g2_wz_leg3 * rate_dot_2_leg3,
-                g1_wz_leg1 * t276 - g2_wz_leg1 * (s2_leg1 * actuator_accelerations[0]),
-                g2_wz_leg2 * t287 - g1_wz_leg2 * t289, minus_g1_wz_leg3 * t303 - g2_wz_leg3 * t301,
-                -::overact::math::signed(g2_wz_leg1, minus_rate_2_leg1),
-                ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
-                ::overact::math::signed(g2_wz_leg3, rate_2_leg3),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t320),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t324),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t329),
+                -::overact::math::signed(minus_g1_wz_leg2, actuator_velocities[1]),
+                ::overact::math::signed(g1_wz_leg3, actuator_velocities[2]), g1_wz_leg1,
+                -minus_g1_wz_leg2, g1_wz_leg3, -(minus_g2_wz_leg1 * rate_dot_2_leg1),
+                minus_g2_wz_leg2 * minus_rate_dot_2_leg2, minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
+                g1_wz_leg1 * t321
+                    - minus_g2_wz_leg1 * (minus_s2_leg1 * actuator_accelerations[0]),
+                minus_g1_wz_leg2 * t329 + minus_g2_wz_leg2 * t334,
+                minus_g2_wz_leg3 * t348 - g1_wz_leg3 * t343,
+                -::overact::math::signed(minus_g2_wz_leg1, rate_2_leg1),
+                ::overact::math::signed(minus_g2_wz_leg2, minus_rate_2_leg2),
+                ::overact::math::signed(minus_g2_wz_leg3, minus_rate_2_leg3),
+                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t365),
+                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t369),
+                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t374),
             ],
         ])
     }
@@ -2137,7 +2995,7 @@ impl Planar3Prr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 308 operations (107 additions, 197 multiplications, 4 divisions), 0 square roots, 4 trigonometric pairs, 21 signs, 280 intermediates.
+    /// 356 operations (131 additions, 221 multiplications, 4 divisions), 3 square roots, 1 trigonometric pairs, 21 signs, 325 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2146,8 +3004,188 @@ impl Planar3Prr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 28]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_actuators_base_from_joints(pose, joints, twist, acceleration)
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let t4 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
+        let t6 = pose[0] + t4 + 0.25980762113533157;
+        let t10 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
+        let t12 = pose[1] - t10 + 0.15;
+        let t14 = 0.5 * t6 - 0.8660254037844386 * t12;
+        let t21 = 8.650519031141869 * (t14 * t14 - (t6 * t6 + t12 * t12 - 0.1156));
+        ::overact::guard::reach(t21, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t21);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t26 = 0.8660254037844386 * t6 + 0.5 * t12;
+        let t28 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t26;
+        let t29 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t28 * t29;
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t34 = 0.08 * minus_c23_leg2;
+        let t36 = pose[0] + t34 - 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t41 = 0.08 * minus_s23_leg2;
+        let t43 = pose[1] + t41 + 0.15;
+        let t45 = 0.8660254037844386 * t36 - 0.5 * t43;
+        let t49 = 0.5 * t36 + 0.8660254037844386 * t43;
+        let t56 = 8.650519031141869 * (t49 * t49 - (t36 * t36 + t43 * t43 - 0.1156));
+        ::overact::guard::reach(t56, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t56);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
+        let t59 = 2.5471335405424664 * t45 - 0.5 * minus_s2_leg3;
+        let t60 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t59 * t60;
+        let t65 = 2.5471335405424664 * t26 - 0.5 * minus_s2_leg2;
+        let minus_g1_vx_leg2 = t65 * t29;
+        let t69 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t45;
+        let g1_vy_leg3 = t69 * t60;
+        let t73 = 0.08 * s_phi;
+        let t74 = 0.08 * c_phi;
+        let t76 = pose[1] + t74 - 0.3;
+        let t77 = pose[0] - t73;
+        let t78 = t77 * t77;
+        let t83 = 8.650519031141869 * (t78 - (t78 + t76 * t76 - 0.1156));
+        ::overact::guard::reach(t83, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t83);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
+        let t85 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t85;
+        let minus_g1_vy_leg1 = t76 * g2_vy_leg1;
+        let g1_wz_leg1 = t73 * minus_g1_vy_leg1 + t74;
+        let minus_g1_wz_leg2 = t4 * minus_g1_vy_leg2 + t10 * minus_g1_vx_leg2;
+        let t95 = g1_wz_leg1 * minus_g1_vy_leg2 + minus_g1_vy_leg1 * minus_g1_wz_leg2;
+        let t98 = g1_wz_leg1 * minus_g1_vx_leg2 + minus_g1_wz_leg2;
+        let g1_wz_leg3 = t34 * g1_vy_leg3 + t41 * minus_g1_vx_leg3;
+        let t105 = minus_g1_vy_leg1 * minus_g1_vx_leg2 - minus_g1_vy_leg2;
+        let t107 = minus_g1_vx_leg3 * t95 + g1_vy_leg3 * t98 + g1_wz_leg3 * t105;
+        ::overact::guard::platform(t107, 0.35754477384814676, "kept actuators")?;
+        ::overact::guard::platform(t107, 0.35754477384814676, "kept actuators")?;
+        ::overact::guard::platform(t107, 0.35754477384814676, "kept actuators")?;
+        let t108 = 1.0 / t107;
+        let t109 = (minus_g1_vy_leg2 * minus_g1_vx_leg3 + minus_g1_vx_leg2 * g1_vy_leg3)
+            * t108;
+        let t113 = (minus_g1_vy_leg1 * minus_g1_vx_leg3 + g1_vy_leg3) * t108;
+        let t115 = t105 * t108;
+        let t119 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t124 = (minus_g1_vy_leg2 * g1_wz_leg3 - minus_g1_wz_leg2 * g1_vy_leg3)
+            * t108;
+        let t125 = t74 * twist[2];
+        let t126 = twist[2] * t125;
+        let t127 = t73 * acceleration[2];
+        let t129 = 12.5 * (t126 + t127);
+        let t134 = (minus_g1_wz_leg2 * minus_g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
+            * t108;
+        let t135 = t74 * acceleration[2];
+        let t136 = t73 * twist[2];
+        let t137 = twist[2] * t136;
+        let t139 = 12.5 * (t135 - t137);
+        let t146 = (g1_wz_leg1 * g1_vy_leg3 + minus_g1_vy_leg1 * g1_wz_leg3) * t108;
+        let t150 = (g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3) * t108;
+        let t155 = t95 * t108;
+        let t157 = t98 * t108;
+        let t167 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t192 = acceleration[1] - t127 - t126;
+        let t195 = twist[1] - t136;
+        let rate_2_leg1 = g2_vy_leg1 * t195;
+        let t197 = rate_2_leg1 * rate_2_leg1;
+        let minus_rate_dot_1_leg1 = acceleration[0] - t135 + t137
+            + minus_g1_vy_leg1 * t192 + t197 * (0.34 * t85);
+        let t203 = t4 * twist[2];
+        let t205 = acceleration[0] + t10 * acceleration[2] - twist[2] * t203;
+        let t209 = t10 * twist[2];
+        let t211 = acceleration[1] + t4 * acceleration[2] + twist[2] * t209;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t29;
+        let t215 = twist[0] + t209;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t29;
+        let t218 = twist[1] + t203;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t215 + minus_g2_vy_leg2 * t218;
+        let t221 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t223 = t65 * t205 + t28 * t211 + 0.34 * t221;
+        let minus_rate_dot_1_leg2 = t29 * t223;
+        let t227 = t34 * twist[2];
+        let t229 = acceleration[0] - t41 * acceleration[2] - twist[2] * t227;
+        let t233 = t41 * twist[2];
+        let t235 = acceleration[1] + t34 * acceleration[2] - twist[2] * t233;
+        let g2_vx_leg3 = 2.5471335405424664 * t60;
+        let t239 = twist[0] - t233;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t60;
+        let t242 = twist[1] + t227;
+        let rate_2_leg3 = g2_vx_leg3 * t239 - minus_g2_vy_leg3 * t242;
+        let t245 = rate_2_leg3 * rate_2_leg3;
+        let t247 = t59 * t229 - t69 * t235 + 0.34 * t245;
+        let minus_rate_dot_1_leg3 = t60 * t247;
+        let minus_rate_1_leg1 = twist[0] - t125 + minus_g1_vy_leg1 * t195;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t215 + minus_g1_vy_leg2 * t218;
+        let rate_1_leg3 = g1_vy_leg3 * t242 - minus_g1_vx_leg3 * t239;
+        let minus_g2_wz_leg1 = 0.23529411764705882 * (s_phi * t85);
+        let t265 = g2_vy_leg1 * t134 + minus_g2_wz_leg1 * t109;
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t192 + t76 * t197);
+        let t272 = g2_vy_leg1 * t150 + minus_g2_wz_leg1 * t113;
+        let t276 = g2_vy_leg1 * t157 - minus_g2_wz_leg1 * t115;
+        let minus_g2_wz_leg2 = t4 * minus_g2_vy_leg2 + t10 * minus_g2_vx_leg2;
+        let t285 = minus_g2_vy_leg2 * t134 - minus_g2_vx_leg2 * t124
+            - minus_g2_wz_leg2 * t109;
+        let t289 = 0.8660254037844386 * t205 + 0.5 * t211;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t29 * (t289 + t26 * t221);
+        let t298 = minus_g2_vx_leg2 * t146 - minus_g2_vy_leg2 * t150
+            + minus_g2_wz_leg2 * t113;
+        let t304 = minus_g2_vx_leg2 * t155 - minus_g2_vy_leg2 * t157
+            - minus_g2_wz_leg2 * t115;
+        let minus_g2_wz_leg3 = 0.11764705882352941 * (minus_c23_leg2 * t60)
+            + 0.2037706832433973 * (minus_s23_leg2 * t60);
+        let t315 = g2_vx_leg3 * t124 + minus_g2_vy_leg3 * t134 - minus_g2_wz_leg3 * t109;
+        let t319 = 0.5 * t235 - 0.8660254037844386 * t229;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t60 * (t319 - t45 * t245);
+        let t328 = minus_g2_wz_leg3 * t113
+            - (g2_vx_leg3 * t146 + minus_g2_vy_leg3 * t150);
+        let t334 = g2_vx_leg3 * t155 + minus_g2_vy_leg3 * t157 + minus_g2_wz_leg3 * t115;
+        let t337 = minus_s2_leg1 * minus_rate_dot_1_leg1;
+        let t362 = twist[2] - rate_2_leg1;
+        let t369 = minus_rate_2_leg2 + twist[2];
+        let t376 = twist[2] - rate_2_leg3;
+        Ok([
+            [
+                t109 * acceleration[2], t109 * t119 - (t124 * t129 + t134 * t139),
+                t134 * t129 - t124 * t139 - t109 * t167,
+                t124 * acceleration[0] - t134 * acceleration[1], -minus_rate_dot_1_leg1, 0.0, 0.0,
+                -minus_rate_1_leg1, 0.0, 0.0, -::overact::math::sign(minus_rate_1_leg1), 0.0, 0.0,
+                1.0, 0.0, 0.0, -(t265 * rate_dot_2_leg1), -(t285 * minus_rate_dot_2_leg2),
+                -(t315 * minus_rate_dot_2_leg3), 2.9411764705882355 * t192 + t265 * t337,
+                -(t285 * t223), -(t315 * t247), -::overact::math::signed(t265, rate_2_leg1),
+                -::overact::math::signed(t285, minus_rate_2_leg2),
+                ::overact::math::signed(t315, rate_2_leg3),
+                ::overact::math::signed(t265 + t109, t362),
+                ::overact::math::signed(t109 - t285, t369),
+                ::overact::math::signed(t109 - t315, t376),
+            ],
+            [
+                -(t113 * acceleration[2]), t146 * t129 + t150 * t139 - t113 * t119,
+                t146 * t139 - t150 * t129 + t113 * t167,
+                t150 * acceleration[1] - t146 * acceleration[0], 0.0, -minus_rate_dot_1_leg2, 0.0,
+                0.0, -minus_rate_1_leg2, 0.0, 0.0, -::overact::math::sign(minus_rate_1_leg2), 0.0,
+                0.0, 1.0, 0.0, t272 * rate_dot_2_leg1, -(t298 * minus_rate_dot_2_leg2),
+                -(t328 * minus_rate_dot_2_leg3), -(t272 * t337),
+                -(2.9411764705882355 * t289 + t298 * t223), -(t328 * t247),
+                ::overact::math::signed(t272, rate_2_leg1),
+                -::overact::math::signed(t298, minus_rate_2_leg2),
+                ::overact::math::signed(t328, rate_2_leg3),
+                -::overact::math::signed(t272 + t113, t362),
+                -::overact::math::signed(t298 + t113, t369),
+                -::overact::math::signed(t328 + t113, t376),
+            ],
+            [
+                t115 * acceleration[2], t155 * t129 + t157 * t139 + t115 * t119,
+                t155 * t139 - t157 * t129 - t115 * t167,
+                t157 * acceleration[1] - t155 * acceleration[0], 0.0, 0.0, -minus_rate_dot_1_leg3,
+                0.0, 0.0, rate_1_leg3, 0.0, 0.0, ::overact::math::sign(rate_1_leg3), 0.0, 0.0, 1.0,
+                t276 * rate_dot_2_leg1, -(t304 * minus_rate_dot_2_leg2),
+                t334 * minus_rate_dot_2_leg3, -(t276 * t337), -(t304 * t223),
+                t334 * t247 - 2.9411764705882355 * t319, ::overact::math::signed(t276, rate_2_leg1),
+                -::overact::math::signed(t304, minus_rate_2_leg2),
+                -::overact::math::signed(t334, rate_2_leg3),
+                ::overact::math::signed(t115 - t276, t362),
+                ::overact::math::signed(t115 - t304, t369),
+                ::overact::math::signed(t334 + t115, t376),
+            ],
+        ])
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -2344,7 +3382,7 @@ impl Planar3Prr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 407 operations (148 additions, 252 multiplications, 7 divisions), 0 square roots, 4 trigonometric pairs, 21 signs, 385 intermediates.
+    /// 455 operations (172 additions, 276 multiplications, 7 divisions), 3 square roots, 1 trigonometric pairs, 21 signs, 430 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2355,205 +3393,230 @@ impl Planar3Prr {
         start: &[f64; 3],
     ) -> Result<[[f64; 28]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t4 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
-        let t5 = 1.0 / s2_leg2;
-        let g1_vx_leg2 = t4 * t5;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
-        let t11 = 0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3;
-        let t12 = 1.0 / s2_leg3;
-        let minus_g1_vy_leg3 = t11 * t12;
-        let t17 = 0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2;
-        let minus_g1_vy_leg2 = t17 * t5;
-        let t21 = 0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3;
-        let g1_vx_leg3 = t21 * t12;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t27 = 0.08 * c_phi;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
-        let t30 = 1.0 / s2_leg1;
-        let g1_vy_leg1 = c2_leg1 * t30;
-        let t32 = 0.08 * s_phi;
-        let g1_wz_leg1 = t27 - g1_vy_leg1 * t32;
-        let t36 = 0.06928203230275509 * s_phi;
-        let t37 = 0.04 * c_phi;
-        let t38 = t36 + t37;
-        let t40 = 0.04 * s_phi;
-        let t41 = 0.06928203230275509 * c_phi;
-        let t42 = t40 - t41;
-        let g1_wz_leg2 = g1_vx_leg2 * t38 - minus_g1_vy_leg2 * t42;
-        let t45 = g1_wz_leg1 * g1_vx_leg2 + g1_wz_leg2;
-        let t49 = g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2;
-        let t52 = t41 + t40;
-        let t54 = t36 - t37;
-        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t52 + g1_vx_leg3 * t54;
-        let t58 = g1_vy_leg1 * g1_vx_leg2 - minus_g1_vy_leg2;
-        let t60 = minus_g1_vy_leg3 * t45 - g1_vx_leg3 * t49 - minus_g1_wz_leg3 * t58;
-        ::overact::guard::platform(t60, 0.3575447738480267, "kept actuators")?;
-        ::overact::guard::platform(t60, 0.3575447738480267, "kept actuators")?;
-        ::overact::guard::platform(t60, 0.3575447738480267, "kept actuators")?;
-        let t61 = 1.0 / t60;
-        let t62 = (g1_vx_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3) * t61;
-        let t71 = g1_vx_leg2 * g1_wz_leg2 - g1_wz_leg1 - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t75 = 1.0 + g1_vx_leg2 * g1_vx_leg2 + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t75, 2.580357142856278, "actuators")?;
-        ::overact::guard::platform(t75, 2.580357142856278, "actuators")?;
-        let t76 = 1.0 / t75;
-        let t77 = t71 * t76;
-        let t88 = g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t90 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t88 * t77;
-        let t96 = t88 * t76;
-        let t98 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t88 * t96;
-        ::overact::guard::platform(t98, 2.5803571428562737, "actuators")?;
-        ::overact::guard::platform(t98, 2.5803571428562737, "actuators")?;
-        let t99 = 1.0 / t98;
-        let t100 = t90 * t99;
-        let t102 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t71 * t77 - t90 * t100;
-        ::overact::guard::platform(t102, 0.019200000000000002, "actuators")?;
-        ::overact::guard::platform(t102, 0.019200000000000002, "actuators")?;
-        let t103 = 1.0 / t102;
-        let t112 = g1_vx_leg2 * actuator_velocities[1] - actuator_velocities[0]
-            + g1_vx_leg3 * actuator_velocities[2];
-        let t121 = g1_vy_leg1 * actuator_velocities[0]
-            - minus_g1_vy_leg2 * actuator_velocities[1]
-            - minus_g1_vy_leg3 * actuator_velocities[2] + t112 * t96;
-        let rate_3_leg1 = t103
-            * (g1_wz_leg1 * actuator_velocities[0] + g1_wz_leg2 * actuator_velocities[1]
-                - minus_g1_wz_leg3 * actuator_velocities[2] - t112 * t77 - t100 * t121);
-        let t125 = t32 * rate_3_leg1;
-        let t126 = rate_3_leg1 * t125;
-        let t128 = rate_3_leg1 * (t27 * rate_3_leg1);
-        let minus_g2_vy_leg1 = 2.9411764705882355 * t30;
-        let t134 = t99 * t121 - t100 * rate_3_leg1;
-        let minus_rate_2_leg1 = minus_g2_vy_leg1 * (t134 - t125);
-        let t137 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_rate_dot_1_leg1 = t126 + g1_vy_leg1 * t128 - t137 * (0.34 * t30);
-        let t141 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let t143 = t42 * rate_3_leg1;
-        let t144 = rate_3_leg1 * t143;
-        let t146 = t38 * rate_3_leg1;
-        let t147 = rate_3_leg1 * t146;
-        let g2_vx_leg2 = 2.5471335405424664 * t5;
-        let t155 = t112 * t76 + t96 * t134 - t77 * rate_3_leg1;
-        let g2_vy_leg2 = 1.4705882352941178 * t5;
-        let rate_2_leg2 = g2_vx_leg2 * (t155 + t146) + g2_vy_leg2 * (t134 + t143);
-        let t162 = rate_2_leg2 * rate_2_leg2;
-        let t163 = 0.34 * t162;
-        let minus_rate_dot_1_leg2 = t5 * (t4 * t144 + t17 * t147 - t163);
-        let t166 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let t169 = t54 * rate_3_leg1;
-        let t170 = rate_3_leg1 * t169;
-        let t172 = t52 * rate_3_leg1;
+        let t4 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
+        let t6 = pose[0] + t4 + 0.25980762113533157;
+        let t10 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
+        let t12 = pose[1] - t10 + 0.15;
+        let t14 = 0.5 * t6 - 0.8660254037844386 * t12;
+        let t21 = 8.650519031141869 * (t14 * t14 - (t6 * t6 + t12 * t12 - 0.1156));
+        ::overact::guard::reach(t21, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t21);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t26 = 0.8660254037844386 * t6 + 0.5 * t12;
+        let t28 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t26;
+        let t29 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t28 * t29;
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t34 = 0.08 * minus_c23_leg2;
+        let t36 = pose[0] + t34 - 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t41 = 0.08 * minus_s23_leg2;
+        let t43 = pose[1] + t41 + 0.15;
+        let t45 = 0.8660254037844386 * t36 - 0.5 * t43;
+        let t49 = 0.5 * t36 + 0.8660254037844386 * t43;
+        let t56 = 8.650519031141869 * (t49 * t49 - (t36 * t36 + t43 * t43 - 0.1156));
+        ::overact::guard::reach(t56, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t56);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
+        let t59 = 2.5471335405424664 * t45 - 0.5 * minus_s2_leg3;
+        let t60 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t59 * t60;
+        let t65 = 2.5471335405424664 * t26 - 0.5 * minus_s2_leg2;
+        let minus_g1_vx_leg2 = t65 * t29;
+        let t69 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t45;
+        let g1_vy_leg3 = t69 * t60;
+        let t73 = 0.08 * s_phi;
+        let t74 = 0.08 * c_phi;
+        let t76 = pose[1] + t74 - 0.3;
+        let t77 = pose[0] - t73;
+        let t78 = t77 * t77;
+        let t83 = 8.650519031141869 * (t78 - (t78 + t76 * t76 - 0.1156));
+        ::overact::guard::reach(t83, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t83);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
+        let t85 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t85;
+        let minus_g1_vy_leg1 = t76 * g2_vy_leg1;
+        let g1_wz_leg1 = t73 * minus_g1_vy_leg1 + t74;
+        let minus_g1_wz_leg2 = t4 * minus_g1_vy_leg2 + t10 * minus_g1_vx_leg2;
+        let t95 = g1_wz_leg1 * minus_g1_vy_leg2 + minus_g1_vy_leg1 * minus_g1_wz_leg2;
+        let t98 = g1_wz_leg1 * minus_g1_vx_leg2 + minus_g1_wz_leg2;
+        let g1_wz_leg3 = t34 * g1_vy_leg3 + t41 * minus_g1_vx_leg3;
+        let t105 = minus_g1_vy_leg1 * minus_g1_vx_leg2 - minus_g1_vy_leg2;
+        let t107 = minus_g1_vx_leg3 * t95 + g1_vy_leg3 * t98 + g1_wz_leg3 * t105;
+        ::overact::guard::platform(t107, 0.35754477384814676, "kept actuators")?;
+        ::overact::guard::platform(t107, 0.35754477384814676, "kept actuators")?;
+        ::overact::guard::platform(t107, 0.35754477384814676, "kept actuators")?;
+        let t108 = 1.0 / t107;
+        let t109 = (minus_g1_vy_leg2 * minus_g1_vx_leg3 + minus_g1_vx_leg2 * g1_vy_leg3)
+            * t108;
+        let t118 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
+            - minus_g1_vx_leg3 * g1_wz_leg3;
+        let t122 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + minus_g1_vx_leg3 * minus_g1_vx_leg3;
+        ::overact::guard::platform(t122, 2.5803571428571423, "actuators")?;
+        ::overact::guard::platform(t122, 2.5803571428571423, "actuators")?;
+        let t123 = 1.0 / t122;
+        let t124 = t118 * t123;
+        let t135 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            - minus_g1_vx_leg3 * g1_vy_leg3;
+        let t137 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
+            + g1_vy_leg3 * g1_wz_leg3 - t135 * t124;
+        let t143 = t135 * t123;
+        let t145 = minus_g1_vy_leg1 * minus_g1_vy_leg1
+            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3
+            - t135 * t143;
+        ::overact::guard::platform(t145, 2.580357142857142, "actuators")?;
+        ::overact::guard::platform(t145, 2.580357142857142, "actuators")?;
+        let t146 = 1.0 / t145;
+        let t147 = t137 * t146;
+        let t149 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 - t118 * t124 - t137 * t147;
+        ::overact::guard::platform(t149, 0.0192, "actuators")?;
+        ::overact::guard::platform(t149, 0.0192, "actuators")?;
+        let t150 = 1.0 / t149;
+        let t159 = actuator_velocities[0] + minus_g1_vx_leg2 * actuator_velocities[1]
+            + minus_g1_vx_leg3 * actuator_velocities[2];
+        let t168 = g1_vy_leg3 * actuator_velocities[2]
+            - (minus_g1_vy_leg1 * actuator_velocities[0]
+                + minus_g1_vy_leg2 * actuator_velocities[1]) + t159 * t143;
+        let rate_3_leg1 = t150
+            * (g1_wz_leg1 * actuator_velocities[0]
+                - minus_g1_wz_leg2 * actuator_velocities[1]
+                + g1_wz_leg3 * actuator_velocities[2] + t159 * t124 - t147 * t168);
+        let t172 = t73 * rate_3_leg1;
         let t173 = rate_3_leg1 * t172;
-        let g2_vy_leg3 = 1.4705882352941178 * t12;
-        let minus_g2_vx_leg3 = 2.5471335405424664 * t12;
-        let rate_2_leg3 = g2_vy_leg3 * (t134 + t172) - minus_g2_vx_leg3 * (t155 - t169);
-        let t183 = rate_2_leg3 * rate_2_leg3;
-        let t184 = 0.34 * t183;
-        let rate_dot_1_leg3 = t12 * (t11 * t170 - t21 * t173 + t184);
-        let t187 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t193 = g1_vx_leg2 * t166 - t141 + g1_vx_leg3 * t187;
-        let t202 = g1_vy_leg1 * t141 - minus_g1_vy_leg2 * t166 - minus_g1_vy_leg3 * t187
-            + t96 * t193;
-        let rate_dot_3_leg1 = t103
-            * (g1_wz_leg1 * t141 + g1_wz_leg2 * t166 - minus_g1_wz_leg3 * t187
-                - t77 * t193 - t100 * t202);
-        let t209 = (g1_vy_leg1 * g1_vx_leg3 - minus_g1_vy_leg3) * t61;
-        let t211 = t58 * t61;
-        let t216 = (g1_wz_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * minus_g1_wz_leg3)
-            * t61;
-        let t217 = t32 * rate_dot_3_leg1;
-        let t219 = 12.5 * (t128 + t217);
-        let t224 = (g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * minus_g1_wz_leg3) * t61;
-        let t227 = 12.5 * (t27 * rate_dot_3_leg1 - t126);
-        let t232 = t99 * t202 - t100 * rate_dot_3_leg1;
-        let t238 = t76 * t193 + t96 * t232 - t77 * rate_dot_3_leg1;
-        let t240 = c_phi * t232 - s_phi * t238;
-        let t246 = (g1_vy_leg1 * minus_g1_wz_leg3 - g1_wz_leg1 * minus_g1_vy_leg3) * t61;
-        let t250 = (g1_wz_leg1 * g1_vx_leg3 - minus_g1_wz_leg3) * t61;
-        let t255 = t49 * t61;
-        let t257 = t45 * t61;
-        let t267 = c_phi * t238 + s_phi * t232;
-        let g2_wz_leg1 = 0.23529411764705882 * (s_phi * t30);
-        let t296 = minus_g2_vy_leg1 * t224 + g2_wz_leg1 * t62;
-        let t298 = t232 - t217 - t128;
-        let minus_rate_dot_2_leg1 = minus_g2_vy_leg1 * (t298 + 0.34 * c2_leg1 * t137);
-        let t306 = minus_g2_vy_leg1 * t250 + g2_wz_leg1 * t209;
-        let t310 = minus_g2_vy_leg1 * t257 + g2_wz_leg1 * t211;
-        let g2_wz_leg2 = g2_vy_leg2 * t42 + g2_vx_leg2 * t38;
-        let t319 = g2_wz_leg2 * t62 - (g2_vx_leg2 * t216 + g2_vy_leg2 * t224);
-        let t325 = t238 + t38 * rate_dot_3_leg1 - t144;
-        let t329 = t232 + t42 * rate_dot_3_leg1 + t147;
-        let t331 = 0.8660254037844386 * t325 + 0.5 * t329;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t5
-            * (t162 * (0.34 * c2_leg2) - t331);
-        let t339 = g2_vy_leg2 * t250 - g2_vx_leg2 * t246 - g2_wz_leg2 * t209;
-        let t345 = g2_wz_leg2 * t211 - (g2_vx_leg2 * t255 + g2_vy_leg2 * t257);
-        let g2_wz_leg3 = g2_vy_leg3 * t52 + minus_g2_vx_leg3 * t54;
-        let t354 = minus_g2_vx_leg3 * t216 - g2_vy_leg3 * t224 + g2_wz_leg3 * t62;
-        let t358 = t232 + t52 * rate_dot_3_leg1 - t170;
-        let t362 = t238 - t54 * rate_dot_3_leg1 - t173;
-        let t364 = 0.5 * t358 - 0.8660254037844386 * t362;
-        let rate_dot_2_leg3 = 2.9411764705882355 * t12
-            * (t364 - t183 * (0.34 * c2_leg3));
-        let t374 = minus_g2_vx_leg3 * t246 + g2_vy_leg3 * t250 - g2_wz_leg3 * t209;
-        let t380 = minus_g2_vx_leg3 * t255 - g2_vy_leg3 * t257 + g2_wz_leg3 * t211;
-        let t383 = s2_leg1 * actuator_accelerations[0];
-        let t391 = t17 * t329 - t4 * t325 - t163;
-        let t400 = t21 * t362 - t11 * t358 + t184;
-        let t416 = minus_rate_2_leg1 + rate_3_leg1;
-        let t423 = rate_3_leg1 - rate_2_leg2;
-        let t430 = rate_3_leg1 - rate_2_leg3;
+        let t175 = rate_3_leg1 * (t74 * rate_3_leg1);
+        let t180 = t146 * t168 - t147 * rate_3_leg1;
+        let rate_2_leg1 = g2_vy_leg1 * (t180 - t172);
+        let t183 = rate_2_leg1 * rate_2_leg1;
+        let minus_rate_dot_1_leg1 = t173 - minus_g1_vy_leg1 * t175 + t183 * (0.34 * t85);
+        let t187 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let t189 = t4 * rate_3_leg1;
+        let t190 = rate_3_leg1 * t189;
+        let t192 = t10 * rate_3_leg1;
+        let t193 = rate_3_leg1 * t192;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t29;
+        let t201 = t159 * t123 + t143 * t180 + t124 * rate_3_leg1;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t29;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (t192 - t201)
+            + minus_g2_vy_leg2 * (t180 + t189);
+        let t208 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t209 = 0.34 * t208;
+        let rate_dot_1_leg2 = t29 * (t65 * t190 - t28 * t193 - t209);
+        let t212 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let t215 = t41 * rate_3_leg1;
+        let t216 = rate_3_leg1 * t215;
+        let t218 = t34 * rate_3_leg1;
+        let t219 = rate_3_leg1 * t218;
+        let g2_vx_leg3 = 2.5471335405424664 * t60;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t60;
+        let minus_rate_2_leg3 = g2_vx_leg3 * (t201 + t215)
+            + minus_g2_vy_leg3 * (t180 + t218);
+        let t229 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t230 = 0.34 * t229;
+        let minus_rate_dot_1_leg3 = t60 * (t69 * t216 - t59 * t219 + t230);
+        let t233 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let t239 = t187 + minus_g1_vx_leg2 * t212 + minus_g1_vx_leg3 * t233;
+        let t248 = g1_vy_leg3 * t233
+            - (minus_g1_vy_leg1 * t187 + minus_g1_vy_leg2 * t212) + t143 * t239;
+        let rate_dot_3_leg1 = t150
+            * (g1_wz_leg1 * t187 - minus_g1_wz_leg2 * t212 + g1_wz_leg3 * t233
+                + t124 * t239 - t147 * t248);
+        let t255 = (minus_g1_vy_leg1 * minus_g1_vx_leg3 + g1_vy_leg3) * t108;
+        let t257 = t105 * t108;
+        let t262 = t146 * t248 - t147 * rate_dot_3_leg1;
+        let t266 = t123 * t239 + t143 * t262 + t124 * rate_dot_3_leg1;
+        let t269 = s_phi * t266 + c_phi * t262;
+        let t274 = (minus_g1_vy_leg2 * g1_wz_leg3 - minus_g1_wz_leg2 * g1_vy_leg3)
+            * t108;
+        let t275 = t73 * rate_dot_3_leg1;
+        let t277 = 12.5 * (t175 + t275);
+        let t282 = (minus_g1_wz_leg2 * minus_g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
+            * t108;
+        let t285 = 12.5 * (t74 * rate_dot_3_leg1 - t173);
+        let t292 = (g1_wz_leg1 * g1_vy_leg3 + minus_g1_vy_leg1 * g1_wz_leg3) * t108;
+        let t296 = (g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3) * t108;
+        let t301 = t95 * t108;
+        let t303 = t98 * t108;
+        let t313 = s_phi * t262 - c_phi * t266;
+        let minus_g2_wz_leg1 = 0.23529411764705882 * (s_phi * t85);
+        let t342 = g2_vy_leg1 * t282 + minus_g2_wz_leg1 * t109;
+        let t344 = t262 - t275 - t175;
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t344 + t76 * t183);
+        let t351 = g2_vy_leg1 * t296 + minus_g2_wz_leg1 * t255;
+        let t355 = g2_vy_leg1 * t303 - minus_g2_wz_leg1 * t257;
+        let minus_g2_wz_leg2 = t4 * minus_g2_vy_leg2 + t10 * minus_g2_vx_leg2;
+        let t364 = minus_g2_vy_leg2 * t282 - minus_g2_vx_leg2 * t274
+            - minus_g2_wz_leg2 * t109;
+        let t368 = t10 * rate_dot_3_leg1 - t266 - t190;
+        let t372 = t262 + t4 * rate_dot_3_leg1 + t193;
+        let t374 = 0.8660254037844386 * t368 + 0.5 * t372;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t29 * (t374 + t26 * t208);
+        let t383 = minus_g2_vx_leg2 * t292 - minus_g2_vy_leg2 * t296
+            + minus_g2_wz_leg2 * t255;
+        let t389 = minus_g2_vx_leg2 * t301 - minus_g2_vy_leg2 * t303
+            - minus_g2_wz_leg2 * t257;
+        let minus_g2_wz_leg3 = 0.11764705882352941 * (minus_c23_leg2 * t60)
+            + 0.2037706832433973 * (minus_s23_leg2 * t60);
+        let t400 = g2_vx_leg3 * t274 + minus_g2_vy_leg3 * t282 - minus_g2_wz_leg3 * t109;
+        let t404 = t266 + t41 * rate_dot_3_leg1 + t219;
+        let t408 = t262 + t34 * rate_dot_3_leg1 - t216;
+        let t410 = 0.8660254037844386 * t404 + 0.5 * t408;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t60 * (t410 - t45 * t229);
+        let t419 = minus_g2_wz_leg3 * t255
+            - (g2_vx_leg3 * t292 + minus_g2_vy_leg3 * t296);
+        let t425 = g2_vx_leg3 * t301 + minus_g2_vy_leg3 * t303 + minus_g2_wz_leg3 * t257;
+        let t428 = minus_s2_leg1 * actuator_accelerations[0];
+        let t436 = t65 * t368 + t28 * t372 + t209;
+        let t445 = t230 - (t59 * t404 + t69 * t408);
+        let t461 = rate_3_leg1 - rate_2_leg1;
+        let t468 = minus_rate_2_leg2 + rate_3_leg1;
+        let t475 = minus_rate_2_leg3 + rate_3_leg1;
         Ok([
             [
-                t62 * rate_dot_3_leg1, t216 * t219 - t224 * t227 + t62 * t240,
-                t216 * t227 + t224 * t219 - t62 * t267, -(t216 * t238 + t224 * t232),
+                t109 * rate_dot_3_leg1, t109 * t269 - (t274 * t277 + t282 * t285),
+                t282 * t277 - t274 * t285 - t109 * t313, -(t274 * t266 + t282 * t262),
                 actuator_accelerations[0], 0.0, 0.0, actuator_velocities[0], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[0]), 0.0, 0.0, 1.0, 0.0, 0.0,
-                -(t296 * minus_rate_dot_2_leg1), -(t319 * minus_rate_dot_2_leg2),
-                t354 * rate_dot_2_leg3, 2.9411764705882355 * t298 - t296 * t383, t319 * t391,
-                -(t354 * t400), -::overact::math::signed(t296, minus_rate_2_leg1),
-                ::overact::math::signed(t319, rate_2_leg2),
-                ::overact::math::signed(t354, rate_2_leg3),
-                ::overact::math::signed(t62 - t296, t416),
-                ::overact::math::signed(t62 - t319, t423),
-                ::overact::math::signed(t62 - t354, t430),
+                -(t342 * rate_dot_2_leg1), -(t364 * minus_rate_dot_2_leg2),
+                -(t400 * minus_rate_dot_2_leg3), 2.9411764705882355 * t344 - t342 * t428,
+                -(t364 * t436), -(t400 * t445), -::overact::math::signed(t342, rate_2_leg1),
+                -::overact::math::signed(t364, minus_rate_2_leg2),
+                -::overact::math::signed(t400, minus_rate_2_leg3),
+                ::overact::math::signed(t342 + t109, t461),
+                ::overact::math::signed(t109 - t364, t468),
+                ::overact::math::signed(t109 - t400, t475),
             ],
             [
-                -(t209 * rate_dot_3_leg1), t246 * t219 + t250 * t227 - t209 * t240,
-                t246 * t227 - t250 * t219 + t209 * t267, t250 * t232 - t246 * t238, 0.0,
+                -(t255 * rate_dot_3_leg1), t292 * t277 + t296 * t285 - t255 * t269,
+                t292 * t285 - t296 * t277 + t255 * t313, t292 * t266 + t296 * t262, 0.0,
                 actuator_accelerations[1], 0.0, 0.0, actuator_velocities[1], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[1]), 0.0, 0.0, 1.0, 0.0,
-                t306 * minus_rate_dot_2_leg1, -(t339 * minus_rate_dot_2_leg2),
-                t374 * rate_dot_2_leg3, t306 * t383, t339 * t391 - 2.9411764705882355 * t331,
-                -(t374 * t400), ::overact::math::signed(t306, minus_rate_2_leg1),
-                ::overact::math::signed(t339, rate_2_leg2),
-                ::overact::math::signed(t374, rate_2_leg3),
-                ::overact::math::signed(t306 - t209, t416),
-                -::overact::math::signed(t339 + t209, t423),
-                -::overact::math::signed(t374 + t209, t430),
+                t351 * rate_dot_2_leg1, -(t383 * minus_rate_dot_2_leg2),
+                -(t419 * minus_rate_dot_2_leg3), t351 * t428,
+                -(2.9411764705882355 * t374 + t383 * t436), -(t419 * t445),
+                ::overact::math::signed(t351, rate_2_leg1),
+                -::overact::math::signed(t383, minus_rate_2_leg2),
+                -::overact::math::signed(t419, minus_rate_2_leg3),
+                -::overact::math::signed(t351 + t255, t461),
+                -::overact::math::signed(t383 + t255, t468),
+                -::overact::math::signed(t419 + t255, t475),
             ],
             [
-                t211 * rate_dot_3_leg1, t255 * t219 - t257 * t227 + t211 * t240,
-                t255 * t227 + t257 * t219 - t211 * t267, -(t255 * t238 + t257 * t232), 0.0, 0.0,
+                t257 * rate_dot_3_leg1, t301 * t277 + t303 * t285 + t257 * t269,
+                t301 * t285 - t303 * t277 - t257 * t313, t301 * t266 + t303 * t262, 0.0, 0.0,
                 actuator_accelerations[2], 0.0, 0.0, actuator_velocities[2], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[2]), 0.0, 0.0, 1.0,
-                -(t310 * minus_rate_dot_2_leg1), -(t345 * minus_rate_dot_2_leg2),
-                t380 * rate_dot_2_leg3, -(t310 * t383), t345 * t391,
-                -(2.9411764705882355 * t364 + t380 * t400),
-                -::overact::math::signed(t310, minus_rate_2_leg1),
-                ::overact::math::signed(t345, rate_2_leg2),
-                ::overact::math::signed(t380, rate_2_leg3),
-                ::overact::math::signed(t211 - t310, t416),
-                ::overact::math::signed(t211 - t345, t423),
-                ::overact::math::signed(t211 - t380, t430),
+                t355 * rate_dot_2_leg1, -(t389 * minus_rate_dot_2_leg2),
+                t425 * minus_rate_dot_2_leg3, t355 * t428, -(t389 * t436),
+                t425 * t445 - 2.9411764705882355 * t410, ::overact::math::signed(t355, rate_2_leg1),
+                -::overact::math::signed(t389, minus_rate_2_leg2),
+                ::overact::math::signed(t425, minus_rate_2_leg3),
+                ::overact::math::signed(t257 - t355, t461),
+                ::overact::math::signed(t257 - t389, t468),
+                ::overact::math::signed(t425 + t257, t475),
             ],
         ])
     }
@@ -2565,7 +3628,7 @@ impl Planar3Prr {
     ///
     /// Output: 3.
     ///
-    /// 51 operations (17 additions, 31 multiplications, 3 divisions), 0 square roots, 4 trigonometric pairs, 0 signs, 56 intermediates.
+    /// 101 operations (41 additions, 57 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 103 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2573,34 +3636,58 @@ impl Planar3Prr {
         pose: &[f64; 3],
         torques: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t5 = 1.0 / s2_leg2;
-        let g1_vx_leg2 = (0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2) * t5;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
-        let t14 = 1.0 / s2_leg3;
-        let g1_vx_leg3 = (0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3) * t14;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
-        let g1_vy_leg1 = c2_leg1 / s2_leg1;
-        let minus_g1_vy_leg2 = (0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2) * t5;
-        let minus_g1_vy_leg3 = (0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3) * t14;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let g1_wz_leg1 = 0.08 * c_phi - g1_vy_leg1 * (0.08 * s_phi);
-        let t41 = 0.06928203230275509 * s_phi;
-        let t42 = 0.04 * c_phi;
-        let t45 = 0.04 * s_phi;
-        let t46 = 0.06928203230275509 * c_phi;
-        let g1_wz_leg2 = g1_vx_leg2 * (t41 + t42) - minus_g1_vy_leg2 * (t45 - t46);
-        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * (t46 + t45) + g1_vx_leg3 * (t41 - t42);
+        let t4 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
+        let t6 = pose[0] + t4 + 0.25980762113533157;
+        let t10 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
+        let t12 = pose[1] - t10 + 0.15;
+        let t14 = 0.8660254037844386 * t6 + 0.5 * t12;
+        let t18 = 0.5 * t6 - 0.8660254037844386 * t12;
+        let t25 = 8.650519031141869 * (t18 * t18 - (t6 * t6 + t12 * t12 - 0.1156));
+        ::overact::guard::reach(t25, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t25);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t29 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = (2.5471335405424664 * t14 - 0.5 * minus_s2_leg2) * t29;
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t36 = 0.08 * minus_c23_leg2;
+        let t38 = pose[0] + t36 - 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t43 = 0.08 * minus_s23_leg2;
+        let t45 = pose[1] + t43 + 0.15;
+        let t47 = 0.8660254037844386 * t38 - 0.5 * t45;
+        let t51 = 0.5 * t38 + 0.8660254037844386 * t45;
+        let t58 = 8.650519031141869 * (t51 * t51 - (t38 * t38 + t45 * t45 - 0.1156));
+        ::overact::guard::reach(t58, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t58);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
+        let t62 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = (2.5471335405424664 * t47 - 0.5 * minus_s2_leg3) * t62;
+        let g1_vy_leg3 = (0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t47)
+            * t62;
+        let t71 = 0.08 * c_phi;
+        let t73 = pose[1] + t71 - 0.3;
+        let t74 = 0.08 * s_phi;
+        let t75 = pose[0] - t74;
+        let t76 = t75 * t75;
+        let t81 = 8.650519031141869 * (t76 - (t76 + t73 * t73 - 0.1156));
+        ::overact::guard::reach(t81, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t81);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
+        let g2_vy_leg1 = 2.9411764705882355 / minus_s2_leg1;
+        let minus_g1_vy_leg1 = t73 * g2_vy_leg1;
+        let minus_g1_vy_leg2 = (0.8660254037844386 * minus_s2_leg2
+            + 1.4705882352941178 * t14) * t29;
+        let g1_wz_leg1 = t74 * minus_g1_vy_leg1 + t71;
+        let minus_g1_wz_leg2 = t4 * minus_g1_vy_leg2 + t10 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = t36 * g1_vy_leg3 + t43 * minus_g1_vx_leg3;
         Ok([
-            g1_vx_leg2 * torques[1] - torques[0] + g1_vx_leg3 * torques[2],
-            g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
-                - minus_g1_vy_leg3 * torques[2],
-            g1_wz_leg1 * torques[0] + g1_wz_leg2 * torques[1]
-                - minus_g1_wz_leg3 * torques[2],
+            -(torques[0] + minus_g1_vx_leg2 * torques[1]
+                + minus_g1_vx_leg3 * torques[2]),
+            g1_vy_leg3 * torques[2]
+                - (minus_g1_vy_leg1 * torques[0] + minus_g1_vy_leg2 * torques[1]),
+            g1_wz_leg1 * torques[0] - minus_g1_wz_leg2 * torques[1]
+                + g1_wz_leg3 * torques[2],
         ])
     }
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
@@ -2626,7 +3713,7 @@ impl Planar3Prr {
     ///
     /// Output: 3.
     ///
-    /// 366 operations (150 additions, 210 multiplications, 6 divisions), 0 square roots, 4 trigonometric pairs, 9 signs, 380 intermediates.
+    /// 417 operations (174 additions, 237 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 9 signs, 428 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2636,8 +3723,196 @@ impl Planar3Prr {
         acceleration: &[f64; 3],
         parameters: &[f64; 37],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::inverse_dynamics_from_joints(pose, joints, twist, acceleration, parameters)
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let t2 = 0.08 * s_phi;
+        let t3 = 0.08 * c_phi;
+        let t5 = pose[1] + t3 - 0.3;
+        let t6 = pose[0] - t2;
+        let t7 = t6 * t6;
+        let t12 = 8.650519031141869 * (t7 - (t7 + t5 * t5 - 0.1156));
+        ::overact::guard::reach(t12, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t12);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
+        let t14 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t14;
+        let minus_g1_vy_leg1 = t5 * g2_vy_leg1;
+        let g1_wz_leg1 = t2 * minus_g1_vy_leg1 + t3;
+        let t22 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
+        let t24 = pose[0] + t22 + 0.25980762113533157;
+        let t28 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
+        let t30 = pose[1] - t28 + 0.15;
+        let t32 = 0.5 * t24 - 0.8660254037844386 * t30;
+        let t39 = 8.650519031141869 * (t32 * t32 - (t24 * t24 + t30 * t30 - 0.1156));
+        ::overact::guard::reach(t39, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t39);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t44 = 0.8660254037844386 * t24 + 0.5 * t30;
+        let t46 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t44;
+        let t47 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t46 * t47;
+        let t52 = 2.5471335405424664 * t44 - 0.5 * minus_s2_leg2;
+        let minus_g1_vx_leg2 = t52 * t47;
+        let minus_g1_wz_leg2 = t22 * minus_g1_vy_leg2 + t28 * minus_g1_vx_leg2;
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t61 = 0.08 * minus_c23_leg2;
+        let t63 = pose[0] + t61 - 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t68 = 0.08 * minus_s23_leg2;
+        let t70 = pose[1] + t68 + 0.15;
+        let t72 = 0.5 * t63 + 0.8660254037844386 * t70;
+        let t79 = 8.650519031141869 * (t72 * t72 - (t63 * t63 + t70 * t70 - 0.1156));
+        ::overact::guard::reach(t79, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t79);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
+        let t84 = 0.8660254037844386 * t63 - 0.5 * t70;
+        let t86 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t84;
+        let t87 = 1.0 / minus_s2_leg3;
+        let g1_vy_leg3 = t86 * t87;
+        let t92 = 2.5471335405424664 * t84 - 0.5 * minus_s2_leg3;
+        let minus_g1_vx_leg3 = t92 * t87;
+        let g1_wz_leg3 = t61 * g1_vy_leg3 + t68 * minus_g1_vx_leg3;
+        let t101 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
+            - minus_g1_vx_leg3 * g1_wz_leg3;
+        let t105 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + minus_g1_vx_leg3 * minus_g1_vx_leg3;
+        ::overact::guard::platform(t105, 2.5803571428571423, "actuators")?;
+        let t106 = 1.0 / t105;
+        let t107 = t101 * t106;
+        let t118 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            - minus_g1_vx_leg3 * g1_vy_leg3;
+        let t120 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
+            + g1_vy_leg3 * g1_wz_leg3 - t118 * t107;
+        let t126 = t118 * t106;
+        let t128 = minus_g1_vy_leg1 * minus_g1_vy_leg1
+            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3
+            - t118 * t126;
+        ::overact::guard::platform(t128, 2.580357142857142, "actuators")?;
+        let t129 = 1.0 / t128;
+        let t130 = t120 * t129;
+        let t132 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 - t101 * t107 - t120 * t130;
+        ::overact::guard::platform(t132, 0.0192, "actuators")?;
+        let t135 = t2 * twist[2];
+        let t140 = t3 * twist[2];
+        let t142 = acceleration[1] - t2 * acceleration[2] - twist[2] * t140;
+        let t145 = twist[1] - t135;
+        let rate_2_leg1 = g2_vy_leg1 * t145;
+        let t147 = rate_2_leg1 * rate_2_leg1;
+        let minus_rate_dot_1_leg1 = acceleration[0] - t3 * acceleration[2]
+            + twist[2] * t135 + minus_g1_vy_leg1 * t142 + t147 * (0.34 * t14);
+        let minus_rate_1_leg1 = twist[0] - t140 + minus_g1_vy_leg1 * t145;
+        let c2_leg1 = 2.9411764705882355 * t5;
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t142 + t5 * t147);
+        let t169 = c2_leg1 * minus_rate_dot_1_leg1;
+        let t173 = minus_s2_leg1 * minus_rate_dot_1_leg1;
+        let t180 = c2_leg1
+            * (parameters[6] * rate_dot_2_leg1 - parameters[7] * t147
+                - parameters[8] * t169)
+            - minus_s2_leg1
+                * (parameters[8] * t173
+                    - (parameters[6] * t147 + parameters[7] * rate_dot_2_leg1));
+        let t181 = parameters[4]
+            - (parameters[1] * minus_rate_dot_1_leg1 + parameters[2] * minus_rate_1_leg1
+                + ::overact::math::signed(parameters[3], minus_rate_1_leg1))
+            - parameters[0] * minus_rate_dot_1_leg1 + t180;
+        let minus_g2_wz_leg1 = 0.23529411764705882 * (s_phi * t14);
+        let t193 = ::overact::math::signed(parameters[10], twist[2] - rate_2_leg1);
+        let t194 = parameters[5] * rate_dot_2_leg1 - parameters[6] * t169
+            - parameters[7] * t173 + ::overact::math::signed(parameters[9], rate_2_leg1)
+            - t193;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t47;
+        let t199 = t28 * twist[2];
+        let t200 = twist[0] + t199;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t47;
+        let t203 = t22 * twist[2];
+        let t204 = twist[1] + t203;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t200 + minus_g2_vy_leg2 * t204;
+        let t208 = ::overact::math::signed(parameters[21], minus_rate_2_leg2 + twist[2]);
+        let t212 = acceleration[0] + t28 * acceleration[2] - twist[2] * t203;
+        let t217 = acceleration[1] + t22 * acceleration[2] + twist[2] * t199;
+        let t220 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t222 = t52 * t212 + t46 * t217 + 0.34 * t220;
+        let minus_rate_dot_1_leg2 = t47 * t222;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t200 + minus_g1_vy_leg2 * t204;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t47
+            * (0.8660254037844386 * t212 + 0.5 * t217 + t44 * t220);
+        let minus_c2_leg2 = 2.9411764705882355 * t44;
+        let t249 = minus_c2_leg2 * minus_rate_dot_1_leg2;
+        let t256 = minus_s2_leg2
+            * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t220
+                + parameters[19] * t222)
+            + minus_c2_leg2
+                * (parameters[19] * t249
+                    - (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t220));
+        let t257 = parameters[15]
+            - (parameters[12] * minus_rate_dot_1_leg2
+                + parameters[13] * minus_rate_1_leg2
+                + ::overact::math::signed(parameters[14], minus_rate_1_leg2))
+            - parameters[11] * minus_rate_dot_1_leg2 - t256;
+        let minus_g2_wz_leg2 = t22 * minus_g2_vy_leg2 + t28 * minus_g2_vx_leg2;
+        let t269 = parameters[17] * t249 - parameters[16] * minus_rate_dot_2_leg2
+            - parameters[18] * t222
+            - ::overact::math::signed(parameters[20], minus_rate_2_leg2) - t208;
+        let t274 = t61 * twist[2];
+        let t275 = twist[1] + t274;
+        let t277 = t68 * twist[2];
+        let t278 = twist[0] - t277;
+        let rate_1_leg3 = g1_vy_leg3 * t275 - minus_g1_vx_leg3 * t278;
+        let t285 = acceleration[0] - t68 * acceleration[2] - twist[2] * t274;
+        let t290 = acceleration[1] + t61 * acceleration[2] - twist[2] * t277;
+        let g2_vx_leg3 = 2.5471335405424664 * t87;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t87;
+        let rate_2_leg3 = g2_vx_leg3 * t278 - minus_g2_vy_leg3 * t275;
+        let t298 = rate_2_leg3 * rate_2_leg3;
+        let t300 = t92 * t285 - t86 * t290 + 0.34 * t298;
+        let minus_rate_dot_1_leg3 = t87 * t300;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t87
+            * (0.5 * t290 - 0.8660254037844386 * t285 - t84 * t298);
+        let c2_leg3 = 2.9411764705882355 * t84;
+        let t326 = c2_leg3 * minus_rate_dot_1_leg3;
+        let t330 = minus_s2_leg3
+            * (parameters[29] * minus_rate_dot_2_leg3 - parameters[28] * t298
+                + parameters[30] * t300)
+            + c2_leg3
+                * (parameters[28] * minus_rate_dot_2_leg3 + parameters[29] * t298
+                    + parameters[30] * t326);
+        let t331 = parameters[24] * rate_1_leg3 - parameters[23] * minus_rate_dot_1_leg3
+            + ::overact::math::signed(parameters[25], rate_1_leg3) + parameters[26]
+            - parameters[22] * minus_rate_dot_1_leg3 - t330;
+        let minus_g2_wz_leg3 = 0.11764705882352941 * (minus_c23_leg2 * t87)
+            + 0.2037706832433973 * (minus_s23_leg2 * t87);
+        let t346 = ::overact::math::signed(parameters[32], twist[2] - rate_2_leg3);
+        let t347 = ::overact::math::signed(parameters[31], rate_2_leg3)
+            - (parameters[27] * minus_rate_dot_2_leg3 + parameters[28] * t326
+                + parameters[29] * t300) - t346;
+        let t351 = g1_wz_leg1 * t181 - minus_g2_wz_leg1 * t194 + t193 + t208
+            - (minus_g1_wz_leg2 * t257 + minus_g2_wz_leg2 * t269) + g1_wz_leg3 * t331
+            - minus_g2_wz_leg3 * t347 + t346;
+        let t355 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t360 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t373 = twist[2] * twist[2];
+        let t377 = parameters[36] * t360
+            - (parameters[34] * t373 + acceleration[2] * parameters[35]);
+        let t383 = acceleration[2] * parameters[34] - parameters[35] * t373
+            + parameters[36] * t355;
+        let t386 = g2_vx_leg3 * t347 - minus_g1_vx_leg3 * t331
+            - (t181 + minus_g1_vx_leg2 * t257 + minus_g2_vx_leg2 * t269) + c_phi * t377
+            - s_phi * t383;
+        let t399 = g2_vy_leg1 * t194 - minus_g1_vy_leg1 * t181
+            - (minus_g1_vy_leg2 * t257 + minus_g2_vy_leg2 * t269) + g1_vy_leg3 * t331
+            - minus_g2_vy_leg3 * t347;
+        let t405 = t399 + s_phi * t377 + c_phi * t383 - t386 * t126;
+        let t407 = t351 + acceleration[2] * parameters[33] + parameters[34] * t355
+            - parameters[35] * t360 - t386 * t107 - t130 * t405;
+        let t408 = t407 / t132;
+        let t413 = t129 * t405 - t130 * t408;
+        let t417 = t386 * t106 - t126 * t413 - t107 * t408;
+        Ok([
+            g1_wz_leg1 * t408 - (t417 + minus_g1_vy_leg1 * t413),
+            -(minus_g1_vx_leg2 * t417 + minus_g1_vy_leg2 * t413
+                + minus_g1_wz_leg2 * t408),
+            g1_vy_leg3 * t413 - minus_g1_vx_leg3 * t417 + g1_wz_leg3 * t408,
+        ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -2836,7 +4111,7 @@ impl Planar3Prr {
     ///
     /// Output: 3.
     ///
-    /// 424 operations (175 additions, 243 multiplications, 6 divisions), 0 square roots, 4 trigonometric pairs, 9 signs, 438 intermediates.
+    /// 494 operations (205 additions, 283 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 9 signs, 505 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2848,203 +4123,236 @@ impl Planar3Prr {
         start: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
-        let t2 = 1.0 / s2_leg1;
-        let g1_vy_leg1 = c2_leg1 * t2;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t9 = 0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2;
-        let t10 = 1.0 / s2_leg2;
-        let minus_g1_vy_leg2 = t9 * t10;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
-        let t18 = 0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3;
-        let t19 = 1.0 / s2_leg3;
-        let minus_g1_vy_leg3 = t18 * t19;
-        let t25 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
-        let g1_vx_leg2 = t25 * t10;
-        let t31 = 0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3;
-        let g1_vx_leg3 = t31 * t19;
-        let t34 = g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t38 = 1.0 + g1_vx_leg2 * g1_vx_leg2 + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t38, 2.580357142856278, "actuators")?;
-        ::overact::guard::platform(t38, 2.580357142856278, "actuators")?;
-        ::overact::guard::platform(t38, 2.580357142856278, "actuators")?;
-        let t39 = 1.0 / t38;
-        let t40 = t34 * t39;
-        let t42 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t34 * t40;
-        ::overact::guard::platform(t42, 2.5803571428562737, "actuators")?;
-        ::overact::guard::platform(t42, 2.5803571428562737, "actuators")?;
-        ::overact::guard::platform(t42, 2.5803571428562737, "actuators")?;
-        let t43 = 1.0 / t42;
-        let minus_g2_vy_leg1 = 2.9411764705882355 * t2;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t55 = 0.08 * c_phi;
-        let t56 = 0.08 * s_phi;
-        let g1_wz_leg1 = t55 - g1_vy_leg1 * t56;
-        let t60 = 0.06928203230275509 * s_phi;
-        let t61 = 0.04 * c_phi;
-        let t62 = t60 + t61;
-        let t64 = 0.04 * s_phi;
-        let t65 = 0.06928203230275509 * c_phi;
-        let t66 = t64 - t65;
-        let g1_wz_leg2 = g1_vx_leg2 * t62 - minus_g1_vy_leg2 * t66;
-        let t71 = t65 + t64;
-        let t73 = t60 - t61;
-        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t71 + g1_vx_leg3 * t73;
-        let t81 = g1_vx_leg2 * g1_wz_leg2 - g1_wz_leg1 - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t82 = t81 * t39;
-        let t91 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t34 * t82;
-        let t92 = t91 * t43;
-        let t94 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t81 * t82 - t91 * t92;
-        ::overact::guard::platform(t94, 0.019200000000000002, "actuators")?;
-        ::overact::guard::platform(t94, 0.019200000000000002, "actuators")?;
-        ::overact::guard::platform(t94, 0.019200000000000002, "actuators")?;
-        let t95 = 1.0 / t94;
-        let t104 = g1_vx_leg2 * actuator_velocities[1] - actuator_velocities[0]
-            + g1_vx_leg3 * actuator_velocities[2];
-        let t113 = g1_vy_leg1 * actuator_velocities[0]
-            - minus_g1_vy_leg2 * actuator_velocities[1]
-            - minus_g1_vy_leg3 * actuator_velocities[2] + t104 * t40;
-        let rate_3_leg1 = t95
-            * (g1_wz_leg1 * actuator_velocities[0] + g1_wz_leg2 * actuator_velocities[1]
-                - minus_g1_wz_leg3 * actuator_velocities[2] - t104 * t82 - t92 * t113);
-        let t117 = t56 * rate_3_leg1;
-        let t120 = rate_3_leg1 * (t55 * rate_3_leg1);
-        let t125 = t43 * t113 - t92 * rate_3_leg1;
-        let minus_rate_2_leg1 = minus_g2_vy_leg1 * (t125 - t117);
-        let t128 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_rate_dot_1_leg1 = rate_3_leg1 * t117 + g1_vy_leg1 * t120
-            - t128 * (0.34 * t2);
-        let t132 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let t134 = t66 * rate_3_leg1;
-        let t135 = rate_3_leg1 * t134;
-        let t137 = t62 * rate_3_leg1;
-        let t138 = rate_3_leg1 * t137;
-        let g2_vx_leg2 = 2.5471335405424664 * t10;
-        let t146 = t104 * t39 + t40 * t125 - t82 * rate_3_leg1;
-        let g2_vy_leg2 = 1.4705882352941178 * t10;
-        let rate_2_leg2 = g2_vx_leg2 * (t146 + t137) + g2_vy_leg2 * (t125 + t134);
-        let t153 = rate_2_leg2 * rate_2_leg2;
-        let t154 = 0.34 * t153;
-        let minus_rate_dot_1_leg2 = t10 * (t25 * t135 + t9 * t138 - t154);
-        let t157 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let t160 = t73 * rate_3_leg1;
-        let t161 = rate_3_leg1 * t160;
-        let t163 = t71 * rate_3_leg1;
-        let t164 = rate_3_leg1 * t163;
-        let g2_vy_leg3 = 1.4705882352941178 * t19;
-        let minus_g2_vx_leg3 = 2.5471335405424664 * t19;
-        let rate_2_leg3 = g2_vy_leg3 * (t125 + t163) - minus_g2_vx_leg3 * (t146 - t160);
-        let t174 = rate_2_leg3 * rate_2_leg3;
-        let t175 = 0.34 * t174;
-        let rate_dot_1_leg3 = t19 * (t18 * t161 - t31 * t164 + t175);
-        let t178 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t184 = g1_vx_leg2 * t157 - t132 + g1_vx_leg3 * t178;
-        let t186 = g1_vy_leg1 * t132 - minus_g1_vy_leg2 * t157 - minus_g1_vy_leg3 * t178
-            + t40 * t184;
-        let rate_dot_3_leg1 = t95
-            * (g1_wz_leg1 * t132 + g1_wz_leg2 * t157 - minus_g1_wz_leg3 * t178
-                - t82 * t184 - t92 * t186);
-        let t199 = t43 * t186 - t92 * rate_dot_3_leg1;
-        let minus_rate_dot_2_leg1 = minus_g2_vy_leg1
-            * (t199 - t56 * rate_dot_3_leg1 - t120 + 0.34 * c2_leg1 * t128);
-        let t210 = s2_leg1 * actuator_accelerations[0];
-        let t214 = c2_leg1 * actuator_accelerations[0];
-        let t221 = s2_leg1
-            * (parameters[7] * minus_rate_dot_2_leg1 - t128 * parameters[6]
-                + parameters[8] * t210)
+        let t2 = 0.08 * s_phi;
+        let t3 = 0.08 * c_phi;
+        let t5 = pose[1] + t3 - 0.3;
+        let t6 = pose[0] - t2;
+        let t7 = t6 * t6;
+        let t12 = 8.650519031141869 * (t7 - (t7 + t5 * t5 - 0.1156));
+        ::overact::guard::reach(t12, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t12);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
+        let t14 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t14;
+        let minus_g1_vy_leg1 = t5 * g2_vy_leg1;
+        let g1_wz_leg1 = t2 * minus_g1_vy_leg1 + t3;
+        let t22 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
+        let t24 = pose[0] + t22 + 0.25980762113533157;
+        let t28 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
+        let t30 = pose[1] - t28 + 0.15;
+        let t32 = 0.5 * t24 - 0.8660254037844386 * t30;
+        let t39 = 8.650519031141869 * (t32 * t32 - (t24 * t24 + t30 * t30 - 0.1156));
+        ::overact::guard::reach(t39, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t39);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t44 = 0.8660254037844386 * t24 + 0.5 * t30;
+        let t46 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t44;
+        let t47 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t46 * t47;
+        let t52 = 2.5471335405424664 * t44 - 0.5 * minus_s2_leg2;
+        let minus_g1_vx_leg2 = t52 * t47;
+        let minus_g1_wz_leg2 = t22 * minus_g1_vy_leg2 + t28 * minus_g1_vx_leg2;
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t61 = 0.08 * minus_c23_leg2;
+        let t63 = pose[0] + t61 - 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t68 = 0.08 * minus_s23_leg2;
+        let t70 = pose[1] + t68 + 0.15;
+        let t72 = 0.5 * t63 + 0.8660254037844386 * t70;
+        let t79 = 8.650519031141869 * (t72 * t72 - (t63 * t63 + t70 * t70 - 0.1156));
+        ::overact::guard::reach(t79, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t79);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
+        let t84 = 0.8660254037844386 * t63 - 0.5 * t70;
+        let t86 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t84;
+        let t87 = 1.0 / minus_s2_leg3;
+        let g1_vy_leg3 = t86 * t87;
+        let t92 = 2.5471335405424664 * t84 - 0.5 * minus_s2_leg3;
+        let minus_g1_vx_leg3 = t92 * t87;
+        let g1_wz_leg3 = t61 * g1_vy_leg3 + t68 * minus_g1_vx_leg3;
+        let t101 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
+            - minus_g1_vx_leg3 * g1_wz_leg3;
+        let t105 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + minus_g1_vx_leg3 * minus_g1_vx_leg3;
+        ::overact::guard::platform(t105, 2.5803571428571423, "actuators")?;
+        ::overact::guard::platform(t105, 2.5803571428571423, "actuators")?;
+        ::overact::guard::platform(t105, 2.5803571428571423, "actuators")?;
+        let t106 = 1.0 / t105;
+        let t107 = t101 * t106;
+        let t118 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            - minus_g1_vx_leg3 * g1_vy_leg3;
+        let t120 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
+            + g1_vy_leg3 * g1_wz_leg3 - t118 * t107;
+        let t126 = t118 * t106;
+        let t128 = minus_g1_vy_leg1 * minus_g1_vy_leg1
+            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3
+            - t118 * t126;
+        ::overact::guard::platform(t128, 2.580357142857142, "actuators")?;
+        ::overact::guard::platform(t128, 2.580357142857142, "actuators")?;
+        ::overact::guard::platform(t128, 2.580357142857142, "actuators")?;
+        let t129 = 1.0 / t128;
+        let t130 = t120 * t129;
+        let t132 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 - t101 * t107 - t120 * t130;
+        ::overact::guard::platform(t132, 0.0192, "actuators")?;
+        ::overact::guard::platform(t132, 0.0192, "actuators")?;
+        ::overact::guard::platform(t132, 0.0192, "actuators")?;
+        let t133 = 1.0 / t132;
+        let t150 = actuator_velocities[0] + minus_g1_vx_leg2 * actuator_velocities[1]
+            + minus_g1_vx_leg3 * actuator_velocities[2];
+        let t152 = g1_vy_leg3 * actuator_velocities[2]
+            - (minus_g1_vy_leg1 * actuator_velocities[0]
+                + minus_g1_vy_leg2 * actuator_velocities[1]) + t150 * t126;
+        let rate_3_leg1 = t133
+            * (g1_wz_leg1 * actuator_velocities[0]
+                - minus_g1_wz_leg2 * actuator_velocities[1]
+                + g1_wz_leg3 * actuator_velocities[2] + t150 * t107 - t130 * t152);
+        let t165 = t129 * t152 - t130 * rate_3_leg1;
+        let t166 = t2 * rate_3_leg1;
+        let rate_2_leg1 = g2_vy_leg1 * (t165 - t166);
+        let t169 = rate_2_leg1 * rate_2_leg1;
+        let t171 = t68 * rate_3_leg1;
+        let t172 = rate_3_leg1 * t171;
+        let t174 = t61 * rate_3_leg1;
+        let t175 = rate_3_leg1 * t174;
+        let g2_vx_leg3 = 2.5471335405424664 * t87;
+        let t183 = t150 * t106 + t126 * t165 + t107 * rate_3_leg1;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t87;
+        let minus_rate_2_leg3 = g2_vx_leg3 * (t183 + t171)
+            + minus_g2_vy_leg3 * (t165 + t174);
+        let t190 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t191 = 0.34 * t190;
+        let minus_rate_dot_1_leg3 = t87 * (t86 * t172 - t92 * t175 + t191);
+        let t194 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let t198 = rate_3_leg1 * (t3 * rate_3_leg1);
+        let minus_rate_dot_1_leg1 = rate_3_leg1 * t166 - minus_g1_vy_leg1 * t198
+            + t169 * (0.34 * t14);
+        let t204 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let t206 = t22 * rate_3_leg1;
+        let t207 = rate_3_leg1 * t206;
+        let t209 = t28 * rate_3_leg1;
+        let t210 = rate_3_leg1 * t209;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t47;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t47;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (t209 - t183)
+            + minus_g2_vy_leg2 * (t165 + t206);
+        let t220 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t221 = 0.34 * t220;
+        let rate_dot_1_leg2 = t47 * (t52 * t207 - t46 * t210 - t221);
+        let t224 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let t231 = t204 + minus_g1_vx_leg2 * t224 + minus_g1_vx_leg3 * t194;
+        let t233 = g1_vy_leg3 * t194
+            - (minus_g1_vy_leg1 * t204 + minus_g1_vy_leg2 * t224) + t126 * t231;
+        let rate_dot_3_leg1 = t133
+            * (g1_wz_leg1 * t204 - minus_g1_wz_leg2 * t224 + g1_wz_leg3 * t194
+                + t107 * t231 - t130 * t233);
+        let t246 = t129 * t233 - t130 * rate_dot_3_leg1;
+        let t250 = t5 * t169;
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t246 - t2 * rate_dot_3_leg1 - t198 + t250);
+        let t255 = minus_s2_leg1 * actuator_accelerations[0];
+        let c2_leg1 = 2.9411764705882355 * t5;
+        let t263 = c2_leg1 * actuator_accelerations[0];
+        let t267 = minus_s2_leg1
+            * (t169 * parameters[6] + parameters[7] * rate_dot_2_leg1
+                + parameters[8] * t255)
             + c2_leg1
-                * (parameters[8] * t214
-                    - (parameters[6] * minus_rate_dot_2_leg1 + t128 * parameters[7]));
-        let t222 = actuator_accelerations[0] * parameters[0]
+                * (parameters[6] * rate_dot_2_leg1 - t169 * parameters[7]
+                    + parameters[8] * t263);
+        let t268 = actuator_accelerations[0] * parameters[0]
             + actuator_accelerations[0] * parameters[1]
             + actuator_velocities[0] * parameters[2]
             + ::overact::math::signed(parameters[3], actuator_velocities[0])
-            + parameters[4] + t221;
-        let t232 = ::overact::math::signed(
-            parameters[10],
-            minus_rate_2_leg1 + rate_3_leg1,
+            + parameters[4] + t267;
+        let minus_g2_wz_leg1 = 0.23529411764705882 * (s_phi * t14);
+        let t280 = ::overact::math::signed(parameters[10], rate_3_leg1 - rate_2_leg1);
+        let t281 = parameters[5] * rate_dot_2_leg1 + parameters[6] * t263
+            + parameters[7] * t255 + ::overact::math::signed(parameters[9], rate_2_leg1)
+            - t280;
+        let minus_g2_wz_leg2 = t22 * minus_g2_vy_leg2 + t28 * minus_g2_vx_leg2;
+        let t294 = t106 * t231 + t126 * t246 + t107 * rate_dot_3_leg1;
+        let t296 = t28 * rate_dot_3_leg1 - t294 - t207;
+        let t300 = t246 + t22 * rate_dot_3_leg1 + t210;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t47
+            * (0.8660254037844386 * t296 + 0.5 * t300 + t44 * t220);
+        let minus_c2_leg2 = 2.9411764705882355 * t44;
+        let t308 = minus_c2_leg2 * actuator_accelerations[1];
+        let t314 = t52 * t296 + t46 * t300 + t221;
+        let t320 = ::overact::math::signed(
+            parameters[21],
+            minus_rate_2_leg2 + rate_3_leg1,
         );
-        let t233 = parameters[6] * t214 - parameters[5] * minus_rate_dot_2_leg1
-            - parameters[7] * t210
-            - ::overact::math::signed(parameters[9], minus_rate_2_leg1) - t232;
-        let t236 = c2_leg2 * actuator_accelerations[1];
-        let t245 = t39 * t184 + t40 * t199 - t82 * rate_dot_3_leg1;
-        let t248 = t245 + t62 * rate_dot_3_leg1 - t135;
-        let t252 = t199 + t66 * rate_dot_3_leg1 + t138;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t10
-            * (t153 * (0.34 * c2_leg2) - (0.8660254037844386 * t248 + 0.5 * t252));
-        let t262 = t9 * t252 - t25 * t248 - t154;
-        let t268 = ::overact::math::signed(parameters[21], rate_3_leg1 - rate_2_leg2);
-        let t269 = parameters[17] * t236 - parameters[16] * minus_rate_dot_2_leg2
-            + parameters[18] * t262
-            + ::overact::math::signed(parameters[20], rate_2_leg2) - t268;
-        let t291 = s2_leg2
-            * (parameters[18] * minus_rate_dot_2_leg2 - t153 * parameters[17]
-                - parameters[19] * t262)
-            + c2_leg2
-                * (parameters[19] * t236
-                    - (parameters[17] * minus_rate_dot_2_leg2 + t153 * parameters[18]));
-        let t292 = actuator_accelerations[1] * parameters[11]
+        let t321 = parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t308
+            + parameters[18] * t314
+            + ::overact::math::signed(parameters[20], minus_rate_2_leg2) + t320;
+        let t343 = minus_c2_leg2
+            * (parameters[17] * minus_rate_dot_2_leg2 + t220 * parameters[18]
+                + parameters[19] * t308)
+            - minus_s2_leg2
+                * (parameters[18] * minus_rate_dot_2_leg2 - t220 * parameters[17]
+                    + parameters[19] * t314);
+        let t344 = actuator_accelerations[1] * parameters[11]
             + actuator_accelerations[1] * parameters[12]
             + actuator_velocities[1] * parameters[13]
             + ::overact::math::signed(parameters[14], actuator_velocities[1])
-            + parameters[15] + t291;
-        let t299 = t199 + t71 * rate_dot_3_leg1 - t161;
-        let t303 = t245 - t73 * rate_dot_3_leg1 - t164;
-        let rate_dot_2_leg3 = 2.9411764705882355 * t19
-            * (0.5 * t299 - 0.8660254037844386 * t303 - t174 * (0.34 * c2_leg3));
-        let t311 = c2_leg3 * actuator_accelerations[2];
-        let t317 = t31 * t303 - t18 * t299 + t175;
-        let t323 = ::overact::math::signed(parameters[32], rate_3_leg1 - rate_2_leg3);
-        let t324 = parameters[27] * rate_dot_2_leg3 + parameters[28] * t311
-            - parameters[29] * t317
-            + ::overact::math::signed(parameters[31], rate_2_leg3) - t323;
-        let t346 = s2_leg3
-            * (parameters[30] * t317
-                - (t174 * parameters[28] + parameters[29] * rate_dot_2_leg3))
-            + c2_leg3
-                * (parameters[28] * rate_dot_2_leg3 - t174 * parameters[29]
-                    + parameters[30] * t311);
-        let t347 = actuator_accelerations[2] * parameters[22]
+            + parameters[15] + t343;
+        let c2_leg3 = 2.9411764705882355 * t84;
+        let t358 = c2_leg3 * actuator_accelerations[2];
+        let t363 = t294 + t68 * rate_dot_3_leg1 + t175;
+        let t367 = t246 + t61 * rate_dot_3_leg1 - t172;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t87
+            * (0.8660254037844386 * t363 + 0.5 * t367 - t84 * t190);
+        let t384 = t191 - (t92 * t363 + t86 * t367);
+        let t388 = c2_leg3
+            * (parameters[30] * t358
+                - (parameters[28] * minus_rate_dot_2_leg3 + t190 * parameters[29]))
+            - minus_s2_leg3
+                * (parameters[29] * minus_rate_dot_2_leg3 - t190 * parameters[28]
+                    + parameters[30] * t384);
+        let t389 = actuator_accelerations[2] * parameters[22]
             + actuator_accelerations[2] * parameters[23]
             + actuator_velocities[2] * parameters[24]
             + ::overact::math::signed(parameters[25], actuator_velocities[2])
-            + parameters[26] + t346;
-        let t350 = g1_vy_leg1 * t222 - minus_g2_vy_leg1 * t233 + g2_vy_leg2 * t269
-            - minus_g1_vy_leg2 * t292 + g2_vy_leg3 * t324 - minus_g1_vy_leg3 * t347;
-        let t353 = c_phi * t245 + s_phi * t199;
-        let t355 = rate_3_leg1 * rate_3_leg1;
-        let t359 = parameters[36] * t353
-            - (t355 * parameters[34] + rate_dot_3_leg1 * parameters[35]);
-        let t366 = c_phi * t199 - s_phi * t245;
-        let t368 = rate_dot_3_leg1 * parameters[34] - t355 * parameters[35]
-            + parameters[36] * t366;
-        let t383 = g1_vx_leg2 * t292 + g2_vx_leg2 * t269 - t222 + g1_vx_leg3 * t347
-            - minus_g2_vx_leg3 * t324 + c_phi * t359 - s_phi * t368;
-        let t385 = t350 + s_phi * t359 + c_phi * t368 + t40 * t383;
-        let g2_wz_leg1 = 0.23529411764705882 * (s_phi * t2);
-        let g2_wz_leg2 = g2_vy_leg2 * t66 + g2_vx_leg2 * t62;
-        let g2_wz_leg3 = g2_vy_leg3 * t71 + minus_g2_vx_leg3 * t73;
-        let t408 = g1_wz_leg1 * t222 + g2_wz_leg1 * t233 + t232 + g1_wz_leg2 * t292
-            + g2_wz_leg2 * t269 + t268 + g2_wz_leg3 * t324 - minus_g1_wz_leg3 * t347
-            + t323;
-        let t418 = t408 + rate_dot_3_leg1 * parameters[33] + parameters[34] * t366
-            - parameters[35] * t353 - t82 * t383 - t92 * t385;
-        let t419 = t95 * t418;
-        let t421 = t43 * t385 - t92 * t419;
-        let t427 = t39 * t383 + t40 * t421 - t82 * t419;
+            + parameters[26] + t388;
+        let minus_g2_wz_leg3 = 0.11764705882352941 * (minus_c23_leg2 * t87)
+            + 0.2037706832433973 * (minus_s23_leg2 * t87);
+        let t404 = ::overact::math::signed(
+            parameters[32],
+            minus_rate_2_leg3 + rate_3_leg1,
+        );
+        let t405 = parameters[28] * t358 - parameters[27] * minus_rate_dot_2_leg3
+            - parameters[29] * t384
+            - ::overact::math::signed(parameters[31], minus_rate_2_leg3) - t404;
+        let t409 = g1_wz_leg1 * t268 - minus_g2_wz_leg1 * t281 + t280
+            + minus_g2_wz_leg2 * t321 - minus_g1_wz_leg2 * t344 + t320
+            + g1_wz_leg3 * t389 - minus_g2_wz_leg3 * t405 + t404;
+        let t413 = s_phi * t294 + c_phi * t246;
+        let t418 = s_phi * t246 - c_phi * t294;
+        let c3_leg1 = 2.9411764705882355 * (s_phi * t5) + c_phi * minus_s2_leg1;
+        let rate_dot_2_leg1_2 = g2_vy_leg1 * (t250 - t198);
+        let s3_leg1 = s_phi * minus_s2_leg1 - 2.9411764705882355 * (c_phi * t5);
+        let t449 = 12.5
+            * (c3_leg1 * (0.34 * rate_dot_2_leg1_2 - c2_leg1 * minus_rate_dot_1_leg1)
+                - s3_leg1 * (minus_s2_leg1 * minus_rate_dot_1_leg1 - 0.34 * t169));
+        let t454 = t449 * parameters[34] - rate_dot_3_leg1 * parameters[35]
+            + parameters[36] * t418;
+        let t460 = rate_dot_3_leg1 * parameters[34] + t449 * parameters[35]
+            + parameters[36] * t413;
+        let t463 = minus_g2_vx_leg2 * t321 - minus_g1_vx_leg2 * t344 - t268
+            + g2_vx_leg3 * t405 - minus_g1_vx_leg3 * t389 + c_phi * t454 - s_phi * t460;
+        let t476 = g2_vy_leg1 * t281 - minus_g1_vy_leg1 * t268 + minus_g2_vy_leg2 * t321
+            - minus_g1_vy_leg2 * t344 + g1_vy_leg3 * t389 - minus_g2_vy_leg3 * t405;
+        let t482 = t476 + s_phi * t454 + c_phi * t460 - t126 * t463;
+        let t484 = t409 + rate_dot_3_leg1 * parameters[33] + parameters[34] * t413
+            - parameters[35] * t418 - t107 * t463 - t130 * t482;
+        let t485 = t133 * t484;
+        let t490 = t129 * t482 - t130 * t485;
+        let t494 = t106 * t463 - t126 * t490 - t107 * t485;
         Ok([
-            g1_vy_leg1 * t421 - t427 + g1_wz_leg1 * t419,
-            g1_vx_leg2 * t427 - minus_g1_vy_leg2 * t421 + g1_wz_leg2 * t419,
-            g1_vx_leg3 * t427 - minus_g1_vy_leg3 * t421 - minus_g1_wz_leg3 * t419,
+            g1_wz_leg1 * t485 - (t494 + minus_g1_vy_leg1 * t490),
+            -(minus_g1_vx_leg2 * t494 + minus_g1_vy_leg2 * t490
+                + minus_g1_wz_leg2 * t485),
+            g1_vy_leg3 * t490 - minus_g1_vx_leg3 * t494 + g1_wz_leg3 * t485,
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -3055,7 +4363,7 @@ impl Planar3Prr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 280 operations (107 additions, 170 multiplications, 3 divisions), 0 square roots, 4 trigonometric pairs, 0 signs, 282 intermediates.
+    /// 338 operations (132 additions, 203 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 337 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3063,119 +4371,146 @@ impl Planar3Prr {
         pose: &[f64; 3],
         parameters: &[f64; 37],
     ) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t4 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
-        let t5 = 1.0 / s2_leg2;
-        let g1_vx_leg2 = t4 * t5;
-        let g2_vx_leg2 = 2.5471335405424664 * t5;
-        let t12 = c2_leg2 * g1_vx_leg2;
-        let t21 = g1_vx_leg2 * parameters[12] + g1_vx_leg2 * parameters[11]
-            + c2_leg2 * (g2_vx_leg2 * parameters[17] + parameters[19] * t12)
-            - s2_leg2 * (g2_vx_leg2 * parameters[18] - t4 * parameters[19]);
-        let t32 = g1_vx_leg2 * t21
-            + g2_vx_leg2
-                * (g2_vx_leg2 * parameters[16] + parameters[17] * t12
-                    - t4 * parameters[18]) + parameters[1] + parameters[0]
-            + parameters[8];
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
-        let t37 = 0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3;
-        let t38 = 1.0 / s2_leg3;
-        let g1_vx_leg3 = t37 * t38;
-        let minus_g2_vx_leg3 = 2.5471335405424664 * t38;
-        let t48 = c2_leg3 * g1_vx_leg3;
-        let t54 = g1_vx_leg3 * parameters[22] + g1_vx_leg3 * parameters[23]
-            + s2_leg3 * (t37 * parameters[30] + minus_g2_vx_leg3 * parameters[29])
-            + c2_leg3 * (parameters[30] * t48 - minus_g2_vx_leg3 * parameters[28]);
-        let t64 = t32 + g1_vx_leg3 * t54
-            - minus_g2_vx_leg3
-                * (parameters[28] * t48 - minus_g2_vx_leg3 * parameters[27]
-                    - t37 * parameters[29]) + parameters[36];
-        let g2_vy_leg2 = 1.4705882352941178 * t5;
-        let t69 = 0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2;
-        let minus_g1_vy_leg2 = t69 * t5;
-        let t71 = c2_leg2 * minus_g1_vy_leg2;
-        let t83 = c2_leg2 * (g2_vy_leg2 * parameters[17] - parameters[19] * t71)
-            - s2_leg2 * (g2_vy_leg2 * parameters[18] + t69 * parameters[19])
-            - (minus_g1_vy_leg2 * parameters[12] + minus_g1_vy_leg2 * parameters[11]);
-        let t89 = g2_vy_leg2 * parameters[16] - parameters[17] * t71
-            + t69 * parameters[18];
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
-        let t94 = 1.0 / s2_leg1;
-        let g1_vy_leg1 = c2_leg1 * t94;
-        let minus_g2_vy_leg1 = 2.9411764705882355 * t94;
-        let t105 = c2_leg1 * g1_vy_leg1;
-        let t110 = g1_vy_leg1 * parameters[1] + g1_vy_leg1 * parameters[0]
-            + s2_leg1 * (minus_g2_vy_leg1 * parameters[7] + c2_leg1 * parameters[8])
-            - c2_leg1 * (minus_g2_vy_leg1 * parameters[6] - parameters[8] * t105);
-        let g2_vy_leg3 = 1.4705882352941178 * t38;
-        let t116 = 0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3;
-        let minus_g1_vy_leg3 = t116 * t38;
-        let t118 = c2_leg3 * minus_g1_vy_leg3;
-        let t130 = c2_leg3 * (g2_vy_leg3 * parameters[28] - parameters[30] * t118)
-            - s2_leg3 * (t116 * parameters[30] + g2_vy_leg3 * parameters[29])
-            - (minus_g1_vy_leg3 * parameters[22] + minus_g1_vy_leg3 * parameters[23]);
-        let t136 = g2_vy_leg3 * parameters[27] - parameters[28] * t118
-            + t116 * parameters[29];
-        let t139 = g1_vx_leg2 * t83 + g2_vx_leg2 * t89 - t110 + g1_vx_leg3 * t130
-            - minus_g2_vx_leg3 * t136;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t142 = 0.06928203230275509 * s_phi;
-        let t143 = 0.04 * c_phi;
-        let t144 = t142 + t143;
-        let t146 = 0.04 * s_phi;
-        let t147 = 0.06928203230275509 * c_phi;
-        let t148 = t146 - t147;
-        let g1_wz_leg2 = g1_vx_leg2 * t144 - minus_g1_vy_leg2 * t148;
-        let g2_wz_leg2 = g2_vy_leg2 * t148 + g2_vx_leg2 * t144;
-        let t158 = c2_leg2 * g1_wz_leg2;
-        let t165 = t69 * t148 - t4 * t144;
-        let t170 = g1_wz_leg2 * parameters[12] + g1_wz_leg2 * parameters[11]
-            + c2_leg2 * (g2_wz_leg2 * parameters[17] + parameters[19] * t158)
-            - s2_leg2 * (g2_wz_leg2 * parameters[18] + parameters[19] * t165);
-        let t176 = g2_wz_leg2 * parameters[16] + parameters[17] * t158
-            + parameters[18] * t165;
-        let g1_wz_leg1 = 0.08 * c_phi - g1_vy_leg1 * (0.08 * s_phi);
-        let t186 = s2_leg1 * g1_wz_leg1;
-        let g2_wz_leg1 = 0.23529411764705882 * (s_phi * t94);
-        let t194 = c2_leg1 * g1_wz_leg1;
-        let t199 = g1_wz_leg1 * parameters[1] + g1_wz_leg1 * parameters[0]
-            + s2_leg1 * (parameters[8] * t186 - g2_wz_leg1 * parameters[7])
-            + c2_leg1 * (g2_wz_leg1 * parameters[6] + parameters[8] * t194);
-        let t201 = t147 + t146;
-        let t203 = t142 - t143;
-        let g2_wz_leg3 = g2_vy_leg3 * t201 + minus_g2_vx_leg3 * t203;
-        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t201 + g1_vx_leg3 * t203;
-        let t210 = c2_leg3 * minus_g1_wz_leg3;
-        let t216 = t37 * t203 + t116 * t201;
-        let t225 = c2_leg3 * (g2_wz_leg3 * parameters[28] - parameters[30] * t210)
-            - s2_leg3 * (parameters[30] * t216 + g2_wz_leg3 * parameters[29])
-            - (minus_g1_wz_leg3 * parameters[22] + minus_g1_wz_leg3 * parameters[23]);
-        let t231 = g2_wz_leg3 * parameters[27] - parameters[28] * t210
-            + parameters[29] * t216;
-        let t238 = g1_vx_leg2 * t170 + g2_vx_leg2 * t176 - t199 + g1_vx_leg3 * t225
-            - minus_g2_vx_leg3 * t231
-            - (c_phi * parameters[35] + s_phi * parameters[34]);
-        let t250 = g1_vy_leg1 * t110
-            + minus_g2_vy_leg1
-                * (c2_leg1 * parameters[7] + minus_g2_vy_leg1 * parameters[5]
-                    - parameters[6] * t105) + g2_vy_leg2 * t89 - minus_g1_vy_leg2 * t83;
-        let t261 = g2_wz_leg1 * parameters[5] + parameters[6] * t194
-            - parameters[7] * t186;
-        let t271 = g1_vy_leg1 * t199 - minus_g2_vy_leg1 * t261 + g2_vy_leg2 * t176
-            - minus_g1_vy_leg2 * t170 + g2_vy_leg3 * t231 - minus_g1_vy_leg3 * t225;
-        let t275 = t271 + c_phi * parameters[34] - s_phi * parameters[35];
-        let t286 = g1_wz_leg1 * t199 + g2_wz_leg1 * t261 + g1_wz_leg2 * t170
-            + g2_wz_leg2 * t176 + g2_wz_leg3 * t231 - minus_g1_wz_leg3 * t225;
+        let t4 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
+        let t6 = pose[0] + t4 + 0.25980762113533157;
+        let t10 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
+        let t12 = pose[1] - t10 + 0.15;
+        let t14 = 0.5 * t6 - 0.8660254037844386 * t12;
+        let t21 = 8.650519031141869 * (t14 * t14 - (t6 * t6 + t12 * t12 - 0.1156));
+        ::overact::guard::reach(t21, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t21);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t23 = 1.0 / minus_s2_leg2;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t23;
+        let t27 = 0.8660254037844386 * t6 + 0.5 * t12;
+        let minus_c2_leg2 = 2.9411764705882355 * t27;
+        let t31 = 2.5471335405424664 * t27 - 0.5 * minus_s2_leg2;
+        let minus_g1_vx_leg2 = t31 * t23;
+        let t33 = minus_c2_leg2 * minus_g1_vx_leg2;
+        let t52 = minus_g1_vx_leg2 * parameters[12] + minus_g1_vx_leg2 * parameters[11]
+            + minus_s2_leg2 * (minus_g2_vx_leg2 * parameters[18] + t31 * parameters[19])
+            + minus_c2_leg2 * (parameters[19] * t33 - minus_g2_vx_leg2 * parameters[17]);
+        let t57 = minus_g2_vx_leg2
+            * (parameters[17] * t33 - minus_g2_vx_leg2 * parameters[16]
+                - t31 * parameters[18]) - minus_g1_vx_leg2 * t52
+            - (parameters[1] + parameters[0] + parameters[8]);
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t61 = 0.08 * minus_c23_leg2;
+        let t63 = pose[0] + t61 - 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t68 = 0.08 * minus_s23_leg2;
+        let t70 = pose[1] + t68 + 0.15;
+        let t72 = 0.5 * t63 + 0.8660254037844386 * t70;
+        let t79 = 8.650519031141869 * (t72 * t72 - (t63 * t63 + t70 * t70 - 0.1156));
+        ::overact::guard::reach(t79, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t79);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
+        let t81 = 1.0 / minus_s2_leg3;
+        let g2_vx_leg3 = 2.5471335405424664 * t81;
+        let t85 = 0.8660254037844386 * t63 - 0.5 * t70;
+        let c2_leg3 = 2.9411764705882355 * t85;
+        let t89 = 2.5471335405424664 * t85 - 0.5 * minus_s2_leg3;
+        let minus_g1_vx_leg3 = t89 * t81;
+        let t91 = c2_leg3 * minus_g1_vx_leg3;
+        let t110 = minus_g1_vx_leg3 * parameters[23] + minus_g1_vx_leg3 * parameters[22]
+            + minus_s2_leg3 * (t89 * parameters[30] - g2_vx_leg3 * parameters[29])
+            + c2_leg3 * (parameters[30] * t91 - g2_vx_leg3 * parameters[28]);
+        let t114 = parameters[36]
+            - (t57
+                + g2_vx_leg3
+                    * (parameters[28] * t91 - g2_vx_leg3 * parameters[27]
+                        + t89 * parameters[29]) - minus_g1_vx_leg3 * t110);
+        let t115 = 0.08 * c_phi;
+        let t117 = pose[1] + t115 - 0.3;
+        let c2_leg1 = 2.9411764705882355 * t117;
+        let t119 = 0.08 * s_phi;
+        let t120 = pose[0] - t119;
+        let t121 = t120 * t120;
+        let t126 = 8.650519031141869 * (t121 - (t121 + t117 * t117 - 0.1156));
+        ::overact::guard::reach(t126, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t126);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
+        let t128 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t128;
+        let minus_g1_vy_leg1 = t117 * g2_vy_leg1;
+        let t132 = c2_leg1 * minus_g1_vy_leg1;
+        let t144 = c2_leg1 * (g2_vy_leg1 * parameters[6] - parameters[8] * t132)
+            - minus_s2_leg1 * (c2_leg1 * parameters[8] - g2_vy_leg1 * parameters[7])
+            - (minus_g1_vy_leg1 * parameters[1] + minus_g1_vy_leg1 * parameters[0]);
+        let t147 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t27;
+        let minus_g1_vy_leg2 = t147 * t23;
+        let t149 = minus_c2_leg2 * minus_g1_vy_leg2;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t23;
+        let t155 = parameters[17] * t149 - minus_g2_vy_leg2 * parameters[16]
+            - t147 * parameters[18];
+        let t169 = minus_g1_vy_leg2 * parameters[12] + minus_g1_vy_leg2 * parameters[11]
+            + minus_s2_leg2 * (minus_g2_vy_leg2 * parameters[18] + t147 * parameters[19])
+            + minus_c2_leg2
+                * (parameters[19] * t149 - minus_g2_vy_leg2 * parameters[17]);
+        let t175 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t85;
+        let g1_vy_leg3 = t175 * t81;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t81;
+        let t186 = c2_leg3 * g1_vy_leg3;
+        let t191 = g1_vy_leg3 * parameters[23] + g1_vy_leg3 * parameters[22]
+            - (minus_s2_leg3
+                * (minus_g2_vy_leg3 * parameters[29] - t175 * parameters[30])
+                + c2_leg3 * (minus_g2_vy_leg3 * parameters[28] - parameters[30] * t186));
+        let t197 = minus_g2_vy_leg3 * parameters[27] - parameters[28] * t186
+            - t175 * parameters[29];
+        let t200 = t144 + minus_g2_vx_leg2 * t155 - minus_g1_vx_leg2 * t169
+            + minus_g1_vx_leg3 * t191 + g2_vx_leg3 * t197;
+        let g1_wz_leg1 = t119 * minus_g1_vy_leg1 + t115;
+        let t209 = c2_leg1 * g1_wz_leg1;
+        let minus_g2_wz_leg1 = 0.23529411764705882 * (s_phi * t128);
+        let c3_leg1 = 2.9411764705882355 * (s_phi * t117) + c_phi * minus_s2_leg1;
+        let t221 = 0.08 * c3_leg1;
+        let t226 = g1_wz_leg1 * parameters[1] + g1_wz_leg1 * parameters[0]
+            + c2_leg1 * (parameters[8] * t209 - minus_g2_wz_leg1 * parameters[6])
+            - minus_s2_leg1 * (minus_g2_wz_leg1 * parameters[7] - parameters[8] * t221);
+        let minus_g1_wz_leg2 = t4 * minus_g1_vy_leg2 + t10 * minus_g1_vx_leg2;
+        let t230 = minus_c2_leg2 * minus_g1_wz_leg2;
+        let minus_g2_wz_leg2 = t4 * minus_g2_vy_leg2 + t10 * minus_g2_vx_leg2;
+        let t239 = t10 * t31 + t4 * t147;
+        let t241 = parameters[17] * t230 - minus_g2_wz_leg2 * parameters[16]
+            - parameters[18] * t239;
+        let t255 = minus_g1_wz_leg2 * parameters[12] + minus_g1_wz_leg2 * parameters[11]
+            + minus_s2_leg2 * (minus_g2_wz_leg2 * parameters[18] + parameters[19] * t239)
+            + minus_c2_leg2
+                * (parameters[19] * t230 - minus_g2_wz_leg2 * parameters[17]);
+        let g1_wz_leg3 = t61 * g1_vy_leg3 + t68 * minus_g1_vx_leg3;
+        let minus_g2_wz_leg3 = 0.11764705882352941 * (minus_c23_leg2 * t81)
+            + 0.2037706832433973 * (minus_s23_leg2 * t81);
+        let t273 = t68 * t89 + t61 * t175;
+        let t278 = c2_leg3 * g1_wz_leg3;
+        let t283 = g1_wz_leg3 * parameters[23] + g1_wz_leg3 * parameters[22]
+            - (minus_s2_leg3
+                * (minus_g2_wz_leg3 * parameters[29] - parameters[30] * t273)
+                + c2_leg3 * (minus_g2_wz_leg3 * parameters[28] - parameters[30] * t278));
+        let t289 = minus_g2_wz_leg3 * parameters[27] - parameters[28] * t278
+            - parameters[29] * t273;
+        let t293 = c_phi * parameters[35] + s_phi * parameters[34] + t226
+            + minus_g2_vx_leg2 * t241 - minus_g1_vx_leg2 * t255 + minus_g1_vx_leg3 * t283
+            + g2_vx_leg3 * t289;
+        let t305 = g2_vy_leg1
+            * (g2_vy_leg1 * parameters[5] - parameters[6] * t132
+                - c2_leg1 * parameters[7]) - minus_g1_vy_leg1 * t144
+            - (minus_g2_vy_leg2 * t155 - minus_g1_vy_leg2 * t169);
+        let t315 = parameters[6] * t209 - minus_g2_wz_leg1 * parameters[5]
+            + parameters[7] * t221;
+        let t326 = g2_vy_leg1 * t315 - minus_g1_vy_leg1 * t226
+            - (minus_g2_vy_leg2 * t241 - minus_g1_vy_leg2 * t255) + g1_vy_leg3 * t283
+            + minus_g2_vy_leg3 * t289;
+        let t330 = t326 + c_phi * parameters[34] - s_phi * parameters[35];
+        let t341 = g1_wz_leg1 * t226 - minus_g2_wz_leg1 * t315
+            - (minus_g2_wz_leg2 * t241 - minus_g1_wz_leg2 * t255) + g1_wz_leg3 * t283
+            + minus_g2_wz_leg3 * t289;
         Ok([
-            [t64, t139, t238],
+            [t114, -t200, -t293],
             [
-                t139, t250 + g2_vy_leg3 * t136 - minus_g1_vy_leg3 * t130 + parameters[36], t275,
+                -t200, t305 + g1_vy_leg3 * t191 + minus_g2_vy_leg3 * t197 + parameters[36], t330,
             ],
-            [t238, t275, t286 + parameters[33]],
+            [-t293, t330, t341 + parameters[33]],
         ])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -3187,7 +4522,7 @@ impl Planar3Prr {
     ///
     /// Output: 3.
     ///
-    /// 253 operations (99 additions, 151 multiplications, 3 divisions), 0 square roots, 4 trigonometric pairs, 9 signs, 267 intermediates.
+    /// 319 operations (128 additions, 188 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 9 signs, 330 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3196,134 +4531,158 @@ impl Planar3Prr {
         twist: &[f64; 3],
         parameters: &[f64; 37],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t4 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
-        let t5 = 1.0 / s2_leg2;
-        let g1_vx_leg2 = t4 * t5;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t9 = 0.06928203230275509 * s_phi;
-        let t10 = 0.04 * c_phi;
-        let t11 = t9 + t10;
-        let t12 = t11 * twist[2];
-        let t13 = twist[0] + t12;
-        let t17 = 0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2;
-        let minus_g1_vy_leg2 = t17 * t5;
-        let t19 = 0.04 * s_phi;
-        let t20 = 0.06928203230275509 * c_phi;
-        let t21 = t19 - t20;
-        let t22 = t21 * twist[2];
-        let t23 = twist[1] + t22;
-        let rate_1_leg2 = g1_vx_leg2 * t13 - minus_g1_vy_leg2 * t23;
-        let g2_vx_leg2 = 2.5471335405424664 * t5;
-        let g2_vy_leg2 = 1.4705882352941178 * t5;
-        let rate_2_leg2 = g2_vx_leg2 * t13 + g2_vy_leg2 * t23;
-        let t37 = rate_2_leg2 * rate_2_leg2;
-        let t39 = t4 * (twist[2] * t22) + t17 * (twist[2] * t12) - 0.34 * t37;
-        let minus_rate_dot_1_leg2 = t5 * t39;
-        let t51 = 0.08 * c_phi;
-        let t52 = t51 * twist[2];
-        let t53 = twist[2] * t52;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t5
-            * (t37 * (0.34 * c2_leg2) - t53);
-        let t65 = c2_leg2 * minus_rate_dot_1_leg2;
-        let t69 = s2_leg2
-            * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t37
-                - parameters[19] * t39)
-            - c2_leg2
-                * (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t37
-                    + parameters[19] * t65);
-        let t70 = parameters[13] * rate_1_leg2 - parameters[12] * minus_rate_dot_1_leg2
-            + ::overact::math::signed(parameters[14], rate_1_leg2) + parameters[15]
-            - parameters[11] * minus_rate_dot_1_leg2 + t69;
-        let t80 = ::overact::math::signed(parameters[21], twist[2] - rate_2_leg2);
-        let t81 = parameters[18] * t39
-            - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t65)
-            + ::overact::math::signed(parameters[20], rate_2_leg2) - t80;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
-        let t86 = 1.0 / s2_leg1;
-        let g1_vy_leg1 = c2_leg1 * t86;
-        let t88 = 0.08 * s_phi;
-        let t89 = t88 * twist[2];
-        let t90 = twist[1] - t89;
-        let rate_1_leg1 = g1_vy_leg1 * t90 - (twist[0] - t52);
-        let minus_g2_vy_leg1 = 2.9411764705882355 * t86;
-        let minus_rate_2_leg1 = minus_g2_vy_leg1 * t90;
-        let t100 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_rate_dot_1_leg1 = twist[2] * t89 + g1_vy_leg1 * t53
-            - t100 * (0.34 * t86);
-        let minus_rate_dot_2_leg1 = minus_g2_vy_leg1 * (0.34 * c2_leg1 * t100 - t53);
-        let t118 = s2_leg1 * minus_rate_dot_1_leg1;
-        let t125 = c2_leg1 * minus_rate_dot_1_leg1;
-        let t129 = s2_leg1
-            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t100
-                - parameters[8] * t118)
-            - c2_leg1
-                * (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t100
-                    + parameters[8] * t125);
-        let t130 = parameters[2] * rate_1_leg1 - parameters[1] * minus_rate_dot_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4]
-            - parameters[0] * minus_rate_dot_1_leg1 + t129;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
-        let t136 = 0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3;
-        let t137 = 1.0 / s2_leg3;
-        let g1_vx_leg3 = t136 * t137;
-        let t141 = 0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3;
-        let t142 = t9 - t10;
-        let t143 = t142 * twist[2];
-        let t146 = t20 + t19;
-        let t147 = t146 * twist[2];
-        let g2_vy_leg3 = 1.4705882352941178 * t137;
-        let t152 = twist[1] + t147;
-        let minus_g2_vx_leg3 = 2.5471335405424664 * t137;
-        let t155 = twist[0] - t143;
-        let rate_2_leg3 = g2_vy_leg3 * t152 - minus_g2_vx_leg3 * t155;
-        let t158 = rate_2_leg3 * rate_2_leg3;
-        let t160 = t141 * (twist[2] * t143) - t136 * (twist[2] * t147) + 0.34 * t158;
-        let rate_dot_1_leg3 = t137 * t160;
-        let minus_g1_vy_leg3 = t141 * t137;
-        let rate_1_leg3 = g1_vx_leg3 * t155 - minus_g1_vy_leg3 * t152;
-        let rate_dot_2_leg3 = 2.9411764705882355 * t137
-            * (t53 - t158 * (0.34 * c2_leg3));
-        let t188 = c2_leg3 * rate_dot_1_leg3;
-        let t192 = s2_leg3
-            * (parameters[30] * t160
-                - (parameters[28] * t158 + parameters[29] * rate_dot_2_leg3))
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t5 = 0.08 * minus_c23_leg2;
+        let t7 = pose[0] + t5 - 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t12 = 0.08 * minus_s23_leg2;
+        let t14 = pose[1] + t12 + 0.15;
+        let t16 = 0.5 * t7 + 0.8660254037844386 * t14;
+        let t23 = 8.650519031141869 * (t16 * t16 - (t7 * t7 + t14 * t14 - 0.1156));
+        ::overact::guard::reach(t23, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t23);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
+        let t25 = 1.0 / minus_s2_leg3;
+        let g2_vx_leg3 = 2.5471335405424664 * t25;
+        let t27 = t12 * twist[2];
+        let t28 = twist[0] - t27;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t25;
+        let t31 = t5 * twist[2];
+        let t32 = twist[1] + t31;
+        let rate_2_leg3 = g2_vx_leg3 * t28 - minus_g2_vy_leg3 * t32;
+        let t37 = 0.08 * c_phi;
+        let t38 = t37 * twist[2];
+        let t39 = twist[2] * t38;
+        let t42 = 0.8660254037844386 * t7 - 0.5 * t14;
+        let t43 = rate_2_leg3 * rate_2_leg3;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t25 * (t39 - t42 * t43);
+        let c2_leg3 = 2.9411764705882355 * t42;
+        let t51 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t42;
+        let t56 = 2.5471335405424664 * t42 - 0.5 * minus_s2_leg3;
+        let t61 = t51 * (twist[2] * t27) - t56 * (twist[2] * t31) + 0.34 * t43;
+        let minus_rate_dot_1_leg3 = t25 * t61;
+        let t63 = c2_leg3 * minus_rate_dot_1_leg3;
+        let t70 = ::overact::math::signed(parameters[32], twist[2] - rate_2_leg3);
+        let t71 = ::overact::math::signed(parameters[31], rate_2_leg3)
+            - (parameters[27] * minus_rate_dot_2_leg3 + parameters[28] * t63
+                + parameters[29] * t61) - t70;
+        let minus_g1_vx_leg3 = t56 * t25;
+        let g1_vy_leg3 = t51 * t25;
+        let rate_1_leg3 = g1_vy_leg3 * t32 - minus_g1_vx_leg3 * t28;
+        let t98 = minus_s2_leg3
+            * (parameters[29] * minus_rate_dot_2_leg3 - parameters[28] * t43
+                + parameters[30] * t61)
             + c2_leg3
-                * (parameters[28] * rate_dot_2_leg3 - parameters[29] * t158
-                    + parameters[30] * t188);
-        let t193 = parameters[22] * rate_dot_1_leg3 + parameters[23] * rate_dot_1_leg3
-            + parameters[24] * rate_1_leg3
+                * (parameters[28] * minus_rate_dot_2_leg3 + parameters[29] * t43
+                    + parameters[30] * t63);
+        let t99 = parameters[24] * rate_1_leg3 - parameters[23] * minus_rate_dot_1_leg3
             + ::overact::math::signed(parameters[25], rate_1_leg3) + parameters[26]
-            + t192;
-        let t203 = ::overact::math::signed(parameters[32], twist[2] - rate_2_leg3);
-        let t204 = parameters[27] * rate_dot_2_leg3 + parameters[28] * t188
-            - parameters[29] * t160
-            + ::overact::math::signed(parameters[31], rate_2_leg3) - t203;
-        let t208 = twist[2] * twist[2];
-        let t209 = parameters[35] * t208;
-        let t211 = parameters[34] * t208;
-        let t214 = g1_vx_leg2 * t70 + g2_vx_leg2 * t81 - t130 + g1_vx_leg3 * t193
-            - minus_g2_vx_leg3 * t204 + s_phi * t209 - c_phi * t211;
-        let t224 = ::overact::math::signed(parameters[10], minus_rate_2_leg1 + twist[2]);
-        let t225 = parameters[7] * t118
-            - (parameters[5] * minus_rate_dot_2_leg1 + parameters[6] * t125)
-            - ::overact::math::signed(parameters[9], minus_rate_2_leg1) - t224;
-        let t235 = g1_vy_leg1 * t130 - minus_g2_vy_leg1 * t225 + g2_vy_leg2 * t81
-            - minus_g1_vy_leg2 * t70 + g2_vy_leg3 * t204 - minus_g1_vy_leg3 * t193;
-        let g1_wz_leg1 = t51 - g1_vy_leg1 * t88;
-        let g2_wz_leg1 = 0.23529411764705882 * (s_phi * t86);
-        let g1_wz_leg2 = g1_vx_leg2 * t11 - minus_g1_vy_leg2 * t21;
-        let g2_wz_leg2 = g2_vy_leg2 * t21 + g2_vx_leg2 * t11;
-        let g2_wz_leg3 = g2_vy_leg3 * t146 + minus_g2_vx_leg3 * t142;
-        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t146 + g1_vx_leg3 * t142;
-        let t269 = g1_wz_leg1 * t130 + g2_wz_leg1 * t225 + t224 + g1_wz_leg2 * t70
-            + g2_wz_leg2 * t81 + t80 + g2_wz_leg3 * t204 - minus_g1_wz_leg3 * t193
-            + t203;
-        Ok([t214, t235 - (s_phi * t211 + c_phi * t209), t269])
+            - parameters[22] * minus_rate_dot_1_leg3 - t98;
+        let t102 = 0.08 * s_phi;
+        let t103 = t102 * twist[2];
+        let t106 = pose[1] + t37 - 0.3;
+        let t107 = pose[0] - t102;
+        let t108 = t107 * t107;
+        let t113 = 8.650519031141869 * (t108 - (t108 + t106 * t106 - 0.1156));
+        ::overact::guard::reach(t113, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t113);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
+        let t115 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t115;
+        let minus_g1_vy_leg1 = t106 * g2_vy_leg1;
+        let t120 = twist[1] - t103;
+        let rate_2_leg1 = g2_vy_leg1 * t120;
+        let t122 = rate_2_leg1 * rate_2_leg1;
+        let minus_rate_dot_1_leg1 = twist[2] * t103 - minus_g1_vy_leg1 * t39
+            + t122 * (0.34 * t115);
+        let minus_rate_1_leg1 = twist[0] - t38 + minus_g1_vy_leg1 * t120;
+        let c2_leg1 = 2.9411764705882355 * t106;
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t106 * t122 - t39);
+        let t144 = c2_leg1 * minus_rate_dot_1_leg1;
+        let t148 = minus_s2_leg1 * minus_rate_dot_1_leg1;
+        let t155 = c2_leg1
+            * (parameters[6] * rate_dot_2_leg1 - parameters[7] * t122
+                - parameters[8] * t144)
+            - minus_s2_leg1
+                * (parameters[8] * t148
+                    - (parameters[6] * t122 + parameters[7] * rate_dot_2_leg1));
+        let t156 = parameters[4]
+            - (parameters[1] * minus_rate_dot_1_leg1 + parameters[2] * minus_rate_1_leg1
+                + ::overact::math::signed(parameters[3], minus_rate_1_leg1))
+            - parameters[0] * minus_rate_dot_1_leg1 + t155;
+        let t159 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
+        let t161 = pose[0] + t159 + 0.25980762113533157;
+        let t165 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
+        let t167 = pose[1] - t165 + 0.15;
+        let t169 = 0.8660254037844386 * t161 + 0.5 * t167;
+        let t173 = 0.5 * t161 - 0.8660254037844386 * t167;
+        let t180 = 8.650519031141869
+            * (t173 * t173 - (t161 * t161 + t167 * t167 - 0.1156));
+        ::overact::guard::reach(t180, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t180);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t183 = 2.5471335405424664 * t169 - 0.5 * minus_s2_leg2;
+        let t184 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t183 * t184;
+        let t186 = t159 * twist[2];
+        let t191 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t169;
+        let t192 = t165 * twist[2];
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t184;
+        let t197 = twist[0] + t192;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t184;
+        let t200 = twist[1] + t186;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t197 + minus_g2_vy_leg2 * t200;
+        let t203 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t205 = t183 * (twist[2] * t186) - t191 * (twist[2] * t192) - 0.34 * t203;
+        let rate_dot_1_leg2 = t184 * t205;
+        let minus_g1_vy_leg2 = t191 * t184;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t197 + minus_g1_vy_leg2 * t200;
+        let minus_c2_leg2 = 2.9411764705882355 * t169;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t184 * (t39 + t169 * t203);
+        let t227 = minus_c2_leg2 * rate_dot_1_leg2;
+        let t237 = minus_c2_leg2
+            * (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t203
+                + parameters[19] * t227)
+            - minus_s2_leg2
+                * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t203
+                    - parameters[19] * t205);
+        let t238 = parameters[11] * rate_dot_1_leg2 + parameters[12] * rate_dot_1_leg2
+            - parameters[13] * minus_rate_1_leg2
+            - ::overact::math::signed(parameters[14], minus_rate_1_leg2) + parameters[15]
+            + t237;
+        let t248 = ::overact::math::signed(parameters[21], minus_rate_2_leg2 + twist[2]);
+        let t249 = parameters[18] * t205
+            - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t227)
+            - ::overact::math::signed(parameters[20], minus_rate_2_leg2) - t248;
+        let c3_leg1 = 2.9411764705882355 * (s_phi * t106) + c_phi * minus_s2_leg1;
+        let s3_leg1 = s_phi * minus_s2_leg1 - 2.9411764705882355 * (c_phi * t106);
+        let t269 = 12.5
+            * (c3_leg1 * (0.34 * rate_dot_2_leg1 - t144)
+                - s3_leg1 * (t148 - 0.34 * t122));
+        let t270 = parameters[34] * t269;
+        let t272 = parameters[35] * t269;
+        let t275 = g2_vx_leg3 * t71 - minus_g1_vx_leg3 * t99
+            - (t156 + minus_g1_vx_leg2 * t238 + minus_g2_vx_leg2 * t249) + c_phi * t270
+            - s_phi * t272;
+        let t284 = ::overact::math::signed(parameters[10], twist[2] - rate_2_leg1);
+        let t285 = parameters[5] * rate_dot_2_leg1 - parameters[6] * t144
+            - parameters[7] * t148 + ::overact::math::signed(parameters[9], rate_2_leg1)
+            - t284;
+        let t296 = g2_vy_leg1 * t285 - minus_g1_vy_leg1 * t156
+            - (minus_g1_vy_leg2 * t238 + minus_g2_vy_leg2 * t249) + g1_vy_leg3 * t99
+            - minus_g2_vy_leg3 * t71;
+        let g1_wz_leg1 = t102 * minus_g1_vy_leg1 + t37;
+        let minus_g2_wz_leg1 = 0.23529411764705882 * (s_phi * t115);
+        let minus_g1_wz_leg2 = t159 * minus_g1_vy_leg2 + t165 * minus_g1_vx_leg2;
+        let minus_g2_wz_leg2 = t159 * minus_g2_vy_leg2 + t165 * minus_g2_vx_leg2;
+        let g1_wz_leg3 = t5 * g1_vy_leg3 + t12 * minus_g1_vx_leg3;
+        let minus_g2_wz_leg3 = 0.11764705882352941 * (minus_c23_leg2 * t25)
+            + 0.2037706832433973 * (minus_s23_leg2 * t25);
+        let t332 = g1_wz_leg1 * t156 - minus_g2_wz_leg1 * t285 + t284 + t248
+            - (minus_g1_wz_leg2 * t238 + minus_g2_wz_leg2 * t249) + g1_wz_leg3 * t99
+            - minus_g2_wz_leg3 * t71 + t70;
+        Ok([t275, t296 + s_phi * t270 + c_phi * t272, t332])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
     ///
@@ -3335,26 +4694,27 @@ impl Planar3Prr {
     ) -> Result<[f64; Self::POSE], ::overact::Error> {
         let mut pose = *start;
         ::overact::forward::gauss_newton(
-            ::overact::forward::Measured {
-                positions: actuators,
-                is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
-            },
-            &mut pose,
-            ::overact::forward::Workspace {
-                actuators: &mut [0.0; Self::ACTUATORS],
-                inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
-                normal: &mut [0.0; Self::DOF * Self::DOF],
-                step: &mut [0.0; Self::DOF],
-            },
-            |pose, positions, jacobian| {
-                let pose = ::overact::block::array(pose)?;
-                positions.copy_from_slice(&Self::actuator_positions(pose)?);
-                jacobian.copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
-                Ok(())
-            },
-            ::overact::forward::displace,
-        )?;
-        Ok(pose)
+                ::overact::forward::Measured {
+                    positions: actuators,
+                    is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
+                },
+                &mut pose,
+                ::overact::forward::Workspace {
+                    actuators: &mut [0.0; Self::ACTUATORS],
+                    inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
+                    normal: &mut [0.0; Self::DOF * Self::DOF],
+                    step: &mut [0.0; Self::DOF],
+                },
+                |pose, positions, jacobian| {
+                    let pose = ::overact::block::array(pose)?;
+                    positions.copy_from_slice(&Self::actuator_positions(pose)?);
+                    jacobian
+                        .copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
+                    Ok(())
+                },
+                ::overact::forward::displace,
+            )
+            .map(|()| pose)
     }
 }
 impl ::overact::Model for Planar3Prr {

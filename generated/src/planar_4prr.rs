@@ -215,46 +215,103 @@ impl Planar4Prr {
             BaseParameter::new("fs_3_leg4", "fs_3_leg4", &[]),
         ]
     };
-    /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration; by Newton's method.
+    /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
+    ///
+    /// Output: 12.
+    ///
+    /// 162 operations (74 additions, 88 multiplications, 0 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 165 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration on the way from home.
-    pub fn joints(
-        pose: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::JOINTS], ::overact::Error> {
-        let mut joints = Self::HOME_JOINTS;
-        ::overact::inverse::solve(
-            ::overact::inverse::Legs {
-                names: &Self::LEGS,
-                joints: &[3, 3, 3, 3],
-                home_pose: &Self::HOME_POSE,
-                home_joints: &Self::HOME_JOINTS,
-                has_quaternion: false,
-            },
-            pose,
-            &mut joints,
-            ::overact::inverse::Workspace {
-                error: &mut [0.0; Self::JOINTS],
-                jacobian: &mut [0.0; Self::JOINTS * Self::JOINTS],
-                pose: &mut [0.0; Self::POSE],
-            },
-            |pose, joints, error, jacobian| {
-                let (pose, joints) = (
-                    ::overact::block::array(pose)?,
-                    ::overact::block::array(joints)?,
-                );
-                ::overact::block::write(
-                    &Self::closure_error_from_joints(pose, joints),
-                    error,
-                );
-                ::overact::block::write(
-                    &Self::legs_jacobian_from_joints(pose, joints),
-                    jacobian,
-                );
-                Ok(())
-            },
-        )?;
-        Ok(joints)
+    /// A pose out of reach, or a singular configuration.
+    pub fn joints(pose: &[f64; 3]) -> Result<[f64; 12], ::overact::Error> {
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let t2 = s_phi + c_phi;
+        let t3 = 0.05656854249492381 * t2;
+        let t5 = pose[1] + t3 - 0.21213203435596426;
+        let t6 = c_phi - s_phi;
+        let t7 = 0.05656854249492381 * t6;
+        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t10 = t5 - t9;
+        let t19 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
+        ::overact::guard::reach(t19, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t19);
+        let t24 = t9 + t5;
+        let c23_leg1 = 0.7071067811865476 * t2;
+        let s3_leg1 = c23_leg1 * minus_s2_leg1 - 1.4705882352941178 * (t6 * t24);
+        let minus_s23_leg1 = 0.7071067811865476 * t6;
+        let c3_leg1 = 1.4705882352941178 * (t2 * t24) + minus_s23_leg1 * minus_s2_leg1;
+        let t51 = pose[0] - t3 + 0.21213203435596426;
+        let t53 = pose[1] + t7 - 0.21213203435596426;
+        let t54 = t51 + t53;
+        let t63 = 8.650519031141869
+            * (0.5 * (t54 * t54) - (t51 * t51 + t53 * t53 - 0.1156));
+        ::overact::guard::reach(t63, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t63);
+        let t68 = t53 - t51;
+        let c3_leg2 = c23_leg1 * minus_s2_leg2 - 1.4705882352941178 * (t6 * t68);
+        let minus_s3_leg2 = minus_s23_leg1 * minus_s2_leg2
+            + 1.4705882352941178 * (t2 * t68);
+        let t93 = pose[0] - t7 + 0.21213203435596426;
+        let t95 = pose[1] - t3 + 0.21213203435596426;
+        let t96 = t93 - t95;
+        let t105 = 8.650519031141869
+            * (0.5 * (t96 * t96) - (t93 * t93 + t95 * t95 - 0.1156));
+        ::overact::guard::reach(t105, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t105);
+        let t110 = t93 + t95;
+        let minus_s3_leg3 = c23_leg1 * minus_s2_leg3 + 1.4705882352941178 * (t6 * t110);
+        let c3_leg3 = 1.4705882352941178 * (t2 * t110) - minus_s23_leg1 * minus_s2_leg3;
+        let t135 = pose[0] + t3 - 0.21213203435596426;
+        let t137 = pose[1] - t7 + 0.21213203435596426;
+        let t138 = t135 + t137;
+        let t147 = 8.650519031141869
+            * (0.5 * (t138 * t138) - (t135 * t135 + t137 * t137 - 0.1156));
+        ::overact::guard::reach(t147, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t147);
+        let t152 = t135 - t137;
+        let s3_leg4 = minus_s23_leg1 * minus_s2_leg4 + 1.4705882352941178 * (t2 * t152);
+        let c3_leg4 = 1.4705882352941178 * (t6 * t152) - c23_leg1 * minus_s2_leg4;
+        Ok([
+            0.7071067811865476 * t10 + 0.34 * minus_s2_leg1,
+            ::overact::math::atan2(
+                0.6470588235292614 * minus_s2_leg1 + 1.5856663304348126 * t24,
+                0.7624400821657583 * minus_s2_leg1 - 1.345704946894501 * t24,
+            ) + 4.008668472301664,
+            ::overact::math::atan2(
+                0.08158687040371294 * s3_leg1 - 0.9966662342919659 * c3_leg1,
+                0.08158687040371294 * c3_leg1 + 0.9966662342919659 * s3_leg1,
+            ) - 4.794066635699119,
+            -(0.7071067811865476 * t54 - 0.34 * minus_s2_leg2),
+            ::overact::math::atan2(
+                0.6470588235292607 * minus_s2_leg2 + 1.5856663304348138 * t68,
+                0.7624400821657589 * minus_s2_leg2 - 1.3457049468944997 * t68,
+            ) + 4.008668472301665,
+            ::overact::math::atan2(
+                0.08158687040371287 * c3_leg2 - 0.9966662342919659 * minus_s3_leg2,
+                0.9966662342919659 * c3_leg2 + 0.08158687040371287 * minus_s3_leg2,
+            ) - 6.364862962494016,
+            0.7071067811865476 * t96 + 0.34 * minus_s2_leg3,
+            ::overact::math::atan2(
+                0.6470588235292607 * minus_s2_leg3 - 1.5856663304348138 * t110,
+                1.3457049468944997 * t110 + 0.7624400821657589 * minus_s2_leg3,
+            ) + 4.008668472301665,
+            ::overact::math::atan2(
+                0.08158687040371282 * minus_s3_leg3 + 0.9966662342919659 * c3_leg3,
+                0.9966662342919659 * minus_s3_leg3 - 0.08158687040371282 * c3_leg3,
+            ) - 7.935659289288912,
+            0.7071067811865476 * t138 + 0.34 * minus_s2_leg4,
+            ::overact::math::atan2(
+                0.6470588235292607 * minus_s2_leg4 + 1.5856663304348138 * t152,
+                0.7624400821657589 * minus_s2_leg4 - 1.3457049468944997 * t152,
+            ) + 4.008668472301665,
+            ::overact::math::atan2(
+                -(0.9966662342919659 * s3_leg4 + 0.08158687040371275 * c3_leg4),
+                0.08158687040371275 * s3_leg4 - 0.9966662342919659 * c3_leg4,
+            ) - 9.506455616083809,
+        ])
     }
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
@@ -263,13 +320,47 @@ impl Planar4Prr {
     ///
     /// Output: 4.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 68 operations (38 additions, 30 multiplications, 0 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 70 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn actuator_positions(pose: &[f64; 3]) -> Result<[f64; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Ok([joints[0], joints[3], joints[6], joints[9]])
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let t3 = 0.05656854249492381 * (s_phi + c_phi);
+        let t5 = pose[1] + t3 - 0.21213203435596426;
+        let t7 = 0.05656854249492381 * (c_phi - s_phi);
+        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t10 = t5 - t9;
+        let t19 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
+        ::overact::guard::reach(t19, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t19);
+        let t24 = pose[0] - t3 + 0.21213203435596426;
+        let t26 = pose[1] + t7 - 0.21213203435596426;
+        let t27 = t24 + t26;
+        let t36 = 8.650519031141869
+            * (0.5 * (t27 * t27) - (t24 * t24 + t26 * t26 - 0.1156));
+        ::overact::guard::reach(t36, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t36);
+        let t41 = pose[0] - t7 + 0.21213203435596426;
+        let t43 = pose[1] - t3 + 0.21213203435596426;
+        let t44 = t41 - t43;
+        let t53 = 8.650519031141869
+            * (0.5 * (t44 * t44) - (t41 * t41 + t43 * t43 - 0.1156));
+        ::overact::guard::reach(t53, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t53);
+        let t58 = pose[0] + t3 - 0.21213203435596426;
+        let t60 = pose[1] - t7 + 0.21213203435596426;
+        let t61 = t58 + t60;
+        let t70 = 8.650519031141869
+            * (0.5 * (t61 * t61) - (t58 * t58 + t60 * t60 - 0.1156));
+        ::overact::guard::reach(t70, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t70);
+        Ok([
+            0.7071067811865476 * t10 + 0.34 * minus_s2_leg1,
+            -(0.7071067811865476 * t27 - 0.34 * minus_s2_leg2),
+            0.7071067811865476 * t44 + 0.34 * minus_s2_leg3,
+            0.7071067811865476 * t61 + 0.34 * minus_s2_leg4,
+        ])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -278,13 +369,75 @@ impl Planar4Prr {
     ///
     /// Output: 4 x 3.
     ///
-    /// 36 operations (14 additions, 18 multiplications, 4 divisions), 0 square roots, 5 trigonometric pairs, 0 signs, 34 intermediates.
+    /// 100 operations (50 additions, 46 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 94 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::inverse_jacobian_from_joints(pose, joints)
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let t3 = 0.05656854249492381 * (c_phi - s_phi);
+        let t5 = pose[0] + t3 - 0.21213203435596426;
+        let t7 = 0.05656854249492381 * (s_phi + c_phi);
+        let t9 = pose[1] + t7 - 0.21213203435596426;
+        let t11 = 1.4705882352941178 * (t5 + t9);
+        let t12 = t9 - t5;
+        let t20 = 8.650519031141869 * (0.5 * (t12 * t12) - (t5 * t5 + t9 * t9 - 0.1156));
+        ::overact::guard::reach(t20, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t20);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
+        let t22 = 0.7071067811865476 * minus_s2_leg1;
+        let t24 = 1.0 / minus_s2_leg1;
+        let minus_g1_vx_leg1 = (t11 + t22) * t24;
+        let t27 = pose[0] - t7 + 0.21213203435596426;
+        let t29 = pose[1] + t3 - 0.21213203435596426;
+        let t30 = t27 + t29;
+        let t38 = 8.650519031141869
+            * (0.5 * (t30 * t30) - (t27 * t27 + t29 * t29 - 0.1156));
+        ::overact::guard::reach(t38, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t38);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
+        let t40 = 0.7071067811865476 * minus_s2_leg2;
+        let t42 = 1.4705882352941178 * (t29 - t27);
+        let t44 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = (t40 - t42) * t44;
+        let t47 = pose[0] - t3 + 0.21213203435596426;
+        let t49 = pose[1] - t7 + 0.21213203435596426;
+        let t51 = 1.4705882352941178 * (t47 + t49);
+        let t52 = t47 - t49;
+        let t60 = 8.650519031141869
+            * (0.5 * (t52 * t52) - (t47 * t47 + t49 * t49 - 0.1156));
+        ::overact::guard::reach(t60, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t60);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
+        let t62 = 0.7071067811865476 * minus_s2_leg3;
+        let t64 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = (t51 - t62) * t64;
+        let t67 = pose[0] + t7 - 0.21213203435596426;
+        let t69 = pose[1] - t3 + 0.21213203435596426;
+        let t71 = 1.4705882352941178 * (t67 - t69);
+        let t72 = t67 + t69;
+        let t80 = 8.650519031141869
+            * (0.5 * (t72 * t72) - (t67 * t67 + t69 * t69 - 0.1156));
+        ::overact::guard::reach(t80, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t80);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t82 = 0.7071067811865476 * minus_s2_leg4;
+        let t84 = 1.0 / minus_s2_leg4;
+        let minus_g1_vx_leg4 = (t71 - t82) * t84;
+        let g1_vy_leg1 = (t22 - t11) * t24;
+        let minus_g1_vy_leg2 = (t40 + t42) * t44;
+        let minus_g1_vy_leg3 = (t62 + t51) * t64;
+        let g1_vy_leg4 = (t82 + t71) * t84;
+        let g1_wz_leg1 = t3 * g1_vy_leg1 + t7 * minus_g1_vx_leg1;
+        let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
+        let g1_wz_leg4 = t7 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
+        Ok([
+            [-minus_g1_vx_leg1, g1_vy_leg1, g1_wz_leg1],
+            [-minus_g1_vx_leg2, -minus_g1_vy_leg2, g1_wz_leg2],
+            [-minus_g1_vx_leg3, -minus_g1_vy_leg3, g1_wz_leg3],
+            [-minus_g1_vx_leg4, g1_vy_leg4, g1_wz_leg4],
+        ])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -343,82 +496,114 @@ impl Planar4Prr {
     ///
     /// Output: 3 x 4.
     ///
-    /// 152 operations (60 additions, 85 multiplications, 7 divisions), 0 square roots, 5 trigonometric pairs, 0 signs, 150 intermediates.
+    /// 216 operations (96 additions, 113 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 210 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn jacobian(pose: &[f64; 3]) -> Result<[[f64; 4]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
-        let t3 = 0.7071067811865476 / s2_leg1;
-        let g1_vx_leg1 = (c2_leg1 - s2_leg1) * t3;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t9 = 0.7071067811865476 / s2_leg2;
-        let minus_g1_vx_leg2 = (c2_leg2 + s2_leg2) * t9;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
-        let t16 = 0.7071067811865476 / s2_leg3;
-        let g1_vx_leg3 = (s2_leg3 - c2_leg3) * t16;
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
-        let t23 = 0.7071067811865476 / s2_leg4;
-        let g1_vx_leg4 = (c2_leg4 + s2_leg4) * t23;
-        let t26 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t26, 3.4404761904750325, "actuators")?;
-        let t27 = 1.0 / t26;
-        let g1_vy_leg1 = (s2_leg1 + c2_leg1) * t3;
-        let minus_g1_vy_leg2 = (s2_leg2 - c2_leg2) * t9;
-        let minus_g1_vy_leg3 = (s2_leg3 + c2_leg3) * t16;
-        let minus_g1_vy_leg4 = (c2_leg4 - s2_leg4) * t23;
-        let t43 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            - g1_vx_leg3 * minus_g1_vy_leg3 - g1_vx_leg4 * minus_g1_vy_leg4;
-        let t44 = t43 * t27;
-        let t53 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t43 * t44;
-        ::overact::guard::platform(t53, 3.440476190475036, "actuators")?;
-        let t54 = 1.0 / t53;
-        let t56 = g1_vy_leg1 - g1_vx_leg1 * t44;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t61 = 0.05656854249492381 * (c_phi - s_phi);
-        let t64 = 0.05656854249492381 * (s_phi + c_phi);
-        let g1_wz_leg1 = g1_vy_leg1 * t61 - g1_vx_leg1 * t64;
-        let g1_wz_leg2 = t64 * minus_g1_vy_leg2 + t61 * minus_g1_vx_leg2;
-        let g1_wz_leg3 = t61 * minus_g1_vy_leg3 + t64 * g1_vx_leg3;
-        let g1_wz_leg4 = t61 * g1_vx_leg4 - t64 * minus_g1_vy_leg4;
-        let t89 = g1_vx_leg1 * g1_wz_leg1 - minus_g1_vx_leg2 * g1_wz_leg2
-            + g1_vx_leg3 * g1_wz_leg3 + g1_vx_leg4 * g1_wz_leg4;
-        let t90 = t89 * t27;
-        let t92 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 - minus_g1_vy_leg4 * g1_wz_leg4 - t43 * t90;
-        let t93 = t92 * t54;
-        let t104 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t89 * t90 - t92 * t93;
-        ::overact::guard::platform(t104, 0.02560000000000001, "actuators")?;
-        let t105 = 1.0 / t104;
-        let t110 = t105 * (g1_wz_leg1 - g1_vx_leg1 * t90 - t93 * t56);
-        let t112 = t54 * t56 - t93 * t110;
-        let t119 = minus_g1_vx_leg2 * t44 - minus_g1_vy_leg2;
-        let t125 = t105 * (g1_wz_leg2 + minus_g1_vx_leg2 * t90 - t93 * t119);
-        let t127 = t54 * t119 - t93 * t125;
-        let t134 = minus_g1_vy_leg3 + g1_vx_leg3 * t44;
-        let t140 = t105 * (g1_wz_leg3 - g1_vx_leg3 * t90 + t93 * t134);
-        let t142 = t54 * t134 + t93 * t140;
-        let t149 = minus_g1_vy_leg4 + g1_vx_leg4 * t44;
-        let t155 = t105 * (g1_wz_leg4 - g1_vx_leg4 * t90 + t93 * t149);
-        let t157 = t54 * t149 + t93 * t155;
+        let t3 = 0.05656854249492381 * (c_phi - s_phi);
+        let t5 = pose[0] + t3 - 0.21213203435596426;
+        let t7 = 0.05656854249492381 * (s_phi + c_phi);
+        let t9 = pose[1] + t7 - 0.21213203435596426;
+        let t11 = 1.4705882352941178 * (t5 + t9);
+        let t12 = t9 - t5;
+        let t20 = 8.650519031141869 * (0.5 * (t12 * t12) - (t5 * t5 + t9 * t9 - 0.1156));
+        ::overact::guard::reach(t20, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t20);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
+        let t22 = 0.7071067811865476 * minus_s2_leg1;
+        let t24 = 1.0 / minus_s2_leg1;
+        let minus_g1_vx_leg1 = (t11 + t22) * t24;
+        let g1_vy_leg1 = (t22 - t11) * t24;
+        let g1_wz_leg1 = t3 * g1_vy_leg1 + t7 * minus_g1_vx_leg1;
+        let t33 = pose[0] - t7 + 0.21213203435596426;
+        let t35 = pose[1] + t3 - 0.21213203435596426;
+        let t36 = t33 + t35;
+        let t44 = 8.650519031141869
+            * (0.5 * (t36 * t36) - (t33 * t33 + t35 * t35 - 0.1156));
+        ::overact::guard::reach(t44, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t44);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
+        let t46 = 0.7071067811865476 * minus_s2_leg2;
+        let t48 = 1.4705882352941178 * (t35 - t33);
+        let t50 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = (t46 - t48) * t50;
+        let minus_g1_vy_leg2 = (t46 + t48) * t50;
+        let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
+        let t60 = pose[0] - t3 + 0.21213203435596426;
+        let t62 = pose[1] - t7 + 0.21213203435596426;
+        let t64 = 1.4705882352941178 * (t60 + t62);
+        let t65 = t60 - t62;
+        let t73 = 8.650519031141869
+            * (0.5 * (t65 * t65) - (t60 * t60 + t62 * t62 - 0.1156));
+        ::overact::guard::reach(t73, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t73);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
+        let t75 = 0.7071067811865476 * minus_s2_leg3;
+        let t77 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = (t64 - t75) * t77;
+        let minus_g1_vy_leg3 = (t75 + t64) * t77;
+        let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
+        let t87 = pose[0] + t7 - 0.21213203435596426;
+        let t89 = pose[1] - t3 + 0.21213203435596426;
+        let t91 = 1.4705882352941178 * (t87 - t89);
+        let t92 = t87 + t89;
+        let t100 = 8.650519031141869
+            * (0.5 * (t92 * t92) - (t87 * t87 + t89 * t89 - 0.1156));
+        ::overact::guard::reach(t100, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t100);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t102 = 0.7071067811865476 * minus_s2_leg4;
+        let t104 = 1.0 / minus_s2_leg4;
+        let minus_g1_vx_leg4 = (t91 - t102) * t104;
+        let g1_vy_leg4 = (t102 + t91) * t104;
+        let g1_wz_leg4 = t7 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
+        let t112 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+            + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
+        let t119 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+            + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
+            + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t119, 3.440476190476192, "actuators")?;
+        let t120 = 1.0 / t119;
+        let t121 = t112 * t120;
+        let t144 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+            + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
+        let t146 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t144 * t121;
+        let t154 = t144 * t120;
+        let t156 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
+            - t144 * t154;
+        ::overact::guard::platform(t156, 3.440476190476192, "actuators")?;
+        let t157 = 1.0 / t156;
+        let t158 = t146 * t157;
+        let t160 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t112 * t121
+            - t146 * t158;
+        ::overact::guard::platform(t160, 0.02560000000000001, "actuators")?;
+        let t161 = 1.0 / t160;
+        let t165 = g1_vy_leg1 + minus_g1_vx_leg1 * t154;
+        let t168 = t161 * (g1_wz_leg1 - minus_g1_vx_leg1 * t121 - t158 * t165);
+        let t173 = t157 * t165 - t158 * t168;
+        let t180 = minus_g1_vx_leg2 * t154 - minus_g1_vy_leg2;
+        let t183 = t161 * (g1_wz_leg2 - minus_g1_vx_leg2 * t121 - t158 * t180);
+        let t188 = t157 * t180 - t158 * t183;
+        let t195 = minus_g1_vx_leg3 * t154 - minus_g1_vy_leg3;
+        let t198 = t161 * (g1_wz_leg3 - minus_g1_vx_leg3 * t121 - t158 * t195);
+        let t203 = t157 * t195 - t158 * t198;
+        let t210 = g1_vy_leg4 + minus_g1_vx_leg4 * t154;
+        let t213 = t161 * (g1_wz_leg4 - minus_g1_vx_leg4 * t121 - t158 * t210);
+        let t218 = t157 * t210 - t158 * t213;
         Ok([
             [
-                g1_vx_leg1 * t27 - t44 * t112 - t90 * t110,
-                -(minus_g1_vx_leg2 * t27 + t44 * t127 + t90 * t125),
-                g1_vx_leg3 * t27 + t44 * t142 - t90 * t140,
-                g1_vx_leg4 * t27 + t44 * t157 - t90 * t155,
+                t121 * t168 - (minus_g1_vx_leg1 * t120 + t154 * t173),
+                t121 * t183 - (minus_g1_vx_leg2 * t120 + t154 * t188),
+                t121 * t198 - (minus_g1_vx_leg3 * t120 + t154 * t203),
+                t121 * t213 - (minus_g1_vx_leg4 * t120 + t154 * t218),
             ],
-            [t112, t127, -t142, -t157],
-            [t110, t125, t140, t155],
+            [t173, t188, t203, t218],
+            [t168, t183, t198, t213],
         ])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -591,63 +776,6 @@ impl Planar4Prr {
             [0.0, 0.0, -(0.34 * s2_leg3), 0.0], [0.0, 0.0, 0.0, -(0.34 * s2_leg4)],
         ]
     }
-    /// By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m, rad).
-    ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
-    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    ///
-    /// Output: 12.
-    ///
-    /// 88 operations (58 additions, 30 multiplications, 0 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 94 intermediates.
-    #[must_use]
-    pub fn closure_error_from_joints(pose: &[f64; 3], joints: &[f64; 12]) -> [f64; 12] {
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t3 = 0.05656854249492381 * (c_phi - s_phi);
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        let t10 = 0.7071067811865476 * joints[0];
-        let t14 = 0.05656854249492381 * (s_phi + c_phi);
-        let t21 = joints[1] + joints[2];
-        let (s23_leg1, c23_leg1) = ::overact::math::sin_cos(t21);
-        let t33 = 0.7071067811865476 * joints[3];
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        let t46 = joints[4] + joints[5];
-        let (s23_leg2, c23_leg2) = ::overact::math::sin_cos(t46);
-        let t58 = 0.7071067811865476 * joints[6];
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        let t71 = joints[7] + joints[8];
-        let (s23_leg3, c23_leg3) = ::overact::math::sin_cos(t71);
-        let t83 = 0.7071067811865476 * joints[9];
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        let t96 = joints[10] + joints[11];
-        let (s23_leg4, c23_leg4) = ::overact::math::sin_cos(t96);
-        [
-            pose[0] + t3 - 0.21213203435596426
-                - (0.2404163056034262 * (c2_leg1 - s2_leg1) - t10),
-            pose[1] + t14 - 0.21213203435596426
-                - (t10 + 0.2404163056034262 * (s2_leg1 + c2_leg1)),
-            -(c_phi * (0.7071067811865476 * (s23_leg1 + c23_leg1))
-                - s_phi * (0.7071067811865476 * (c23_leg1 - s23_leg1))),
-            pose[0] - t14 + 0.21213203435596426 + t33
-                + 0.2404163056034262 * (c2_leg2 + s2_leg2),
-            pose[1] + t3 - 0.21213203435596426 + t33
-                + 0.2404163056034262 * (s2_leg2 - c2_leg2),
-            -(s_phi * (0.7071067811865476 * (c23_leg2 + s23_leg2))
-                - c_phi * (0.7071067811865476 * (s23_leg2 - c23_leg2))),
-            pose[0] - t3 + 0.21213203435596426
-                - (t58 + 0.2404163056034262 * (s2_leg3 - c2_leg3)),
-            pose[1] - t14 + 0.21213203435596426 + t58
-                + 0.2404163056034262 * (s2_leg3 + c2_leg3),
-            c_phi * (0.7071067811865476 * (s23_leg3 + c23_leg3))
-                + s_phi * (0.7071067811865476 * (s23_leg3 - c23_leg3)),
-            pose[0] + t14 - 0.21213203435596426
-                - (t83 + 0.2404163056034262 * (c2_leg4 + s2_leg4)),
-            pose[1] - t3 + 0.21213203435596426
-                - (t83 - 0.2404163056034262 * (c2_leg4 - s2_leg4)),
-            c_phi * (0.7071067811865476 * (c23_leg4 - s23_leg4))
-                + s_phi * (0.7071067811865476 * (c23_leg4 + s23_leg4)),
-        ]
-    }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
     /// From the platform's pose and motion.
@@ -656,7 +784,7 @@ impl Planar4Prr {
     ///
     /// Output: 12.
     ///
-    /// 70 operations (30 additions, 36 multiplications, 4 divisions), 0 square roots, 5 trigonometric pairs, 0 signs, 68 intermediates.
+    /// 130 operations (66 additions, 60 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 124 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -664,58 +792,86 @@ impl Planar4Prr {
         pose: &[f64; 3],
         twist: &[f64; 3],
     ) -> Result<[f64; 12], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
-        let t3 = 1.0 / s2_leg1;
-        let t4 = 0.7071067811865476 * t3;
-        let g1_vx_leg1 = (c2_leg1 - s2_leg1) * t4;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t10 = 0.05656854249492381 * (s_phi + c_phi) * twist[2];
-        let t11 = twist[0] - t10;
-        let g1_vy_leg1 = (s2_leg1 + c2_leg1) * t4;
-        let t17 = 0.05656854249492381 * (c_phi - s_phi) * twist[2];
-        let t18 = twist[1] + t17;
-        let rate_1_leg1 = g1_vx_leg1 * t11 + g1_vy_leg1 * t18;
-        let minus_g2_vx_leg1 = 2.079725827019258 * t3;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t11 + minus_g2_vx_leg1 * t18;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t29 = 1.0 / s2_leg2;
-        let t30 = 0.7071067811865476 * t29;
-        let minus_g1_vx_leg2 = (c2_leg2 + s2_leg2) * t30;
-        let t32 = twist[0] - t17;
-        let minus_g1_vy_leg2 = (s2_leg2 - c2_leg2) * t30;
-        let t36 = twist[1] - t10;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t32 + minus_g1_vy_leg2 * t36;
-        let g2_vx_leg2 = 2.079725827019258 * t29;
-        let rate_2_leg2 = g2_vx_leg2 * t32 - g2_vx_leg2 * t36;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
-        let t47 = 1.0 / s2_leg3;
-        let t48 = 0.7071067811865476 * t47;
-        let g1_vx_leg3 = (s2_leg3 - c2_leg3) * t48;
-        let t50 = twist[0] + t10;
-        let minus_g1_vy_leg3 = (s2_leg3 + c2_leg3) * t48;
-        let t54 = twist[1] - t17;
-        let rate_1_leg3 = g1_vx_leg3 * t50 - minus_g1_vy_leg3 * t54;
-        let g2_vx_leg3 = 2.079725827019258 * t47;
-        let rate_2_leg3 = g2_vx_leg3 * t50 + g2_vx_leg3 * t54;
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
-        let t65 = 1.0 / s2_leg4;
-        let t66 = 0.7071067811865476 * t65;
-        let g1_vx_leg4 = (c2_leg4 + s2_leg4) * t66;
-        let t68 = twist[0] + t17;
-        let minus_g1_vy_leg4 = (c2_leg4 - s2_leg4) * t66;
-        let t72 = twist[1] + t10;
-        let rate_1_leg4 = g1_vx_leg4 * t68 - minus_g1_vy_leg4 * t72;
-        let minus_g2_vx_leg4 = 2.079725827019258 * t65;
-        let rate_2_leg4 = minus_g2_vx_leg4 * t72 - minus_g2_vx_leg4 * t68;
+        let t3 = 0.05656854249492381 * (s_phi + c_phi);
+        let t5 = pose[1] + t3 - 0.21213203435596426;
+        let t7 = 0.05656854249492381 * (c_phi - s_phi);
+        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t10 = t5 - t9;
+        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
+        ::overact::guard::reach(t18, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
+        let t20 = 0.7071067811865476 * minus_s2_leg1;
+        let t22 = 1.4705882352941178 * (t9 + t5);
+        let t24 = 1.0 / minus_s2_leg1;
+        let g1_vy_leg1 = (t20 - t22) * t24;
+        let t26 = t7 * twist[2];
+        let t27 = twist[1] + t26;
+        let minus_g1_vx_leg1 = (t22 + t20) * t24;
+        let t31 = t3 * twist[2];
+        let t32 = twist[0] - t31;
+        let rate_1_leg1 = g1_vy_leg1 * t27 - minus_g1_vx_leg1 * t32;
+        let g2_vx_leg1 = 2.079725827019258 * t24;
+        let rate_2_leg1 = g2_vx_leg1 * t32 + g2_vx_leg1 * t27;
+        let t41 = pose[0] - t3 + 0.21213203435596426;
+        let t43 = pose[1] + t7 - 0.21213203435596426;
+        let t44 = t41 + t43;
+        let t52 = 8.650519031141869
+            * (0.5 * (t44 * t44) - (t41 * t41 + t43 * t43 - 0.1156));
+        ::overact::guard::reach(t52, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t52);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
+        let t54 = 0.7071067811865476 * minus_s2_leg2;
+        let t56 = 1.4705882352941178 * (t43 - t41);
+        let t58 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = (t54 - t56) * t58;
+        let t60 = twist[0] - t26;
+        let minus_g1_vy_leg2 = (t54 + t56) * t58;
+        let t64 = twist[1] - t31;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t60 + minus_g1_vy_leg2 * t64;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t58;
+        let rate_2_leg2 = minus_g2_vx_leg2 * t64 - minus_g2_vx_leg2 * t60;
+        let t73 = pose[0] - t7 + 0.21213203435596426;
+        let t75 = pose[1] - t3 + 0.21213203435596426;
+        let t77 = 1.4705882352941178 * (t73 + t75);
+        let t78 = t73 - t75;
+        let t86 = 8.650519031141869
+            * (0.5 * (t78 * t78) - (t73 * t73 + t75 * t75 - 0.1156));
+        ::overact::guard::reach(t86, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t86);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
+        let t88 = 0.7071067811865476 * minus_s2_leg3;
+        let t90 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = (t77 - t88) * t90;
+        let t92 = twist[0] + t31;
+        let minus_g1_vy_leg3 = (t88 + t77) * t90;
+        let t96 = twist[1] - t26;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t92 + minus_g1_vy_leg3 * t96;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t90;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t92 + minus_g2_vx_leg3 * t96;
+        let t105 = pose[0] + t3 - 0.21213203435596426;
+        let t107 = pose[1] - t7 + 0.21213203435596426;
+        let t108 = t105 + t107;
+        let t116 = 8.650519031141869
+            * (0.5 * (t108 * t108) - (t105 * t105 + t107 * t107 - 0.1156));
+        ::overact::guard::reach(t116, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t116);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t118 = 0.7071067811865476 * minus_s2_leg4;
+        let t120 = 1.4705882352941178 * (t105 - t107);
+        let t122 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = (t118 + t120) * t122;
+        let t124 = twist[1] + t31;
+        let minus_g1_vx_leg4 = (t120 - t118) * t122;
+        let t128 = twist[0] + t26;
+        let rate_1_leg4 = g1_vy_leg4 * t124 - minus_g1_vx_leg4 * t128;
+        let g2_vx_leg4 = 2.079725827019258 * t122;
+        let rate_2_leg4 = g2_vx_leg4 * t128 - g2_vx_leg4 * t124;
         Ok([
-            rate_1_leg1, -minus_rate_2_leg1, minus_rate_2_leg1 + twist[2], -minus_rate_1_leg2,
-            rate_2_leg2, twist[2] - rate_2_leg2, rate_1_leg3, rate_2_leg3, twist[2] - rate_2_leg3,
-            rate_1_leg4, rate_2_leg4, twist[2] - rate_2_leg4,
+            rate_1_leg1, rate_2_leg1, twist[2] - rate_2_leg1, -minus_rate_1_leg2, rate_2_leg2,
+            twist[2] - rate_2_leg2, -minus_rate_1_leg3, -minus_rate_2_leg3,
+            minus_rate_2_leg3 + twist[2], rate_1_leg4, rate_2_leg4, twist[2] - rate_2_leg4,
         ])
     }
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
@@ -727,7 +883,7 @@ impl Planar4Prr {
     ///
     /// Output: 12.
     ///
-    /// 130 operations (59 additions, 67 multiplications, 4 divisions), 0 square roots, 5 trigonometric pairs, 0 signs, 128 intermediates.
+    /// 186 operations (94 additions, 88 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 180 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -736,77 +892,104 @@ impl Planar4Prr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[f64; 12], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
-        let t2 = c2_leg1 - s2_leg1;
-        let t3 = 1.0 / s2_leg1;
-        let t4 = 0.7071067811865476 * t3;
-        let g1_vx_leg1 = t2 * t4;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t9 = 0.05656854249492381 * (s_phi + c_phi);
-        let t10 = t9 * acceleration[2];
-        let t13 = 0.05656854249492381 * (c_phi - s_phi);
-        let t14 = t13 * twist[2];
-        let t15 = twist[2] * t14;
-        let t17 = 0.2404163056034262 * t2;
-        let minus_g2_vx_leg1 = 2.079725827019258 * t3;
-        let t19 = t9 * twist[2];
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (twist[0] - t19)
-            + minus_g2_vx_leg1 * (twist[1] + t14);
-        let t25 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t27 = acceleration[0] - t10 - t15 + t17 * t25;
-        let t29 = s2_leg1 + c2_leg1;
-        let g1_vy_leg1 = t29 * t4;
-        let t31 = t13 * acceleration[2];
-        let t33 = twist[2] * t19;
-        let t35 = 0.2404163056034262 * t29;
-        let t37 = acceleration[1] + t31 - t33 + t35 * t25;
-        let rate_dot_1_leg1 = g1_vx_leg1 * t27 + g1_vy_leg1 * t37;
-        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * t27 + minus_g2_vx_leg1 * t37;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t46 = 1.0 / s2_leg2;
-        let t50 = t2 * t17 + t29 * t35;
-        let g2_vx_leg2 = 2.079725827019258 * t46;
-        let rate_2_leg2 = g2_vx_leg2 * (twist[0] - t14) - g2_vx_leg2 * (twist[1] - t19);
-        let t57 = rate_2_leg2 * rate_2_leg2;
-        let t61 = acceleration[0] - t31 + t33;
-        let t65 = acceleration[1] - t10 - t15;
-        let rate_dot_1_leg2 = 0.7071067811865476 * t46
-            * (t50 * t57 - ((c2_leg2 + s2_leg2) * t61 + (s2_leg2 - c2_leg2) * t65));
-        let rate_dot_2_leg2 = 2.9411764705882355 * t46
-            * (0.7071067811865476 * (t61 - t65) - t57 * (0.34 * c2_leg2));
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
-        let t80 = 1.0 / s2_leg3;
-        let t84 = acceleration[1] - t31 + t33;
-        let t88 = acceleration[0] + t10 + t15;
-        let g2_vx_leg3 = 2.079725827019258 * t80;
-        let rate_2_leg3 = g2_vx_leg3 * (twist[0] + t19) + g2_vx_leg3 * (twist[1] - t14);
-        let t97 = rate_2_leg3 * rate_2_leg3;
-        let minus_rate_dot_1_leg3 = 0.7071067811865476 * t80
-            * ((s2_leg3 + c2_leg3) * t84 - (s2_leg3 - c2_leg3) * t88 - t50 * t97);
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t80
-            * (t97 * (0.34 * c2_leg3) - 0.7071067811865476 * (t88 + t84));
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
-        let t111 = 1.0 / s2_leg4;
-        let t115 = acceleration[0] + t31 - t33;
-        let t119 = acceleration[1] + t10 + t15;
-        let minus_g2_vx_leg4 = 2.079725827019258 * t111;
-        let rate_2_leg4 = minus_g2_vx_leg4 * (twist[1] + t19)
-            - minus_g2_vx_leg4 * (twist[0] + t14);
-        let t128 = rate_2_leg4 * rate_2_leg4;
-        let rate_dot_1_leg4 = 0.7071067811865476 * t111
-            * ((c2_leg4 + s2_leg4) * t115 - (c2_leg4 - s2_leg4) * t119 + t50 * t128);
-        let rate_dot_2_leg4 = 2.9411764705882355 * t111
-            * (0.7071067811865476 * (t119 - t115) - t128 * (0.34 * c2_leg4));
+        let t3 = 0.05656854249492381 * (s_phi + c_phi);
+        let t5 = pose[1] + t3 - 0.21213203435596426;
+        let t7 = 0.05656854249492381 * (c_phi - s_phi);
+        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t10 = t5 - t9;
+        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
+        ::overact::guard::reach(t18, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
+        let t20 = 1.0 / minus_s2_leg1;
+        let t21 = 0.7071067811865476 * minus_s2_leg1;
+        let t22 = t9 + t5;
+        let t23 = 1.4705882352941178 * t22;
+        let t25 = t7 * acceleration[2];
+        let t27 = t3 * twist[2];
+        let t28 = twist[2] * t27;
+        let t29 = acceleration[1] + t25 - t28;
+        let t32 = t3 * acceleration[2];
+        let t34 = t7 * twist[2];
+        let t35 = twist[2] * t34;
+        let t36 = acceleration[0] - t32 - t35;
+        let g2_vx_leg1 = 2.079725827019258 * t20;
+        let rate_2_leg1 = g2_vx_leg1 * (twist[0] - t27) + g2_vx_leg1 * (twist[1] + t34);
+        let t45 = rate_2_leg1 * rate_2_leg1;
+        let rate_dot_1_leg1 = t20 * ((t21 - t23) * t29 - (t23 + t21) * t36 - 0.34 * t45);
+        let rate_dot_2_leg1 = 2.9411764705882355 * t20
+            * (0.7071067811865476 * (t36 + t29) + 0.7071067811865476 * t22 * t45);
+        let t58 = pose[0] - t3 + 0.21213203435596426;
+        let t60 = pose[1] + t7 - 0.21213203435596426;
+        let t61 = t58 + t60;
+        let t69 = 8.650519031141869
+            * (0.5 * (t61 * t61) - (t58 * t58 + t60 * t60 - 0.1156));
+        ::overact::guard::reach(t69, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t69);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
+        let t71 = 1.0 / minus_s2_leg2;
+        let t72 = 0.7071067811865476 * minus_s2_leg2;
+        let t73 = t60 - t58;
+        let t74 = 1.4705882352941178 * t73;
+        let t77 = acceleration[0] - t25 + t28;
+        let t81 = acceleration[1] - t32 - t35;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t71;
+        let rate_2_leg2 = minus_g2_vx_leg2 * (twist[1] - t27)
+            - minus_g2_vx_leg2 * (twist[0] - t34);
+        let t90 = rate_2_leg2 * rate_2_leg2;
+        let minus_rate_dot_1_leg2 = t71
+            * ((t72 - t74) * t77 + (t72 + t74) * t81 + 0.34 * t90);
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t71
+            * (0.7071067811865476 * (t77 - t81) - 0.7071067811865476 * t73 * t90);
+        let t103 = pose[0] - t7 + 0.21213203435596426;
+        let t105 = pose[1] - t3 + 0.21213203435596426;
+        let t106 = t103 - t105;
+        let t114 = 8.650519031141869
+            * (0.5 * (t106 * t106) - (t103 * t103 + t105 * t105 - 0.1156));
+        ::overact::guard::reach(t114, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t114);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
+        let t116 = 1.0 / minus_s2_leg3;
+        let t117 = t103 + t105;
+        let t118 = 1.4705882352941178 * t117;
+        let t119 = 0.7071067811865476 * minus_s2_leg3;
+        let t122 = acceleration[0] + t32 + t35;
+        let t126 = acceleration[1] - t25 + t28;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t116;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (twist[0] + t27)
+            + minus_g2_vx_leg3 * (twist[1] - t34);
+        let t135 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_rate_dot_1_leg3 = t116
+            * ((t118 - t119) * t122 + (t119 + t118) * t126 + 0.34 * t135);
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t116
+            * (0.7071067811865476 * (t122 + t126) + 0.7071067811865476 * t117 * t135);
+        let t148 = pose[0] + t3 - 0.21213203435596426;
+        let t150 = pose[1] - t7 + 0.21213203435596426;
+        let t151 = t148 + t150;
+        let t159 = 8.650519031141869
+            * (0.5 * (t151 * t151) - (t148 * t148 + t150 * t150 - 0.1156));
+        ::overact::guard::reach(t159, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t159);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t161 = 1.0 / minus_s2_leg4;
+        let t162 = t148 - t150;
+        let t163 = 1.4705882352941178 * t162;
+        let t164 = 0.7071067811865476 * minus_s2_leg4;
+        let t167 = acceleration[0] + t25 - t28;
+        let t171 = acceleration[1] + t32 + t35;
+        let g2_vx_leg4 = 2.079725827019258 * t161;
+        let rate_2_leg4 = g2_vx_leg4 * (twist[0] + t34) - g2_vx_leg4 * (twist[1] + t27);
+        let t180 = rate_2_leg4 * rate_2_leg4;
+        let minus_rate_dot_1_leg4 = t161
+            * ((t163 - t164) * t167 - (t164 + t163) * t171 + 0.34 * t180);
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t161
+            * (0.7071067811865476 * (t171 - t167) - 0.7071067811865476 * t162 * t180);
         Ok([
-            rate_dot_1_leg1, -minus_rate_dot_2_leg1, minus_rate_dot_2_leg1 + acceleration[2],
-            rate_dot_1_leg2, rate_dot_2_leg2, acceleration[2] - rate_dot_2_leg2,
+            rate_dot_1_leg1, rate_dot_2_leg1, acceleration[2] - rate_dot_2_leg1,
+            -minus_rate_dot_1_leg2, -minus_rate_dot_2_leg2, minus_rate_dot_2_leg2 + acceleration[2],
             -minus_rate_dot_1_leg3, -minus_rate_dot_2_leg3, minus_rate_dot_2_leg3 + acceleration[2],
-            rate_dot_1_leg4, rate_dot_2_leg4, acceleration[2] - rate_dot_2_leg4,
+            -minus_rate_dot_1_leg4, -minus_rate_dot_2_leg4, minus_rate_dot_2_leg4 + acceleration[2],
         ])
     }
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
@@ -817,7 +1000,7 @@ impl Planar4Prr {
     ///
     /// Output: 3.
     ///
-    /// 127 operations (51 additions, 69 multiplications, 7 divisions), 0 square roots, 5 trigonometric pairs, 0 signs, 134 intermediates.
+    /// 191 operations (87 additions, 97 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 194 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -825,69 +1008,101 @@ impl Planar4Prr {
         pose: &[f64; 3],
         actuator_velocities: &[f64; 4],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
-        let t3 = 0.7071067811865476 / s2_leg1;
-        let g1_vx_leg1 = (c2_leg1 - s2_leg1) * t3;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t9 = 0.7071067811865476 / s2_leg2;
-        let minus_g1_vx_leg2 = (c2_leg2 + s2_leg2) * t9;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
-        let t16 = 0.7071067811865476 / s2_leg3;
-        let g1_vx_leg3 = (s2_leg3 - c2_leg3) * t16;
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
-        let t23 = 0.7071067811865476 / s2_leg4;
-        let g1_vx_leg4 = (c2_leg4 + s2_leg4) * t23;
-        let t26 = g1_vx_leg1 * actuator_velocities[0]
-            - minus_g1_vx_leg2 * actuator_velocities[1]
-            + g1_vx_leg3 * actuator_velocities[2] + g1_vx_leg4 * actuator_velocities[3];
-        let t33 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t33, 3.4404761904750325, "actuators")?;
-        let t34 = 1.0 / t33;
-        let g1_vy_leg1 = (s2_leg1 + c2_leg1) * t3;
-        let minus_g1_vy_leg2 = (s2_leg2 - c2_leg2) * t9;
-        let minus_g1_vy_leg3 = (s2_leg3 + c2_leg3) * t16;
-        let minus_g1_vy_leg4 = (c2_leg4 - s2_leg4) * t23;
-        let t50 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            - g1_vx_leg3 * minus_g1_vy_leg3 - g1_vx_leg4 * minus_g1_vy_leg4;
-        let t51 = t50 * t34;
-        let t60 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t50 * t51;
-        ::overact::guard::platform(t60, 3.440476190475036, "actuators")?;
-        let t61 = 1.0 / t60;
-        let t70 = g1_vy_leg1 * actuator_velocities[0]
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let t3 = 0.05656854249492381 * (c_phi - s_phi);
+        let t5 = pose[0] + t3 - 0.21213203435596426;
+        let t7 = 0.05656854249492381 * (s_phi + c_phi);
+        let t9 = pose[1] + t7 - 0.21213203435596426;
+        let t11 = 1.4705882352941178 * (t5 + t9);
+        let t12 = t9 - t5;
+        let t20 = 8.650519031141869 * (0.5 * (t12 * t12) - (t5 * t5 + t9 * t9 - 0.1156));
+        ::overact::guard::reach(t20, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t20);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
+        let t22 = 0.7071067811865476 * minus_s2_leg1;
+        let t24 = 1.0 / minus_s2_leg1;
+        let minus_g1_vx_leg1 = (t11 + t22) * t24;
+        let g1_vy_leg1 = (t22 - t11) * t24;
+        let g1_wz_leg1 = t3 * g1_vy_leg1 + t7 * minus_g1_vx_leg1;
+        let t33 = pose[0] - t7 + 0.21213203435596426;
+        let t35 = pose[1] + t3 - 0.21213203435596426;
+        let t36 = t33 + t35;
+        let t44 = 8.650519031141869
+            * (0.5 * (t36 * t36) - (t33 * t33 + t35 * t35 - 0.1156));
+        ::overact::guard::reach(t44, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t44);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
+        let t46 = 0.7071067811865476 * minus_s2_leg2;
+        let t48 = 1.4705882352941178 * (t35 - t33);
+        let t50 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = (t46 - t48) * t50;
+        let minus_g1_vy_leg2 = (t46 + t48) * t50;
+        let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
+        let t60 = pose[0] - t3 + 0.21213203435596426;
+        let t62 = pose[1] - t7 + 0.21213203435596426;
+        let t64 = 1.4705882352941178 * (t60 + t62);
+        let t65 = t60 - t62;
+        let t73 = 8.650519031141869
+            * (0.5 * (t65 * t65) - (t60 * t60 + t62 * t62 - 0.1156));
+        ::overact::guard::reach(t73, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t73);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
+        let t75 = 0.7071067811865476 * minus_s2_leg3;
+        let t77 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = (t64 - t75) * t77;
+        let minus_g1_vy_leg3 = (t75 + t64) * t77;
+        let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
+        let t87 = pose[0] + t7 - 0.21213203435596426;
+        let t89 = pose[1] - t3 + 0.21213203435596426;
+        let t91 = 1.4705882352941178 * (t87 - t89);
+        let t92 = t87 + t89;
+        let t100 = 8.650519031141869
+            * (0.5 * (t92 * t92) - (t87 * t87 + t89 * t89 - 0.1156));
+        ::overact::guard::reach(t100, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t100);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t102 = 0.7071067811865476 * minus_s2_leg4;
+        let t104 = 1.0 / minus_s2_leg4;
+        let minus_g1_vx_leg4 = (t91 - t102) * t104;
+        let g1_vy_leg4 = (t102 + t91) * t104;
+        let g1_wz_leg4 = t7 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
+        let t112 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+            + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
+        let t119 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+            + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
+            + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t119, 3.440476190476192, "actuators")?;
+        let t120 = 1.0 / t119;
+        let t121 = t112 * t120;
+        let t144 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+            + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
+        let t146 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t144 * t121;
+        let t154 = t144 * t120;
+        let t156 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
+            - t144 * t154;
+        ::overact::guard::platform(t156, 3.440476190476192, "actuators")?;
+        let t157 = 1.0 / t156;
+        let t158 = t146 * t157;
+        let t160 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t112 * t121
+            - t146 * t158;
+        ::overact::guard::platform(t160, 0.02560000000000001, "actuators")?;
+        let t174 = minus_g1_vx_leg1 * actuator_velocities[0]
+            + minus_g1_vx_leg2 * actuator_velocities[1]
+            + minus_g1_vx_leg3 * actuator_velocities[2]
+            + minus_g1_vx_leg4 * actuator_velocities[3];
+        let t185 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t26 * t51;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t75 = 0.05656854249492381 * (c_phi - s_phi);
-        let t78 = 0.05656854249492381 * (s_phi + c_phi);
-        let g1_wz_leg1 = g1_vy_leg1 * t75 - g1_vx_leg1 * t78;
-        let g1_wz_leg2 = t78 * minus_g1_vy_leg2 + t75 * minus_g1_vx_leg2;
-        let g1_wz_leg3 = t75 * minus_g1_vy_leg3 + t78 * g1_vx_leg3;
-        let g1_wz_leg4 = t75 * g1_vx_leg4 - t78 * minus_g1_vy_leg4;
-        let t103 = g1_vx_leg1 * g1_wz_leg1 - minus_g1_vx_leg2 * g1_wz_leg2
-            + g1_vx_leg3 * g1_wz_leg3 + g1_vx_leg4 * g1_wz_leg4;
-        let t104 = t103 * t34;
-        let t106 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 - minus_g1_vy_leg4 * g1_wz_leg4 - t50 * t104;
-        let t107 = t106 * t61;
-        let t118 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t103 * t104
-            - t106 * t107;
-        ::overact::guard::platform(t118, 0.02560000000000001, "actuators")?;
-        let t129 = g1_wz_leg1 * actuator_velocities[0]
+            + g1_vy_leg4 * actuator_velocities[3] + t174 * t154;
+        let t187 = g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg2 * actuator_velocities[1] + g1_wz_leg3 * actuator_velocities[2]
-            + g1_wz_leg4 * actuator_velocities[3] - t26 * t104 - t107 * t70;
-        let t130 = t129 / t118;
-        let t132 = t61 * t70 - t107 * t130;
-        Ok([t26 * t34 - t51 * t132 - t104 * t130, t132, t130])
+            + g1_wz_leg4 * actuator_velocities[3] - t174 * t121 - t158 * t185;
+        let t188 = t187 / t160;
+        let t193 = t157 * t185 - t158 * t188;
+        Ok([t121 * t188 - (t174 * t120 + t154 * t193), t193, t188])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -898,7 +1113,7 @@ impl Planar4Prr {
     ///
     /// Output: 3.
     ///
-    /// 197 operations (77 additions, 113 multiplications, 7 divisions), 0 square roots, 5 trigonometric pairs, 0 signs, 204 intermediates.
+    /// 251 operations (111 additions, 133 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 254 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -907,108 +1122,132 @@ impl Planar4Prr {
         twist: &[f64; 3],
         actuator_accelerations: &[f64; 4],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
-        let t2 = c2_leg1 - s2_leg1;
-        let t3 = 1.0 / s2_leg1;
-        let t4 = 0.7071067811865476 * t3;
-        let g1_vx_leg1 = t2 * t4;
-        let t6 = 0.2404163056034262 * t2;
-        let minus_g2_vx_leg1 = 2.079725827019258 * t3;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t11 = 0.05656854249492381 * (s_phi + c_phi);
-        let t12 = t11 * twist[2];
-        let t16 = 0.05656854249492381 * (c_phi - s_phi);
-        let t17 = t16 * twist[2];
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (twist[0] - t12)
-            + minus_g2_vx_leg1 * (twist[1] + t17);
-        let t21 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t23 = twist[2] * t17;
-        let t26 = s2_leg1 + c2_leg1;
-        let g1_vy_leg1 = t26 * t4;
-        let t28 = 0.2404163056034262 * t26;
-        let t30 = twist[2] * t12;
-        let rate_dot_1_leg1 = g1_vx_leg1 * (t6 * t21 - t23)
-            + g1_vy_leg1 * (t28 * t21 - t30);
-        let t34 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t38 = c2_leg2 + s2_leg2;
-        let t39 = 1.0 / s2_leg2;
-        let t40 = 0.7071067811865476 * t39;
-        let minus_g1_vx_leg2 = t38 * t40;
-        let t42 = s2_leg2 - c2_leg2;
-        let t48 = t2 * t6 + t26 * t28;
-        let g2_vx_leg2 = 2.079725827019258 * t39;
-        let rate_2_leg2 = g2_vx_leg2 * (twist[0] - t17) - g2_vx_leg2 * (twist[1] - t12);
-        let rate_dot_1_leg2 = t40
-            * (t42 * t23 - t38 * t30 + t48 * (rate_2_leg2 * rate_2_leg2));
-        let t59 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
-        let t64 = s2_leg3 - c2_leg3;
-        let t65 = 1.0 / s2_leg3;
-        let t66 = 0.7071067811865476 * t65;
-        let g1_vx_leg3 = t64 * t66;
-        let t68 = s2_leg3 + c2_leg3;
-        let g2_vx_leg3 = 2.079725827019258 * t65;
-        let rate_2_leg3 = g2_vx_leg3 * (twist[0] + t12) + g2_vx_leg3 * (twist[1] - t17);
-        let minus_rate_dot_1_leg3 = t66
-            * (t68 * t30 - t64 * t23 - t48 * (rate_2_leg3 * rate_2_leg3));
-        let t82 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
-        let t87 = c2_leg4 + s2_leg4;
-        let t88 = 1.0 / s2_leg4;
-        let t89 = 0.7071067811865476 * t88;
-        let g1_vx_leg4 = t87 * t89;
-        let minus_g2_vx_leg4 = 2.079725827019258 * t88;
-        let rate_2_leg4 = minus_g2_vx_leg4 * (twist[1] + t12)
-            - minus_g2_vx_leg4 * (twist[0] + t17);
-        let t100 = c2_leg4 - s2_leg4;
-        let rate_dot_1_leg4 = t89
-            * (t48 * (rate_2_leg4 * rate_2_leg4) - (t87 * t30 + t100 * t23));
-        let t105 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t107 = g1_vx_leg1 * t34 - minus_g1_vx_leg2 * t59 + g1_vx_leg3 * t82
-            + g1_vx_leg4 * t105;
-        let t114 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t114, 3.4404761904750325, "actuators")?;
-        let t115 = 1.0 / t114;
-        let minus_g1_vy_leg2 = t42 * t40;
-        let minus_g1_vy_leg3 = t68 * t66;
-        let minus_g1_vy_leg4 = t100 * t89;
-        let t126 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            - g1_vx_leg3 * minus_g1_vy_leg3 - g1_vx_leg4 * minus_g1_vy_leg4;
-        let t127 = t126 * t115;
-        let t136 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t126 * t127;
-        ::overact::guard::platform(t136, 3.440476190475036, "actuators")?;
-        let t137 = 1.0 / t136;
-        let t146 = g1_vy_leg1 * t34 - minus_g1_vy_leg2 * t59 - minus_g1_vy_leg3 * t82
-            - minus_g1_vy_leg4 * t105 - t107 * t127;
-        let g1_wz_leg1 = g1_vy_leg1 * t16 - g1_vx_leg1 * t11;
-        let g1_wz_leg2 = t11 * minus_g1_vy_leg2 + t16 * minus_g1_vx_leg2;
-        let g1_wz_leg3 = t16 * minus_g1_vy_leg3 + t11 * g1_vx_leg3;
-        let g1_wz_leg4 = t16 * g1_vx_leg4 - t11 * minus_g1_vy_leg4;
-        let t173 = g1_vx_leg1 * g1_wz_leg1 - minus_g1_vx_leg2 * g1_wz_leg2
-            + g1_vx_leg3 * g1_wz_leg3 + g1_vx_leg4 * g1_wz_leg4;
-        let t174 = t173 * t115;
-        let t176 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 - minus_g1_vy_leg4 * g1_wz_leg4
-            - t126 * t174;
-        let t177 = t176 * t137;
-        let t188 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t173 * t174
-            - t176 * t177;
-        ::overact::guard::platform(t188, 0.02560000000000001, "actuators")?;
-        let t199 = g1_wz_leg1 * t34 + g1_wz_leg2 * t59 + g1_wz_leg3 * t82
-            + g1_wz_leg4 * t105 - t107 * t174 - t177 * t146;
-        let t200 = t199 / t188;
-        let t202 = t137 * t146 - t177 * t200;
-        Ok([t107 * t115 - t127 * t202 - t174 * t200, t202, t200])
+        let t3 = 0.05656854249492381 * (c_phi - s_phi);
+        let t5 = pose[0] + t3 - 0.21213203435596426;
+        let t7 = 0.05656854249492381 * (s_phi + c_phi);
+        let t9 = pose[1] + t7 - 0.21213203435596426;
+        let t11 = 1.4705882352941178 * (t5 + t9);
+        let t12 = t9 - t5;
+        let t20 = 8.650519031141869 * (0.5 * (t12 * t12) - (t5 * t5 + t9 * t9 - 0.1156));
+        ::overact::guard::reach(t20, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t20);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
+        let t22 = 0.7071067811865476 * minus_s2_leg1;
+        let t23 = t11 + t22;
+        let t24 = 1.0 / minus_s2_leg1;
+        let minus_g1_vx_leg1 = t23 * t24;
+        let t26 = t22 - t11;
+        let g1_vy_leg1 = t26 * t24;
+        let g1_wz_leg1 = t3 * g1_vy_leg1 + t7 * minus_g1_vx_leg1;
+        let t33 = pose[0] - t7 + 0.21213203435596426;
+        let t35 = pose[1] + t3 - 0.21213203435596426;
+        let t36 = t33 + t35;
+        let t44 = 8.650519031141869
+            * (0.5 * (t36 * t36) - (t33 * t33 + t35 * t35 - 0.1156));
+        ::overact::guard::reach(t44, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t44);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
+        let t46 = 0.7071067811865476 * minus_s2_leg2;
+        let t48 = 1.4705882352941178 * (t35 - t33);
+        let t49 = t46 - t48;
+        let t50 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t49 * t50;
+        let t52 = t46 + t48;
+        let minus_g1_vy_leg2 = t52 * t50;
+        let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
+        let t60 = pose[0] - t3 + 0.21213203435596426;
+        let t62 = pose[1] - t7 + 0.21213203435596426;
+        let t64 = 1.4705882352941178 * (t60 + t62);
+        let t65 = t60 - t62;
+        let t73 = 8.650519031141869
+            * (0.5 * (t65 * t65) - (t60 * t60 + t62 * t62 - 0.1156));
+        ::overact::guard::reach(t73, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t73);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
+        let t75 = 0.7071067811865476 * minus_s2_leg3;
+        let t76 = t64 - t75;
+        let t77 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t76 * t77;
+        let t79 = t75 + t64;
+        let minus_g1_vy_leg3 = t79 * t77;
+        let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
+        let t87 = pose[0] + t7 - 0.21213203435596426;
+        let t89 = pose[1] - t3 + 0.21213203435596426;
+        let t91 = 1.4705882352941178 * (t87 - t89);
+        let t92 = t87 + t89;
+        let t100 = 8.650519031141869
+            * (0.5 * (t92 * t92) - (t87 * t87 + t89 * t89 - 0.1156));
+        ::overact::guard::reach(t100, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t100);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t102 = 0.7071067811865476 * minus_s2_leg4;
+        let t103 = t91 - t102;
+        let t104 = 1.0 / minus_s2_leg4;
+        let minus_g1_vx_leg4 = t103 * t104;
+        let t106 = t102 + t91;
+        let g1_vy_leg4 = t106 * t104;
+        let g1_wz_leg4 = t7 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
+        let t112 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+            + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
+        let t119 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+            + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
+            + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t119, 3.440476190476192, "actuators")?;
+        let t120 = 1.0 / t119;
+        let t121 = t112 * t120;
+        let t144 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+            + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
+        let t146 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t144 * t121;
+        let t154 = t144 * t120;
+        let t156 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
+            - t144 * t154;
+        ::overact::guard::platform(t156, 3.440476190476192, "actuators")?;
+        let t157 = 1.0 / t156;
+        let t158 = t146 * t157;
+        let t160 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t112 * t121
+            - t146 * t158;
+        ::overact::guard::platform(t160, 0.02560000000000001, "actuators")?;
+        let t161 = t3 * twist[2];
+        let t162 = twist[2] * t161;
+        let t164 = t7 * twist[2];
+        let t165 = twist[2] * t164;
+        let g2_vx_leg1 = 2.079725827019258 * t24;
+        let rate_2_leg1 = g2_vx_leg1 * (twist[0] - t164)
+            + g2_vx_leg1 * (twist[1] + t161);
+        let rate_dot_1_leg1 = t24
+            * (t23 * t162 - t26 * t165 - 0.34 * (rate_2_leg1 * rate_2_leg1));
+        let t178 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t50;
+        let rate_2_leg2 = minus_g2_vx_leg2 * (twist[1] - t164)
+            - minus_g2_vx_leg2 * (twist[0] - t161);
+        let minus_rate_dot_1_leg2 = t50
+            * (t49 * t165 - t52 * t162 + 0.34 * (rate_2_leg2 * rate_2_leg2));
+        let t193 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t77;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (twist[0] + t164)
+            + minus_g2_vx_leg3 * (twist[1] - t161);
+        let minus_rate_dot_1_leg3 = t77
+            * (t76 * t162 + t79 * t165 + 0.34 * (minus_rate_2_leg3 * minus_rate_2_leg3));
+        let t209 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = 2.079725827019258 * t104;
+        let rate_2_leg4 = g2_vx_leg4 * (twist[0] + t161)
+            - g2_vx_leg4 * (twist[1] + t164);
+        let minus_rate_dot_1_leg4 = t104
+            * (0.34 * (rate_2_leg4 * rate_2_leg4) - (t103 * t165 + t106 * t162));
+        let t225 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
+        let t234 = minus_g1_vx_leg1 * t178 + minus_g1_vx_leg2 * t193
+            + minus_g1_vx_leg3 * t209 + minus_g1_vx_leg4 * t225;
+        let t245 = g1_vy_leg1 * t178 - minus_g1_vy_leg2 * t193 - minus_g1_vy_leg3 * t209
+            + g1_vy_leg4 * t225 + t234 * t154;
+        let t247 = g1_wz_leg1 * t178 + g1_wz_leg2 * t193 + g1_wz_leg3 * t209
+            + g1_wz_leg4 * t225 - t234 * t121 - t158 * t245;
+        let t248 = t247 / t160;
+        let t253 = t157 * t245 - t158 * t248;
+        Ok([t121 * t248 - (t234 * t120 + t154 * t253), t253, t248])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1020,7 +1259,7 @@ impl Planar4Prr {
     /// Output: 3 x 48.
     /// Columns: `PARAMETERS`.
     ///
-    /// 315 operations (108 additions, 203 multiplications, 4 divisions), 0 square roots, 5 trigonometric pairs, 28 signs, 253 intermediates.
+    /// 371 operations (142 additions, 225 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 305 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1029,8 +1268,254 @@ impl Planar4Prr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 48]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_platform_from_joints(pose, joints, twist, acceleration)
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let t2 = c_phi - s_phi;
+        let t3 = 0.05656854249492381 * t2;
+        let t5 = pose[0] + t3 - 0.21213203435596426;
+        let t6 = s_phi + c_phi;
+        let t7 = 0.05656854249492381 * t6;
+        let t9 = pose[1] + t7 - 0.21213203435596426;
+        let t10 = t5 + t9;
+        let t11 = 1.4705882352941178 * t10;
+        let t12 = t9 - t5;
+        let t20 = 8.650519031141869 * (0.5 * (t12 * t12) - (t5 * t5 + t9 * t9 - 0.1156));
+        ::overact::guard::reach(t20, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t20);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
+        let t22 = 0.7071067811865476 * minus_s2_leg1;
+        let t23 = t11 + t22;
+        let t24 = 1.0 / minus_s2_leg1;
+        let minus_g1_vx_leg1 = t23 * t24;
+        let t26 = t22 - t11;
+        let t27 = t3 * acceleration[2];
+        let t29 = t7 * twist[2];
+        let t30 = twist[2] * t29;
+        let t31 = acceleration[1] + t27 - t30;
+        let t33 = t7 * acceleration[2];
+        let t35 = t3 * twist[2];
+        let t36 = twist[2] * t35;
+        let t37 = acceleration[0] - t33 - t36;
+        let g2_vx_leg1 = 2.079725827019258 * t24;
+        let t41 = twist[0] - t29;
+        let t43 = twist[1] + t35;
+        let rate_2_leg1 = g2_vx_leg1 * t41 + g2_vx_leg1 * t43;
+        let t46 = rate_2_leg1 * rate_2_leg1;
+        let t48 = t26 * t31 - t23 * t37 - 0.34 * t46;
+        let rate_dot_1_leg1 = t24 * t48;
+        let t50 = minus_g1_vx_leg1 * rate_dot_1_leg1;
+        let g1_vy_leg1 = t26 * t24;
+        let t52 = g1_vy_leg1 * rate_dot_1_leg1;
+        let g1_wz_leg1 = t3 * g1_vy_leg1 + t7 * minus_g1_vx_leg1;
+        let t56 = g1_wz_leg1 * rate_dot_1_leg1;
+        let rate_1_leg1 = g1_vy_leg1 * t43 - minus_g1_vx_leg1 * t41;
+        let t67 = t37 + t31;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t24
+            * (0.7071067811865476 * t67 + 0.7071067811865476 * t10 * t46);
+        let t73 = g2_vx_leg1 * rate_dot_2_leg1;
+        let g2_wz_leg1 = 0.11764705882352941 * (t2 * t24 - t6 * t24);
+        let c2_leg1 = 2.079725827019258 * t10;
+        let t80 = c2_leg1 * rate_dot_1_leg1;
+        let t81 = g2_vx_leg1 * t80;
+        let t84 = minus_s2_leg1 * t46 + c2_leg1 * rate_dot_2_leg1;
+        let t92 = g2_vx_leg1 * t48;
+        let t93 = 2.079725827019258 * t67;
+        let t101 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
+        let t103 = twist[2] - rate_2_leg1;
+        let t104 = ::overact::math::signed(g2_vx_leg1, t103);
+        let t108 = pose[0] - t7 + 0.21213203435596426;
+        let t110 = pose[1] + t3 - 0.21213203435596426;
+        let t111 = t108 + t110;
+        let t119 = 8.650519031141869
+            * (0.5 * (t111 * t111) - (t108 * t108 + t110 * t110 - 0.1156));
+        ::overact::guard::reach(t119, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t119);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
+        let t121 = 0.7071067811865476 * minus_s2_leg2;
+        let t122 = t110 - t108;
+        let t123 = 1.4705882352941178 * t122;
+        let t124 = t121 - t123;
+        let t125 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t124 * t125;
+        let t128 = acceleration[0] - t27 + t30;
+        let t130 = t121 + t123;
+        let t132 = acceleration[1] - t33 - t36;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t125;
+        let t136 = twist[1] - t29;
+        let t138 = twist[0] - t35;
+        let rate_2_leg2 = minus_g2_vx_leg2 * t136 - minus_g2_vx_leg2 * t138;
+        let t141 = rate_2_leg2 * rate_2_leg2;
+        let t143 = t124 * t128 + t130 * t132 + 0.34 * t141;
+        let minus_rate_dot_1_leg2 = t125 * t143;
+        let t145 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let minus_g1_vy_leg2 = t130 * t125;
+        let t147 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
+        let t151 = g1_wz_leg2 * minus_rate_dot_1_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t138 + minus_g1_vy_leg2 * t136;
+        let t162 = t128 - t132;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t125
+            * (0.7071067811865476 * t162 - 0.7071067811865476 * t122 * t141);
+        let t168 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let g2_wz_leg2 = 0.11764705882352941 * (t2 * t125 - t6 * t125);
+        let c2_leg2 = 2.079725827019258 * t122;
+        let t175 = c2_leg2 * minus_rate_dot_1_leg2;
+        let t176 = minus_g2_vx_leg2 * t175;
+        let t179 = minus_s2_leg2 * t141 - c2_leg2 * minus_rate_dot_2_leg2;
+        let t187 = 2.079725827019258 * t162;
+        let t189 = minus_g2_vx_leg2 * t143;
+        let t196 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
+        let t198 = twist[2] - rate_2_leg2;
+        let t199 = ::overact::math::signed(minus_g2_vx_leg2, t198);
+        let t203 = pose[0] - t3 + 0.21213203435596426;
+        let t205 = pose[1] - t7 + 0.21213203435596426;
+        let t206 = t203 + t205;
+        let t207 = 1.4705882352941178 * t206;
+        let t208 = t203 - t205;
+        let t216 = 8.650519031141869
+            * (0.5 * (t208 * t208) - (t203 * t203 + t205 * t205 - 0.1156));
+        ::overact::guard::reach(t216, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t216);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
+        let t218 = 0.7071067811865476 * minus_s2_leg3;
+        let t219 = t207 - t218;
+        let t220 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t219 * t220;
+        let t223 = acceleration[0] + t33 + t36;
+        let t225 = t218 + t207;
+        let t227 = acceleration[1] - t27 + t30;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t220;
+        let t231 = twist[0] + t29;
+        let t233 = twist[1] - t35;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t231 + minus_g2_vx_leg3 * t233;
+        let t236 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t238 = t219 * t223 + t225 * t227 + 0.34 * t236;
+        let minus_rate_dot_1_leg3 = t220 * t238;
+        let t240 = minus_g1_vx_leg3 * minus_rate_dot_1_leg3;
+        let minus_g1_vy_leg3 = t225 * t220;
+        let t242 = minus_g1_vy_leg3 * minus_rate_dot_1_leg3;
+        let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
+        let t246 = g1_wz_leg3 * minus_rate_dot_1_leg3;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t231 + minus_g1_vy_leg3 * t233;
+        let t257 = t223 + t227;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t220
+            * (0.7071067811865476 * t257 + 0.7071067811865476 * t206 * t236);
+        let t263 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let g2_wz_leg3 = 0.11764705882352941 * (t2 * t220 - t6 * t220);
+        let minus_c2_leg3 = 2.079725827019258 * t206;
+        let t272 = minus_s2_leg3 * t236 + minus_c2_leg3 * minus_rate_dot_2_leg3;
+        let t274 = minus_c2_leg3 * minus_rate_dot_1_leg3;
+        let t275 = minus_g2_vx_leg3 * t274;
+        let t282 = 2.079725827019258 * t257;
+        let t284 = minus_g2_vx_leg3 * t238;
+        let t291 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
+        let t293 = minus_rate_2_leg3 + twist[2];
+        let t294 = ::overact::math::signed(minus_g2_vx_leg3, t293);
+        let t298 = pose[0] + t7 - 0.21213203435596426;
+        let t300 = pose[1] - t3 + 0.21213203435596426;
+        let t301 = t298 - t300;
+        let t302 = 1.4705882352941178 * t301;
+        let t303 = t298 + t300;
+        let t311 = 8.650519031141869
+            * (0.5 * (t303 * t303) - (t298 * t298 + t300 * t300 - 0.1156));
+        ::overact::guard::reach(t311, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t311);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t313 = 0.7071067811865476 * minus_s2_leg4;
+        let t314 = t302 - t313;
+        let t315 = 1.0 / minus_s2_leg4;
+        let minus_g1_vx_leg4 = t314 * t315;
+        let t318 = acceleration[0] + t27 - t30;
+        let t320 = t313 + t302;
+        let t322 = acceleration[1] + t33 + t36;
+        let g2_vx_leg4 = 2.079725827019258 * t315;
+        let t326 = twist[0] + t35;
+        let t328 = twist[1] + t29;
+        let rate_2_leg4 = g2_vx_leg4 * t326 - g2_vx_leg4 * t328;
+        let t331 = rate_2_leg4 * rate_2_leg4;
+        let t333 = t314 * t318 - t320 * t322 + 0.34 * t331;
+        let minus_rate_dot_1_leg4 = t315 * t333;
+        let t335 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
+        let g1_vy_leg4 = t320 * t315;
+        let t337 = g1_vy_leg4 * minus_rate_dot_1_leg4;
+        let g1_wz_leg4 = t7 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
+        let t341 = g1_wz_leg4 * minus_rate_dot_1_leg4;
+        let rate_1_leg4 = g1_vy_leg4 * t328 - minus_g1_vx_leg4 * t326;
+        let t352 = t322 - t318;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t315
+            * (0.7071067811865476 * t352 - 0.7071067811865476 * t301 * t331);
+        let t358 = g2_vx_leg4 * minus_rate_dot_2_leg4;
+        let g2_wz_leg4 = 0.11764705882352941 * (t2 * t315 - t6 * t315);
+        let c2_leg4 = 2.079725827019258 * t301;
+        let t367 = minus_s2_leg4 * t331 - c2_leg4 * minus_rate_dot_2_leg4;
+        let t369 = c2_leg4 * minus_rate_dot_1_leg4;
+        let t370 = g2_vx_leg4 * t369;
+        let t377 = 2.079725827019258 * t352;
+        let t379 = g2_vx_leg4 * t333;
+        let t386 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
+        let t388 = twist[2] - rate_2_leg4;
+        let t389 = ::overact::math::signed(g2_vx_leg4, t388);
+        let t392 = twist[2] * twist[2];
+        let t395 = c_phi * t392 + s_phi * acceleration[2];
+        let t398 = c_phi * acceleration[2] - s_phi * t392;
+        Ok([
+            [
+                -t50, -t50, -(minus_g1_vx_leg1 * rate_1_leg1),
+                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t73,
+                t81 - minus_g1_vx_leg1 * t84, t92 - minus_g1_vx_leg1 * t93, -t50, t101, -t104, t145,
+                t145, minus_g1_vx_leg2 * minus_rate_1_leg2,
+                ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
+                t168, t176 - minus_g1_vx_leg2 * t179, minus_g1_vx_leg2 * t187 + t189, t145, -t196,
+                t199, t240, t240, minus_g1_vx_leg3 * minus_rate_1_leg3,
+                ::overact::math::signed(minus_g1_vx_leg3, minus_rate_1_leg3), -minus_g1_vx_leg3,
+                t263, -(minus_g1_vx_leg3 * t272 + t275), minus_g1_vx_leg3 * t282 + t284, t240, t291,
+                t294, t335, t335, -(minus_g1_vx_leg4 * rate_1_leg4),
+                -::overact::math::signed(minus_g1_vx_leg4, rate_1_leg4), -minus_g1_vx_leg4, -t358,
+                -(minus_g1_vx_leg4 * t367 + t370), minus_g1_vx_leg4 * t377 - t379, t335, t386,
+                -t389, 0.0, -t395, -t398, acceleration[0],
+            ],
+            [
+                t52, t52, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t73,
+                g1_vy_leg1 * t84 + t81, g1_vy_leg1 * t93 + t92, t52, t101, -t104, t147, t147,
+                minus_g1_vy_leg2 * minus_rate_1_leg2,
+                ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
+                -t168, -(minus_g1_vy_leg2 * t179 + t176), minus_g1_vy_leg2 * t187 - t189, t147,
+                t196, -t199, t242, t242, minus_g1_vy_leg3 * minus_rate_1_leg3,
+                ::overact::math::signed(minus_g1_vy_leg3, minus_rate_1_leg3), -minus_g1_vy_leg3,
+                t263, -(minus_g1_vy_leg3 * t272 + t275), minus_g1_vy_leg3 * t282 + t284, t242, t291,
+                t294, -t337, -t337, g1_vy_leg4 * rate_1_leg4,
+                ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg4, t358,
+                g1_vy_leg4 * t367 + t370, t379 - g1_vy_leg4 * t377, -t337, -t386, t389, 0.0, t398,
+                -t395, acceleration[1],
+            ],
+            [
+                t56, t56, g1_wz_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_wz_leg1, rate_1_leg1), g1_wz_leg1,
+                g2_wz_leg1 * rate_dot_2_leg1, g1_wz_leg1 * t84 + g2_wz_leg1 * t80,
+                g1_wz_leg1 * t93 + g2_wz_leg1 * t48, t56,
+                ::overact::math::signed(g2_wz_leg1, rate_2_leg1),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t103), -t151, -t151,
+                -(g1_wz_leg2 * minus_rate_1_leg2),
+                -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2,
+                -(g2_wz_leg2 * minus_rate_dot_2_leg2), g1_wz_leg2 * t179 - g2_wz_leg2 * t175,
+                -(g1_wz_leg2 * t187 + g2_wz_leg2 * t143), -t151,
+                ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
+                ::overact::math::signed(1.0 - g2_wz_leg2, t198), -t246, -t246,
+                -(g1_wz_leg3 * minus_rate_1_leg3),
+                -::overact::math::signed(g1_wz_leg3, minus_rate_1_leg3), g1_wz_leg3,
+                -(g2_wz_leg3 * minus_rate_dot_2_leg3), g1_wz_leg3 * t272 + g2_wz_leg3 * t274,
+                -(g1_wz_leg3 * t282 + g2_wz_leg3 * t238), -t246,
+                -::overact::math::signed(g2_wz_leg3, minus_rate_2_leg3),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t293), -t341, -t341,
+                g1_wz_leg4 * rate_1_leg4, ::overact::math::signed(g1_wz_leg4, rate_1_leg4),
+                g1_wz_leg4, -(g2_wz_leg4 * minus_rate_dot_2_leg4),
+                g1_wz_leg4 * t367 - g2_wz_leg4 * t369, -(g1_wz_leg4 * t377 + g2_wz_leg4 * t333),
+                -t341, ::overact::math::signed(g2_wz_leg4, rate_2_leg4),
+                ::overact::math::signed(1.0 - g2_wz_leg4, t388), acceleration[2],
+                c_phi * acceleration[1] - s_phi * acceleration[0],
+                -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
+            ],
+        ])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1277,7 +1762,7 @@ impl Planar4Prr {
     /// Output: 3 x 48.
     /// Columns: `PARAMETERS`.
     ///
-    /// 470 operations (172 additions, 291 multiplications, 7 divisions), 0 square roots, 5 trigonometric pairs, 28 signs, 405 intermediates.
+    /// 523 operations (206 additions, 310 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 454 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1288,278 +1773,313 @@ impl Planar4Prr {
         start: &[f64; 3],
     ) -> Result<[[f64; 48]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
-        let t2 = c2_leg1 - s2_leg1;
-        let t3 = 1.0 / s2_leg1;
-        let t4 = 0.7071067811865476 * t3;
-        let g1_vx_leg1 = t2 * t4;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t9 = c2_leg2 + s2_leg2;
-        let t10 = 1.0 / s2_leg2;
-        let t11 = 0.7071067811865476 * t10;
-        let minus_g1_vx_leg2 = t9 * t11;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
-        let t17 = s2_leg3 - c2_leg3;
-        let t18 = 1.0 / s2_leg3;
-        let t19 = 0.7071067811865476 * t18;
-        let g1_vx_leg3 = t17 * t19;
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
-        let t25 = c2_leg4 + s2_leg4;
-        let t26 = 1.0 / s2_leg4;
-        let t27 = 0.7071067811865476 * t26;
-        let g1_vx_leg4 = t25 * t27;
-        let t30 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t30, 3.4404761904750325, "actuators")?;
-        ::overact::guard::platform(t30, 3.4404761904750325, "actuators")?;
-        let t31 = 1.0 / t30;
-        let t32 = 0.2404163056034262 * t2;
-        let minus_g2_vx_leg1 = 2.079725827019258 * t3;
-        let t40 = g1_vx_leg1 * actuator_velocities[0]
-            - minus_g1_vx_leg2 * actuator_velocities[1]
-            + g1_vx_leg3 * actuator_velocities[2] + g1_vx_leg4 * actuator_velocities[3];
-        let t42 = s2_leg1 + c2_leg1;
-        let g1_vy_leg1 = t42 * t4;
-        let t45 = s2_leg2 - c2_leg2;
-        let minus_g1_vy_leg2 = t45 * t11;
-        let t49 = s2_leg3 + c2_leg3;
-        let minus_g1_vy_leg3 = t49 * t19;
-        let t53 = c2_leg4 - s2_leg4;
-        let minus_g1_vy_leg4 = t53 * t27;
-        let t56 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            - g1_vx_leg3 * minus_g1_vy_leg3 - g1_vx_leg4 * minus_g1_vy_leg4;
-        let t57 = t56 * t31;
-        let t66 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t56 * t57;
-        ::overact::guard::platform(t66, 3.440476190475036, "actuators")?;
-        ::overact::guard::platform(t66, 3.440476190475036, "actuators")?;
-        let t67 = 1.0 / t66;
-        let t76 = g1_vy_leg1 * actuator_velocities[0]
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let t2 = c_phi - s_phi;
+        let t3 = 0.05656854249492381 * t2;
+        let t5 = pose[0] + t3 - 0.21213203435596426;
+        let t6 = s_phi + c_phi;
+        let t7 = 0.05656854249492381 * t6;
+        let t9 = pose[1] + t7 - 0.21213203435596426;
+        let t10 = t5 + t9;
+        let t11 = 1.4705882352941178 * t10;
+        let t12 = t9 - t5;
+        let t20 = 8.650519031141869 * (0.5 * (t12 * t12) - (t5 * t5 + t9 * t9 - 0.1156));
+        ::overact::guard::reach(t20, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t20);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
+        let t22 = 0.7071067811865476 * minus_s2_leg1;
+        let t23 = t11 + t22;
+        let t24 = 1.0 / minus_s2_leg1;
+        let minus_g1_vx_leg1 = t23 * t24;
+        let t26 = t22 - t11;
+        let g1_vy_leg1 = t26 * t24;
+        let t30 = pose[0] - t7 + 0.21213203435596426;
+        let t32 = pose[1] + t3 - 0.21213203435596426;
+        let t33 = t30 + t32;
+        let t41 = 8.650519031141869
+            * (0.5 * (t33 * t33) - (t30 * t30 + t32 * t32 - 0.1156));
+        ::overact::guard::reach(t41, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t41);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
+        let t43 = 0.7071067811865476 * minus_s2_leg2;
+        let t44 = t32 - t30;
+        let t45 = 1.4705882352941178 * t44;
+        let t46 = t43 + t45;
+        let t47 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t46 * t47;
+        let t52 = pose[0] - t3 + 0.21213203435596426;
+        let t54 = pose[1] - t7 + 0.21213203435596426;
+        let t55 = t52 - t54;
+        let t63 = 8.650519031141869
+            * (0.5 * (t55 * t55) - (t52 * t52 + t54 * t54 - 0.1156));
+        ::overact::guard::reach(t63, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t63);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
+        let t65 = 0.7071067811865476 * minus_s2_leg3;
+        let t66 = t52 + t54;
+        let t67 = 1.4705882352941178 * t66;
+        let t68 = t65 + t67;
+        let t69 = 1.0 / minus_s2_leg3;
+        let minus_g1_vy_leg3 = t68 * t69;
+        let t74 = pose[0] + t7 - 0.21213203435596426;
+        let t76 = pose[1] - t3 + 0.21213203435596426;
+        let t77 = t74 + t76;
+        let t85 = 8.650519031141869
+            * (0.5 * (t77 * t77) - (t74 * t74 + t76 * t76 - 0.1156));
+        ::overact::guard::reach(t85, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t85);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t87 = 0.7071067811865476 * minus_s2_leg4;
+        let t88 = t74 - t76;
+        let t89 = 1.4705882352941178 * t88;
+        let t90 = t87 + t89;
+        let t91 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = t90 * t91;
+        let t95 = t43 - t45;
+        let minus_g1_vx_leg2 = t95 * t47;
+        let t100 = t67 - t65;
+        let minus_g1_vx_leg3 = t100 * t69;
+        let t104 = t89 - t87;
+        let minus_g1_vx_leg4 = t104 * t91;
+        let t107 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+            + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
+        let t114 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+            + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
+            + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
+        let t115 = 1.0 / t114;
+        let t116 = t107 * t115;
+        let t118 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
+            - t107 * t116;
+        ::overact::guard::platform(t118, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t118, 3.440476190476192, "actuators")?;
+        let t119 = 1.0 / t118;
+        let g1_wz_leg1 = t3 * g1_vy_leg1 + t7 * minus_g1_vx_leg1;
+        let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
+        let g1_wz_leg4 = t7 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
+        let t145 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+            + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
+        let t146 = t145 * t115;
+        let t157 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t107 * t146;
+        let t158 = t157 * t119;
+        let t160 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t145 * t146
+            - t157 * t158;
+        ::overact::guard::platform(t160, 0.02560000000000001, "actuators")?;
+        ::overact::guard::platform(t160, 0.02560000000000001, "actuators")?;
+        let t161 = 1.0 / t160;
+        let t175 = minus_g1_vx_leg1 * actuator_velocities[0]
+            + minus_g1_vx_leg2 * actuator_velocities[1]
+            + minus_g1_vx_leg3 * actuator_velocities[2]
+            + minus_g1_vx_leg4 * actuator_velocities[3];
+        let t186 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t40 * t57;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t80 = c_phi - s_phi;
-        let t81 = 0.05656854249492381 * t80;
-        let t83 = s_phi + c_phi;
-        let t84 = 0.05656854249492381 * t83;
-        let g1_wz_leg1 = g1_vy_leg1 * t81 - g1_vx_leg1 * t84;
-        let g1_wz_leg2 = t84 * minus_g1_vy_leg2 + t81 * minus_g1_vx_leg2;
-        let g1_wz_leg3 = t81 * minus_g1_vy_leg3 + t84 * g1_vx_leg3;
-        let g1_wz_leg4 = t81 * g1_vx_leg4 - t84 * minus_g1_vy_leg4;
-        let t109 = g1_vx_leg1 * g1_wz_leg1 - minus_g1_vx_leg2 * g1_wz_leg2
-            + g1_vx_leg3 * g1_wz_leg3 + g1_vx_leg4 * g1_wz_leg4;
-        let t110 = t109 * t31;
-        let t112 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 - minus_g1_vy_leg4 * g1_wz_leg4 - t56 * t110;
-        let t113 = t112 * t67;
-        let t124 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t109 * t110
-            - t112 * t113;
-        ::overact::guard::platform(t124, 0.02560000000000001, "actuators")?;
-        ::overact::guard::platform(t124, 0.02560000000000001, "actuators")?;
-        let t125 = 1.0 / t124;
-        let t136 = g1_wz_leg1 * actuator_velocities[0]
+            + g1_vy_leg4 * actuator_velocities[3] + t175 * t116;
+        let t188 = g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg2 * actuator_velocities[1] + g1_wz_leg3 * actuator_velocities[2]
-            + g1_wz_leg4 * actuator_velocities[3] - t40 * t110 - t113 * t76;
-        let rate_3_leg1 = t125 * t136;
-        let t139 = t67 * t76 - t113 * rate_3_leg1;
-        let t143 = t40 * t31 - t57 * t139 - t110 * rate_3_leg1;
-        let t144 = t84 * rate_3_leg1;
-        let t145 = t143 - t144;
-        let t147 = t81 * rate_3_leg1;
-        let t148 = t139 + t147;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t145 + minus_g2_vx_leg1 * t148;
-        let t151 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t153 = rate_3_leg1 * t147;
-        let t156 = 0.2404163056034262 * t42;
-        let t158 = rate_3_leg1 * t144;
-        let rate_dot_1_leg1 = g1_vx_leg1 * (t32 * t151 - t153)
-            + g1_vy_leg1 * (t156 * t151 - t158);
-        let t162 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t169 = t2 * t32 + t42 * t156;
-        let g2_vx_leg2 = 2.079725827019258 * t10;
-        let t171 = t143 - t147;
-        let t173 = t139 - t144;
-        let rate_2_leg2 = g2_vx_leg2 * t171 - g2_vx_leg2 * t173;
-        let t176 = rate_2_leg2 * rate_2_leg2;
-        let t177 = t169 * t176;
-        let rate_dot_1_leg2 = t11 * (t45 * t153 - t9 * t158 + t177);
-        let t180 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let g2_vx_leg3 = 2.079725827019258 * t18;
-        let t187 = t143 + t144;
-        let t189 = t139 - t147;
-        let rate_2_leg3 = g2_vx_leg3 * t187 + g2_vx_leg3 * t189;
-        let t192 = rate_2_leg3 * rate_2_leg3;
-        let t193 = t169 * t192;
-        let minus_rate_dot_1_leg3 = t19 * (t49 * t158 - t17 * t153 - t193);
-        let t196 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let minus_g2_vx_leg4 = 2.079725827019258 * t26;
-        let t200 = t139 + t144;
-        let t202 = t143 + t147;
-        let rate_2_leg4 = minus_g2_vx_leg4 * t200 - minus_g2_vx_leg4 * t202;
-        let t205 = rate_2_leg4 * rate_2_leg4;
-        let t206 = t169 * t205;
-        let rate_dot_1_leg4 = t27 * (t206 - (t25 * t158 + t53 * t153));
-        let t212 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t214 = g1_vx_leg1 * t162 - minus_g1_vx_leg2 * t180 + g1_vx_leg3 * t196
-            + g1_vx_leg4 * t212;
-        let t224 = g1_vy_leg1 * t162 - minus_g1_vy_leg2 * t180 - minus_g1_vy_leg3 * t196
-            - minus_g1_vy_leg4 * t212 - t57 * t214;
-        let t236 = g1_wz_leg1 * t162 + g1_wz_leg2 * t180 + g1_wz_leg3 * t196
-            + g1_wz_leg4 * t212 - t110 * t214 - t113 * t224;
-        let rate_dot_3_leg1 = t125 * t236;
-        let t239 = t67 * t224 - t113 * rate_dot_3_leg1;
-        let t243 = t31 * t214 - t57 * t239 - t110 * rate_dot_3_leg1;
-        let t244 = t84 * rate_dot_3_leg1;
-        let t246 = t243 - t244 - t153;
-        let t248 = t81 * rate_dot_3_leg1;
-        let t250 = t239 + t248 - t158;
-        let rate_dot_1_leg1_2 = t4 * (t2 * t246 + t42 * t250 + t151 * t169);
-        let t256 = g1_vx_leg1 * rate_dot_1_leg1_2;
-        let t257 = g1_vy_leg1 * rate_dot_1_leg1_2;
-        let t258 = g1_wz_leg1 * rate_dot_1_leg1_2;
-        let rate_1_leg1 = g1_vx_leg1 * t145 + g1_vy_leg1 * t148;
-        let t269 = t246 + t250;
-        let minus_rate_dot_2_leg1 = 2.9411764705882355 * t3
-            * (0.7071067811865476 * t269 + t151 * (0.34 * c2_leg1));
-        let t275 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-        let g2_wz_leg1 = 0.11764705882352941 * (t3 * t83 - t3 * t80);
-        let t283 = s2_leg1 * t151 + c2_leg1 * minus_rate_dot_2_leg1;
-        let t285 = c2_leg1 * rate_dot_1_leg1_2;
-        let t286 = minus_g2_vx_leg1 * t285;
-        let t293 = 2.079725827019258 * t269;
-        let t295 = s2_leg1 * rate_dot_1_leg1_2;
-        let t296 = minus_g2_vx_leg1 * t295;
-        let t303 = ::overact::math::signed(minus_g2_vx_leg1, minus_rate_2_leg1);
-        let t305 = minus_rate_2_leg1 + rate_3_leg1;
-        let t306 = ::overact::math::signed(minus_g2_vx_leg1, t305);
-        let t310 = t243 - t248 + t158;
-        let t313 = t239 - t244 - t153;
-        let rate_dot_1_leg2_2 = t11 * (t177 - (t9 * t310 + t45 * t313));
-        let t318 = minus_g1_vx_leg2 * rate_dot_1_leg2_2;
-        let t319 = minus_g1_vy_leg2 * rate_dot_1_leg2_2;
-        let t320 = g1_wz_leg2 * rate_dot_1_leg2_2;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t171 + minus_g1_vy_leg2 * t173;
-        let t331 = t310 - t313;
-        let rate_dot_2_leg2 = 2.9411764705882355 * t10
-            * (0.7071067811865476 * t331 - t176 * (0.34 * c2_leg2));
-        let t337 = g2_vx_leg2 * rate_dot_2_leg2;
-        let g2_wz_leg2 = 0.11764705882352941 * (t83 * t10 - t80 * t10);
-        let t343 = c2_leg2 * rate_dot_1_leg2_2;
-        let t344 = g2_vx_leg2 * t343;
-        let t347 = c2_leg2 * rate_dot_2_leg2 - s2_leg2 * t176;
-        let t355 = 2.079725827019258 * t331;
-        let t357 = s2_leg2 * rate_dot_1_leg2_2;
-        let t358 = g2_vx_leg2 * t357;
-        let t365 = ::overact::math::signed(g2_vx_leg2, rate_2_leg2);
-        let t367 = rate_3_leg1 - rate_2_leg2;
-        let t368 = ::overact::math::signed(g2_vx_leg2, t367);
-        let t372 = t239 - t248 + t158;
-        let t375 = t243 + t244 + t153;
-        let minus_rate_dot_1_leg3_2 = t19 * (t49 * t372 - t17 * t375 - t193);
-        let t380 = g1_vx_leg3 * minus_rate_dot_1_leg3_2;
-        let t381 = minus_g1_vy_leg3 * minus_rate_dot_1_leg3_2;
-        let t382 = g1_wz_leg3 * minus_rate_dot_1_leg3_2;
-        let rate_1_leg3 = g1_vx_leg3 * t187 - minus_g1_vy_leg3 * t189;
-        let t395 = t375 + t372;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t18
-            * (t192 * (0.34 * c2_leg3) - 0.7071067811865476 * t395);
-        let t399 = g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let g2_wz_leg3 = 0.11764705882352941 * (t83 * t18 - t80 * t18);
-        let t407 = s2_leg3 * t192 + c2_leg3 * minus_rate_dot_2_leg3;
-        let t409 = c2_leg3 * minus_rate_dot_1_leg3_2;
-        let t410 = g2_vx_leg3 * t409;
-        let t417 = s2_leg3 * minus_rate_dot_1_leg3_2;
-        let t418 = g2_vx_leg3 * t417;
-        let t419 = 2.079725827019258 * t395;
-        let t427 = ::overact::math::signed(g2_vx_leg3, rate_2_leg3);
-        let t429 = rate_3_leg1 - rate_2_leg3;
-        let t430 = ::overact::math::signed(g2_vx_leg3, t429);
-        let t434 = t243 + t248 - t158;
-        let t437 = t239 + t244 + t153;
-        let rate_dot_1_leg4_2 = t27 * (t25 * t434 - t53 * t437 + t206);
-        let t442 = g1_vx_leg4 * rate_dot_1_leg4_2;
-        let t443 = minus_g1_vy_leg4 * rate_dot_1_leg4_2;
-        let t444 = g1_wz_leg4 * rate_dot_1_leg4_2;
-        let rate_1_leg4 = g1_vx_leg4 * t202 - minus_g1_vy_leg4 * t200;
-        let t455 = t437 - t434;
-        let rate_dot_2_leg4 = 2.9411764705882355 * t26
-            * (0.7071067811865476 * t455 - t205 * (0.34 * c2_leg4));
-        let t461 = minus_g2_vx_leg4 * rate_dot_2_leg4;
-        let g2_wz_leg4 = 0.11764705882352941 * (t83 * t26 - t80 * t26);
-        let t469 = c2_leg4 * rate_dot_2_leg4 - s2_leg4 * t205;
-        let t471 = c2_leg4 * rate_dot_1_leg4_2;
-        let t472 = minus_g2_vx_leg4 * t471;
-        let t479 = s2_leg4 * rate_dot_1_leg4_2;
-        let t480 = minus_g2_vx_leg4 * t479;
-        let t481 = 2.079725827019258 * t455;
-        let t489 = ::overact::math::signed(minus_g2_vx_leg4, rate_2_leg4);
-        let t491 = rate_3_leg1 - rate_2_leg4;
-        let t492 = ::overact::math::signed(minus_g2_vx_leg4, t491);
-        let t495 = rate_3_leg1 * rate_3_leg1;
-        let t498 = c_phi * t495 + s_phi * rate_dot_3_leg1;
-        let t501 = c_phi * rate_dot_3_leg1 - s_phi * t495;
+            + g1_wz_leg4 * actuator_velocities[3] - t175 * t146 - t158 * t186;
+        let rate_3_leg1 = t161 * t188;
+        let t190 = t3 * rate_3_leg1;
+        let t191 = rate_3_leg1 * t190;
+        let t193 = t7 * rate_3_leg1;
+        let t194 = rate_3_leg1 * t193;
+        let g2_vx_leg1 = 2.079725827019258 * t24;
+        let t202 = t119 * t186 - t158 * rate_3_leg1;
+        let t205 = t146 * rate_3_leg1 - (t175 * t115 + t116 * t202);
+        let t206 = t205 - t193;
+        let t208 = t202 + t190;
+        let rate_2_leg1 = g2_vx_leg1 * t206 + g2_vx_leg1 * t208;
+        let t211 = rate_2_leg1 * rate_2_leg1;
+        let t212 = 0.34 * t211;
+        let rate_dot_1_leg1 = t24 * (t23 * t191 - t26 * t194 - t212);
+        let t215 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t47;
+        let t221 = t202 - t193;
+        let t223 = t205 - t190;
+        let rate_2_leg2 = minus_g2_vx_leg2 * t221 - minus_g2_vx_leg2 * t223;
+        let t226 = rate_2_leg2 * rate_2_leg2;
+        let t227 = 0.34 * t226;
+        let minus_rate_dot_1_leg2 = t47 * (t95 * t194 - t46 * t191 + t227);
+        let t230 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t69;
+        let t237 = t205 + t193;
+        let t239 = t202 - t190;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t237 + minus_g2_vx_leg3 * t239;
+        let t242 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t243 = 0.34 * t242;
+        let minus_rate_dot_1_leg3 = t69 * (t100 * t191 + t68 * t194 + t243);
+        let t246 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = 2.079725827019258 * t91;
+        let t250 = t205 + t190;
+        let t252 = t202 + t193;
+        let rate_2_leg4 = g2_vx_leg4 * t250 - g2_vx_leg4 * t252;
+        let t255 = rate_2_leg4 * rate_2_leg4;
+        let t256 = 0.34 * t255;
+        let minus_rate_dot_1_leg4 = t91 * (t256 - (t104 * t194 + t90 * t191));
+        let t262 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
+        let t271 = minus_g1_vx_leg1 * t215 + minus_g1_vx_leg2 * t230
+            + minus_g1_vx_leg3 * t246 + minus_g1_vx_leg4 * t262;
+        let t273 = g1_vy_leg1 * t215 - minus_g1_vy_leg2 * t230 - minus_g1_vy_leg3 * t246
+            + g1_vy_leg4 * t262 + t116 * t271;
+        let t285 = g1_wz_leg1 * t215 + g1_wz_leg2 * t230 + g1_wz_leg3 * t246
+            + g1_wz_leg4 * t262 - t146 * t271 - t158 * t273;
+        let rate_dot_3_leg1 = t161 * t285;
+        let t288 = t119 * t273 - t158 * rate_dot_3_leg1;
+        let t289 = t3 * rate_dot_3_leg1;
+        let t291 = t288 + t289 - t194;
+        let t297 = t146 * rate_dot_3_leg1 - (t115 * t271 + t116 * t288);
+        let t298 = t7 * rate_dot_3_leg1;
+        let t300 = t297 - t298 - t191;
+        let t303 = t26 * t291 - t23 * t300 - t212;
+        let rate_dot_1_leg1_2 = t24 * t303;
+        let t305 = minus_g1_vx_leg1 * rate_dot_1_leg1_2;
+        let t306 = g1_vy_leg1 * rate_dot_1_leg1_2;
+        let t307 = g1_wz_leg1 * rate_dot_1_leg1_2;
+        let rate_1_leg1 = g1_vy_leg1 * t208 - minus_g1_vx_leg1 * t206;
+        let t318 = t300 + t291;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t24
+            * (0.7071067811865476 * t318 + 0.7071067811865476 * t10 * t211);
+        let t324 = g2_vx_leg1 * rate_dot_2_leg1;
+        let g2_wz_leg1 = 0.11764705882352941 * (t2 * t24 - t6 * t24);
+        let c2_leg1 = 2.079725827019258 * t10;
+        let t331 = c2_leg1 * rate_dot_1_leg1_2;
+        let t332 = g2_vx_leg1 * t331;
+        let t335 = minus_s2_leg1 * t211 + c2_leg1 * rate_dot_2_leg1;
+        let t343 = g2_vx_leg1 * t303;
+        let t344 = 2.079725827019258 * t318;
+        let t352 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
+        let t354 = rate_3_leg1 - rate_2_leg1;
+        let t355 = ::overact::math::signed(g2_vx_leg1, t354);
+        let t359 = t297 - t289 + t194;
+        let t362 = t288 - t298 - t191;
+        let t365 = t95 * t359 + t46 * t362 + t227;
+        let minus_rate_dot_1_leg2_2 = t47 * t365;
+        let t367 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2_2;
+        let t368 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2_2;
+        let t369 = g1_wz_leg2 * minus_rate_dot_1_leg2_2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t223 + minus_g1_vy_leg2 * t221;
+        let t380 = t359 - t362;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t47
+            * (0.7071067811865476 * t380 - 0.7071067811865476 * t44 * t226);
+        let t386 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let g2_wz_leg2 = 0.11764705882352941 * (t2 * t47 - t6 * t47);
+        let c2_leg2 = 2.079725827019258 * t44;
+        let t393 = c2_leg2 * minus_rate_dot_1_leg2_2;
+        let t394 = minus_g2_vx_leg2 * t393;
+        let t397 = minus_s2_leg2 * t226 - c2_leg2 * minus_rate_dot_2_leg2;
+        let t405 = 2.079725827019258 * t380;
+        let t407 = minus_g2_vx_leg2 * t365;
+        let t414 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
+        let t416 = rate_3_leg1 - rate_2_leg2;
+        let t417 = ::overact::math::signed(minus_g2_vx_leg2, t416);
+        let t421 = t297 + t298 + t191;
+        let t424 = t288 - t289 + t194;
+        let t427 = t100 * t421 + t68 * t424 + t243;
+        let minus_rate_dot_1_leg3_2 = t69 * t427;
+        let t429 = minus_g1_vx_leg3 * minus_rate_dot_1_leg3_2;
+        let t430 = minus_g1_vy_leg3 * minus_rate_dot_1_leg3_2;
+        let t431 = g1_wz_leg3 * minus_rate_dot_1_leg3_2;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t237 + minus_g1_vy_leg3 * t239;
+        let t442 = t421 + t424;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t69
+            * (0.7071067811865476 * t442 + 0.7071067811865476 * t66 * t242);
+        let t448 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let g2_wz_leg3 = 0.11764705882352941 * (t2 * t69 - t6 * t69);
+        let minus_c2_leg3 = 2.079725827019258 * t66;
+        let t457 = minus_s2_leg3 * t242 + minus_c2_leg3 * minus_rate_dot_2_leg3;
+        let t459 = minus_c2_leg3 * minus_rate_dot_1_leg3_2;
+        let t460 = minus_g2_vx_leg3 * t459;
+        let t467 = 2.079725827019258 * t442;
+        let t469 = minus_g2_vx_leg3 * t427;
+        let t476 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
+        let t478 = minus_rate_2_leg3 + rate_3_leg1;
+        let t479 = ::overact::math::signed(minus_g2_vx_leg3, t478);
+        let t483 = t297 + t289 - t194;
+        let t486 = t288 + t298 + t191;
+        let t489 = t104 * t483 - t90 * t486 + t256;
+        let minus_rate_dot_1_leg4_2 = t91 * t489;
+        let t491 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4_2;
+        let t492 = g1_vy_leg4 * minus_rate_dot_1_leg4_2;
+        let t493 = g1_wz_leg4 * minus_rate_dot_1_leg4_2;
+        let rate_1_leg4 = g1_vy_leg4 * t252 - minus_g1_vx_leg4 * t250;
+        let t504 = t486 - t483;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t91
+            * (0.7071067811865476 * t504 - 0.7071067811865476 * t88 * t255);
+        let t510 = g2_vx_leg4 * minus_rate_dot_2_leg4;
+        let g2_wz_leg4 = 0.11764705882352941 * (t2 * t91 - t6 * t91);
+        let c2_leg4 = 2.079725827019258 * t88;
+        let t519 = minus_s2_leg4 * t255 - c2_leg4 * minus_rate_dot_2_leg4;
+        let t521 = c2_leg4 * minus_rate_dot_1_leg4_2;
+        let t522 = g2_vx_leg4 * t521;
+        let t529 = 2.079725827019258 * t504;
+        let t531 = g2_vx_leg4 * t489;
+        let t538 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
+        let t540 = rate_3_leg1 - rate_2_leg4;
+        let t541 = ::overact::math::signed(g2_vx_leg4, t540);
+        let t544 = rate_3_leg1 * rate_3_leg1;
+        let t547 = c_phi * t544 + s_phi * rate_dot_3_leg1;
+        let t550 = c_phi * rate_dot_3_leg1 - s_phi * t544;
         Ok([
             [
-                t256, t256, g1_vx_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t275,
-                -(g1_vx_leg1 * t283 + t286), g1_vx_leg1 * t293 + t296, t256, t303, t306, -t318,
-                -t318, minus_g1_vx_leg2 * minus_rate_1_leg2,
+                -t305, -t305, -(minus_g1_vx_leg1 * rate_1_leg1),
+                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t324,
+                t332 - minus_g1_vx_leg1 * t335, t343 - minus_g1_vx_leg1 * t344, -t305, t352, -t355,
+                t367, t367, minus_g1_vx_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
-                t337, t344 - minus_g1_vx_leg2 * t347, minus_g1_vx_leg2 * t355 - t358, -t318, t365,
-                -t368, -t380, -t380, g1_vx_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3, -t399,
-                -(g1_vx_leg3 * t407 + t410), t418 - g1_vx_leg3 * t419, -t380, t427, -t430, t442,
-                t442, g1_vx_leg4 * rate_1_leg4, ::overact::math::signed(g1_vx_leg4, rate_1_leg4),
-                g1_vx_leg4, -t461, g1_vx_leg4 * t469 - t472, t480 - g1_vx_leg4 * t481, t442, -t489,
-                t492, 0.0, -t498, -t501, t243,
+                t386, t394 - minus_g1_vx_leg2 * t397, minus_g1_vx_leg2 * t405 + t407, t367, -t414,
+                t417, t429, t429, minus_g1_vx_leg3 * minus_rate_1_leg3,
+                ::overact::math::signed(minus_g1_vx_leg3, minus_rate_1_leg3), -minus_g1_vx_leg3,
+                t448, -(minus_g1_vx_leg3 * t457 + t460), minus_g1_vx_leg3 * t467 + t469, t429, t476,
+                t479, t491, t491, -(minus_g1_vx_leg4 * rate_1_leg4),
+                -::overact::math::signed(minus_g1_vx_leg4, rate_1_leg4), -minus_g1_vx_leg4, -t510,
+                -(minus_g1_vx_leg4 * t519 + t522), minus_g1_vx_leg4 * t529 - t531, t491, t538,
+                -t541, 0.0, -t547, -t550, t297,
             ],
             [
-                t257, t257, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t275,
-                -(g1_vy_leg1 * t283 + t286), g1_vy_leg1 * t293 + t296, t257, t303, t306, -t319,
-                -t319, minus_g1_vy_leg2 * minus_rate_1_leg2,
+                t306, t306, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t324,
+                g1_vy_leg1 * t335 + t332, g1_vy_leg1 * t344 + t343, t306, t352, -t355, t368, t368,
+                minus_g1_vy_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
-                -t337, -(minus_g1_vy_leg2 * t347 + t344), minus_g1_vy_leg2 * t355 + t358, -t319,
-                -t365, t368, t381, t381, -(minus_g1_vy_leg3 * rate_1_leg3),
-                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3, -t399,
-                minus_g1_vy_leg3 * t407 - t410, minus_g1_vy_leg3 * t419 + t418, t381, t427, -t430,
-                -t443, -t443, -(minus_g1_vy_leg4 * rate_1_leg4),
-                -::overact::math::signed(minus_g1_vy_leg4, rate_1_leg4), -minus_g1_vy_leg4, t461,
-                t472 - minus_g1_vy_leg4 * t469, minus_g1_vy_leg4 * t481 - t480, -t443, t489, -t492,
-                0.0, t501, -t498, t239,
+                -t386, -(minus_g1_vy_leg2 * t397 + t394), minus_g1_vy_leg2 * t405 - t407, t368,
+                t414, -t417, t430, t430, minus_g1_vy_leg3 * minus_rate_1_leg3,
+                ::overact::math::signed(minus_g1_vy_leg3, minus_rate_1_leg3), -minus_g1_vy_leg3,
+                t448, -(minus_g1_vy_leg3 * t457 + t460), minus_g1_vy_leg3 * t467 + t469, t430, t476,
+                t479, -t492, -t492, g1_vy_leg4 * rate_1_leg4,
+                ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg4, t510,
+                g1_vy_leg4 * t519 + t522, t531 - g1_vy_leg4 * t529, -t492, -t538, t541, 0.0, t550,
+                -t547, t288,
             ],
             [
-                t258, t258, g1_wz_leg1 * rate_1_leg1,
+                t307, t307, g1_wz_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_wz_leg1, rate_1_leg1), g1_wz_leg1,
-                -(g2_wz_leg1 * minus_rate_dot_2_leg1), g2_wz_leg1 * t285 - g1_wz_leg1 * t283,
-                g1_wz_leg1 * t293 - g2_wz_leg1 * t295, t258,
-                -::overact::math::signed(g2_wz_leg1, minus_rate_2_leg1),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t305), t320, t320,
+                g2_wz_leg1 * rate_dot_2_leg1, g1_wz_leg1 * t335 + g2_wz_leg1 * t331,
+                g1_wz_leg1 * t344 + g2_wz_leg1 * t303, t307,
+                ::overact::math::signed(g2_wz_leg1, rate_2_leg1),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t354), -t369, -t369,
                 -(g1_wz_leg2 * minus_rate_1_leg2),
                 -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2,
-                g2_wz_leg2 * rate_dot_2_leg2, g1_wz_leg2 * t347 + g2_wz_leg2 * t343,
-                -(g1_wz_leg2 * t355 + g2_wz_leg2 * t357), t320,
+                -(g2_wz_leg2 * minus_rate_dot_2_leg2), g1_wz_leg2 * t397 - g2_wz_leg2 * t393,
+                -(g1_wz_leg2 * t405 + g2_wz_leg2 * t365), -t369,
                 ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t367), -t382, -t382,
-                g1_wz_leg3 * rate_1_leg3, ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
-                g1_wz_leg3, -(g2_wz_leg3 * minus_rate_dot_2_leg3),
-                -(g1_wz_leg3 * t407 + g2_wz_leg3 * t409), g2_wz_leg3 * t417 - g1_wz_leg3 * t419,
-                -t382, ::overact::math::signed(g2_wz_leg3, rate_2_leg3),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t429), t444, t444,
+                ::overact::math::signed(1.0 - g2_wz_leg2, t416), -t431, -t431,
+                -(g1_wz_leg3 * minus_rate_1_leg3),
+                -::overact::math::signed(g1_wz_leg3, minus_rate_1_leg3), g1_wz_leg3,
+                -(g2_wz_leg3 * minus_rate_dot_2_leg3), g1_wz_leg3 * t457 + g2_wz_leg3 * t459,
+                -(g1_wz_leg3 * t467 + g2_wz_leg3 * t427), -t431,
+                -::overact::math::signed(g2_wz_leg3, minus_rate_2_leg3),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t478), -t493, -t493,
                 g1_wz_leg4 * rate_1_leg4, ::overact::math::signed(g1_wz_leg4, rate_1_leg4),
-                g1_wz_leg4, g2_wz_leg4 * rate_dot_2_leg4, g1_wz_leg4 * t469 + g2_wz_leg4 * t471,
-                -(g1_wz_leg4 * t481 + g2_wz_leg4 * t479), t444,
-                ::overact::math::signed(g2_wz_leg4, rate_2_leg4),
-                ::overact::math::signed(1.0 - g2_wz_leg4, t491), rate_dot_3_leg1,
-                c_phi * t239 - s_phi * t243, -(c_phi * t243 + s_phi * t239), 0.0,
+                g1_wz_leg4, -(g2_wz_leg4 * minus_rate_dot_2_leg4),
+                g1_wz_leg4 * t519 - g2_wz_leg4 * t521, -(g1_wz_leg4 * t529 + g2_wz_leg4 * t489),
+                -t493, ::overact::math::signed(g2_wz_leg4, rate_2_leg4),
+                ::overact::math::signed(1.0 - g2_wz_leg4, t540), rate_dot_3_leg1,
+                c_phi * t288 - s_phi * t297, -(c_phi * t297 + s_phi * t288), 0.0,
             ],
         ])
     }
@@ -1573,7 +2093,7 @@ impl Planar4Prr {
     /// Output: 3 x 48.
     /// Columns: `PARAMETERS`.
     ///
-    /// 446 operations (160 additions, 281 multiplications, 5 divisions), 0 square roots, 5 trigonometric pairs, 30 signs, 393 intermediates.
+    /// 502 operations (194 additions, 303 multiplications, 5 divisions), 4 square roots, 1 trigonometric pairs, 30 signs, 445 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1582,8 +2102,274 @@ impl Planar4Prr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 48]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_actuators_from_joints(pose, joints, twist, acceleration)
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let t2 = s_phi + c_phi;
+        let t3 = 0.05656854249492381 * t2;
+        let t5 = pose[1] + t3 - 0.21213203435596426;
+        let t6 = c_phi - s_phi;
+        let t7 = 0.05656854249492381 * t6;
+        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t10 = t5 - t9;
+        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
+        ::overact::guard::reach(t18, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
+        let t20 = 1.0 / minus_s2_leg1;
+        let t21 = 0.7071067811865476 * minus_s2_leg1;
+        let t22 = t9 + t5;
+        let t23 = 1.4705882352941178 * t22;
+        let t24 = t21 - t23;
+        let t25 = t7 * acceleration[2];
+        let t27 = t3 * twist[2];
+        let t28 = twist[2] * t27;
+        let t29 = acceleration[1] + t25 - t28;
+        let t31 = t23 + t21;
+        let t32 = t3 * acceleration[2];
+        let t34 = t7 * twist[2];
+        let t35 = twist[2] * t34;
+        let t36 = acceleration[0] - t32 - t35;
+        let g2_vx_leg1 = 2.079725827019258 * t20;
+        let t40 = twist[0] - t27;
+        let t42 = twist[1] + t34;
+        let rate_2_leg1 = g2_vx_leg1 * t40 + g2_vx_leg1 * t42;
+        let t45 = rate_2_leg1 * rate_2_leg1;
+        let t47 = t24 * t29 - t31 * t36 - 0.34 * t45;
+        let rate_dot_1_leg1 = t20 * t47;
+        let g1_vy_leg1 = t24 * t20;
+        let minus_g1_vx_leg1 = t31 * t20;
+        let rate_1_leg1 = g1_vy_leg1 * t42 - minus_g1_vx_leg1 * t40;
+        let t56 = pose[0] - t3 + 0.21213203435596426;
+        let t58 = pose[1] + t7 - 0.21213203435596426;
+        let t59 = t56 + t58;
+        let t67 = 8.650519031141869
+            * (0.5 * (t59 * t59) - (t56 * t56 + t58 * t58 - 0.1156));
+        ::overact::guard::reach(t67, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t67);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
+        let t69 = 0.7071067811865476 * minus_s2_leg2;
+        let t70 = t58 - t56;
+        let t71 = 1.4705882352941178 * t70;
+        let t72 = t69 + t71;
+        let t73 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t72 * t73;
+        let t76 = t69 - t71;
+        let minus_g1_vx_leg2 = t76 * t73;
+        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
+        let t81 = pose[0] - t7 + 0.21213203435596426;
+        let t83 = pose[1] - t3 + 0.21213203435596426;
+        let t84 = t81 - t83;
+        let t92 = 8.650519031141869
+            * (0.5 * (t84 * t84) - (t81 * t81 + t83 * t83 - 0.1156));
+        ::overact::guard::reach(t92, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t92);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
+        let t94 = 0.7071067811865476 * minus_s2_leg3;
+        let t95 = t81 + t83;
+        let t96 = 1.4705882352941178 * t95;
+        let t97 = t94 + t96;
+        let t98 = 1.0 / minus_s2_leg3;
+        let minus_g1_vy_leg3 = t97 * t98;
+        let t102 = t96 - t94;
+        let minus_g1_vx_leg3 = t102 * t98;
+        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
+        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
+        let t113 = g1_wz_leg1 * minus_g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
+        let t117 = minus_g1_vx_leg1 * g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3;
+        let t122 = g1_vy_leg1 * minus_g1_vx_leg3 + minus_g1_vx_leg1 * minus_g1_vy_leg3;
+        let t124 = minus_g1_vx_leg2 * t113 + minus_g1_vy_leg2 * t117 - g1_wz_leg2 * t122;
+        ::overact::guard::platform(t124, 0.2752380952380954, "kept actuators")?;
+        ::overact::guard::platform(t124, 0.2752380952380954, "kept actuators")?;
+        ::overact::guard::platform(t124, 0.2752380952380954, "kept actuators")?;
+        let t125 = 1.0 / t124;
+        let t126 = (g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3)
+            * t125;
+        let t131 = (g1_wz_leg2 * minus_g1_vx_leg3 - minus_g1_vx_leg2 * g1_wz_leg3)
+            * t125;
+        let g2_wz_leg1 = 0.11764705882352941 * (t6 * t20 - t2 * t20);
+        let t141 = (minus_g1_vx_leg2 * minus_g1_vy_leg3
+            - minus_g1_vy_leg2 * minus_g1_vx_leg3) * t125;
+        let t143 = g2_vx_leg1 * t126 - g2_vx_leg1 * t131 + g2_wz_leg1 * t141;
+        let t145 = t36 + t29;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t20
+            * (0.7071067811865476 * t145 + 0.7071067811865476 * t22 * t45);
+        let t152 = t113 * t125;
+        let t154 = t117 * t125;
+        let t157 = t122 * t125;
+        let t159 = g2_vx_leg1 * t152 + g2_vx_leg1 * t154 + g2_wz_leg1 * t157;
+        let t164 = (g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t125;
+        let t169 = (minus_g1_vx_leg1 * g1_wz_leg2 - g1_wz_leg1 * minus_g1_vx_leg2)
+            * t125;
+        let t175 = (g1_vy_leg1 * minus_g1_vx_leg2 + minus_g1_vx_leg1 * minus_g1_vy_leg2)
+            * t125;
+        let t177 = g2_vx_leg1 * t164 + g2_vx_leg1 * t169 + g2_wz_leg1 * t175;
+        let c2_leg1 = 2.079725827019258 * t22;
+        let t183 = c2_leg1 * rate_dot_1_leg1;
+        let t197 = twist[2] - rate_2_leg1;
+        let t204 = acceleration[0] - t25 + t28;
+        let t207 = acceleration[1] - t32 - t35;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t73;
+        let t211 = twist[1] - t27;
+        let t213 = twist[0] - t34;
+        let rate_2_leg2 = minus_g2_vx_leg2 * t211 - minus_g2_vx_leg2 * t213;
+        let t216 = rate_2_leg2 * rate_2_leg2;
+        let t218 = t76 * t204 + t72 * t207 + 0.34 * t216;
+        let minus_rate_dot_1_leg2 = t73 * t218;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t213 + minus_g1_vy_leg2 * t211;
+        let g2_wz_leg2 = 0.11764705882352941 * (t6 * t73 - t2 * t73);
+        let t232 = g2_wz_leg2 * t141
+            - (minus_g2_vx_leg2 * t126 + minus_g2_vx_leg2 * t131);
+        let t234 = t204 - t207;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t73
+            * (0.7071067811865476 * t234 - 0.7071067811865476 * t70 * t216);
+        let t245 = minus_g2_vx_leg2 * t152 - minus_g2_vx_leg2 * t154 - g2_wz_leg2 * t157;
+        let t251 = minus_g2_vx_leg2 * t169 - minus_g2_vx_leg2 * t164 + g2_wz_leg2 * t175;
+        let c2_leg2 = 2.079725827019258 * t70;
+        let t254 = c2_leg2 * minus_rate_dot_1_leg2;
+        let t271 = twist[2] - rate_2_leg2;
+        let t278 = acceleration[0] + t32 + t35;
+        let t281 = acceleration[1] - t25 + t28;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t98;
+        let t285 = twist[0] + t27;
+        let t287 = twist[1] - t34;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t285 + minus_g2_vx_leg3 * t287;
+        let t290 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t292 = t102 * t278 + t97 * t281 + 0.34 * t290;
+        let minus_rate_dot_1_leg3 = t98 * t292;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t285 + minus_g1_vy_leg3 * t287;
+        let g2_wz_leg3 = 0.11764705882352941 * (t6 * t98 - t2 * t98);
+        let t306 = minus_g2_vx_leg3 * t131 - minus_g2_vx_leg3 * t126 + g2_wz_leg3 * t141;
+        let t308 = t278 + t281;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t98
+            * (0.7071067811865476 * t308 + 0.7071067811865476 * t95 * t290);
+        let t319 = minus_g2_vx_leg3 * t152 + minus_g2_vx_leg3 * t154 - g2_wz_leg3 * t157;
+        let t325 = g2_wz_leg3 * t175
+            - (minus_g2_vx_leg3 * t164 + minus_g2_vx_leg3 * t169);
+        let minus_c2_leg3 = 2.079725827019258 * t95;
+        let t328 = minus_c2_leg3 * minus_rate_dot_1_leg3;
+        let t345 = minus_rate_2_leg3 + twist[2];
+        let t352 = pose[0] + t3 - 0.21213203435596426;
+        let t354 = pose[1] - t7 + 0.21213203435596426;
+        let t355 = t352 + t354;
+        let t363 = 8.650519031141869
+            * (0.5 * (t355 * t355) - (t352 * t352 + t354 * t354 - 0.1156));
+        ::overact::guard::reach(t363, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t363);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t365 = 0.7071067811865476 * minus_s2_leg4;
+        let t366 = t352 - t354;
+        let t367 = 1.4705882352941178 * t366;
+        let t368 = t365 + t367;
+        let t369 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = t368 * t369;
+        let t372 = t367 - t365;
+        let minus_g1_vx_leg4 = t372 * t369;
+        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
+        let t380 = g1_wz_leg4 * t141 - (minus_g1_vx_leg4 * t126 + g1_vy_leg4 * t131);
+        let t382 = acceleration[0] + t25 - t28;
+        let t385 = acceleration[1] + t32 + t35;
+        let g2_vx_leg4 = 2.079725827019258 * t369;
+        let t389 = twist[0] + t34;
+        let t391 = twist[1] + t27;
+        let rate_2_leg4 = g2_vx_leg4 * t389 - g2_vx_leg4 * t391;
+        let t394 = rate_2_leg4 * rate_2_leg4;
+        let t396 = t372 * t382 - t368 * t385 + 0.34 * t394;
+        let minus_rate_dot_1_leg4 = t369 * t396;
+        let t398 = t380 * minus_rate_dot_1_leg4;
+        let t403 = minus_g1_vx_leg4 * t152 - g1_vy_leg4 * t154 - g1_wz_leg4 * t157;
+        let t404 = t403 * minus_rate_dot_1_leg4;
+        let t409 = g1_vy_leg4 * t169 - minus_g1_vx_leg4 * t164 + g1_wz_leg4 * t175;
+        let t410 = t409 * minus_rate_dot_1_leg4;
+        let rate_1_leg4 = g1_vy_leg4 * t391 - minus_g1_vx_leg4 * t389;
+        let g2_wz_leg4 = 0.11764705882352941 * (t6 * t369 - t2 * t369);
+        let t428 = g2_vx_leg4 * t126 + g2_vx_leg4 * t131 + g2_wz_leg4 * t141;
+        let t430 = t385 - t382;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t369
+            * (0.7071067811865476 * t430 - 0.7071067811865476 * t366 * t394);
+        let t441 = g2_vx_leg4 * t154 - g2_vx_leg4 * t152 - g2_wz_leg4 * t157;
+        let t447 = g2_vx_leg4 * t164 - g2_vx_leg4 * t169 + g2_wz_leg4 * t175;
+        let c2_leg4 = 2.079725827019258 * t366;
+        let t452 = minus_s2_leg4 * t394 - c2_leg4 * minus_rate_dot_2_leg4;
+        let t454 = c2_leg4 * minus_rate_dot_1_leg4;
+        let t463 = 2.079725827019258 * t430;
+        let t477 = twist[2] - rate_2_leg4;
+        let t488 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t490 = twist[2] * twist[2];
+        let t493 = c_phi * t490 + s_phi * acceleration[2];
+        let t497 = c_phi * acceleration[2] - s_phi * t490;
+        let t516 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        Ok([
+            [
+                rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
+                1.0, t143 * rate_dot_2_leg1,
+                minus_s2_leg1 * t45 + c2_leg1 * rate_dot_2_leg1 + t143 * t183,
+                2.079725827019258 * t145 + t143 * t47, rate_dot_1_leg1,
+                ::overact::math::signed(t143, rate_2_leg1),
+                ::overact::math::signed(t141 - t143, t197), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t232 * minus_rate_dot_2_leg2), -(t232 * t254), -(t232 * t218), 0.0,
+                ::overact::math::signed(t232, rate_2_leg2),
+                ::overact::math::signed(t141 - t232, t271), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t306 * minus_rate_dot_2_leg3), t306 * t328, -(t306 * t292), 0.0,
+                -::overact::math::signed(t306, minus_rate_2_leg3),
+                ::overact::math::signed(t141 - t306, t345), -t398, -t398, t380 * rate_1_leg4,
+                ::overact::math::signed(t380, rate_1_leg4), t380, -(t428 * minus_rate_dot_2_leg4),
+                t380 * t452 - t428 * t454, -(t380 * t463 + t428 * t396), -t398,
+                ::overact::math::signed(t428, rate_2_leg4),
+                ::overact::math::signed(t141 - t428, t477), t141 * acceleration[2],
+                t141 * t488 - (t126 * t493 + t131 * t497), t131 * t493 - t126 * t497 - t141 * t516,
+                t126 * acceleration[0] - t131 * acceleration[1],
+            ],
+            [
+                0.0, 0.0, 0.0, 0.0, 0.0, -(t159 * rate_dot_2_leg1), -(t159 * t183), -(t159 * t47),
+                0.0, -::overact::math::signed(t159, rate_2_leg1),
+                ::overact::math::signed(t159 - t157, t197), -minus_rate_dot_1_leg2,
+                -minus_rate_dot_1_leg2, -minus_rate_1_leg2,
+                -::overact::math::sign(minus_rate_1_leg2), 1.0, -(t245 * minus_rate_dot_2_leg2),
+                minus_s2_leg2 * t216 - c2_leg2 * minus_rate_dot_2_leg2 - t245 * t254,
+                -(2.079725827019258 * t234 + t245 * t218), -minus_rate_dot_1_leg2,
+                ::overact::math::signed(t245, rate_2_leg2),
+                -::overact::math::signed(t245 + t157, t271), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t319 * minus_rate_dot_2_leg3), t319 * t328, -(t319 * t292), 0.0,
+                -::overact::math::signed(t319, minus_rate_2_leg3),
+                -::overact::math::signed(t319 + t157, t345), -t404, -t404, t403 * rate_1_leg4,
+                ::overact::math::signed(t403, rate_1_leg4), t403, -(t441 * minus_rate_dot_2_leg4),
+                t403 * t452 - t441 * t454, -(t403 * t463 + t441 * t396), -t404,
+                ::overact::math::signed(t441, rate_2_leg4),
+                -::overact::math::signed(t441 + t157, t477), -(t157 * acceleration[2]),
+                t152 * t493 - t154 * t497 - t157 * t488, t152 * t497 + t154 * t493 + t157 * t516,
+                -(t152 * acceleration[0] + t154 * acceleration[1]),
+            ],
+            [
+                0.0, 0.0, 0.0, 0.0, 0.0, t177 * rate_dot_2_leg1, t177 * t183, t177 * t47, 0.0,
+                ::overact::math::signed(t177, rate_2_leg1),
+                ::overact::math::signed(t175 - t177, t197), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t251 * minus_rate_dot_2_leg2), -(t251 * t254), -(t251 * t218), 0.0,
+                ::overact::math::signed(t251, rate_2_leg2),
+                ::overact::math::signed(t175 - t251, t271), -minus_rate_dot_1_leg3,
+                -minus_rate_dot_1_leg3, -minus_rate_1_leg3,
+                -::overact::math::sign(minus_rate_1_leg3), 1.0, -(t325 * minus_rate_dot_2_leg3),
+                minus_s2_leg3 * t290 + minus_c2_leg3 * minus_rate_dot_2_leg3
+                    + t325 * t328,
+                -(2.079725827019258 * t308 + t325 * t292),
+                -minus_rate_dot_1_leg3,
+                -::overact::math::signed(t325, minus_rate_2_leg3),
+                ::overact::math::signed(t175 - t325, t345),
+                -t410,
+                -t410,
+                t409 * rate_1_leg4,
+                ::overact::math::signed(t409, rate_1_leg4),
+                t409,
+                -(t447 * minus_rate_dot_2_leg4),
+                t409 * t452 - t447 * t454,
+                -(t409 * t463 + t447 * t396),
+                -t410,
+                ::overact::math::signed(t447, rate_2_leg4),
+                ::overact::math::signed(t175 - t447, t477),
+                t175 * acceleration[2],
+                t169 * t497 - t164 * t493 + t175 * t488,
+                -(t164 * t497 + t169 * t493 + t175 * t516),
+                t164 * acceleration[0] + t169 * acceleration[1],
+            ],
+        ])
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -1834,7 +2620,7 @@ impl Planar4Prr {
     /// Output: 3 x 48.
     /// Columns: `PARAMETERS`.
     ///
-    /// 601 operations (224 additions, 369 multiplications, 8 divisions), 0 square roots, 5 trigonometric pairs, 30 signs, 548 intermediates.
+    /// 654 operations (258 additions, 388 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 30 signs, 597 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1845,286 +2631,334 @@ impl Planar4Prr {
         start: &[f64; 3],
     ) -> Result<[[f64; 48]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
-        let t2 = 1.0 / s2_leg1;
-        let t3 = 0.7071067811865476 * t2;
-        let t4 = c2_leg1 - s2_leg1;
-        let g1_vx_leg1 = t4 * t3;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t9 = c2_leg2 + s2_leg2;
-        let t10 = 1.0 / s2_leg2;
-        let t11 = 0.7071067811865476 * t10;
-        let minus_g1_vx_leg2 = t9 * t11;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
-        let t17 = s2_leg3 - c2_leg3;
-        let t18 = 1.0 / s2_leg3;
-        let t19 = 0.7071067811865476 * t18;
-        let g1_vx_leg3 = t17 * t19;
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
-        let t25 = c2_leg4 + s2_leg4;
-        let t26 = 1.0 / s2_leg4;
-        let t27 = 0.7071067811865476 * t26;
-        let g1_vx_leg4 = t25 * t27;
-        let t30 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t30, 3.4404761904750325, "actuators")?;
-        ::overact::guard::platform(t30, 3.4404761904750325, "actuators")?;
-        let t31 = 1.0 / t30;
-        let t32 = 0.2404163056034262 * t4;
-        let minus_g2_vx_leg1 = 2.079725827019258 * t2;
-        let t40 = g1_vx_leg1 * actuator_velocities[0]
-            - minus_g1_vx_leg2 * actuator_velocities[1]
-            + g1_vx_leg3 * actuator_velocities[2] + g1_vx_leg4 * actuator_velocities[3];
-        let t42 = s2_leg1 + c2_leg1;
-        let g1_vy_leg1 = t42 * t3;
-        let t45 = s2_leg2 - c2_leg2;
-        let minus_g1_vy_leg2 = t45 * t11;
-        let t49 = s2_leg3 + c2_leg3;
-        let minus_g1_vy_leg3 = t49 * t19;
-        let t53 = c2_leg4 - s2_leg4;
-        let minus_g1_vy_leg4 = t53 * t27;
-        let t56 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            - g1_vx_leg3 * minus_g1_vy_leg3 - g1_vx_leg4 * minus_g1_vy_leg4;
-        let t57 = t56 * t31;
-        let t66 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t56 * t57;
-        ::overact::guard::platform(t66, 3.440476190475036, "actuators")?;
-        ::overact::guard::platform(t66, 3.440476190475036, "actuators")?;
-        let t67 = 1.0 / t66;
-        let t76 = g1_vy_leg1 * actuator_velocities[0]
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let t2 = s_phi + c_phi;
+        let t3 = 0.05656854249492381 * t2;
+        let t5 = pose[1] + t3 - 0.21213203435596426;
+        let t6 = c_phi - s_phi;
+        let t7 = 0.05656854249492381 * t6;
+        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t10 = t5 - t9;
+        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
+        ::overact::guard::reach(t18, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
+        let t20 = 1.0 / minus_s2_leg1;
+        let t21 = 0.7071067811865476 * minus_s2_leg1;
+        let t22 = t9 + t5;
+        let t23 = 1.4705882352941178 * t22;
+        let t24 = t21 - t23;
+        let g1_vy_leg1 = t24 * t20;
+        let t28 = pose[0] - t3 + 0.21213203435596426;
+        let t30 = pose[1] + t7 - 0.21213203435596426;
+        let t31 = t28 + t30;
+        let t39 = 8.650519031141869
+            * (0.5 * (t31 * t31) - (t28 * t28 + t30 * t30 - 0.1156));
+        ::overact::guard::reach(t39, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t39);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
+        let t41 = 0.7071067811865476 * minus_s2_leg2;
+        let t42 = t30 - t28;
+        let t43 = 1.4705882352941178 * t42;
+        let t44 = t41 + t43;
+        let t45 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t44 * t45;
+        let t50 = pose[0] - t7 + 0.21213203435596426;
+        let t52 = pose[1] - t3 + 0.21213203435596426;
+        let t53 = t50 - t52;
+        let t61 = 8.650519031141869
+            * (0.5 * (t53 * t53) - (t50 * t50 + t52 * t52 - 0.1156));
+        ::overact::guard::reach(t61, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t61);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
+        let t63 = 0.7071067811865476 * minus_s2_leg3;
+        let t64 = t50 + t52;
+        let t65 = 1.4705882352941178 * t64;
+        let t66 = t63 + t65;
+        let t67 = 1.0 / minus_s2_leg3;
+        let minus_g1_vy_leg3 = t66 * t67;
+        let t72 = pose[0] + t3 - 0.21213203435596426;
+        let t74 = pose[1] - t7 + 0.21213203435596426;
+        let t75 = t72 + t74;
+        let t83 = 8.650519031141869
+            * (0.5 * (t75 * t75) - (t72 * t72 + t74 * t74 - 0.1156));
+        ::overact::guard::reach(t83, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t83);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t85 = 0.7071067811865476 * minus_s2_leg4;
+        let t86 = t72 - t74;
+        let t87 = 1.4705882352941178 * t86;
+        let t88 = t85 + t87;
+        let t89 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = t88 * t89;
+        let t93 = t41 - t43;
+        let minus_g1_vx_leg2 = t93 * t45;
+        let t96 = t23 + t21;
+        let minus_g1_vx_leg1 = t96 * t20;
+        let t100 = t65 - t63;
+        let minus_g1_vx_leg3 = t100 * t67;
+        let t104 = t87 - t85;
+        let minus_g1_vx_leg4 = t104 * t89;
+        let t107 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+            + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
+        let t114 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+            + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
+            + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
+        let t115 = 1.0 / t114;
+        let t116 = t107 * t115;
+        let t118 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
+            - t107 * t116;
+        ::overact::guard::platform(t118, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t118, 3.440476190476192, "actuators")?;
+        let t119 = 1.0 / t118;
+        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
+        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
+        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
+        let t145 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+            + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
+        let t146 = t145 * t115;
+        let t157 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t107 * t146;
+        let t158 = t157 * t119;
+        let t160 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t145 * t146
+            - t157 * t158;
+        ::overact::guard::platform(t160, 0.02560000000000001, "actuators")?;
+        ::overact::guard::platform(t160, 0.02560000000000001, "actuators")?;
+        let t161 = 1.0 / t160;
+        let t175 = minus_g1_vx_leg1 * actuator_velocities[0]
+            + minus_g1_vx_leg2 * actuator_velocities[1]
+            + minus_g1_vx_leg3 * actuator_velocities[2]
+            + minus_g1_vx_leg4 * actuator_velocities[3];
+        let t186 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t40 * t57;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t80 = c_phi - s_phi;
-        let t81 = 0.05656854249492381 * t80;
-        let t83 = s_phi + c_phi;
-        let t84 = 0.05656854249492381 * t83;
-        let g1_wz_leg1 = g1_vy_leg1 * t81 - g1_vx_leg1 * t84;
-        let g1_wz_leg2 = t84 * minus_g1_vy_leg2 + t81 * minus_g1_vx_leg2;
-        let g1_wz_leg3 = t81 * minus_g1_vy_leg3 + t84 * g1_vx_leg3;
-        let g1_wz_leg4 = t81 * g1_vx_leg4 - t84 * minus_g1_vy_leg4;
-        let t109 = g1_vx_leg1 * g1_wz_leg1 - minus_g1_vx_leg2 * g1_wz_leg2
-            + g1_vx_leg3 * g1_wz_leg3 + g1_vx_leg4 * g1_wz_leg4;
-        let t110 = t109 * t31;
-        let t112 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 - minus_g1_vy_leg4 * g1_wz_leg4 - t56 * t110;
-        let t113 = t112 * t67;
-        let t124 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t109 * t110
-            - t112 * t113;
-        ::overact::guard::platform(t124, 0.02560000000000001, "actuators")?;
-        ::overact::guard::platform(t124, 0.02560000000000001, "actuators")?;
-        let t125 = 1.0 / t124;
-        let t136 = g1_wz_leg1 * actuator_velocities[0]
+            + g1_vy_leg4 * actuator_velocities[3] + t175 * t116;
+        let t188 = g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg2 * actuator_velocities[1] + g1_wz_leg3 * actuator_velocities[2]
-            + g1_wz_leg4 * actuator_velocities[3] - t40 * t110 - t113 * t76;
-        let rate_3_leg1 = t125 * t136;
-        let t139 = t67 * t76 - t113 * rate_3_leg1;
-        let t143 = t40 * t31 - t57 * t139 - t110 * rate_3_leg1;
-        let t144 = t84 * rate_3_leg1;
-        let t145 = t143 - t144;
-        let t147 = t81 * rate_3_leg1;
-        let t148 = t139 + t147;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t145 + minus_g2_vx_leg1 * t148;
-        let t151 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t153 = rate_3_leg1 * t147;
-        let t156 = 0.2404163056034262 * t42;
-        let t158 = rate_3_leg1 * t144;
-        let rate_dot_1_leg1 = g1_vx_leg1 * (t32 * t151 - t153)
-            + g1_vy_leg1 * (t156 * t151 - t158);
-        let t162 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t169 = t4 * t32 + t42 * t156;
-        let g2_vx_leg2 = 2.079725827019258 * t10;
-        let t171 = t143 - t147;
-        let t173 = t139 - t144;
-        let rate_2_leg2 = g2_vx_leg2 * t171 - g2_vx_leg2 * t173;
-        let t176 = rate_2_leg2 * rate_2_leg2;
-        let t177 = t169 * t176;
-        let rate_dot_1_leg2 = t11 * (t45 * t153 - t9 * t158 + t177);
-        let t180 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let g2_vx_leg3 = 2.079725827019258 * t18;
-        let t187 = t143 + t144;
-        let t189 = t139 - t147;
-        let rate_2_leg3 = g2_vx_leg3 * t187 + g2_vx_leg3 * t189;
-        let t192 = rate_2_leg3 * rate_2_leg3;
-        let t193 = t169 * t192;
-        let minus_rate_dot_1_leg3 = t19 * (t49 * t158 - t17 * t153 - t193);
-        let t196 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let minus_g2_vx_leg4 = 2.079725827019258 * t26;
-        let t200 = t139 + t144;
-        let t202 = t143 + t147;
-        let rate_2_leg4 = minus_g2_vx_leg4 * t200 - minus_g2_vx_leg4 * t202;
-        let t205 = rate_2_leg4 * rate_2_leg4;
-        let t206 = t169 * t205;
-        let rate_dot_1_leg4 = t27 * (t206 - (t25 * t158 + t53 * t153));
-        let t212 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t214 = g1_vx_leg1 * t162 - minus_g1_vx_leg2 * t180 + g1_vx_leg3 * t196
-            + g1_vx_leg4 * t212;
-        let t224 = g1_vy_leg1 * t162 - minus_g1_vy_leg2 * t180 - minus_g1_vy_leg3 * t196
-            - minus_g1_vy_leg4 * t212 - t57 * t214;
-        let t236 = g1_wz_leg1 * t162 + g1_wz_leg2 * t180 + g1_wz_leg3 * t196
-            + g1_wz_leg4 * t212 - t110 * t214 - t113 * t224;
-        let rate_dot_3_leg1 = t125 * t236;
-        let t239 = t67 * t224 - t113 * rate_dot_3_leg1;
-        let t243 = t31 * t214 - t57 * t239 - t110 * rate_dot_3_leg1;
-        let t244 = t84 * rate_dot_3_leg1;
-        let t246 = t243 - t244 - t153;
-        let t248 = t81 * rate_dot_3_leg1;
-        let t250 = t239 + t248 - t158;
-        let rate_dot_1_leg1_2 = t3 * (t4 * t246 + t42 * t250 + t151 * t169);
-        let rate_1_leg1 = g1_vx_leg1 * t145 + g1_vy_leg1 * t148;
-        let g2_wz_leg1 = 0.11764705882352941 * (t2 * t83 - t2 * t80);
-        let t269 = g1_wz_leg1 * minus_g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
-        let t273 = g1_wz_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_wz_leg3;
-        let t278 = g1_vy_leg1 * g1_vx_leg3 + g1_vx_leg1 * minus_g1_vy_leg3;
-        let t280 = minus_g1_vx_leg2 * t269 + minus_g1_vy_leg2 * t273 + g1_wz_leg2 * t278;
-        ::overact::guard::platform(t280, 0.2752380952380029, "kept actuators")?;
-        ::overact::guard::platform(t280, 0.2752380952380029, "kept actuators")?;
-        ::overact::guard::platform(t280, 0.2752380952380029, "kept actuators")?;
-        let t281 = 1.0 / t280;
-        let t282 = (minus_g1_vx_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * g1_vx_leg3)
-            * t281;
-        let t287 = (g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3)
-            * t281;
-        let t292 = (minus_g1_vx_leg2 * g1_wz_leg3 + g1_wz_leg2 * g1_vx_leg3) * t281;
-        let t295 = g2_wz_leg1 * t282
-            - (minus_g2_vx_leg1 * t287 + minus_g2_vx_leg1 * t292);
-        let t297 = t246 + t250;
-        let minus_rate_dot_2_leg1 = 2.9411764705882355 * t2
-            * (0.7071067811865476 * t297 + t151 * (0.34 * c2_leg1));
-        let t304 = t269 * t281;
-        let t306 = t273 * t281;
-        let t309 = t278 * t281;
-        let t311 = minus_g2_vx_leg1 * t304 + minus_g2_vx_leg1 * t306 + g2_wz_leg1 * t309;
-        let t316 = (g1_wz_leg1 * minus_g1_vx_leg2 + g1_vx_leg1 * g1_wz_leg2) * t281;
-        let t321 = (g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t281;
-        let t327 = (g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2)
-            * t281;
-        let t329 = minus_g2_vx_leg1 * t316 - minus_g2_vx_leg1 * t321 - g2_wz_leg1 * t327;
-        let t331 = c2_leg1 * rate_dot_1_leg1_2;
-        let t340 = s2_leg1 * rate_dot_1_leg1_2;
-        let t349 = minus_rate_2_leg1 + rate_3_leg1;
-        let t356 = t243 - t248 + t158;
-        let t359 = t239 - t244 - t153;
-        let rate_dot_1_leg2_2 = t11 * (t177 - (t9 * t356 + t45 * t359));
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t171 + minus_g1_vy_leg2 * t173;
-        let g2_wz_leg2 = 0.11764705882352941 * (t83 * t10 - t80 * t10);
-        let t376 = g2_vx_leg2 * t287 - g2_vx_leg2 * t292 + g2_wz_leg2 * t282;
-        let t378 = t356 - t359;
-        let rate_dot_2_leg2 = 2.9411764705882355 * t10
-            * (0.7071067811865476 * t378 - t176 * (0.34 * c2_leg2));
-        let t389 = g2_vx_leg2 * t306 - g2_vx_leg2 * t304 + g2_wz_leg2 * t309;
-        let t395 = g2_vx_leg2 * t321 + g2_vx_leg2 * t316 - g2_wz_leg2 * t327;
-        let t397 = c2_leg2 * rate_dot_1_leg2_2;
-        let t405 = s2_leg2 * rate_dot_1_leg2_2;
-        let t415 = rate_3_leg1 - rate_2_leg2;
-        let t422 = t239 - t248 + t158;
-        let t425 = t243 + t244 + t153;
-        let minus_rate_dot_1_leg3_2 = t19 * (t49 * t422 - t17 * t425 - t193);
-        let rate_1_leg3 = g1_vx_leg3 * t187 - minus_g1_vy_leg3 * t189;
-        let g2_wz_leg3 = 0.11764705882352941 * (t83 * t18 - t80 * t18);
-        let t442 = g2_vx_leg3 * t287 + g2_vx_leg3 * t292 + g2_wz_leg3 * t282;
-        let t446 = t425 + t422;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t18
-            * (t192 * (0.34 * c2_leg3) - 0.7071067811865476 * t446);
-        let t455 = g2_wz_leg3 * t309 - (g2_vx_leg3 * t304 + g2_vx_leg3 * t306);
-        let t461 = g2_vx_leg3 * t321 - g2_vx_leg3 * t316 - g2_wz_leg3 * t327;
-        let t463 = c2_leg3 * minus_rate_dot_1_leg3_2;
-        let t471 = s2_leg3 * minus_rate_dot_1_leg3_2;
-        let t481 = rate_3_leg1 - rate_2_leg3;
-        let t491 = g1_vx_leg4 * t287 - minus_g1_vy_leg4 * t292 + g1_wz_leg4 * t282;
-        let t493 = t243 + t248 - t158;
-        let t496 = t239 + t244 + t153;
-        let rate_dot_1_leg4_2 = t27 * (t25 * t493 - t53 * t496 + t206);
-        let t501 = t491 * rate_dot_1_leg4_2;
-        let t506 = minus_g1_vy_leg4 * t306 - g1_vx_leg4 * t304 + g1_wz_leg4 * t309;
-        let t507 = t506 * rate_dot_1_leg4_2;
-        let t512 = g1_vx_leg4 * t321 + minus_g1_vy_leg4 * t316 - g1_wz_leg4 * t327;
-        let t513 = t512 * rate_dot_1_leg4_2;
-        let rate_1_leg4 = g1_vx_leg4 * t202 - minus_g1_vy_leg4 * t200;
-        let g2_wz_leg4 = 0.11764705882352941 * (t83 * t26 - t80 * t26);
-        let t531 = minus_g2_vx_leg4 * t292 - minus_g2_vx_leg4 * t287 + g2_wz_leg4 * t282;
-        let t533 = t496 - t493;
-        let rate_dot_2_leg4 = 2.9411764705882355 * t26
-            * (0.7071067811865476 * t533 - t205 * (0.34 * c2_leg4));
-        let t544 = minus_g2_vx_leg4 * t304 - minus_g2_vx_leg4 * t306 + g2_wz_leg4 * t309;
-        let t550 = minus_g2_vx_leg4 * t321 + minus_g2_vx_leg4 * t316 + g2_wz_leg4 * t327;
-        let t554 = c2_leg4 * rate_dot_2_leg4 - s2_leg4 * t205;
-        let t556 = c2_leg4 * rate_dot_1_leg4_2;
-        let t565 = 2.079725827019258 * t533;
-        let t567 = s2_leg4 * rate_dot_1_leg4_2;
-        let t580 = rate_3_leg1 - rate_2_leg4;
-        let t590 = rate_3_leg1 * rate_3_leg1;
-        let t592 = c_phi * rate_dot_3_leg1 - s_phi * t590;
-        let t596 = c_phi * t590 + s_phi * rate_dot_3_leg1;
-        let t601 = c_phi * t239 - s_phi * t243;
-        let t619 = c_phi * t243 + s_phi * t239;
+            + g1_wz_leg4 * actuator_velocities[3] - t175 * t146 - t158 * t186;
+        let rate_3_leg1 = t161 * t188;
+        let t190 = t7 * rate_3_leg1;
+        let t191 = rate_3_leg1 * t190;
+        let t193 = t3 * rate_3_leg1;
+        let t194 = rate_3_leg1 * t193;
+        let g2_vx_leg1 = 2.079725827019258 * t20;
+        let t202 = t119 * t186 - t158 * rate_3_leg1;
+        let t205 = t146 * rate_3_leg1 - (t175 * t115 + t116 * t202);
+        let t206 = t205 - t193;
+        let t208 = t202 + t190;
+        let rate_2_leg1 = g2_vx_leg1 * t206 + g2_vx_leg1 * t208;
+        let t211 = rate_2_leg1 * rate_2_leg1;
+        let t212 = 0.34 * t211;
+        let rate_dot_1_leg1 = t20 * (t96 * t191 - t24 * t194 - t212);
+        let t215 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t45;
+        let t221 = t202 - t193;
+        let t223 = t205 - t190;
+        let rate_2_leg2 = minus_g2_vx_leg2 * t221 - minus_g2_vx_leg2 * t223;
+        let t226 = rate_2_leg2 * rate_2_leg2;
+        let t227 = 0.34 * t226;
+        let minus_rate_dot_1_leg2 = t45 * (t93 * t194 - t44 * t191 + t227);
+        let t230 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t67;
+        let t237 = t205 + t193;
+        let t239 = t202 - t190;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t237 + minus_g2_vx_leg3 * t239;
+        let t242 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t243 = 0.34 * t242;
+        let minus_rate_dot_1_leg3 = t67 * (t100 * t191 + t66 * t194 + t243);
+        let t246 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = 2.079725827019258 * t89;
+        let t250 = t205 + t190;
+        let t252 = t202 + t193;
+        let rate_2_leg4 = g2_vx_leg4 * t250 - g2_vx_leg4 * t252;
+        let t255 = rate_2_leg4 * rate_2_leg4;
+        let t256 = 0.34 * t255;
+        let minus_rate_dot_1_leg4 = t89 * (t256 - (t104 * t194 + t88 * t191));
+        let t262 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
+        let t271 = minus_g1_vx_leg1 * t215 + minus_g1_vx_leg2 * t230
+            + minus_g1_vx_leg3 * t246 + minus_g1_vx_leg4 * t262;
+        let t273 = g1_vy_leg1 * t215 - minus_g1_vy_leg2 * t230 - minus_g1_vy_leg3 * t246
+            + g1_vy_leg4 * t262 + t116 * t271;
+        let t285 = g1_wz_leg1 * t215 + g1_wz_leg2 * t230 + g1_wz_leg3 * t246
+            + g1_wz_leg4 * t262 - t146 * t271 - t158 * t273;
+        let rate_dot_3_leg1 = t161 * t285;
+        let t288 = t119 * t273 - t158 * rate_dot_3_leg1;
+        let t289 = t7 * rate_dot_3_leg1;
+        let t291 = t288 + t289 - t194;
+        let t297 = t146 * rate_dot_3_leg1 - (t115 * t271 + t116 * t288);
+        let t298 = t3 * rate_dot_3_leg1;
+        let t300 = t297 - t298 - t191;
+        let t303 = t24 * t291 - t96 * t300 - t212;
+        let rate_dot_1_leg1_2 = t20 * t303;
+        let rate_1_leg1 = g1_vy_leg1 * t208 - minus_g1_vx_leg1 * t206;
+        let t314 = g1_wz_leg1 * minus_g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
+        let t318 = minus_g1_vx_leg1 * g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3;
+        let t323 = g1_vy_leg1 * minus_g1_vx_leg3 + minus_g1_vx_leg1 * minus_g1_vy_leg3;
+        let t325 = minus_g1_vx_leg2 * t314 + minus_g1_vy_leg2 * t318 - g1_wz_leg2 * t323;
+        ::overact::guard::platform(t325, 0.2752380952380954, "kept actuators")?;
+        ::overact::guard::platform(t325, 0.2752380952380954, "kept actuators")?;
+        ::overact::guard::platform(t325, 0.2752380952380954, "kept actuators")?;
+        let t326 = 1.0 / t325;
+        let t327 = (g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3)
+            * t326;
+        let t332 = (g1_wz_leg2 * minus_g1_vx_leg3 - minus_g1_vx_leg2 * g1_wz_leg3)
+            * t326;
+        let g2_wz_leg1 = 0.11764705882352941 * (t6 * t20 - t2 * t20);
+        let t342 = (minus_g1_vx_leg2 * minus_g1_vy_leg3
+            - minus_g1_vy_leg2 * minus_g1_vx_leg3) * t326;
+        let t344 = g2_vx_leg1 * t327 - g2_vx_leg1 * t332 + g2_wz_leg1 * t342;
+        let t346 = t300 + t291;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t20
+            * (0.7071067811865476 * t346 + 0.7071067811865476 * t22 * t211);
+        let t353 = t314 * t326;
+        let t355 = t318 * t326;
+        let t358 = t323 * t326;
+        let t360 = g2_vx_leg1 * t353 + g2_vx_leg1 * t355 + g2_wz_leg1 * t358;
+        let t365 = (g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t326;
+        let t370 = (minus_g1_vx_leg1 * g1_wz_leg2 - g1_wz_leg1 * minus_g1_vx_leg2)
+            * t326;
+        let t376 = (g1_vy_leg1 * minus_g1_vx_leg2 + minus_g1_vx_leg1 * minus_g1_vy_leg2)
+            * t326;
+        let t378 = g2_vx_leg1 * t365 + g2_vx_leg1 * t370 + g2_wz_leg1 * t376;
+        let c2_leg1 = 2.079725827019258 * t22;
+        let t384 = c2_leg1 * rate_dot_1_leg1_2;
+        let t398 = rate_3_leg1 - rate_2_leg1;
+        let t405 = t297 - t289 + t194;
+        let t408 = t288 - t298 - t191;
+        let t411 = t93 * t405 + t44 * t408 + t227;
+        let minus_rate_dot_1_leg2_2 = t45 * t411;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t223 + minus_g1_vy_leg2 * t221;
+        let g2_wz_leg2 = 0.11764705882352941 * (t6 * t45 - t2 * t45);
+        let t425 = g2_wz_leg2 * t342
+            - (minus_g2_vx_leg2 * t327 + minus_g2_vx_leg2 * t332);
+        let t427 = t405 - t408;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t45
+            * (0.7071067811865476 * t427 - 0.7071067811865476 * t42 * t226);
+        let t438 = minus_g2_vx_leg2 * t353 - minus_g2_vx_leg2 * t355 - g2_wz_leg2 * t358;
+        let t444 = minus_g2_vx_leg2 * t370 - minus_g2_vx_leg2 * t365 + g2_wz_leg2 * t376;
+        let c2_leg2 = 2.079725827019258 * t42;
+        let t447 = c2_leg2 * minus_rate_dot_1_leg2_2;
+        let t464 = rate_3_leg1 - rate_2_leg2;
+        let t471 = t297 + t298 + t191;
+        let t474 = t288 - t289 + t194;
+        let t477 = t100 * t471 + t66 * t474 + t243;
+        let minus_rate_dot_1_leg3_2 = t67 * t477;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t237 + minus_g1_vy_leg3 * t239;
+        let g2_wz_leg3 = 0.11764705882352941 * (t6 * t67 - t2 * t67);
+        let t491 = minus_g2_vx_leg3 * t332 - minus_g2_vx_leg3 * t327 + g2_wz_leg3 * t342;
+        let t493 = t471 + t474;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t67
+            * (0.7071067811865476 * t493 + 0.7071067811865476 * t64 * t242);
+        let t504 = minus_g2_vx_leg3 * t353 + minus_g2_vx_leg3 * t355 - g2_wz_leg3 * t358;
+        let t510 = g2_wz_leg3 * t376
+            - (minus_g2_vx_leg3 * t365 + minus_g2_vx_leg3 * t370);
+        let minus_c2_leg3 = 2.079725827019258 * t64;
+        let t513 = minus_c2_leg3 * minus_rate_dot_1_leg3_2;
+        let t530 = minus_rate_2_leg3 + rate_3_leg1;
+        let t540 = g1_wz_leg4 * t342 - (minus_g1_vx_leg4 * t327 + g1_vy_leg4 * t332);
+        let t542 = t297 + t289 - t194;
+        let t545 = t288 + t298 + t191;
+        let t548 = t104 * t542 - t88 * t545 + t256;
+        let minus_rate_dot_1_leg4_2 = t89 * t548;
+        let t550 = t540 * minus_rate_dot_1_leg4_2;
+        let t555 = minus_g1_vx_leg4 * t353 - g1_vy_leg4 * t355 - g1_wz_leg4 * t358;
+        let t556 = t555 * minus_rate_dot_1_leg4_2;
+        let t561 = g1_vy_leg4 * t370 - minus_g1_vx_leg4 * t365 + g1_wz_leg4 * t376;
+        let t562 = t561 * minus_rate_dot_1_leg4_2;
+        let rate_1_leg4 = g1_vy_leg4 * t252 - minus_g1_vx_leg4 * t250;
+        let g2_wz_leg4 = 0.11764705882352941 * (t6 * t89 - t2 * t89);
+        let t580 = g2_vx_leg4 * t327 + g2_vx_leg4 * t332 + g2_wz_leg4 * t342;
+        let t582 = t545 - t542;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t89
+            * (0.7071067811865476 * t582 - 0.7071067811865476 * t86 * t255);
+        let t593 = g2_vx_leg4 * t355 - g2_vx_leg4 * t353 - g2_wz_leg4 * t358;
+        let t599 = g2_vx_leg4 * t365 - g2_vx_leg4 * t370 + g2_wz_leg4 * t376;
+        let c2_leg4 = 2.079725827019258 * t86;
+        let t604 = minus_s2_leg4 * t255 - c2_leg4 * minus_rate_dot_2_leg4;
+        let t606 = c2_leg4 * minus_rate_dot_1_leg4_2;
+        let t615 = 2.079725827019258 * t582;
+        let t629 = rate_3_leg1 - rate_2_leg4;
+        let t640 = c_phi * t288 - s_phi * t297;
+        let t642 = rate_3_leg1 * rate_3_leg1;
+        let t645 = c_phi * t642 + s_phi * rate_dot_3_leg1;
+        let t649 = c_phi * rate_dot_3_leg1 - s_phi * t642;
+        let t668 = c_phi * t297 + s_phi * t288;
         Ok([
             [
                 rate_dot_1_leg1_2, rate_dot_1_leg1_2, rate_1_leg1,
-                ::overact::math::sign(rate_1_leg1), 1.0, -(t295 * minus_rate_dot_2_leg1),
-                t295 * t331 - (s2_leg1 * t151 + c2_leg1 * minus_rate_dot_2_leg1),
-                2.079725827019258 * t297 - t295 * t340, rate_dot_1_leg1_2,
-                -::overact::math::signed(t295, minus_rate_2_leg1),
-                ::overact::math::signed(t282 - t295, t349), 0.0, 0.0, 0.0, 0.0, 0.0,
-                t376 * rate_dot_2_leg2, t376 * t397, -(t376 * t405), 0.0,
-                ::overact::math::signed(t376, rate_2_leg2),
-                ::overact::math::signed(t282 - t376, t415), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t442 * minus_rate_dot_2_leg3), -(t442 * t463), t442 * t471, 0.0,
-                ::overact::math::signed(t442, rate_2_leg3),
-                ::overact::math::signed(t282 - t442, t481), t501, t501, t491 * rate_1_leg4,
-                ::overact::math::signed(t491, rate_1_leg4), t491, t531 * rate_dot_2_leg4,
-                t491 * t554 + t531 * t556, -(t491 * t565 + t531 * t567), t501,
-                ::overact::math::signed(t531, rate_2_leg4),
-                ::overact::math::signed(t282 - t531, t580), t282 * rate_dot_3_leg1,
-                t292 * t592 - t287 * t596 + t282 * t601, -(t287 * t592 + t292 * t596 + t282 * t619),
-                t287 * t243 + t292 * t239,
+                ::overact::math::sign(rate_1_leg1), 1.0, t344 * rate_dot_2_leg1,
+                minus_s2_leg1 * t211 + c2_leg1 * rate_dot_2_leg1 + t344 * t384,
+                2.079725827019258 * t346 + t344 * t303, rate_dot_1_leg1_2,
+                ::overact::math::signed(t344, rate_2_leg1),
+                ::overact::math::signed(t342 - t344, t398), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t425 * minus_rate_dot_2_leg2), -(t425 * t447), -(t425 * t411), 0.0,
+                ::overact::math::signed(t425, rate_2_leg2),
+                ::overact::math::signed(t342 - t425, t464), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t491 * minus_rate_dot_2_leg3), t491 * t513, -(t491 * t477), 0.0,
+                -::overact::math::signed(t491, minus_rate_2_leg3),
+                ::overact::math::signed(t342 - t491, t530), -t550, -t550, t540 * rate_1_leg4,
+                ::overact::math::signed(t540, rate_1_leg4), t540, -(t580 * minus_rate_dot_2_leg4),
+                t540 * t604 - t580 * t606, -(t540 * t615 + t580 * t548), -t550,
+                ::overact::math::signed(t580, rate_2_leg4),
+                ::overact::math::signed(t342 - t580, t629), t342 * rate_dot_3_leg1,
+                t342 * t640 - (t327 * t645 + t332 * t649), t332 * t645 - t327 * t649 - t342 * t668,
+                t327 * t297 - t332 * t288,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -(t311 * minus_rate_dot_2_leg1), t311 * t331,
-                -(t311 * t340), 0.0, -::overact::math::signed(t311, minus_rate_2_leg1),
-                ::overact::math::signed(t309 - t311, t349), rate_dot_1_leg2_2, rate_dot_1_leg2_2,
-                -minus_rate_1_leg2, -::overact::math::sign(minus_rate_1_leg2), 1.0,
-                t389 * rate_dot_2_leg2, c2_leg2 * rate_dot_2_leg2 - s2_leg2 * t176 + t389 * t397,
-                -(2.079725827019258 * t378 + t389 * t405), rate_dot_1_leg2_2,
-                ::overact::math::signed(t389, rate_2_leg2),
-                ::overact::math::signed(t309 - t389, t415), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t455 * minus_rate_dot_2_leg3), -(t455 * t463), t455 * t471, 0.0,
-                ::overact::math::signed(t455, rate_2_leg3),
-                ::overact::math::signed(t309 - t455, t481), t507, t507, t506 * rate_1_leg4,
-                ::overact::math::signed(t506, rate_1_leg4), t506, t544 * rate_dot_2_leg4,
-                t506 * t554 + t544 * t556, -(t506 * t565 + t544 * t567), t507,
-                ::overact::math::signed(t544, rate_2_leg4),
-                ::overact::math::signed(t309 - t544, t580), t309 * rate_dot_3_leg1,
-                t304 * t596 - t306 * t592 + t309 * t601, t304 * t592 + t306 * t596 - t309 * t619,
-                -(t304 * t243 + t306 * t239),
+                0.0, 0.0, 0.0, 0.0, 0.0, -(t360 * rate_dot_2_leg1), -(t360 * t384), -(t360 * t303),
+                0.0, -::overact::math::signed(t360, rate_2_leg1),
+                ::overact::math::signed(t360 - t358, t398), -minus_rate_dot_1_leg2_2,
+                -minus_rate_dot_1_leg2_2, -minus_rate_1_leg2,
+                -::overact::math::sign(minus_rate_1_leg2), 1.0, -(t438 * minus_rate_dot_2_leg2),
+                minus_s2_leg2 * t226 - c2_leg2 * minus_rate_dot_2_leg2 - t438 * t447,
+                -(2.079725827019258 * t427 + t438 * t411), -minus_rate_dot_1_leg2_2,
+                ::overact::math::signed(t438, rate_2_leg2),
+                -::overact::math::signed(t438 + t358, t464), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t504 * minus_rate_dot_2_leg3), t504 * t513, -(t504 * t477), 0.0,
+                -::overact::math::signed(t504, minus_rate_2_leg3),
+                -::overact::math::signed(t504 + t358, t530), -t556, -t556, t555 * rate_1_leg4,
+                ::overact::math::signed(t555, rate_1_leg4), t555, -(t593 * minus_rate_dot_2_leg4),
+                t555 * t604 - t593 * t606, -(t555 * t615 + t593 * t548), -t556,
+                ::overact::math::signed(t593, rate_2_leg4),
+                -::overact::math::signed(t593 + t358, t629), -(t358 * rate_dot_3_leg1),
+                t353 * t645 - t355 * t649 - t358 * t640, t353 * t649 + t355 * t645 + t358 * t668,
+                -(t353 * t297 + t355 * t288),
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -(t329 * minus_rate_dot_2_leg1), t329 * t331,
-                -(t329 * t340), 0.0, -::overact::math::signed(t329, minus_rate_2_leg1),
-                -::overact::math::signed(t329 + t327, t349), 0.0, 0.0, 0.0, 0.0, 0.0,
-                t395 * rate_dot_2_leg2, t395 * t397, -(t395 * t405), 0.0,
-                ::overact::math::signed(t395, rate_2_leg2),
-                -::overact::math::signed(t395 + t327, t415), -minus_rate_dot_1_leg3_2,
-                -minus_rate_dot_1_leg3_2, rate_1_leg3, ::overact::math::sign(rate_1_leg3), 1.0,
-                -(t461 * minus_rate_dot_2_leg3),
-                -(s2_leg3 * t192 + c2_leg3 * minus_rate_dot_2_leg3 + t461 * t463),
-                t461 * t471 - 2.079725827019258 * t446, -minus_rate_dot_1_leg3_2,
-                ::overact::math::signed(t461, rate_2_leg3),
-                -::overact::math::signed(t461 + t327, t481), t513, t513, t512 * rate_1_leg4,
-                ::overact::math::signed(t512, rate_1_leg4), t512, -(t550 * rate_dot_2_leg4),
-                t512 * t554 - t550 * t556, t550 * t567 - t512 * t565, t513,
-                -::overact::math::signed(t550, rate_2_leg4),
-                ::overact::math::signed(t550 - t327, t580), -(t327 * rate_dot_3_leg1),
-                -(t321 * t596 + t316 * t592 + t327 * t601), t316 * t596 - t321 * t592 + t327 * t619,
-                t321 * t243 - t316 * t239,
+                0.0, 0.0, 0.0, 0.0, 0.0, t378 * rate_dot_2_leg1, t378 * t384, t378 * t303, 0.0,
+                ::overact::math::signed(t378, rate_2_leg1),
+                ::overact::math::signed(t376 - t378, t398), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t444 * minus_rate_dot_2_leg2), -(t444 * t447), -(t444 * t411), 0.0,
+                ::overact::math::signed(t444, rate_2_leg2),
+                ::overact::math::signed(t376 - t444, t464), -minus_rate_dot_1_leg3_2,
+                -minus_rate_dot_1_leg3_2, -minus_rate_1_leg3,
+                -::overact::math::sign(minus_rate_1_leg3), 1.0, -(t510 * minus_rate_dot_2_leg3),
+                minus_s2_leg3 * t242 + minus_c2_leg3 * minus_rate_dot_2_leg3
+                    + t510 * t513,
+                -(2.079725827019258 * t493 + t510 * t477),
+                -minus_rate_dot_1_leg3_2,
+                -::overact::math::signed(t510, minus_rate_2_leg3),
+                ::overact::math::signed(t376 - t510, t530),
+                -t562,
+                -t562,
+                t561 * rate_1_leg4,
+                ::overact::math::signed(t561, rate_1_leg4),
+                t561,
+                -(t599 * minus_rate_dot_2_leg4),
+                t561 * t604 - t599 * t606,
+                -(t561 * t615 + t599 * t548),
+                -t562,
+                ::overact::math::signed(t599, rate_2_leg4),
+                ::overact::math::signed(t376 - t599, t629),
+                t376 * rate_dot_3_leg1,
+                t370 * t649 - t365 * t645 + t376 * t640,
+                -(t365 * t649 + t370 * t645 + t376 * t668),
+                t365 * t297 + t370 * t288,
             ],
         ])
     }
@@ -2138,7 +2972,7 @@ impl Planar4Prr {
     /// Output: 3 x 36.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 267 operations (92 additions, 171 multiplications, 4 divisions), 0 square roots, 5 trigonometric pairs, 28 signs, 217 intermediates.
+    /// 319 operations (126 additions, 189 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 265 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2147,8 +2981,223 @@ impl Planar4Prr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 36]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_platform_base_from_joints(pose, joints, twist, acceleration)
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let t2 = twist[2] * twist[2];
+        let t5 = c_phi * t2 + s_phi * acceleration[2];
+        let t8 = c_phi * acceleration[2] - s_phi * t2;
+        let t15 = c_phi - s_phi;
+        let t16 = 0.05656854249492381 * t15;
+        let t18 = pose[0] + t16 - 0.21213203435596426;
+        let t19 = s_phi + c_phi;
+        let t20 = 0.05656854249492381 * t19;
+        let t22 = pose[1] + t20 - 0.21213203435596426;
+        let t23 = t18 + t22;
+        let t24 = 1.4705882352941178 * t23;
+        let t25 = t22 - t18;
+        let t33 = 8.650519031141869
+            * (0.5 * (t25 * t25) - (t18 * t18 + t22 * t22 - 0.1156));
+        ::overact::guard::reach(t33, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t33);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
+        let t35 = 0.7071067811865476 * minus_s2_leg1;
+        let t36 = t24 + t35;
+        let t37 = 1.0 / minus_s2_leg1;
+        let minus_g1_vx_leg1 = t36 * t37;
+        let t39 = t35 - t24;
+        let t40 = t16 * acceleration[2];
+        let t42 = t20 * twist[2];
+        let t43 = twist[2] * t42;
+        let t44 = acceleration[1] + t40 - t43;
+        let t46 = t20 * acceleration[2];
+        let t48 = t16 * twist[2];
+        let t49 = twist[2] * t48;
+        let t50 = acceleration[0] - t46 - t49;
+        let g2_vx_leg1 = 2.079725827019258 * t37;
+        let t54 = twist[0] - t42;
+        let t56 = twist[1] + t48;
+        let rate_2_leg1 = g2_vx_leg1 * t54 + g2_vx_leg1 * t56;
+        let t59 = rate_2_leg1 * rate_2_leg1;
+        let t61 = t39 * t44 - t36 * t50 - 0.34 * t59;
+        let rate_dot_1_leg1 = t37 * t61;
+        let g1_vy_leg1 = t39 * t37;
+        let g1_wz_leg1 = t16 * g1_vy_leg1 + t20 * minus_g1_vx_leg1;
+        let t71 = pose[0] - t20 + 0.21213203435596426;
+        let t73 = pose[1] + t16 - 0.21213203435596426;
+        let t74 = t71 + t73;
+        let t82 = 8.650519031141869
+            * (0.5 * (t74 * t74) - (t71 * t71 + t73 * t73 - 0.1156));
+        ::overact::guard::reach(t82, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t82);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
+        let t84 = 0.7071067811865476 * minus_s2_leg2;
+        let t85 = t73 - t71;
+        let t86 = 1.4705882352941178 * t85;
+        let t87 = t84 - t86;
+        let t88 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t87 * t88;
+        let t91 = acceleration[0] - t40 + t43;
+        let t93 = t84 + t86;
+        let t95 = acceleration[1] - t46 - t49;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t88;
+        let t99 = twist[1] - t42;
+        let t101 = twist[0] - t48;
+        let rate_2_leg2 = minus_g2_vx_leg2 * t99 - minus_g2_vx_leg2 * t101;
+        let t104 = rate_2_leg2 * rate_2_leg2;
+        let t106 = t87 * t91 + t93 * t95 + 0.34 * t104;
+        let minus_rate_dot_1_leg2 = t88 * t106;
+        let minus_g1_vy_leg2 = t93 * t88;
+        let g1_wz_leg2 = t20 * minus_g1_vy_leg2 + t16 * minus_g1_vx_leg2;
+        let t116 = pose[0] - t16 + 0.21213203435596426;
+        let t118 = pose[1] - t20 + 0.21213203435596426;
+        let t119 = t116 + t118;
+        let t120 = 1.4705882352941178 * t119;
+        let t121 = t116 - t118;
+        let t129 = 8.650519031141869
+            * (0.5 * (t121 * t121) - (t116 * t116 + t118 * t118 - 0.1156));
+        ::overact::guard::reach(t129, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t129);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
+        let t131 = 0.7071067811865476 * minus_s2_leg3;
+        let t132 = t120 - t131;
+        let t133 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t132 * t133;
+        let t136 = acceleration[0] + t46 + t49;
+        let t138 = t131 + t120;
+        let t140 = acceleration[1] - t40 + t43;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t133;
+        let t144 = twist[0] + t42;
+        let t146 = twist[1] - t48;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t144 + minus_g2_vx_leg3 * t146;
+        let t149 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t151 = t132 * t136 + t138 * t140 + 0.34 * t149;
+        let minus_rate_dot_1_leg3 = t133 * t151;
+        let minus_g1_vy_leg3 = t138 * t133;
+        let g1_wz_leg3 = t16 * minus_g1_vy_leg3 - t20 * minus_g1_vx_leg3;
+        let t161 = pose[0] + t20 - 0.21213203435596426;
+        let t163 = pose[1] - t16 + 0.21213203435596426;
+        let t164 = t161 - t163;
+        let t165 = 1.4705882352941178 * t164;
+        let t166 = t161 + t163;
+        let t174 = 8.650519031141869
+            * (0.5 * (t166 * t166) - (t161 * t161 + t163 * t163 - 0.1156));
+        ::overact::guard::reach(t174, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t174);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t176 = 0.7071067811865476 * minus_s2_leg4;
+        let t177 = t165 - t176;
+        let t178 = 1.0 / minus_s2_leg4;
+        let minus_g1_vx_leg4 = t177 * t178;
+        let t181 = acceleration[0] + t40 - t43;
+        let t183 = t176 + t165;
+        let t185 = acceleration[1] + t46 + t49;
+        let g2_vx_leg4 = 2.079725827019258 * t178;
+        let t189 = twist[0] + t48;
+        let t191 = twist[1] + t42;
+        let rate_2_leg4 = g2_vx_leg4 * t189 - g2_vx_leg4 * t191;
+        let t194 = rate_2_leg4 * rate_2_leg4;
+        let t196 = t177 * t181 - t183 * t185 + 0.34 * t194;
+        let minus_rate_dot_1_leg4 = t178 * t196;
+        let g1_vy_leg4 = t183 * t178;
+        let g1_wz_leg4 = t20 * g1_vy_leg4 - t16 * minus_g1_vx_leg4;
+        let rate_1_leg1 = g1_vy_leg1 * t56 - minus_g1_vx_leg1 * t54;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t101 + minus_g1_vy_leg2 * t99;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t144 + minus_g1_vy_leg3 * t146;
+        let rate_1_leg4 = g1_vy_leg4 * t191 - minus_g1_vx_leg4 * t189;
+        let t242 = t50 + t44;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t37
+            * (0.7071067811865476 * t242 + 0.7071067811865476 * t23 * t59);
+        let t248 = g2_vx_leg1 * rate_dot_2_leg1;
+        let g2_wz_leg1 = 0.11764705882352941 * (t15 * t37 - t19 * t37);
+        let t255 = t91 - t95;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t88
+            * (0.7071067811865476 * t255 - 0.7071067811865476 * t85 * t104);
+        let t261 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let g2_wz_leg2 = 0.11764705882352941 * (t15 * t88 - t19 * t88);
+        let t268 = t136 + t140;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t133
+            * (0.7071067811865476 * t268 + 0.7071067811865476 * t119 * t149);
+        let t274 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let g2_wz_leg3 = 0.11764705882352941 * (t15 * t133 - t19 * t133);
+        let t281 = t185 - t181;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t178
+            * (0.7071067811865476 * t281 - 0.7071067811865476 * t164 * t194);
+        let t287 = g2_vx_leg4 * minus_rate_dot_2_leg4;
+        let g2_wz_leg4 = 0.11764705882352941 * (t15 * t178 - t19 * t178);
+        let t293 = g2_vx_leg1 * t61;
+        let t294 = 2.079725827019258 * t242;
+        let t302 = 2.079725827019258 * t255;
+        let t304 = minus_g2_vx_leg2 * t106;
+        let t311 = 2.079725827019258 * t268;
+        let t313 = minus_g2_vx_leg3 * t151;
+        let t320 = 2.079725827019258 * t281;
+        let t322 = g2_vx_leg4 * t196;
+        let t329 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
+        let t331 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
+        let t333 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
+        let t335 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
+        let t337 = twist[2] - rate_2_leg1;
+        let t338 = ::overact::math::signed(g2_vx_leg1, t337);
+        let t341 = twist[2] - rate_2_leg2;
+        let t342 = ::overact::math::signed(minus_g2_vx_leg2, t341);
+        let t345 = minus_rate_2_leg3 + twist[2];
+        let t346 = ::overact::math::signed(minus_g2_vx_leg3, t345);
+        let t349 = twist[2] - rate_2_leg4;
+        let t350 = ::overact::math::signed(g2_vx_leg4, t349);
+        Ok([
+            [
+                0.0, -t5, -t8, acceleration[0], -(minus_g1_vx_leg1 * rate_dot_1_leg1),
+                minus_g1_vx_leg2 * minus_rate_dot_1_leg2, minus_g1_vx_leg3 * minus_rate_dot_1_leg3,
+                minus_g1_vx_leg4 * minus_rate_dot_1_leg4, -(minus_g1_vx_leg1 * rate_1_leg1),
+                minus_g1_vx_leg2 * minus_rate_1_leg2, minus_g1_vx_leg3 * minus_rate_1_leg3,
+                -(minus_g1_vx_leg4 * rate_1_leg4),
+                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1),
+                ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2),
+                ::overact::math::signed(minus_g1_vx_leg3, minus_rate_1_leg3),
+                -::overact::math::signed(minus_g1_vx_leg4, rate_1_leg4), -minus_g1_vx_leg1,
+                -minus_g1_vx_leg2, -minus_g1_vx_leg3, -minus_g1_vx_leg4, t248, t261, t274, -t287,
+                t293 - minus_g1_vx_leg1 * t294, minus_g1_vx_leg2 * t302 + t304,
+                minus_g1_vx_leg3 * t311 + t313, minus_g1_vx_leg4 * t320 - t322, t329, -t331, t333,
+                t335, -t338, t342, t346, -t350,
+            ],
+            [
+                0.0, t8, -t5, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
+                minus_g1_vy_leg2 * minus_rate_dot_1_leg2, minus_g1_vy_leg3 * minus_rate_dot_1_leg3,
+                -(g1_vy_leg4 * minus_rate_dot_1_leg4), g1_vy_leg1 * rate_1_leg1,
+                minus_g1_vy_leg2 * minus_rate_1_leg2, minus_g1_vy_leg3 * minus_rate_1_leg3,
+                g1_vy_leg4 * rate_1_leg4, ::overact::math::signed(g1_vy_leg1, rate_1_leg1),
+                ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2),
+                ::overact::math::signed(minus_g1_vy_leg3, minus_rate_1_leg3),
+                ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg1, -minus_g1_vy_leg2,
+                -minus_g1_vy_leg3, g1_vy_leg4, t248, -t261, t274, t287, g1_vy_leg1 * t294 + t293,
+                minus_g1_vy_leg2 * t302 - t304, minus_g1_vy_leg3 * t311 + t313,
+                t322 - g1_vy_leg4 * t320, t329, t331, t333, -t335, -t338, -t342, t346, t350,
+            ],
+            [
+                acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
+                -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
+                g1_wz_leg1 * rate_dot_1_leg1, -(g1_wz_leg2 * minus_rate_dot_1_leg2),
+                -(g1_wz_leg3 * minus_rate_dot_1_leg3), -(g1_wz_leg4 * minus_rate_dot_1_leg4),
+                g1_wz_leg1 * rate_1_leg1, -(g1_wz_leg2 * minus_rate_1_leg2),
+                -(g1_wz_leg3 * minus_rate_1_leg3), g1_wz_leg4 * rate_1_leg4,
+                ::overact::math::signed(g1_wz_leg1, rate_1_leg1),
+                -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2),
+                -::overact::math::signed(g1_wz_leg3, minus_rate_1_leg3),
+                ::overact::math::signed(g1_wz_leg4, rate_1_leg4), g1_wz_leg1, g1_wz_leg2,
+                g1_wz_leg3, g1_wz_leg4, g2_wz_leg1 * rate_dot_2_leg1,
+                -(g2_wz_leg2 * minus_rate_dot_2_leg2), -(g2_wz_leg3 * minus_rate_dot_2_leg3),
+                -(g2_wz_leg4 * minus_rate_dot_2_leg4), g1_wz_leg1 * t294 + g2_wz_leg1 * t61,
+                -(g1_wz_leg2 * t302 + g2_wz_leg2 * t106), -(g1_wz_leg3 * t311 + g2_wz_leg3 * t151),
+                -(g1_wz_leg4 * t320 + g2_wz_leg4 * t196),
+                ::overact::math::signed(g2_wz_leg1, rate_2_leg1),
+                ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
+                -::overact::math::signed(g2_wz_leg3, minus_rate_2_leg3),
+                ::overact::math::signed(g2_wz_leg4, rate_2_leg4),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t337),
+                ::overact::math::signed(1.0 - g2_wz_leg2, t341),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t345),
+                ::overact::math::signed(1.0 - g2_wz_leg4, t349),
+            ],
+        ])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -2368,7 +3417,7 @@ impl Planar4Prr {
     /// Output: 3 x 36.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 422 operations (156 additions, 259 multiplications, 7 divisions), 0 square roots, 5 trigonometric pairs, 28 signs, 369 intermediates.
+    /// 471 operations (190 additions, 274 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 414 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2379,250 +3428,283 @@ impl Planar4Prr {
         start: &[f64; 3],
     ) -> Result<[[f64; 36]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
-        let t2 = s2_leg1 + c2_leg1;
-        let t3 = 1.0 / s2_leg1;
-        let t4 = 0.7071067811865476 * t3;
-        let g1_vy_leg1 = t2 * t4;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t8 = c_phi - s_phi;
-        let t9 = 0.05656854249492381 * t8;
-        let t11 = c2_leg1 - s2_leg1;
-        let g1_vx_leg1 = t11 * t4;
-        let t13 = s_phi + c_phi;
-        let t14 = 0.05656854249492381 * t13;
-        let g1_wz_leg1 = g1_vy_leg1 * t9 - g1_vx_leg1 * t14;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t20 = s2_leg2 - c2_leg2;
-        let t21 = 1.0 / s2_leg2;
-        let t22 = 0.7071067811865476 * t21;
-        let minus_g1_vy_leg2 = t20 * t22;
-        let t25 = c2_leg2 + s2_leg2;
-        let minus_g1_vx_leg2 = t25 * t22;
-        let g1_wz_leg2 = t14 * minus_g1_vy_leg2 + t9 * minus_g1_vx_leg2;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
-        let t33 = s2_leg3 + c2_leg3;
-        let t34 = 1.0 / s2_leg3;
-        let t35 = 0.7071067811865476 * t34;
-        let minus_g1_vy_leg3 = t33 * t35;
-        let t38 = s2_leg3 - c2_leg3;
-        let g1_vx_leg3 = t38 * t35;
-        let g1_wz_leg3 = t9 * minus_g1_vy_leg3 + t14 * g1_vx_leg3;
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
-        let t46 = c2_leg4 + s2_leg4;
-        let t47 = 1.0 / s2_leg4;
-        let t48 = 0.7071067811865476 * t47;
-        let g1_vx_leg4 = t46 * t48;
-        let t51 = c2_leg4 - s2_leg4;
-        let minus_g1_vy_leg4 = t51 * t48;
-        let g1_wz_leg4 = t9 * g1_vx_leg4 - t14 * minus_g1_vy_leg4;
-        let t63 = g1_vx_leg1 * g1_wz_leg1 - minus_g1_vx_leg2 * g1_wz_leg2
-            + g1_vx_leg3 * g1_wz_leg3 + g1_vx_leg4 * g1_wz_leg4;
-        let t70 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t70, 3.4404761904750325, "actuators")?;
-        ::overact::guard::platform(t70, 3.4404761904750325, "actuators")?;
-        let t71 = 1.0 / t70;
-        let t72 = t63 * t71;
-        let t88 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            - g1_vx_leg3 * minus_g1_vy_leg3 - g1_vx_leg4 * minus_g1_vy_leg4;
-        let t90 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 - minus_g1_vy_leg4 * g1_wz_leg4 - t88 * t72;
-        let t98 = t88 * t71;
-        let t100 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t88 * t98;
-        ::overact::guard::platform(t100, 3.440476190475036, "actuators")?;
-        ::overact::guard::platform(t100, 3.440476190475036, "actuators")?;
-        let t101 = 1.0 / t100;
-        let t102 = t90 * t101;
-        let t104 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t63 * t72 - t90 * t102;
-        ::overact::guard::platform(t104, 0.02560000000000001, "actuators")?;
-        ::overact::guard::platform(t104, 0.02560000000000001, "actuators")?;
-        let t105 = 1.0 / t104;
-        let t106 = 0.2404163056034262 * t11;
-        let minus_g2_vx_leg1 = 2.079725827019258 * t3;
-        let t114 = g1_vx_leg1 * actuator_velocities[0]
-            - minus_g1_vx_leg2 * actuator_velocities[1]
-            + g1_vx_leg3 * actuator_velocities[2] + g1_vx_leg4 * actuator_velocities[3];
-        let t124 = g1_vy_leg1 * actuator_velocities[0]
+        let t2 = c_phi - s_phi;
+        let t3 = 0.05656854249492381 * t2;
+        let t4 = s_phi + c_phi;
+        let t5 = 0.05656854249492381 * t4;
+        let t7 = pose[1] + t5 - 0.21213203435596426;
+        let t9 = pose[0] + t3 - 0.21213203435596426;
+        let t10 = t7 - t9;
+        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t7 * t7 - 0.1156));
+        ::overact::guard::reach(t18, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
+        let t20 = 0.7071067811865476 * minus_s2_leg1;
+        let t21 = t9 + t7;
+        let t22 = 1.4705882352941178 * t21;
+        let t23 = t20 - t22;
+        let t24 = 1.0 / minus_s2_leg1;
+        let g1_vy_leg1 = t23 * t24;
+        let t27 = t22 + t20;
+        let minus_g1_vx_leg1 = t27 * t24;
+        let g1_wz_leg1 = t3 * g1_vy_leg1 + t5 * minus_g1_vx_leg1;
+        let t33 = pose[0] - t5 + 0.21213203435596426;
+        let t35 = pose[1] + t3 - 0.21213203435596426;
+        let t36 = t33 + t35;
+        let t44 = 8.650519031141869
+            * (0.5 * (t36 * t36) - (t33 * t33 + t35 * t35 - 0.1156));
+        ::overact::guard::reach(t44, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t44);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
+        let t46 = 0.7071067811865476 * minus_s2_leg2;
+        let t47 = t35 - t33;
+        let t48 = 1.4705882352941178 * t47;
+        let t49 = t46 + t48;
+        let t50 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t49 * t50;
+        let t53 = t46 - t48;
+        let minus_g1_vx_leg2 = t53 * t50;
+        let g1_wz_leg2 = t5 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
+        let t60 = pose[0] - t3 + 0.21213203435596426;
+        let t62 = pose[1] - t5 + 0.21213203435596426;
+        let t63 = t60 - t62;
+        let t71 = 8.650519031141869
+            * (0.5 * (t63 * t63) - (t60 * t60 + t62 * t62 - 0.1156));
+        ::overact::guard::reach(t71, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t71);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
+        let t73 = 0.7071067811865476 * minus_s2_leg3;
+        let t74 = t60 + t62;
+        let t75 = 1.4705882352941178 * t74;
+        let t76 = t73 + t75;
+        let t77 = 1.0 / minus_s2_leg3;
+        let minus_g1_vy_leg3 = t76 * t77;
+        let t80 = t75 - t73;
+        let minus_g1_vx_leg3 = t80 * t77;
+        let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t5 * minus_g1_vx_leg3;
+        let t87 = pose[0] + t5 - 0.21213203435596426;
+        let t89 = pose[1] - t3 + 0.21213203435596426;
+        let t90 = t87 + t89;
+        let t98 = 8.650519031141869
+            * (0.5 * (t90 * t90) - (t87 * t87 + t89 * t89 - 0.1156));
+        ::overact::guard::reach(t98, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t98);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t100 = 0.7071067811865476 * minus_s2_leg4;
+        let t101 = t87 - t89;
+        let t102 = 1.4705882352941178 * t101;
+        let t103 = t100 + t102;
+        let t104 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = t103 * t104;
+        let t107 = t102 - t100;
+        let minus_g1_vx_leg4 = t107 * t104;
+        let g1_wz_leg4 = t5 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
+        let t119 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+            + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
+        let t126 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+            + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
+            + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t126, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t126, 3.440476190476192, "actuators")?;
+        let t127 = 1.0 / t126;
+        let t128 = t119 * t127;
+        let t144 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+            + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
+        let t146 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t144 * t128;
+        let t154 = t144 * t127;
+        let t156 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
+            - t144 * t154;
+        ::overact::guard::platform(t156, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t156, 3.440476190476192, "actuators")?;
+        let t157 = 1.0 / t156;
+        let t158 = t146 * t157;
+        let t160 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t119 * t128
+            - t146 * t158;
+        ::overact::guard::platform(t160, 0.02560000000000001, "actuators")?;
+        ::overact::guard::platform(t160, 0.02560000000000001, "actuators")?;
+        let t161 = 1.0 / t160;
+        let t175 = minus_g1_vx_leg1 * actuator_velocities[0]
+            + minus_g1_vx_leg2 * actuator_velocities[1]
+            + minus_g1_vx_leg3 * actuator_velocities[2]
+            + minus_g1_vx_leg4 * actuator_velocities[3];
+        let t186 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t114 * t98;
-        let t136 = g1_wz_leg1 * actuator_velocities[0]
+            + g1_vy_leg4 * actuator_velocities[3] + t175 * t154;
+        let t188 = g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg2 * actuator_velocities[1] + g1_wz_leg3 * actuator_velocities[2]
-            + g1_wz_leg4 * actuator_velocities[3] - t114 * t72 - t102 * t124;
-        let rate_3_leg1 = t105 * t136;
-        let t139 = t101 * t124 - t102 * rate_3_leg1;
-        let t143 = t114 * t71 - t98 * t139 - t72 * rate_3_leg1;
-        let t144 = t14 * rate_3_leg1;
-        let t145 = t143 - t144;
-        let t147 = t9 * rate_3_leg1;
-        let t148 = t139 + t147;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t145 + minus_g2_vx_leg1 * t148;
-        let t151 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t153 = rate_3_leg1 * t147;
-        let t156 = 0.2404163056034262 * t2;
-        let t158 = rate_3_leg1 * t144;
-        let rate_dot_1_leg1 = g1_vx_leg1 * (t106 * t151 - t153)
-            + g1_vy_leg1 * (t156 * t151 - t158);
-        let t162 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t169 = t11 * t106 + t2 * t156;
-        let g2_vx_leg2 = 2.079725827019258 * t21;
-        let t171 = t143 - t147;
-        let t173 = t139 - t144;
-        let rate_2_leg2 = g2_vx_leg2 * t171 - g2_vx_leg2 * t173;
-        let t176 = rate_2_leg2 * rate_2_leg2;
-        let t177 = t169 * t176;
-        let rate_dot_1_leg2 = t22 * (t20 * t153 - t25 * t158 + t177);
-        let t180 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let g2_vx_leg3 = 2.079725827019258 * t34;
-        let t187 = t143 + t144;
-        let t189 = t139 - t147;
-        let rate_2_leg3 = g2_vx_leg3 * t187 + g2_vx_leg3 * t189;
-        let t192 = rate_2_leg3 * rate_2_leg3;
-        let t193 = t169 * t192;
-        let minus_rate_dot_1_leg3 = t35 * (t33 * t158 - t38 * t153 - t193);
-        let t196 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let minus_g2_vx_leg4 = 2.079725827019258 * t47;
-        let t200 = t139 + t144;
-        let t202 = t143 + t147;
-        let rate_2_leg4 = minus_g2_vx_leg4 * t200 - minus_g2_vx_leg4 * t202;
-        let t205 = rate_2_leg4 * rate_2_leg4;
-        let t206 = t169 * t205;
-        let rate_dot_1_leg4 = t48 * (t206 - (t46 * t158 + t51 * t153));
-        let t212 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t221 = g1_vx_leg1 * t162 - minus_g1_vx_leg2 * t180 + g1_vx_leg3 * t196
-            + g1_vx_leg4 * t212;
-        let t232 = g1_vy_leg1 * t162 - minus_g1_vy_leg2 * t180 - minus_g1_vy_leg3 * t196
-            - minus_g1_vy_leg4 * t212 - t98 * t221;
-        let t234 = g1_wz_leg1 * t162 + g1_wz_leg2 * t180 + g1_wz_leg3 * t196
-            + g1_wz_leg4 * t212 - t72 * t221 - t102 * t232;
-        let rate_dot_3_leg1 = t105 * t234;
-        let t236 = rate_3_leg1 * rate_3_leg1;
-        let t239 = c_phi * t236 + s_phi * rate_dot_3_leg1;
-        let t242 = c_phi * rate_dot_3_leg1 - s_phi * t236;
-        let t245 = t101 * t232 - t102 * rate_dot_3_leg1;
-        let t251 = t71 * t221 - t98 * t245 - t72 * rate_dot_3_leg1;
-        let t257 = t14 * rate_dot_3_leg1;
-        let t259 = t251 - t257 - t153;
-        let t261 = t9 * rate_dot_3_leg1;
-        let t263 = t245 + t261 - t158;
-        let rate_dot_1_leg1_2 = t4 * (t11 * t259 + t2 * t263 + t151 * t169);
-        let t273 = t251 - t261 + t158;
-        let t276 = t245 - t257 - t153;
-        let rate_dot_1_leg2_2 = t22 * (t177 - (t25 * t273 + t20 * t276));
-        let t285 = t245 - t261 + t158;
-        let t288 = t251 + t257 + t153;
-        let minus_rate_dot_1_leg3_2 = t35 * (t33 * t285 - t38 * t288 - t193);
-        let t297 = t251 + t261 - t158;
-        let t300 = t245 + t257 + t153;
-        let rate_dot_1_leg4_2 = t48 * (t46 * t297 - t51 * t300 + t206);
-        let rate_1_leg1 = g1_vx_leg1 * t145 + g1_vy_leg1 * t148;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t171 + minus_g1_vy_leg2 * t173;
-        let rate_1_leg3 = g1_vx_leg3 * t187 - minus_g1_vy_leg3 * t189;
-        let rate_1_leg4 = g1_vx_leg4 * t202 - minus_g1_vy_leg4 * t200;
-        let t345 = t259 + t263;
-        let minus_rate_dot_2_leg1 = 2.9411764705882355 * t3
-            * (0.7071067811865476 * t345 + t151 * (0.34 * c2_leg1));
-        let t351 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-        let g2_wz_leg1 = 0.11764705882352941 * (t3 * t13 - t3 * t8);
-        let t358 = t273 - t276;
-        let rate_dot_2_leg2 = 2.9411764705882355 * t21
-            * (0.7071067811865476 * t358 - t176 * (0.34 * c2_leg2));
-        let t364 = g2_vx_leg2 * rate_dot_2_leg2;
-        let g2_wz_leg2 = 0.11764705882352941 * (t13 * t21 - t8 * t21);
-        let t373 = t288 + t285;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t34
-            * (t192 * (0.34 * c2_leg3) - 0.7071067811865476 * t373);
-        let t377 = g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let g2_wz_leg3 = 0.11764705882352941 * (t13 * t34 - t8 * t34);
-        let t384 = t300 - t297;
-        let rate_dot_2_leg4 = 2.9411764705882355 * t47
-            * (0.7071067811865476 * t384 - t205 * (0.34 * c2_leg4));
-        let t390 = minus_g2_vx_leg4 * rate_dot_2_leg4;
-        let g2_wz_leg4 = 0.11764705882352941 * (t13 * t47 - t8 * t47);
-        let t396 = 2.079725827019258 * t345;
-        let t398 = s2_leg1 * rate_dot_1_leg1_2;
-        let t399 = minus_g2_vx_leg1 * t398;
-        let t406 = 2.079725827019258 * t358;
-        let t408 = s2_leg2 * rate_dot_1_leg2_2;
-        let t409 = g2_vx_leg2 * t408;
-        let t416 = s2_leg3 * minus_rate_dot_1_leg3_2;
-        let t417 = g2_vx_leg3 * t416;
-        let t418 = 2.079725827019258 * t373;
-        let t426 = s2_leg4 * rate_dot_1_leg4_2;
-        let t427 = minus_g2_vx_leg4 * t426;
-        let t428 = 2.079725827019258 * t384;
-        let t436 = ::overact::math::signed(minus_g2_vx_leg1, minus_rate_2_leg1);
-        let t438 = ::overact::math::signed(g2_vx_leg2, rate_2_leg2);
-        let t440 = ::overact::math::signed(g2_vx_leg3, rate_2_leg3);
-        let t442 = ::overact::math::signed(minus_g2_vx_leg4, rate_2_leg4);
-        let t444 = minus_rate_2_leg1 + rate_3_leg1;
-        let t445 = ::overact::math::signed(minus_g2_vx_leg1, t444);
-        let t448 = rate_3_leg1 - rate_2_leg2;
-        let t449 = ::overact::math::signed(g2_vx_leg2, t448);
-        let t452 = rate_3_leg1 - rate_2_leg3;
-        let t453 = ::overact::math::signed(g2_vx_leg3, t452);
-        let t456 = rate_3_leg1 - rate_2_leg4;
-        let t457 = ::overact::math::signed(minus_g2_vx_leg4, t456);
+            + g1_wz_leg4 * actuator_velocities[3] - t175 * t128 - t158 * t186;
+        let rate_3_leg1 = t161 * t188;
+        let t190 = t3 * rate_3_leg1;
+        let t191 = rate_3_leg1 * t190;
+        let t193 = t5 * rate_3_leg1;
+        let t194 = rate_3_leg1 * t193;
+        let g2_vx_leg1 = 2.079725827019258 * t24;
+        let t202 = t157 * t186 - t158 * rate_3_leg1;
+        let t205 = t128 * rate_3_leg1 - (t175 * t127 + t154 * t202);
+        let t206 = t205 - t193;
+        let t208 = t202 + t190;
+        let rate_2_leg1 = g2_vx_leg1 * t206 + g2_vx_leg1 * t208;
+        let t211 = rate_2_leg1 * rate_2_leg1;
+        let t212 = 0.34 * t211;
+        let rate_dot_1_leg1 = t24 * (t27 * t191 - t23 * t194 - t212);
+        let t215 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t50;
+        let t221 = t202 - t193;
+        let t223 = t205 - t190;
+        let rate_2_leg2 = minus_g2_vx_leg2 * t221 - minus_g2_vx_leg2 * t223;
+        let t226 = rate_2_leg2 * rate_2_leg2;
+        let t227 = 0.34 * t226;
+        let minus_rate_dot_1_leg2 = t50 * (t53 * t194 - t49 * t191 + t227);
+        let t230 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t77;
+        let t237 = t205 + t193;
+        let t239 = t202 - t190;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t237 + minus_g2_vx_leg3 * t239;
+        let t242 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t243 = 0.34 * t242;
+        let minus_rate_dot_1_leg3 = t77 * (t80 * t191 + t76 * t194 + t243);
+        let t246 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = 2.079725827019258 * t104;
+        let t250 = t205 + t190;
+        let t252 = t202 + t193;
+        let rate_2_leg4 = g2_vx_leg4 * t250 - g2_vx_leg4 * t252;
+        let t255 = rate_2_leg4 * rate_2_leg4;
+        let t256 = 0.34 * t255;
+        let minus_rate_dot_1_leg4 = t104 * (t256 - (t107 * t194 + t103 * t191));
+        let t262 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
+        let t271 = minus_g1_vx_leg1 * t215 + minus_g1_vx_leg2 * t230
+            + minus_g1_vx_leg3 * t246 + minus_g1_vx_leg4 * t262;
+        let t282 = g1_vy_leg1 * t215 - minus_g1_vy_leg2 * t230 - minus_g1_vy_leg3 * t246
+            + g1_vy_leg4 * t262 + t154 * t271;
+        let t284 = g1_wz_leg1 * t215 + g1_wz_leg2 * t230 + g1_wz_leg3 * t246
+            + g1_wz_leg4 * t262 - t128 * t271 - t158 * t282;
+        let rate_dot_3_leg1 = t161 * t284;
+        let t286 = rate_3_leg1 * rate_3_leg1;
+        let t289 = c_phi * t286 + s_phi * rate_dot_3_leg1;
+        let t292 = c_phi * rate_dot_3_leg1 - s_phi * t286;
+        let t295 = t157 * t282 - t158 * rate_dot_3_leg1;
+        let t301 = t128 * rate_dot_3_leg1 - (t127 * t271 + t154 * t295);
+        let t307 = t3 * rate_dot_3_leg1;
+        let t309 = t295 + t307 - t194;
+        let t311 = t5 * rate_dot_3_leg1;
+        let t313 = t301 - t311 - t191;
+        let t316 = t23 * t309 - t27 * t313 - t212;
+        let rate_dot_1_leg1_2 = t24 * t316;
+        let t322 = t301 - t307 + t194;
+        let t325 = t295 - t311 - t191;
+        let t328 = t53 * t322 + t49 * t325 + t227;
+        let minus_rate_dot_1_leg2_2 = t50 * t328;
+        let t334 = t301 + t311 + t191;
+        let t337 = t295 - t307 + t194;
+        let t340 = t80 * t334 + t76 * t337 + t243;
+        let minus_rate_dot_1_leg3_2 = t77 * t340;
+        let t346 = t301 + t307 - t194;
+        let t349 = t295 + t311 + t191;
+        let t352 = t107 * t346 - t103 * t349 + t256;
+        let minus_rate_dot_1_leg4_2 = t104 * t352;
+        let rate_1_leg1 = g1_vy_leg1 * t208 - minus_g1_vx_leg1 * t206;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t223 + minus_g1_vy_leg2 * t221;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t237 + minus_g1_vy_leg3 * t239;
+        let rate_1_leg4 = g1_vy_leg4 * t252 - minus_g1_vx_leg4 * t250;
+        let t394 = t313 + t309;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t24
+            * (0.7071067811865476 * t394 + 0.7071067811865476 * t21 * t211);
+        let t400 = g2_vx_leg1 * rate_dot_2_leg1;
+        let g2_wz_leg1 = 0.11764705882352941 * (t2 * t24 - t4 * t24);
+        let t407 = t322 - t325;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t50
+            * (0.7071067811865476 * t407 - 0.7071067811865476 * t47 * t226);
+        let t413 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let g2_wz_leg2 = 0.11764705882352941 * (t2 * t50 - t4 * t50);
+        let t420 = t334 + t337;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t77
+            * (0.7071067811865476 * t420 + 0.7071067811865476 * t74 * t242);
+        let t426 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let g2_wz_leg3 = 0.11764705882352941 * (t2 * t77 - t4 * t77);
+        let t433 = t349 - t346;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t104
+            * (0.7071067811865476 * t433 - 0.7071067811865476 * t101 * t255);
+        let t439 = g2_vx_leg4 * minus_rate_dot_2_leg4;
+        let g2_wz_leg4 = 0.11764705882352941 * (t2 * t104 - t4 * t104);
+        let t445 = g2_vx_leg1 * t316;
+        let t446 = 2.079725827019258 * t394;
+        let t454 = 2.079725827019258 * t407;
+        let t456 = minus_g2_vx_leg2 * t328;
+        let t463 = 2.079725827019258 * t420;
+        let t465 = minus_g2_vx_leg3 * t340;
+        let t472 = 2.079725827019258 * t433;
+        let t474 = g2_vx_leg4 * t352;
+        let t481 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
+        let t483 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
+        let t485 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
+        let t487 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
+        let t489 = rate_3_leg1 - rate_2_leg1;
+        let t490 = ::overact::math::signed(g2_vx_leg1, t489);
+        let t493 = rate_3_leg1 - rate_2_leg2;
+        let t494 = ::overact::math::signed(minus_g2_vx_leg2, t493);
+        let t497 = minus_rate_2_leg3 + rate_3_leg1;
+        let t498 = ::overact::math::signed(minus_g2_vx_leg3, t497);
+        let t501 = rate_3_leg1 - rate_2_leg4;
+        let t502 = ::overact::math::signed(g2_vx_leg4, t501);
         Ok([
             [
-                0.0, -t239, -t242, t251, g1_vx_leg1 * rate_dot_1_leg1_2,
-                -(minus_g1_vx_leg2 * rate_dot_1_leg2_2), -(g1_vx_leg3 * minus_rate_dot_1_leg3_2),
-                g1_vx_leg4 * rate_dot_1_leg4_2, g1_vx_leg1 * rate_1_leg1,
-                minus_g1_vx_leg2 * minus_rate_1_leg2, g1_vx_leg3 * rate_1_leg3,
-                g1_vx_leg4 * rate_1_leg4, ::overact::math::signed(g1_vx_leg1, rate_1_leg1),
+                0.0, -t289, -t292, t301, -(minus_g1_vx_leg1 * rate_dot_1_leg1_2),
+                minus_g1_vx_leg2 * minus_rate_dot_1_leg2_2,
+                minus_g1_vx_leg3 * minus_rate_dot_1_leg3_2,
+                minus_g1_vx_leg4 * minus_rate_dot_1_leg4_2, -(minus_g1_vx_leg1 * rate_1_leg1),
+                minus_g1_vx_leg2 * minus_rate_1_leg2, minus_g1_vx_leg3 * minus_rate_1_leg3,
+                -(minus_g1_vx_leg4 * rate_1_leg4),
+                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1),
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2),
-                ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                ::overact::math::signed(g1_vx_leg4, rate_1_leg4), g1_vx_leg1, -minus_g1_vx_leg2,
-                g1_vx_leg3, g1_vx_leg4, t351, t364, -t377, -t390, g1_vx_leg1 * t396 + t399,
-                minus_g1_vx_leg2 * t406 - t409, t417 - g1_vx_leg3 * t418, t427 - g1_vx_leg4 * t428,
-                t436, t438, t440, -t442, t445, -t449, -t453, t457,
+                ::overact::math::signed(minus_g1_vx_leg3, minus_rate_1_leg3),
+                -::overact::math::signed(minus_g1_vx_leg4, rate_1_leg4), -minus_g1_vx_leg1,
+                -minus_g1_vx_leg2, -minus_g1_vx_leg3, -minus_g1_vx_leg4, t400, t413, t426, -t439,
+                t445 - minus_g1_vx_leg1 * t446, minus_g1_vx_leg2 * t454 + t456,
+                minus_g1_vx_leg3 * t463 + t465, minus_g1_vx_leg4 * t472 - t474, t481, -t483, t485,
+                t487, -t490, t494, t498, -t502,
             ],
             [
-                0.0, t242, -t239, t245, g1_vy_leg1 * rate_dot_1_leg1_2,
-                -(minus_g1_vy_leg2 * rate_dot_1_leg2_2), minus_g1_vy_leg3 * minus_rate_dot_1_leg3_2,
-                -(minus_g1_vy_leg4 * rate_dot_1_leg4_2), g1_vy_leg1 * rate_1_leg1,
-                minus_g1_vy_leg2 * minus_rate_1_leg2, -(minus_g1_vy_leg3 * rate_1_leg3),
-                -(minus_g1_vy_leg4 * rate_1_leg4), ::overact::math::signed(g1_vy_leg1, rate_1_leg1),
+                0.0, t292, -t289, t295, g1_vy_leg1 * rate_dot_1_leg1_2,
+                minus_g1_vy_leg2 * minus_rate_dot_1_leg2_2,
+                minus_g1_vy_leg3 * minus_rate_dot_1_leg3_2, -(g1_vy_leg4 * minus_rate_dot_1_leg4_2),
+                g1_vy_leg1 * rate_1_leg1, minus_g1_vy_leg2 * minus_rate_1_leg2,
+                minus_g1_vy_leg3 * minus_rate_1_leg3, g1_vy_leg4 * rate_1_leg4,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1),
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2),
-                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3),
-                -::overact::math::signed(minus_g1_vy_leg4, rate_1_leg4), g1_vy_leg1,
-                -minus_g1_vy_leg2, -minus_g1_vy_leg3, -minus_g1_vy_leg4, t351, -t364, -t377, t390,
-                g1_vy_leg1 * t396 + t399, minus_g1_vy_leg2 * t406 + t409,
-                minus_g1_vy_leg3 * t418 + t417, minus_g1_vy_leg4 * t428 - t427, t436, -t438, t440,
-                t442, t445, t449, -t453, -t457,
+                ::overact::math::signed(minus_g1_vy_leg3, minus_rate_1_leg3),
+                ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg1, -minus_g1_vy_leg2,
+                -minus_g1_vy_leg3, g1_vy_leg4, t400, -t413, t426, t439, g1_vy_leg1 * t446 + t445,
+                minus_g1_vy_leg2 * t454 - t456, minus_g1_vy_leg3 * t463 + t465,
+                t474 - g1_vy_leg4 * t472, t481, t483, t485, -t487, -t490, -t494, t498, t502,
             ],
             [
-                rate_dot_3_leg1, c_phi * t245 - s_phi * t251, -(c_phi * t251 + s_phi * t245), 0.0,
-                g1_wz_leg1 * rate_dot_1_leg1_2, g1_wz_leg2 * rate_dot_1_leg2_2,
-                -(g1_wz_leg3 * minus_rate_dot_1_leg3_2), g1_wz_leg4 * rate_dot_1_leg4_2,
+                rate_dot_3_leg1, c_phi * t295 - s_phi * t301, -(c_phi * t301 + s_phi * t295), 0.0,
+                g1_wz_leg1 * rate_dot_1_leg1_2, -(g1_wz_leg2 * minus_rate_dot_1_leg2_2),
+                -(g1_wz_leg3 * minus_rate_dot_1_leg3_2), -(g1_wz_leg4 * minus_rate_dot_1_leg4_2),
                 g1_wz_leg1 * rate_1_leg1, -(g1_wz_leg2 * minus_rate_1_leg2),
-                g1_wz_leg3 * rate_1_leg3, g1_wz_leg4 * rate_1_leg4,
+                -(g1_wz_leg3 * minus_rate_1_leg3), g1_wz_leg4 * rate_1_leg4,
                 ::overact::math::signed(g1_wz_leg1, rate_1_leg1),
                 -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2),
-                ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
+                -::overact::math::signed(g1_wz_leg3, minus_rate_1_leg3),
                 ::overact::math::signed(g1_wz_leg4, rate_1_leg4), g1_wz_leg1, g1_wz_leg2,
-                g1_wz_leg3, g1_wz_leg4, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
-                g2_wz_leg2 * rate_dot_2_leg2, -(g2_wz_leg3 * minus_rate_dot_2_leg3),
-                g2_wz_leg4 * rate_dot_2_leg4, g1_wz_leg1 * t396 - g2_wz_leg1 * t398,
-                -(g1_wz_leg2 * t406 + g2_wz_leg2 * t408), g2_wz_leg3 * t416 - g1_wz_leg3 * t418,
-                -(g1_wz_leg4 * t428 + g2_wz_leg4 * t426),
-                -::overact::math::signed(g2_wz_leg1, minus_rate_2_leg1),
+                g1_wz_leg3, g1_wz_leg4, g2_wz_leg1 * rate_dot_2_leg1,
+                -(g2_wz_leg2 * minus_rate_dot_2_leg2), -(g2_wz_leg3 * minus_rate_dot_2_leg3),
+                -(g2_wz_leg4 * minus_rate_dot_2_leg4), g1_wz_leg1 * t446 + g2_wz_leg1 * t316,
+                -(g1_wz_leg2 * t454 + g2_wz_leg2 * t328), -(g1_wz_leg3 * t463 + g2_wz_leg3 * t340),
+                -(g1_wz_leg4 * t472 + g2_wz_leg4 * t352),
+                ::overact::math::signed(g2_wz_leg1, rate_2_leg1),
                 ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
-                ::overact::math::signed(g2_wz_leg3, rate_2_leg3),
+                -::overact::math::signed(g2_wz_leg3, minus_rate_2_leg3),
                 ::overact::math::signed(g2_wz_leg4, rate_2_leg4),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t444),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t448),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t452),
-                ::overact::math::signed(1.0 - g2_wz_leg4, t456),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t489),
+                ::overact::math::signed(1.0 - g2_wz_leg2, t493),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t497),
+                ::overact::math::signed(1.0 - g2_wz_leg4, t501),
             ],
         ])
     }
@@ -2636,7 +3718,7 @@ impl Planar4Prr {
     /// Output: 3 x 36.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 409 operations (150 additions, 254 multiplications, 5 divisions), 0 square roots, 5 trigonometric pairs, 30 signs, 368 intermediates.
+    /// 461 operations (184 additions, 272 multiplications, 5 divisions), 4 square roots, 1 trigonometric pairs, 30 signs, 416 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2645,8 +3727,245 @@ impl Planar4Prr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 36]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_actuators_base_from_joints(pose, joints, twist, acceleration)
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let t2 = s_phi + c_phi;
+        let t3 = 0.05656854249492381 * t2;
+        let t5 = pose[0] - t3 + 0.21213203435596426;
+        let t6 = c_phi - s_phi;
+        let t7 = 0.05656854249492381 * t6;
+        let t9 = pose[1] + t7 - 0.21213203435596426;
+        let t10 = t5 + t9;
+        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t5 * t5 + t9 * t9 - 0.1156));
+        ::overact::guard::reach(t18, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t18);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
+        let t20 = 0.7071067811865476 * minus_s2_leg2;
+        let t21 = t9 - t5;
+        let t22 = 1.4705882352941178 * t21;
+        let t23 = t20 - t22;
+        let t24 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t23 * t24;
+        let t27 = pose[0] - t7 + 0.21213203435596426;
+        let t29 = pose[1] - t3 + 0.21213203435596426;
+        let t30 = t27 - t29;
+        let t38 = 8.650519031141869
+            * (0.5 * (t30 * t30) - (t27 * t27 + t29 * t29 - 0.1156));
+        ::overact::guard::reach(t38, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t38);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
+        let t40 = 0.7071067811865476 * minus_s2_leg3;
+        let t41 = t27 + t29;
+        let t42 = 1.4705882352941178 * t41;
+        let t43 = t40 + t42;
+        let t44 = 1.0 / minus_s2_leg3;
+        let minus_g1_vy_leg3 = t43 * t44;
+        let t47 = t20 + t22;
+        let minus_g1_vy_leg2 = t47 * t24;
+        let t49 = t42 - t40;
+        let minus_g1_vx_leg3 = t49 * t44;
+        let t54 = pose[1] + t3 - 0.21213203435596426;
+        let t56 = pose[0] + t7 - 0.21213203435596426;
+        let t57 = t54 - t56;
+        let t65 = 8.650519031141869
+            * (0.5 * (t57 * t57) - (t56 * t56 + t54 * t54 - 0.1156));
+        ::overact::guard::reach(t65, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t65);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
+        let t67 = 0.7071067811865476 * minus_s2_leg1;
+        let t68 = t56 + t54;
+        let t69 = 1.4705882352941178 * t68;
+        let t70 = t67 - t69;
+        let t71 = 1.0 / minus_s2_leg1;
+        let g1_vy_leg1 = t70 * t71;
+        let t74 = t69 + t67;
+        let minus_g1_vx_leg1 = t74 * t71;
+        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
+        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
+        let t83 = g1_wz_leg1 * minus_g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
+        let t87 = minus_g1_vx_leg1 * g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3;
+        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
+        let t95 = g1_vy_leg1 * minus_g1_vx_leg3 + minus_g1_vx_leg1 * minus_g1_vy_leg3;
+        let t97 = minus_g1_vx_leg2 * t83 + minus_g1_vy_leg2 * t87 - g1_wz_leg2 * t95;
+        ::overact::guard::platform(t97, 0.2752380952380954, "kept actuators")?;
+        ::overact::guard::platform(t97, 0.2752380952380954, "kept actuators")?;
+        ::overact::guard::platform(t97, 0.2752380952380954, "kept actuators")?;
+        let t98 = 1.0 / t97;
+        let t99 = (minus_g1_vx_leg2 * minus_g1_vy_leg3
+            - minus_g1_vy_leg2 * minus_g1_vx_leg3) * t98;
+        let t101 = t95 * t98;
+        let t106 = (g1_vy_leg1 * minus_g1_vx_leg2 + minus_g1_vx_leg1 * minus_g1_vy_leg2)
+            * t98;
+        let t110 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t115 = (g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3) * t98;
+        let t116 = twist[2] * twist[2];
+        let t119 = c_phi * t116 + s_phi * acceleration[2];
+        let t124 = (g1_wz_leg2 * minus_g1_vx_leg3 - minus_g1_vx_leg2 * g1_wz_leg3) * t98;
+        let t127 = c_phi * acceleration[2] - s_phi * t116;
+        let t131 = t83 * t98;
+        let t133 = t87 * t98;
+        let t141 = (minus_g1_vx_leg1 * g1_wz_leg2 - g1_wz_leg1 * minus_g1_vx_leg2) * t98;
+        let t146 = (g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t98;
+        let t156 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t178 = t7 * acceleration[2];
+        let t180 = t3 * twist[2];
+        let t181 = twist[2] * t180;
+        let t182 = acceleration[1] + t178 - t181;
+        let t184 = t3 * acceleration[2];
+        let t186 = t7 * twist[2];
+        let t187 = twist[2] * t186;
+        let t188 = acceleration[0] - t184 - t187;
+        let g2_vx_leg1 = 2.079725827019258 * t71;
+        let t192 = twist[0] - t180;
+        let t194 = twist[1] + t186;
+        let rate_2_leg1 = g2_vx_leg1 * t192 + g2_vx_leg1 * t194;
+        let t197 = rate_2_leg1 * rate_2_leg1;
+        let t199 = t70 * t182 - t74 * t188 - 0.34 * t197;
+        let rate_dot_1_leg1 = t71 * t199;
+        let t202 = acceleration[0] - t178 + t181;
+        let t205 = acceleration[1] - t184 - t187;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t24;
+        let t209 = twist[1] - t180;
+        let t211 = twist[0] - t186;
+        let rate_2_leg2 = minus_g2_vx_leg2 * t209 - minus_g2_vx_leg2 * t211;
+        let t214 = rate_2_leg2 * rate_2_leg2;
+        let t216 = t23 * t202 + t47 * t205 + 0.34 * t214;
+        let minus_rate_dot_1_leg2 = t24 * t216;
+        let t219 = acceleration[0] + t184 + t187;
+        let t222 = acceleration[1] - t178 + t181;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t44;
+        let t226 = twist[0] + t180;
+        let t228 = twist[1] - t186;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t226 + minus_g2_vx_leg3 * t228;
+        let t231 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t233 = t49 * t219 + t43 * t222 + 0.34 * t231;
+        let minus_rate_dot_1_leg3 = t44 * t233;
+        let t236 = pose[0] + t3 - 0.21213203435596426;
+        let t238 = pose[1] - t7 + 0.21213203435596426;
+        let t239 = t236 + t238;
+        let t247 = 8.650519031141869
+            * (0.5 * (t239 * t239) - (t236 * t236 + t238 * t238 - 0.1156));
+        ::overact::guard::reach(t247, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t247);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t249 = 0.7071067811865476 * minus_s2_leg4;
+        let t250 = t236 - t238;
+        let t251 = 1.4705882352941178 * t250;
+        let t252 = t249 + t251;
+        let t253 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = t252 * t253;
+        let t256 = t251 - t249;
+        let minus_g1_vx_leg4 = t256 * t253;
+        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
+        let t264 = g1_wz_leg4 * t99 - (minus_g1_vx_leg4 * t115 + g1_vy_leg4 * t124);
+        let t266 = acceleration[0] + t178 - t181;
+        let t269 = acceleration[1] + t184 + t187;
+        let g2_vx_leg4 = 2.079725827019258 * t253;
+        let t273 = twist[0] + t186;
+        let t275 = twist[1] + t180;
+        let rate_2_leg4 = g2_vx_leg4 * t273 - g2_vx_leg4 * t275;
+        let t278 = rate_2_leg4 * rate_2_leg4;
+        let t280 = t256 * t266 - t252 * t269 + 0.34 * t278;
+        let minus_rate_dot_1_leg4 = t253 * t280;
+        let t287 = minus_g1_vx_leg4 * t131 - g1_vy_leg4 * t133 - g1_wz_leg4 * t101;
+        let t293 = g1_vy_leg4 * t141 - minus_g1_vx_leg4 * t146 + g1_wz_leg4 * t106;
+        let rate_1_leg1 = g1_vy_leg1 * t194 - minus_g1_vx_leg1 * t192;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t211 + minus_g1_vy_leg2 * t209;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t226 + minus_g1_vy_leg3 * t228;
+        let rate_1_leg4 = g1_vy_leg4 * t275 - minus_g1_vx_leg4 * t273;
+        let g2_wz_leg1 = 0.11764705882352941 * (t6 * t71 - t2 * t71);
+        let t324 = g2_vx_leg1 * t115 - g2_vx_leg1 * t124 + g2_wz_leg1 * t99;
+        let t326 = t188 + t182;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t71
+            * (0.7071067811865476 * t326 + 0.7071067811865476 * t68 * t197);
+        let t337 = g2_vx_leg1 * t131 + g2_vx_leg1 * t133 + g2_wz_leg1 * t101;
+        let t343 = g2_vx_leg1 * t146 + g2_vx_leg1 * t141 + g2_wz_leg1 * t106;
+        let g2_wz_leg2 = 0.11764705882352941 * (t6 * t24 - t2 * t24);
+        let t353 = g2_wz_leg2 * t99
+            - (minus_g2_vx_leg2 * t115 + minus_g2_vx_leg2 * t124);
+        let t355 = t202 - t205;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t24
+            * (0.7071067811865476 * t355 - 0.7071067811865476 * t21 * t214);
+        let t366 = minus_g2_vx_leg2 * t131 - minus_g2_vx_leg2 * t133 - g2_wz_leg2 * t101;
+        let t372 = minus_g2_vx_leg2 * t141 - minus_g2_vx_leg2 * t146 + g2_wz_leg2 * t106;
+        let g2_wz_leg3 = 0.11764705882352941 * (t6 * t44 - t2 * t44);
+        let t382 = minus_g2_vx_leg3 * t124 - minus_g2_vx_leg3 * t115 + g2_wz_leg3 * t99;
+        let t384 = t219 + t222;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t44
+            * (0.7071067811865476 * t384 + 0.7071067811865476 * t41 * t231);
+        let t395 = minus_g2_vx_leg3 * t131 + minus_g2_vx_leg3 * t133 - g2_wz_leg3 * t101;
+        let t401 = g2_wz_leg3 * t106
+            - (minus_g2_vx_leg3 * t146 + minus_g2_vx_leg3 * t141);
+        let g2_wz_leg4 = 0.11764705882352941 * (t6 * t253 - t2 * t253);
+        let t411 = g2_vx_leg4 * t115 + g2_vx_leg4 * t124 + g2_wz_leg4 * t99;
+        let t413 = t269 - t266;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t253
+            * (0.7071067811865476 * t413 - 0.7071067811865476 * t250 * t278);
+        let t424 = g2_vx_leg4 * t133 - g2_vx_leg4 * t131 - g2_wz_leg4 * t101;
+        let t430 = g2_vx_leg4 * t146 - g2_vx_leg4 * t141 + g2_wz_leg4 * t106;
+        let t447 = 2.079725827019258 * t413;
+        let t470 = twist[2] - rate_2_leg1;
+        let t477 = twist[2] - rate_2_leg2;
+        let t484 = minus_rate_2_leg3 + twist[2];
+        let t491 = twist[2] - rate_2_leg4;
+        Ok([
+            [
+                t99 * acceleration[2], t99 * t110 - (t115 * t119 + t124 * t127),
+                t124 * t119 - t115 * t127 - t99 * t156,
+                t115 * acceleration[0] - t124 * acceleration[1], rate_dot_1_leg1, 0.0, 0.0,
+                -(t264 * minus_rate_dot_1_leg4), rate_1_leg1, 0.0, 0.0, t264 * rate_1_leg4,
+                ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
+                ::overact::math::signed(t264, rate_1_leg4), 1.0, 0.0, 0.0, t264,
+                t324 * rate_dot_2_leg1, -(t353 * minus_rate_dot_2_leg2),
+                -(t382 * minus_rate_dot_2_leg3), -(t411 * minus_rate_dot_2_leg4),
+                2.079725827019258 * t326 + t324 * t199, -(t353 * t216), -(t382 * t233),
+                -(t264 * t447 + t411 * t280), ::overact::math::signed(t324, rate_2_leg1),
+                ::overact::math::signed(t353, rate_2_leg2),
+                -::overact::math::signed(t382, minus_rate_2_leg3),
+                ::overact::math::signed(t411, rate_2_leg4),
+                ::overact::math::signed(t99 - t324, t470),
+                ::overact::math::signed(t99 - t353, t477),
+                ::overact::math::signed(t99 - t382, t484),
+                ::overact::math::signed(t99 - t411, t491),
+            ],
+            [
+                -(t101 * acceleration[2]), t131 * t119 - t133 * t127 - t101 * t110,
+                t131 * t127 + t133 * t119 + t101 * t156,
+                -(t131 * acceleration[0] + t133 * acceleration[1]), 0.0, -minus_rate_dot_1_leg2,
+                0.0, -(t287 * minus_rate_dot_1_leg4), 0.0, -minus_rate_1_leg2, 0.0,
+                t287 * rate_1_leg4, 0.0, -::overact::math::sign(minus_rate_1_leg2), 0.0,
+                ::overact::math::signed(t287, rate_1_leg4), 0.0, 1.0, 0.0, t287,
+                -(t337 * rate_dot_2_leg1), -(t366 * minus_rate_dot_2_leg2),
+                -(t395 * minus_rate_dot_2_leg3), -(t424 * minus_rate_dot_2_leg4), -(t337 * t199),
+                -(2.079725827019258 * t355 + t366 * t216), -(t395 * t233),
+                -(t287 * t447 + t424 * t280), -::overact::math::signed(t337, rate_2_leg1),
+                ::overact::math::signed(t366, rate_2_leg2),
+                -::overact::math::signed(t395, minus_rate_2_leg3),
+                ::overact::math::signed(t424, rate_2_leg4),
+                ::overact::math::signed(t337 - t101, t470),
+                -::overact::math::signed(t366 + t101, t477),
+                -::overact::math::signed(t395 + t101, t484),
+                -::overact::math::signed(t424 + t101, t491),
+            ],
+            [
+                t106 * acceleration[2], t141 * t127 - t146 * t119 + t106 * t110,
+                -(t146 * t127 + t141 * t119 + t106 * t156),
+                t146 * acceleration[0] + t141 * acceleration[1], 0.0, 0.0, -minus_rate_dot_1_leg3,
+                -(t293 * minus_rate_dot_1_leg4), 0.0, 0.0, -minus_rate_1_leg3, t293 * rate_1_leg4,
+                0.0, 0.0, -::overact::math::sign(minus_rate_1_leg3),
+                ::overact::math::signed(t293, rate_1_leg4), 0.0, 0.0, 1.0, t293,
+                t343 * rate_dot_2_leg1, -(t372 * minus_rate_dot_2_leg2),
+                -(t401 * minus_rate_dot_2_leg3), -(t430 * minus_rate_dot_2_leg4), t343 * t199,
+                -(t372 * t216), -(2.079725827019258 * t384 + t401 * t233),
+                -(t293 * t447 + t430 * t280), ::overact::math::signed(t343, rate_2_leg1),
+                ::overact::math::signed(t372, rate_2_leg2),
+                -::overact::math::signed(t401, minus_rate_2_leg3),
+                ::overact::math::signed(t430, rate_2_leg4),
+                ::overact::math::signed(t106 - t343, t470),
+                ::overact::math::signed(t106 - t372, t477),
+                ::overact::math::signed(t106 - t401, t484),
+                ::overact::math::signed(t106 - t430, t491),
+            ],
+        ])
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -2887,7 +4206,7 @@ impl Planar4Prr {
     /// Output: 3 x 36.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 564 operations (214 additions, 342 multiplications, 8 divisions), 0 square roots, 5 trigonometric pairs, 30 signs, 523 intermediates.
+    /// 613 operations (248 additions, 357 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 30 signs, 568 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2898,271 +4217,304 @@ impl Planar4Prr {
         start: &[f64; 3],
     ) -> Result<[[f64; 36]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t2 = c2_leg2 + s2_leg2;
-        let t3 = 1.0 / s2_leg2;
-        let t4 = 0.7071067811865476 * t3;
-        let minus_g1_vx_leg2 = t2 * t4;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
-        let t8 = s2_leg3 + c2_leg3;
-        let t9 = 1.0 / s2_leg3;
-        let t10 = 0.7071067811865476 * t9;
-        let minus_g1_vy_leg3 = t8 * t10;
-        let t13 = s2_leg2 - c2_leg2;
-        let minus_g1_vy_leg2 = t13 * t4;
-        let t15 = s2_leg3 - c2_leg3;
-        let g1_vx_leg3 = t15 * t10;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
-        let t21 = s2_leg1 + c2_leg1;
-        let t22 = 1.0 / s2_leg1;
-        let t23 = 0.7071067811865476 * t22;
-        let g1_vy_leg1 = t21 * t23;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t27 = c_phi - s_phi;
-        let t28 = 0.05656854249492381 * t27;
-        let t30 = c2_leg1 - s2_leg1;
-        let g1_vx_leg1 = t30 * t23;
-        let t32 = s_phi + c_phi;
-        let t33 = 0.05656854249492381 * t32;
-        let g1_wz_leg1 = g1_vy_leg1 * t28 - g1_vx_leg1 * t33;
-        let g1_wz_leg3 = t28 * minus_g1_vy_leg3 + t33 * g1_vx_leg3;
-        let t41 = g1_wz_leg1 * minus_g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
-        let t45 = g1_wz_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_wz_leg3;
-        let g1_wz_leg2 = t33 * minus_g1_vy_leg2 + t28 * minus_g1_vx_leg2;
-        let t53 = g1_vy_leg1 * g1_vx_leg3 + g1_vx_leg1 * minus_g1_vy_leg3;
-        let t55 = minus_g1_vx_leg2 * t41 + minus_g1_vy_leg2 * t45 + g1_wz_leg2 * t53;
-        ::overact::guard::platform(t55, 0.2752380952380029, "kept actuators")?;
-        ::overact::guard::platform(t55, 0.2752380952380029, "kept actuators")?;
-        ::overact::guard::platform(t55, 0.2752380952380029, "kept actuators")?;
-        let t56 = 1.0 / t55;
-        let t57 = (minus_g1_vx_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * g1_vx_leg3)
-            * t56;
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
-        let t65 = c2_leg4 + s2_leg4;
-        let t66 = 1.0 / s2_leg4;
-        let t67 = 0.7071067811865476 * t66;
-        let g1_vx_leg4 = t65 * t67;
-        let t70 = c2_leg4 - s2_leg4;
-        let minus_g1_vy_leg4 = t70 * t67;
-        let g1_wz_leg4 = t28 * g1_vx_leg4 - t33 * minus_g1_vy_leg4;
-        let t82 = g1_vx_leg1 * g1_wz_leg1 - minus_g1_vx_leg2 * g1_wz_leg2
-            + g1_vx_leg3 * g1_wz_leg3 + g1_vx_leg4 * g1_wz_leg4;
-        let t89 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t89, 3.4404761904750325, "actuators")?;
-        ::overact::guard::platform(t89, 3.4404761904750325, "actuators")?;
-        let t90 = 1.0 / t89;
-        let t91 = t82 * t90;
-        let t107 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            - g1_vx_leg3 * minus_g1_vy_leg3 - g1_vx_leg4 * minus_g1_vy_leg4;
-        let t109 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 - minus_g1_vy_leg4 * g1_wz_leg4 - t107 * t91;
-        let t117 = t107 * t90;
-        let t119 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t107 * t117;
-        ::overact::guard::platform(t119, 3.440476190475036, "actuators")?;
-        ::overact::guard::platform(t119, 3.440476190475036, "actuators")?;
-        let t120 = 1.0 / t119;
-        let t121 = t109 * t120;
-        let t123 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t82 * t91
-            - t109 * t121;
-        ::overact::guard::platform(t123, 0.02560000000000001, "actuators")?;
-        ::overact::guard::platform(t123, 0.02560000000000001, "actuators")?;
-        let t124 = 1.0 / t123;
-        let t125 = 0.2404163056034262 * t30;
-        let minus_g2_vx_leg1 = 2.079725827019258 * t22;
-        let t133 = g1_vx_leg1 * actuator_velocities[0]
-            - minus_g1_vx_leg2 * actuator_velocities[1]
-            + g1_vx_leg3 * actuator_velocities[2] + g1_vx_leg4 * actuator_velocities[3];
-        let t143 = g1_vy_leg1 * actuator_velocities[0]
+        let t2 = s_phi + c_phi;
+        let t3 = 0.05656854249492381 * t2;
+        let t5 = pose[0] - t3 + 0.21213203435596426;
+        let t6 = c_phi - s_phi;
+        let t7 = 0.05656854249492381 * t6;
+        let t9 = pose[1] + t7 - 0.21213203435596426;
+        let t10 = t5 + t9;
+        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t5 * t5 + t9 * t9 - 0.1156));
+        ::overact::guard::reach(t18, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t18);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
+        let t20 = 0.7071067811865476 * minus_s2_leg2;
+        let t21 = t9 - t5;
+        let t22 = 1.4705882352941178 * t21;
+        let t23 = t20 - t22;
+        let t24 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t23 * t24;
+        let t27 = pose[0] - t7 + 0.21213203435596426;
+        let t29 = pose[1] - t3 + 0.21213203435596426;
+        let t30 = t27 - t29;
+        let t38 = 8.650519031141869
+            * (0.5 * (t30 * t30) - (t27 * t27 + t29 * t29 - 0.1156));
+        ::overact::guard::reach(t38, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t38);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
+        let t40 = 0.7071067811865476 * minus_s2_leg3;
+        let t41 = t27 + t29;
+        let t42 = 1.4705882352941178 * t41;
+        let t43 = t40 + t42;
+        let t44 = 1.0 / minus_s2_leg3;
+        let minus_g1_vy_leg3 = t43 * t44;
+        let t47 = t20 + t22;
+        let minus_g1_vy_leg2 = t47 * t24;
+        let t49 = t42 - t40;
+        let minus_g1_vx_leg3 = t49 * t44;
+        let t54 = pose[1] + t3 - 0.21213203435596426;
+        let t56 = pose[0] + t7 - 0.21213203435596426;
+        let t57 = t54 - t56;
+        let t65 = 8.650519031141869
+            * (0.5 * (t57 * t57) - (t56 * t56 + t54 * t54 - 0.1156));
+        ::overact::guard::reach(t65, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t65);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
+        let t67 = 0.7071067811865476 * minus_s2_leg1;
+        let t68 = t56 + t54;
+        let t69 = 1.4705882352941178 * t68;
+        let t70 = t67 - t69;
+        let t71 = 1.0 / minus_s2_leg1;
+        let g1_vy_leg1 = t70 * t71;
+        let t74 = t69 + t67;
+        let minus_g1_vx_leg1 = t74 * t71;
+        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
+        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
+        let t83 = g1_wz_leg1 * minus_g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
+        let t87 = minus_g1_vx_leg1 * g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3;
+        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
+        let t95 = g1_vy_leg1 * minus_g1_vx_leg3 + minus_g1_vx_leg1 * minus_g1_vy_leg3;
+        let t97 = minus_g1_vx_leg2 * t83 + minus_g1_vy_leg2 * t87 - g1_wz_leg2 * t95;
+        ::overact::guard::platform(t97, 0.2752380952380954, "kept actuators")?;
+        ::overact::guard::platform(t97, 0.2752380952380954, "kept actuators")?;
+        ::overact::guard::platform(t97, 0.2752380952380954, "kept actuators")?;
+        let t98 = 1.0 / t97;
+        let t99 = (minus_g1_vx_leg2 * minus_g1_vy_leg3
+            - minus_g1_vy_leg2 * minus_g1_vx_leg3) * t98;
+        let t106 = pose[0] + t3 - 0.21213203435596426;
+        let t108 = pose[1] - t7 + 0.21213203435596426;
+        let t109 = t106 + t108;
+        let t117 = 8.650519031141869
+            * (0.5 * (t109 * t109) - (t106 * t106 + t108 * t108 - 0.1156));
+        ::overact::guard::reach(t117, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t117);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t119 = 0.7071067811865476 * minus_s2_leg4;
+        let t120 = t106 - t108;
+        let t121 = 1.4705882352941178 * t120;
+        let t122 = t119 + t121;
+        let t123 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = t122 * t123;
+        let t126 = t121 - t119;
+        let minus_g1_vx_leg4 = t126 * t123;
+        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
+        let t138 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+            + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
+        let t145 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+            + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
+            + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t145, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t145, 3.440476190476192, "actuators")?;
+        let t146 = 1.0 / t145;
+        let t147 = t138 * t146;
+        let t163 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+            + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
+        let t165 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t163 * t147;
+        let t173 = t163 * t146;
+        let t175 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
+            - t163 * t173;
+        ::overact::guard::platform(t175, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t175, 3.440476190476192, "actuators")?;
+        let t176 = 1.0 / t175;
+        let t177 = t165 * t176;
+        let t179 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t138 * t147
+            - t165 * t177;
+        ::overact::guard::platform(t179, 0.02560000000000001, "actuators")?;
+        ::overact::guard::platform(t179, 0.02560000000000001, "actuators")?;
+        let t180 = 1.0 / t179;
+        let t194 = minus_g1_vx_leg1 * actuator_velocities[0]
+            + minus_g1_vx_leg2 * actuator_velocities[1]
+            + minus_g1_vx_leg3 * actuator_velocities[2]
+            + minus_g1_vx_leg4 * actuator_velocities[3];
+        let t205 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t133 * t117;
-        let t155 = g1_wz_leg1 * actuator_velocities[0]
+            + g1_vy_leg4 * actuator_velocities[3] + t194 * t173;
+        let t207 = g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg2 * actuator_velocities[1] + g1_wz_leg3 * actuator_velocities[2]
-            + g1_wz_leg4 * actuator_velocities[3] - t133 * t91 - t121 * t143;
-        let rate_3_leg1 = t124 * t155;
-        let t158 = t120 * t143 - t121 * rate_3_leg1;
-        let t162 = t133 * t90 - t117 * t158 - t91 * rate_3_leg1;
-        let t163 = t33 * rate_3_leg1;
-        let t164 = t162 - t163;
-        let t166 = t28 * rate_3_leg1;
-        let t167 = t158 + t166;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t164 + minus_g2_vx_leg1 * t167;
-        let t170 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t172 = rate_3_leg1 * t166;
-        let t175 = 0.2404163056034262 * t21;
-        let t177 = rate_3_leg1 * t163;
-        let rate_dot_1_leg1 = g1_vx_leg1 * (t125 * t170 - t172)
-            + g1_vy_leg1 * (t175 * t170 - t177);
-        let t181 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t188 = t30 * t125 + t21 * t175;
-        let g2_vx_leg2 = 2.079725827019258 * t3;
-        let t190 = t162 - t166;
-        let t192 = t158 - t163;
-        let rate_2_leg2 = g2_vx_leg2 * t190 - g2_vx_leg2 * t192;
-        let t195 = rate_2_leg2 * rate_2_leg2;
-        let t196 = t188 * t195;
-        let rate_dot_1_leg2 = t4 * (t13 * t172 - t2 * t177 + t196);
-        let t199 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let g2_vx_leg3 = 2.079725827019258 * t9;
-        let t206 = t162 + t163;
-        let t208 = t158 - t166;
-        let rate_2_leg3 = g2_vx_leg3 * t206 + g2_vx_leg3 * t208;
-        let t211 = rate_2_leg3 * rate_2_leg3;
-        let t212 = t188 * t211;
-        let minus_rate_dot_1_leg3 = t10 * (t8 * t177 - t15 * t172 - t212);
-        let t215 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let minus_g2_vx_leg4 = 2.079725827019258 * t66;
-        let t219 = t158 + t163;
-        let t221 = t162 + t166;
-        let rate_2_leg4 = minus_g2_vx_leg4 * t219 - minus_g2_vx_leg4 * t221;
-        let t224 = rate_2_leg4 * rate_2_leg4;
-        let t225 = t188 * t224;
-        let rate_dot_1_leg4 = t67 * (t225 - (t65 * t177 + t70 * t172));
-        let t231 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t240 = g1_vx_leg1 * t181 - minus_g1_vx_leg2 * t199 + g1_vx_leg3 * t215
-            + g1_vx_leg4 * t231;
-        let t251 = g1_vy_leg1 * t181 - minus_g1_vy_leg2 * t199 - minus_g1_vy_leg3 * t215
-            - minus_g1_vy_leg4 * t231 - t117 * t240;
-        let t253 = g1_wz_leg1 * t181 + g1_wz_leg2 * t199 + g1_wz_leg3 * t215
-            + g1_wz_leg4 * t231 - t91 * t240 - t121 * t251;
-        let rate_dot_3_leg1 = t124 * t253;
-        let t256 = t53 * t56;
-        let t261 = (g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2) * t56;
-        let t266 = (minus_g1_vx_leg2 * g1_wz_leg3 + g1_wz_leg2 * g1_vx_leg3) * t56;
-        let t268 = rate_3_leg1 * rate_3_leg1;
-        let t270 = c_phi * rate_dot_3_leg1 - s_phi * t268;
-        let t275 = (g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3) * t56;
-        let t278 = c_phi * t268 + s_phi * rate_dot_3_leg1;
-        let t283 = t120 * t251 - t121 * rate_dot_3_leg1;
-        let t289 = t90 * t240 - t117 * t283 - t91 * rate_dot_3_leg1;
-        let t291 = c_phi * t283 - s_phi * t289;
-        let t294 = t41 * t56;
-        let t296 = t45 * t56;
-        let t304 = (g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t56;
-        let t309 = (g1_wz_leg1 * minus_g1_vx_leg2 + g1_vx_leg1 * g1_wz_leg2) * t56;
-        let t319 = c_phi * t289 + s_phi * t283;
-        let t341 = t33 * rate_dot_3_leg1;
-        let t343 = t289 - t341 - t172;
-        let t345 = t28 * rate_dot_3_leg1;
-        let t347 = t283 + t345 - t177;
-        let rate_dot_1_leg1_2 = t23 * (t30 * t343 + t21 * t347 + t170 * t188);
-        let t354 = t289 - t345 + t177;
-        let t357 = t283 - t341 - t172;
-        let rate_dot_1_leg2_2 = t4 * (t196 - (t2 * t354 + t13 * t357));
-        let t363 = t283 - t345 + t177;
-        let t366 = t289 + t341 + t172;
-        let minus_rate_dot_1_leg3_2 = t10 * (t8 * t363 - t15 * t366 - t212);
-        let t375 = g1_vx_leg4 * t275 - minus_g1_vy_leg4 * t266 + g1_wz_leg4 * t57;
-        let t377 = t289 + t345 - t177;
-        let t380 = t283 + t341 + t172;
-        let rate_dot_1_leg4_2 = t67 * (t65 * t377 - t70 * t380 + t225);
-        let t390 = minus_g1_vy_leg4 * t296 - g1_vx_leg4 * t294 + g1_wz_leg4 * t256;
-        let t396 = g1_vx_leg4 * t304 + minus_g1_vy_leg4 * t309 - g1_wz_leg4 * t261;
-        let rate_1_leg1 = g1_vx_leg1 * t164 + g1_vy_leg1 * t167;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t190 + minus_g1_vy_leg2 * t192;
-        let rate_1_leg3 = g1_vx_leg3 * t206 - minus_g1_vy_leg3 * t208;
-        let rate_1_leg4 = g1_vx_leg4 * t221 - minus_g1_vy_leg4 * t219;
-        let g2_wz_leg1 = 0.11764705882352941 * (t22 * t32 - t22 * t27);
-        let t427 = g2_wz_leg1 * t57
-            - (minus_g2_vx_leg1 * t275 + minus_g2_vx_leg1 * t266);
-        let t429 = t343 + t347;
-        let minus_rate_dot_2_leg1 = 2.9411764705882355 * t22
-            * (0.7071067811865476 * t429 + t170 * (0.34 * c2_leg1));
-        let t440 = minus_g2_vx_leg1 * t294 + minus_g2_vx_leg1 * t296 + g2_wz_leg1 * t256;
-        let t446 = minus_g2_vx_leg1 * t309 - minus_g2_vx_leg1 * t304 - g2_wz_leg1 * t261;
-        let g2_wz_leg2 = 0.11764705882352941 * (t32 * t3 - t27 * t3);
-        let t456 = g2_vx_leg2 * t275 - g2_vx_leg2 * t266 + g2_wz_leg2 * t57;
-        let t458 = t354 - t357;
-        let rate_dot_2_leg2 = 2.9411764705882355 * t3
-            * (0.7071067811865476 * t458 - t195 * (0.34 * c2_leg2));
-        let t469 = g2_vx_leg2 * t296 - g2_vx_leg2 * t294 + g2_wz_leg2 * t256;
-        let t475 = g2_vx_leg2 * t304 + g2_vx_leg2 * t309 - g2_wz_leg2 * t261;
-        let g2_wz_leg3 = 0.11764705882352941 * (t32 * t9 - t27 * t9);
-        let t485 = g2_vx_leg3 * t275 + g2_vx_leg3 * t266 + g2_wz_leg3 * t57;
-        let t489 = t366 + t363;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t9
-            * (t211 * (0.34 * c2_leg3) - 0.7071067811865476 * t489);
-        let t498 = g2_wz_leg3 * t256 - (g2_vx_leg3 * t294 + g2_vx_leg3 * t296);
-        let t504 = g2_vx_leg3 * t304 - g2_vx_leg3 * t309 - g2_wz_leg3 * t261;
-        let g2_wz_leg4 = 0.11764705882352941 * (t32 * t66 - t27 * t66);
-        let t514 = minus_g2_vx_leg4 * t266 - minus_g2_vx_leg4 * t275 + g2_wz_leg4 * t57;
-        let t516 = t380 - t377;
-        let rate_dot_2_leg4 = 2.9411764705882355 * t66
-            * (0.7071067811865476 * t516 - t224 * (0.34 * c2_leg4));
-        let t527 = minus_g2_vx_leg4 * t294 - minus_g2_vx_leg4 * t296 + g2_wz_leg4 * t256;
-        let t533 = minus_g2_vx_leg4 * t304 + minus_g2_vx_leg4 * t309 + g2_wz_leg4 * t261;
-        let t536 = s2_leg1 * rate_dot_1_leg1_2;
-        let t541 = s2_leg2 * rate_dot_1_leg2_2;
-        let t547 = s2_leg3 * minus_rate_dot_1_leg3_2;
-        let t553 = 2.079725827019258 * t516;
-        let t555 = s2_leg4 * rate_dot_1_leg4_2;
-        let t577 = minus_rate_2_leg1 + rate_3_leg1;
-        let t584 = rate_3_leg1 - rate_2_leg2;
-        let t591 = rate_3_leg1 - rate_2_leg3;
-        let t598 = rate_3_leg1 - rate_2_leg4;
+            + g1_wz_leg4 * actuator_velocities[3] - t194 * t147 - t177 * t205;
+        let rate_3_leg1 = t180 * t207;
+        let t209 = t7 * rate_3_leg1;
+        let t210 = rate_3_leg1 * t209;
+        let t212 = t3 * rate_3_leg1;
+        let t213 = rate_3_leg1 * t212;
+        let g2_vx_leg1 = 2.079725827019258 * t71;
+        let t221 = t176 * t205 - t177 * rate_3_leg1;
+        let t224 = t147 * rate_3_leg1 - (t194 * t146 + t173 * t221);
+        let t225 = t224 - t212;
+        let t227 = t221 + t209;
+        let rate_2_leg1 = g2_vx_leg1 * t225 + g2_vx_leg1 * t227;
+        let t230 = rate_2_leg1 * rate_2_leg1;
+        let t231 = 0.34 * t230;
+        let rate_dot_1_leg1 = t71 * (t74 * t210 - t70 * t213 - t231);
+        let t234 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t24;
+        let t240 = t221 - t212;
+        let t242 = t224 - t209;
+        let rate_2_leg2 = minus_g2_vx_leg2 * t240 - minus_g2_vx_leg2 * t242;
+        let t245 = rate_2_leg2 * rate_2_leg2;
+        let t246 = 0.34 * t245;
+        let minus_rate_dot_1_leg2 = t24 * (t23 * t213 - t47 * t210 + t246);
+        let t249 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t44;
+        let t256 = t224 + t212;
+        let t258 = t221 - t209;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t256 + minus_g2_vx_leg3 * t258;
+        let t261 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t262 = 0.34 * t261;
+        let minus_rate_dot_1_leg3 = t44 * (t49 * t210 + t43 * t213 + t262);
+        let t265 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = 2.079725827019258 * t123;
+        let t269 = t224 + t209;
+        let t271 = t221 + t212;
+        let rate_2_leg4 = g2_vx_leg4 * t269 - g2_vx_leg4 * t271;
+        let t274 = rate_2_leg4 * rate_2_leg4;
+        let t275 = 0.34 * t274;
+        let minus_rate_dot_1_leg4 = t123 * (t275 - (t126 * t213 + t122 * t210));
+        let t281 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
+        let t290 = minus_g1_vx_leg1 * t234 + minus_g1_vx_leg2 * t249
+            + minus_g1_vx_leg3 * t265 + minus_g1_vx_leg4 * t281;
+        let t301 = g1_vy_leg1 * t234 - minus_g1_vy_leg2 * t249 - minus_g1_vy_leg3 * t265
+            + g1_vy_leg4 * t281 + t173 * t290;
+        let t303 = g1_wz_leg1 * t234 + g1_wz_leg2 * t249 + g1_wz_leg3 * t265
+            + g1_wz_leg4 * t281 - t147 * t290 - t177 * t301;
+        let rate_dot_3_leg1 = t180 * t303;
+        let t306 = t95 * t98;
+        let t311 = (g1_vy_leg1 * minus_g1_vx_leg2 + minus_g1_vx_leg1 * minus_g1_vy_leg2)
+            * t98;
+        let t315 = t176 * t301 - t177 * rate_dot_3_leg1;
+        let t321 = t147 * rate_dot_3_leg1 - (t146 * t290 + t173 * t315);
+        let t323 = c_phi * t315 - s_phi * t321;
+        let t328 = (g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3) * t98;
+        let t329 = rate_3_leg1 * rate_3_leg1;
+        let t332 = c_phi * t329 + s_phi * rate_dot_3_leg1;
+        let t337 = (g1_wz_leg2 * minus_g1_vx_leg3 - minus_g1_vx_leg2 * g1_wz_leg3) * t98;
+        let t340 = c_phi * rate_dot_3_leg1 - s_phi * t329;
+        let t344 = t83 * t98;
+        let t346 = t87 * t98;
+        let t354 = (minus_g1_vx_leg1 * g1_wz_leg2 - g1_wz_leg1 * minus_g1_vx_leg2) * t98;
+        let t359 = (g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t98;
+        let t369 = c_phi * t321 + s_phi * t315;
+        let t391 = t7 * rate_dot_3_leg1;
+        let t393 = t315 + t391 - t213;
+        let t395 = t3 * rate_dot_3_leg1;
+        let t397 = t321 - t395 - t210;
+        let t400 = t70 * t393 - t74 * t397 - t231;
+        let rate_dot_1_leg1_2 = t71 * t400;
+        let t403 = t321 - t391 + t213;
+        let t406 = t315 - t395 - t210;
+        let t409 = t23 * t403 + t47 * t406 + t246;
+        let minus_rate_dot_1_leg2_2 = t24 * t409;
+        let t412 = t321 + t395 + t210;
+        let t415 = t315 - t391 + t213;
+        let t418 = t49 * t412 + t43 * t415 + t262;
+        let minus_rate_dot_1_leg3_2 = t44 * t418;
+        let t424 = g1_wz_leg4 * t99 - (minus_g1_vx_leg4 * t328 + g1_vy_leg4 * t337);
+        let t426 = t321 + t391 - t213;
+        let t429 = t315 + t395 + t210;
+        let t432 = t126 * t426 - t122 * t429 + t275;
+        let minus_rate_dot_1_leg4_2 = t123 * t432;
+        let t439 = minus_g1_vx_leg4 * t344 - g1_vy_leg4 * t346 - g1_wz_leg4 * t306;
+        let t445 = g1_vy_leg4 * t354 - minus_g1_vx_leg4 * t359 + g1_wz_leg4 * t311;
+        let rate_1_leg1 = g1_vy_leg1 * t227 - minus_g1_vx_leg1 * t225;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t242 + minus_g1_vy_leg2 * t240;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t256 + minus_g1_vy_leg3 * t258;
+        let rate_1_leg4 = g1_vy_leg4 * t271 - minus_g1_vx_leg4 * t269;
+        let g2_wz_leg1 = 0.11764705882352941 * (t6 * t71 - t2 * t71);
+        let t476 = g2_vx_leg1 * t328 - g2_vx_leg1 * t337 + g2_wz_leg1 * t99;
+        let t478 = t397 + t393;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t71
+            * (0.7071067811865476 * t478 + 0.7071067811865476 * t68 * t230);
+        let t489 = g2_vx_leg1 * t344 + g2_vx_leg1 * t346 + g2_wz_leg1 * t306;
+        let t495 = g2_vx_leg1 * t359 + g2_vx_leg1 * t354 + g2_wz_leg1 * t311;
+        let g2_wz_leg2 = 0.11764705882352941 * (t6 * t24 - t2 * t24);
+        let t505 = g2_wz_leg2 * t99
+            - (minus_g2_vx_leg2 * t328 + minus_g2_vx_leg2 * t337);
+        let t507 = t403 - t406;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t24
+            * (0.7071067811865476 * t507 - 0.7071067811865476 * t21 * t245);
+        let t518 = minus_g2_vx_leg2 * t344 - minus_g2_vx_leg2 * t346 - g2_wz_leg2 * t306;
+        let t524 = minus_g2_vx_leg2 * t354 - minus_g2_vx_leg2 * t359 + g2_wz_leg2 * t311;
+        let g2_wz_leg3 = 0.11764705882352941 * (t6 * t44 - t2 * t44);
+        let t534 = minus_g2_vx_leg3 * t337 - minus_g2_vx_leg3 * t328 + g2_wz_leg3 * t99;
+        let t536 = t412 + t415;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t44
+            * (0.7071067811865476 * t536 + 0.7071067811865476 * t41 * t261);
+        let t547 = minus_g2_vx_leg3 * t344 + minus_g2_vx_leg3 * t346 - g2_wz_leg3 * t306;
+        let t553 = g2_wz_leg3 * t311
+            - (minus_g2_vx_leg3 * t359 + minus_g2_vx_leg3 * t354);
+        let g2_wz_leg4 = 0.11764705882352941 * (t6 * t123 - t2 * t123);
+        let t563 = g2_vx_leg4 * t328 + g2_vx_leg4 * t337 + g2_wz_leg4 * t99;
+        let t565 = t429 - t426;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t123
+            * (0.7071067811865476 * t565 - 0.7071067811865476 * t120 * t274);
+        let t576 = g2_vx_leg4 * t346 - g2_vx_leg4 * t344 - g2_wz_leg4 * t306;
+        let t582 = g2_vx_leg4 * t359 - g2_vx_leg4 * t354 + g2_wz_leg4 * t311;
+        let t599 = 2.079725827019258 * t565;
+        let t622 = rate_3_leg1 - rate_2_leg1;
+        let t629 = rate_3_leg1 - rate_2_leg2;
+        let t636 = minus_rate_2_leg3 + rate_3_leg1;
+        let t643 = rate_3_leg1 - rate_2_leg4;
         Ok([
             [
-                t57 * rate_dot_3_leg1, t266 * t270 - t275 * t278 + t57 * t291,
-                -(t275 * t270 + t266 * t278 + t57 * t319), t275 * t289 + t266 * t283,
-                rate_dot_1_leg1_2, 0.0, 0.0, t375 * rate_dot_1_leg4_2, rate_1_leg1, 0.0, 0.0,
-                t375 * rate_1_leg4, ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
-                ::overact::math::signed(t375, rate_1_leg4), 1.0, 0.0, 0.0, t375,
-                -(t427 * minus_rate_dot_2_leg1), t456 * rate_dot_2_leg2,
-                -(t485 * minus_rate_dot_2_leg3), t514 * rate_dot_2_leg4,
-                2.079725827019258 * t429 - t427 * t536, -(t456 * t541), t485 * t547,
-                -(t375 * t553 + t514 * t555), -::overact::math::signed(t427, minus_rate_2_leg1),
-                ::overact::math::signed(t456, rate_2_leg2),
-                ::overact::math::signed(t485, rate_2_leg3),
-                ::overact::math::signed(t514, rate_2_leg4),
-                ::overact::math::signed(t57 - t427, t577),
-                ::overact::math::signed(t57 - t456, t584),
-                ::overact::math::signed(t57 - t485, t591),
-                ::overact::math::signed(t57 - t514, t598),
+                t99 * rate_dot_3_leg1, t99 * t323 - (t328 * t332 + t337 * t340),
+                t337 * t332 - t328 * t340 - t99 * t369, t328 * t321 - t337 * t315,
+                rate_dot_1_leg1_2, 0.0, 0.0, -(t424 * minus_rate_dot_1_leg4_2), rate_1_leg1, 0.0,
+                0.0, t424 * rate_1_leg4, ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
+                ::overact::math::signed(t424, rate_1_leg4), 1.0, 0.0, 0.0, t424,
+                t476 * rate_dot_2_leg1, -(t505 * minus_rate_dot_2_leg2),
+                -(t534 * minus_rate_dot_2_leg3), -(t563 * minus_rate_dot_2_leg4),
+                2.079725827019258 * t478 + t476 * t400, -(t505 * t409), -(t534 * t418),
+                -(t424 * t599 + t563 * t432), ::overact::math::signed(t476, rate_2_leg1),
+                ::overact::math::signed(t505, rate_2_leg2),
+                -::overact::math::signed(t534, minus_rate_2_leg3),
+                ::overact::math::signed(t563, rate_2_leg4),
+                ::overact::math::signed(t99 - t476, t622),
+                ::overact::math::signed(t99 - t505, t629),
+                ::overact::math::signed(t99 - t534, t636),
+                ::overact::math::signed(t99 - t563, t643),
             ],
             [
-                t256 * rate_dot_3_leg1, t294 * t278 - t296 * t270 + t256 * t291,
-                t294 * t270 + t296 * t278 - t256 * t319, -(t294 * t289 + t296 * t283), 0.0,
-                rate_dot_1_leg2_2, 0.0, t390 * rate_dot_1_leg4_2, 0.0, -minus_rate_1_leg2, 0.0,
-                t390 * rate_1_leg4, 0.0, -::overact::math::sign(minus_rate_1_leg2), 0.0,
-                ::overact::math::signed(t390, rate_1_leg4), 0.0, 1.0, 0.0, t390,
-                -(t440 * minus_rate_dot_2_leg1), t469 * rate_dot_2_leg2,
-                -(t498 * minus_rate_dot_2_leg3), t527 * rate_dot_2_leg4, -(t440 * t536),
-                -(2.079725827019258 * t458 + t469 * t541), t498 * t547,
-                -(t390 * t553 + t527 * t555), -::overact::math::signed(t440, minus_rate_2_leg1),
-                ::overact::math::signed(t469, rate_2_leg2),
-                ::overact::math::signed(t498, rate_2_leg3),
-                ::overact::math::signed(t527, rate_2_leg4),
-                ::overact::math::signed(t256 - t440, t577),
-                ::overact::math::signed(t256 - t469, t584),
-                ::overact::math::signed(t256 - t498, t591),
-                ::overact::math::signed(t256 - t527, t598),
+                -(t306 * rate_dot_3_leg1), t344 * t332 - t346 * t340 - t306 * t323,
+                t344 * t340 + t346 * t332 + t306 * t369, -(t344 * t321 + t346 * t315), 0.0,
+                -minus_rate_dot_1_leg2_2, 0.0, -(t439 * minus_rate_dot_1_leg4_2), 0.0,
+                -minus_rate_1_leg2, 0.0, t439 * rate_1_leg4, 0.0,
+                -::overact::math::sign(minus_rate_1_leg2), 0.0,
+                ::overact::math::signed(t439, rate_1_leg4), 0.0, 1.0, 0.0, t439,
+                -(t489 * rate_dot_2_leg1), -(t518 * minus_rate_dot_2_leg2),
+                -(t547 * minus_rate_dot_2_leg3), -(t576 * minus_rate_dot_2_leg4), -(t489 * t400),
+                -(2.079725827019258 * t507 + t518 * t409), -(t547 * t418),
+                -(t439 * t599 + t576 * t432), -::overact::math::signed(t489, rate_2_leg1),
+                ::overact::math::signed(t518, rate_2_leg2),
+                -::overact::math::signed(t547, minus_rate_2_leg3),
+                ::overact::math::signed(t576, rate_2_leg4),
+                ::overact::math::signed(t489 - t306, t622),
+                -::overact::math::signed(t518 + t306, t629),
+                -::overact::math::signed(t547 + t306, t636),
+                -::overact::math::signed(t576 + t306, t643),
             ],
             [
-                -(t261 * rate_dot_3_leg1), -(t304 * t278 + t309 * t270 + t261 * t291),
-                t309 * t278 - t304 * t270 + t261 * t319, t304 * t289 - t309 * t283, 0.0, 0.0,
-                -minus_rate_dot_1_leg3_2, t396 * rate_dot_1_leg4_2, 0.0, 0.0, rate_1_leg3,
-                t396 * rate_1_leg4, 0.0, 0.0, ::overact::math::sign(rate_1_leg3),
-                ::overact::math::signed(t396, rate_1_leg4), 0.0, 0.0, 1.0, t396,
-                -(t446 * minus_rate_dot_2_leg1), t475 * rate_dot_2_leg2,
-                -(t504 * minus_rate_dot_2_leg3), -(t533 * rate_dot_2_leg4), -(t446 * t536),
-                -(t475 * t541), t504 * t547 - 2.079725827019258 * t489, t533 * t555 - t396 * t553,
-                -::overact::math::signed(t446, minus_rate_2_leg1),
-                ::overact::math::signed(t475, rate_2_leg2),
-                ::overact::math::signed(t504, rate_2_leg3),
-                -::overact::math::signed(t533, rate_2_leg4),
-                -::overact::math::signed(t446 + t261, t577),
-                -::overact::math::signed(t475 + t261, t584),
-                -::overact::math::signed(t504 + t261, t591),
-                ::overact::math::signed(t533 - t261, t598),
+                t311 * rate_dot_3_leg1, t354 * t340 - t359 * t332 + t311 * t323,
+                -(t359 * t340 + t354 * t332 + t311 * t369), t359 * t321 + t354 * t315, 0.0, 0.0,
+                -minus_rate_dot_1_leg3_2, -(t445 * minus_rate_dot_1_leg4_2), 0.0, 0.0,
+                -minus_rate_1_leg3, t445 * rate_1_leg4, 0.0, 0.0,
+                -::overact::math::sign(minus_rate_1_leg3),
+                ::overact::math::signed(t445, rate_1_leg4), 0.0, 0.0, 1.0, t445,
+                t495 * rate_dot_2_leg1, -(t524 * minus_rate_dot_2_leg2),
+                -(t553 * minus_rate_dot_2_leg3), -(t582 * minus_rate_dot_2_leg4), t495 * t400,
+                -(t524 * t409), -(2.079725827019258 * t536 + t553 * t418),
+                -(t445 * t599 + t582 * t432), ::overact::math::signed(t495, rate_2_leg1),
+                ::overact::math::signed(t524, rate_2_leg2),
+                -::overact::math::signed(t553, minus_rate_2_leg3),
+                ::overact::math::signed(t582, rate_2_leg4),
+                ::overact::math::signed(t311 - t495, t622),
+                ::overact::math::signed(t311 - t524, t629),
+                ::overact::math::signed(t311 - t553, t636),
+                ::overact::math::signed(t311 - t582, t643),
             ],
         ])
     }
@@ -3174,7 +4526,7 @@ impl Planar4Prr {
     ///
     /// Output: 3.
     ///
-    /// 57 operations (23 additions, 30 multiplications, 4 divisions), 0 square roots, 5 trigonometric pairs, 0 signs, 64 intermediates.
+    /// 121 operations (59 additions, 58 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 124 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3182,39 +4534,69 @@ impl Planar4Prr {
         pose: &[f64; 3],
         torques: &[f64; 4],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
-        let t3 = 0.7071067811865476 / s2_leg1;
-        let g1_vx_leg1 = (c2_leg1 - s2_leg1) * t3;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t9 = 0.7071067811865476 / s2_leg2;
-        let minus_g1_vx_leg2 = (c2_leg2 + s2_leg2) * t9;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
-        let t16 = 0.7071067811865476 / s2_leg3;
-        let g1_vx_leg3 = (s2_leg3 - c2_leg3) * t16;
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
-        let t23 = 0.7071067811865476 / s2_leg4;
-        let g1_vx_leg4 = (c2_leg4 + s2_leg4) * t23;
-        let g1_vy_leg1 = (s2_leg1 + c2_leg1) * t3;
-        let minus_g1_vy_leg2 = (s2_leg2 - c2_leg2) * t9;
-        let minus_g1_vy_leg3 = (s2_leg3 + c2_leg3) * t16;
-        let minus_g1_vy_leg4 = (c2_leg4 - s2_leg4) * t23;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t45 = 0.05656854249492381 * (c_phi - s_phi);
-        let t48 = 0.05656854249492381 * (s_phi + c_phi);
-        let g1_wz_leg1 = g1_vy_leg1 * t45 - g1_vx_leg1 * t48;
-        let g1_wz_leg2 = t48 * minus_g1_vy_leg2 + t45 * minus_g1_vx_leg2;
-        let g1_wz_leg3 = t45 * minus_g1_vy_leg3 + t48 * g1_vx_leg3;
-        let g1_wz_leg4 = t45 * g1_vx_leg4 - t48 * minus_g1_vy_leg4;
+        let t3 = 0.05656854249492381 * (c_phi - s_phi);
+        let t5 = pose[0] + t3 - 0.21213203435596426;
+        let t7 = 0.05656854249492381 * (s_phi + c_phi);
+        let t9 = pose[1] + t7 - 0.21213203435596426;
+        let t11 = 1.4705882352941178 * (t5 + t9);
+        let t12 = t9 - t5;
+        let t20 = 8.650519031141869 * (0.5 * (t12 * t12) - (t5 * t5 + t9 * t9 - 0.1156));
+        ::overact::guard::reach(t20, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t20);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
+        let t22 = 0.7071067811865476 * minus_s2_leg1;
+        let t24 = 1.0 / minus_s2_leg1;
+        let minus_g1_vx_leg1 = (t11 + t22) * t24;
+        let t28 = pose[0] - t7 + 0.21213203435596426;
+        let t30 = pose[1] + t3 - 0.21213203435596426;
+        let t31 = t28 + t30;
+        let t39 = 8.650519031141869
+            * (0.5 * (t31 * t31) - (t28 * t28 + t30 * t30 - 0.1156));
+        ::overact::guard::reach(t39, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t39);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
+        let t41 = 0.7071067811865476 * minus_s2_leg2;
+        let t43 = 1.4705882352941178 * (t30 - t28);
+        let t45 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = (t41 - t43) * t45;
+        let t50 = pose[0] - t3 + 0.21213203435596426;
+        let t52 = pose[1] - t7 + 0.21213203435596426;
+        let t54 = 1.4705882352941178 * (t50 + t52);
+        let t55 = t50 - t52;
+        let t63 = 8.650519031141869
+            * (0.5 * (t55 * t55) - (t50 * t50 + t52 * t52 - 0.1156));
+        ::overact::guard::reach(t63, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t63);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
+        let t65 = 0.7071067811865476 * minus_s2_leg3;
+        let t67 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = (t54 - t65) * t67;
+        let t72 = pose[0] + t7 - 0.21213203435596426;
+        let t74 = pose[1] - t3 + 0.21213203435596426;
+        let t76 = 1.4705882352941178 * (t72 - t74);
+        let t77 = t72 + t74;
+        let t85 = 8.650519031141869
+            * (0.5 * (t77 * t77) - (t72 * t72 + t74 * t74 - 0.1156));
+        ::overact::guard::reach(t85, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t85);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t87 = 0.7071067811865476 * minus_s2_leg4;
+        let t89 = 1.0 / minus_s2_leg4;
+        let minus_g1_vx_leg4 = (t76 - t87) * t89;
+        let g1_vy_leg1 = (t22 - t11) * t24;
+        let minus_g1_vy_leg2 = (t41 + t43) * t45;
+        let minus_g1_vy_leg3 = (t65 + t54) * t67;
+        let g1_vy_leg4 = (t87 + t76) * t89;
+        let g1_wz_leg1 = t3 * g1_vy_leg1 + t7 * minus_g1_vx_leg1;
+        let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
+        let g1_wz_leg4 = t7 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
         Ok([
-            g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
-                + g1_vx_leg3 * torques[2] + g1_vx_leg4 * torques[3],
+            -(minus_g1_vx_leg1 * torques[0] + minus_g1_vx_leg2 * torques[1]
+                + minus_g1_vx_leg3 * torques[2] + minus_g1_vx_leg4 * torques[3]),
             g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
-                - minus_g1_vy_leg3 * torques[2] - minus_g1_vy_leg4 * torques[3],
+                - minus_g1_vy_leg3 * torques[2] + g1_vy_leg4 * torques[3],
             g1_wz_leg1 * torques[0] + g1_wz_leg2 * torques[1] + g1_wz_leg3 * torques[2]
                 + g1_wz_leg4 * torques[3],
         ])
@@ -3227,7 +4609,7 @@ impl Planar4Prr {
     ///
     /// Output: 3.
     ///
-    /// 99 operations (34 additions, 60 multiplications, 5 divisions), 0 square roots, 5 trigonometric pairs, 0 signs, 106 intermediates.
+    /// 163 operations (70 additions, 88 multiplications, 5 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 166 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3235,68 +4617,98 @@ impl Planar4Prr {
         pose: &[f64; 3],
         torques: &[f64; 4],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
-        let t3 = 0.7071067811865476 / s2_leg4;
-        let g1_vx_leg4 = (c2_leg4 + s2_leg4) * t3;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t8 = 0.05656854249492381 * (s_phi + c_phi);
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t12 = 0.7071067811865476 / s2_leg2;
-        let minus_g1_vy_leg2 = (s2_leg2 - c2_leg2) * t12;
-        let t16 = 0.05656854249492381 * (c_phi - s_phi);
-        let minus_g1_vx_leg2 = (c2_leg2 + s2_leg2) * t12;
-        let g1_wz_leg2 = t8 * minus_g1_vy_leg2 + t16 * minus_g1_vx_leg2;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
-        let t24 = 0.7071067811865476 / s2_leg3;
-        let minus_g1_vy_leg3 = (s2_leg3 + c2_leg3) * t24;
-        let g1_vx_leg3 = (s2_leg3 - c2_leg3) * t24;
-        let g1_wz_leg3 = t16 * minus_g1_vy_leg3 + t8 * g1_vx_leg3;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
-        let t37 = 0.7071067811865476 / s2_leg1;
-        let g1_vy_leg1 = (s2_leg1 + c2_leg1) * t37;
-        let g1_vx_leg1 = (c2_leg1 - s2_leg1) * t37;
-        let g1_wz_leg1 = g1_vy_leg1 * t16 - g1_vx_leg1 * t8;
-        let t46 = g1_wz_leg1 * minus_g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
-        let t50 = g1_wz_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_wz_leg3;
-        let t55 = g1_vy_leg1 * g1_vx_leg3 + g1_vx_leg1 * minus_g1_vy_leg3;
-        let t57 = minus_g1_vx_leg2 * t46 + minus_g1_vy_leg2 * t50 + g1_wz_leg2 * t55;
-        ::overact::guard::platform(t57, 0.2752380952380029, "kept actuators")?;
-        ::overact::guard::platform(t57, 0.2752380952380029, "kept actuators")?;
-        ::overact::guard::platform(t57, 0.2752380952380029, "kept actuators")?;
-        let t58 = 1.0 / t57;
-        let minus_g1_vy_leg4 = (c2_leg4 - s2_leg4) * t3;
-        let t68 = g1_vx_leg4
-            * ((g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3) * t58)
-            - minus_g1_vy_leg4
-                * ((minus_g1_vx_leg2 * g1_wz_leg3 + g1_wz_leg2 * g1_vx_leg3) * t58);
-        let g1_wz_leg4 = t16 * g1_vx_leg4 - t8 * minus_g1_vy_leg4;
-        let t89 = torques[1]
+        let t3 = 0.05656854249492381 * (s_phi + c_phi);
+        let t5 = pose[0] + t3 - 0.21213203435596426;
+        let t7 = 0.05656854249492381 * (c_phi - s_phi);
+        let t9 = pose[1] - t7 + 0.21213203435596426;
+        let t10 = t5 + t9;
+        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t5 * t5 + t9 * t9 - 0.1156));
+        ::overact::guard::reach(t18, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t18);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t20 = 0.7071067811865476 * minus_s2_leg4;
+        let t22 = 1.4705882352941178 * (t5 - t9);
+        let t24 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = (t20 + t22) * t24;
+        let minus_g1_vx_leg4 = (t22 - t20) * t24;
+        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
+        let t32 = pose[0] - t3 + 0.21213203435596426;
+        let t34 = pose[1] + t7 - 0.21213203435596426;
+        let t35 = t32 + t34;
+        let t43 = 8.650519031141869
+            * (0.5 * (t35 * t35) - (t32 * t32 + t34 * t34 - 0.1156));
+        ::overact::guard::reach(t43, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t43);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
+        let t45 = 0.7071067811865476 * minus_s2_leg2;
+        let t47 = 1.4705882352941178 * (t34 - t32);
+        let t49 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = (t45 - t47) * t49;
+        let t52 = pose[0] - t7 + 0.21213203435596426;
+        let t54 = pose[1] - t3 + 0.21213203435596426;
+        let t55 = t52 - t54;
+        let t63 = 8.650519031141869
+            * (0.5 * (t55 * t55) - (t52 * t52 + t54 * t54 - 0.1156));
+        ::overact::guard::reach(t63, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t63);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
+        let t65 = 0.7071067811865476 * minus_s2_leg3;
+        let t67 = 1.4705882352941178 * (t52 + t54);
+        let t69 = 1.0 / minus_s2_leg3;
+        let minus_g1_vy_leg3 = (t65 + t67) * t69;
+        let minus_g1_vy_leg2 = (t45 + t47) * t49;
+        let minus_g1_vx_leg3 = (t67 - t65) * t69;
+        let t79 = pose[1] + t3 - 0.21213203435596426;
+        let t81 = pose[0] + t7 - 0.21213203435596426;
+        let t82 = t79 - t81;
+        let t90 = 8.650519031141869
+            * (0.5 * (t82 * t82) - (t81 * t81 + t79 * t79 - 0.1156));
+        ::overact::guard::reach(t90, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t90);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
+        let t92 = 0.7071067811865476 * minus_s2_leg1;
+        let t94 = 1.4705882352941178 * (t81 + t79);
+        let t96 = 1.0 / minus_s2_leg1;
+        let g1_vy_leg1 = (t92 - t94) * t96;
+        let minus_g1_vx_leg1 = (t94 + t92) * t96;
+        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
+        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
+        let t108 = g1_wz_leg1 * minus_g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
+        let t112 = minus_g1_vx_leg1 * g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3;
+        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
+        let t120 = g1_vy_leg1 * minus_g1_vx_leg3 + minus_g1_vx_leg1 * minus_g1_vy_leg3;
+        let t122 = minus_g1_vx_leg2 * t108 + minus_g1_vy_leg2 * t112 - g1_wz_leg2 * t120;
+        ::overact::guard::platform(t122, 0.2752380952380954, "kept actuators")?;
+        ::overact::guard::platform(t122, 0.2752380952380954, "kept actuators")?;
+        ::overact::guard::platform(t122, 0.2752380952380954, "kept actuators")?;
+        let t123 = 1.0 / t122;
+        let t136 = minus_g1_vx_leg4
+            * ((g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3) * t123)
+            + g1_vy_leg4
+                * ((g1_wz_leg2 * minus_g1_vx_leg3 - minus_g1_vx_leg2 * g1_wz_leg3)
+                    * t123);
+        let t149 = torques[1]
             + torques[3]
-                * (minus_g1_vy_leg4 * (t50 * t58) - g1_vx_leg4 * (t46 * t58)
-                    + g1_wz_leg4 * (t55 * t58));
-        let t100 = g1_vx_leg4
-            * ((g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t58)
-            + minus_g1_vy_leg4
-                * ((g1_wz_leg1 * minus_g1_vx_leg2 + g1_vx_leg1 * g1_wz_leg2) * t58);
+                * (minus_g1_vx_leg4 * (t108 * t123) - g1_vy_leg4 * (t112 * t123)
+                    - g1_wz_leg4 * (t120 * t123));
+        let t160 = g1_vy_leg4
+            * ((minus_g1_vx_leg1 * g1_wz_leg2 - g1_wz_leg1 * minus_g1_vx_leg2) * t123)
+            - minus_g1_vx_leg4
+                * ((g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t123);
         Ok([
             torques[0]
                 + torques[3]
-                    * (t68
-                        + g1_wz_leg4
-                            * ((minus_g1_vx_leg2 * minus_g1_vy_leg3
-                                + minus_g1_vy_leg2 * g1_vx_leg3) * t58)),
-            t89,
+                    * (g1_wz_leg4
+                        * ((minus_g1_vx_leg2 * minus_g1_vy_leg3
+                            - minus_g1_vy_leg2 * minus_g1_vx_leg3) * t123) - t136),
+            t149,
             torques[2]
                 + torques[3]
-                    * (t100
-                        - g1_wz_leg4
-                            * ((g1_vx_leg1 * minus_g1_vy_leg2
-                                - g1_vy_leg1 * minus_g1_vx_leg2) * t58)),
+                    * (t160
+                        + g1_wz_leg4
+                            * ((g1_vy_leg1 * minus_g1_vx_leg2
+                                + minus_g1_vx_leg1 * minus_g1_vy_leg2) * t123)),
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -3309,7 +4721,7 @@ impl Planar4Prr {
     ///
     /// Output: 4.
     ///
-    /// 462 operations (201 additions, 254 multiplications, 7 divisions), 0 square roots, 5 trigonometric pairs, 12 signs, 480 intermediates.
+    /// 520 operations (236 additions, 277 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 534 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3319,8 +4731,254 @@ impl Planar4Prr {
         acceleration: &[f64; 3],
         parameters: &[f64; 48],
     ) -> Result<[f64; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::inverse_dynamics_from_joints(pose, joints, twist, acceleration, parameters)
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let t2 = s_phi + c_phi;
+        let t3 = 0.05656854249492381 * t2;
+        let t5 = pose[1] + t3 - 0.21213203435596426;
+        let t6 = c_phi - s_phi;
+        let t7 = 0.05656854249492381 * t6;
+        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t10 = t5 - t9;
+        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
+        ::overact::guard::reach(t18, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
+        let t20 = 0.7071067811865476 * minus_s2_leg1;
+        let t21 = t9 + t5;
+        let t22 = 1.4705882352941178 * t21;
+        let t23 = t20 - t22;
+        let t24 = 1.0 / minus_s2_leg1;
+        let g1_vy_leg1 = t23 * t24;
+        let t28 = pose[0] - t3 + 0.21213203435596426;
+        let t30 = pose[1] + t7 - 0.21213203435596426;
+        let t31 = t28 + t30;
+        let t39 = 8.650519031141869
+            * (0.5 * (t31 * t31) - (t28 * t28 + t30 * t30 - 0.1156));
+        ::overact::guard::reach(t39, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t39);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
+        let t41 = 0.7071067811865476 * minus_s2_leg2;
+        let t42 = t30 - t28;
+        let t43 = 1.4705882352941178 * t42;
+        let t44 = t41 + t43;
+        let t45 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t44 * t45;
+        let t50 = pose[0] - t7 + 0.21213203435596426;
+        let t52 = pose[1] - t3 + 0.21213203435596426;
+        let t53 = t50 - t52;
+        let t61 = 8.650519031141869
+            * (0.5 * (t53 * t53) - (t50 * t50 + t52 * t52 - 0.1156));
+        ::overact::guard::reach(t61, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t61);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
+        let t63 = 0.7071067811865476 * minus_s2_leg3;
+        let t64 = t50 + t52;
+        let t65 = 1.4705882352941178 * t64;
+        let t66 = t63 + t65;
+        let t67 = 1.0 / minus_s2_leg3;
+        let minus_g1_vy_leg3 = t66 * t67;
+        let t72 = pose[0] + t3 - 0.21213203435596426;
+        let t74 = pose[1] - t7 + 0.21213203435596426;
+        let t75 = t72 + t74;
+        let t83 = 8.650519031141869
+            * (0.5 * (t75 * t75) - (t72 * t72 + t74 * t74 - 0.1156));
+        ::overact::guard::reach(t83, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t83);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t85 = 0.7071067811865476 * minus_s2_leg4;
+        let t86 = t72 - t74;
+        let t87 = 1.4705882352941178 * t86;
+        let t88 = t85 + t87;
+        let t89 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = t88 * t89;
+        let t93 = t41 - t43;
+        let minus_g1_vx_leg2 = t93 * t45;
+        let t96 = t22 + t20;
+        let minus_g1_vx_leg1 = t96 * t24;
+        let t100 = t65 - t63;
+        let minus_g1_vx_leg3 = t100 * t67;
+        let t104 = t87 - t85;
+        let minus_g1_vx_leg4 = t104 * t89;
+        let t107 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+            + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
+        let t114 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+            + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
+            + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
+        let t115 = 1.0 / t114;
+        let t116 = t107 * t115;
+        let t118 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
+            - t107 * t116;
+        ::overact::guard::platform(t118, 3.440476190476192, "actuators")?;
+        let t119 = 1.0 / t118;
+        let t120 = t7 * acceleration[2];
+        let t122 = t3 * twist[2];
+        let t123 = twist[2] * t122;
+        let t124 = acceleration[1] + t120 - t123;
+        let t126 = t3 * acceleration[2];
+        let t128 = t7 * twist[2];
+        let t129 = twist[2] * t128;
+        let t130 = acceleration[0] - t126 - t129;
+        let g2_vx_leg1 = 2.079725827019258 * t24;
+        let t134 = twist[0] - t122;
+        let t136 = twist[1] + t128;
+        let rate_2_leg1 = g2_vx_leg1 * t134 + g2_vx_leg1 * t136;
+        let t139 = rate_2_leg1 * rate_2_leg1;
+        let t141 = t23 * t124 - t96 * t130 - 0.34 * t139;
+        let rate_dot_1_leg1 = t24 * t141;
+        let rate_1_leg1 = g1_vy_leg1 * t136 - minus_g1_vx_leg1 * t134;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t24
+            * (0.7071067811865476 * (t130 + t124) + 0.7071067811865476 * t21 * t139);
+        let c2_leg1 = 2.079725827019258 * t21;
+        let t171 = c2_leg1 * rate_dot_1_leg1;
+        let t175 = minus_s2_leg1
+            * (parameters[6] * t139 + parameters[7] * rate_dot_2_leg1
+                + parameters[8] * t141)
+            + c2_leg1
+                * (parameters[6] * rate_dot_2_leg1 - parameters[7] * t139
+                    + parameters[8] * t171);
+        let t176 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
+            + parameters[2] * rate_1_leg1
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t175;
+        let t186 = ::overact::math::signed(parameters[10], twist[2] - rate_2_leg1);
+        let t187 = parameters[5] * rate_dot_2_leg1 + parameters[6] * t171
+            + parameters[7] * t141 + ::overact::math::signed(parameters[9], rate_2_leg1)
+            - t186;
+        let t188 = g2_vx_leg1 * t187;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t45;
+        let t191 = twist[1] - t122;
+        let t193 = twist[0] - t128;
+        let rate_2_leg2 = minus_g2_vx_leg2 * t191 - minus_g2_vx_leg2 * t193;
+        let t199 = acceleration[0] - t120 + t123;
+        let t201 = acceleration[1] - t126 - t129;
+        let t205 = rate_2_leg2 * rate_2_leg2;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t45
+            * (0.7071067811865476 * (t199 - t201) - 0.7071067811865476 * t42 * t205);
+        let c2_leg2 = 2.079725827019258 * t42;
+        let t215 = t93 * t199 + t44 * t201 + 0.34 * t205;
+        let minus_rate_dot_1_leg2 = t45 * t215;
+        let t217 = c2_leg2 * minus_rate_dot_1_leg2;
+        let t224 = ::overact::math::signed(parameters[21], twist[2] - rate_2_leg2);
+        let t225 = ::overact::math::signed(parameters[20], rate_2_leg2)
+            - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t217
+                + parameters[18] * t215) - t224;
+        let t226 = minus_g2_vx_leg2 * t225;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t193 + minus_g1_vy_leg2 * t191;
+        let t250 = minus_s2_leg2
+            * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t205
+                + parameters[19] * t215)
+            + c2_leg2
+                * (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t205
+                    + parameters[19] * t217);
+        let t251 = parameters[15]
+            - (parameters[12] * minus_rate_dot_1_leg2
+                + parameters[13] * minus_rate_1_leg2
+                + ::overact::math::signed(parameters[14], minus_rate_1_leg2))
+            - parameters[11] * minus_rate_dot_1_leg2 - t250;
+        let t256 = acceleration[0] + t126 + t129;
+        let t259 = acceleration[1] - t120 + t123;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t67;
+        let t263 = twist[0] + t122;
+        let t265 = twist[1] - t128;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t263 + minus_g2_vx_leg3 * t265;
+        let t268 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t270 = t100 * t256 + t66 * t259 + 0.34 * t268;
+        let minus_rate_dot_1_leg3 = t67 * t270;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t263 + minus_g1_vy_leg3 * t265;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t67
+            * (0.7071067811865476 * (t256 + t259) + 0.7071067811865476 * t64 * t268);
+        let minus_c2_leg3 = 2.079725827019258 * t64;
+        let t297 = minus_c2_leg3 * minus_rate_dot_1_leg3;
+        let t304 = minus_s2_leg3
+            * (parameters[29] * minus_rate_dot_2_leg3 - parameters[28] * t268
+                + parameters[30] * t270)
+            + minus_c2_leg3
+                * (parameters[30] * t297
+                    - (parameters[28] * minus_rate_dot_2_leg3 + parameters[29] * t268));
+        let t305 = parameters[26]
+            - (parameters[23] * minus_rate_dot_1_leg3
+                + parameters[24] * minus_rate_1_leg3
+                + ::overact::math::signed(parameters[25], minus_rate_1_leg3))
+            - parameters[22] * minus_rate_dot_1_leg3 - t304;
+        let t315 = ::overact::math::signed(parameters[32], minus_rate_2_leg3 + twist[2]);
+        let t316 = parameters[28] * t297 - parameters[27] * minus_rate_dot_2_leg3
+            - parameters[29] * t270
+            - ::overact::math::signed(parameters[31], minus_rate_2_leg3) - t315;
+        let t317 = minus_g2_vx_leg3 * t316;
+        let t320 = twist[1] + t122;
+        let t322 = twist[0] + t128;
+        let rate_1_leg4 = g1_vy_leg4 * t320 - minus_g1_vx_leg4 * t322;
+        let t327 = acceleration[0] + t120 - t123;
+        let t330 = acceleration[1] + t126 + t129;
+        let g2_vx_leg4 = 2.079725827019258 * t89;
+        let rate_2_leg4 = g2_vx_leg4 * t322 - g2_vx_leg4 * t320;
+        let t337 = rate_2_leg4 * rate_2_leg4;
+        let t339 = t104 * t327 - t88 * t330 + 0.34 * t337;
+        let minus_rate_dot_1_leg4 = t89 * t339;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t89
+            * (0.7071067811865476 * (t330 - t327) - 0.7071067811865476 * t86 * t337);
+        let c2_leg4 = 2.079725827019258 * t86;
+        let t365 = c2_leg4 * minus_rate_dot_1_leg4;
+        let t369 = minus_s2_leg4
+            * (parameters[40] * minus_rate_dot_2_leg4 - parameters[39] * t337
+                + parameters[41] * t339)
+            + c2_leg4
+                * (parameters[39] * minus_rate_dot_2_leg4 + parameters[40] * t337
+                    + parameters[41] * t365);
+        let t370 = parameters[35] * rate_1_leg4 - parameters[34] * minus_rate_dot_1_leg4
+            + ::overact::math::signed(parameters[36], rate_1_leg4) + parameters[37]
+            - parameters[33] * minus_rate_dot_1_leg4 - t369;
+        let t380 = ::overact::math::signed(parameters[43], twist[2] - rate_2_leg4);
+        let t381 = ::overact::math::signed(parameters[42], rate_2_leg4)
+            - (parameters[38] * minus_rate_dot_2_leg4 + parameters[39] * t365
+                + parameters[40] * t339) - t380;
+        let t382 = g2_vx_leg4 * t381;
+        let t384 = g1_vy_leg1 * t176 + t188 + t226 - minus_g1_vy_leg2 * t251
+            - (minus_g1_vy_leg3 * t305 + t317) + g1_vy_leg4 * t370 - t382;
+        let t387 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t389 = twist[2] * twist[2];
+        let t393 = parameters[47] * t387
+            - (parameters[45] * t389 + acceleration[2] * parameters[46]);
+        let t400 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t402 = acceleration[2] * parameters[45] - parameters[46] * t389
+            + parameters[47] * t400;
+        let t416 = t188 - minus_g1_vx_leg1 * t176 - (minus_g1_vx_leg2 * t251 + t226)
+            - (minus_g1_vx_leg3 * t305 + t317) + t382 - minus_g1_vx_leg4 * t370;
+        let t420 = t416 + c_phi * t393 - s_phi * t402;
+        let t422 = t384 + s_phi * t393 + c_phi * t402 - t420 * t116;
+        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
+        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
+        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
+        let t449 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+            + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
+        let t450 = t449 * t115;
+        let t452 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t107 * t450;
+        let t453 = t452 * t119;
+        let t464 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t449 * t450
+            - t452 * t453;
+        ::overact::guard::platform(t464, 0.02560000000000001, "actuators")?;
+        let g2_wz_leg1 = 0.11764705882352941 * (t6 * t24 - t2 * t24);
+        let g2_wz_leg2 = 0.11764705882352941 * (t6 * t45 - t2 * t45);
+        let g2_wz_leg3 = 0.11764705882352941 * (t6 * t67 - t2 * t67);
+        let t490 = g1_wz_leg1 * t176 + g2_wz_leg1 * t187 + t186 + g1_wz_leg2 * t251
+            + g2_wz_leg2 * t225 + t224 + g1_wz_leg3 * t305 + g2_wz_leg3 * t316 + t315;
+        let g2_wz_leg4 = 0.11764705882352941 * (t6 * t89 - t2 * t89);
+        let t505 = t490 + g1_wz_leg4 * t370 + g2_wz_leg4 * t381 + t380
+            + acceleration[2] * parameters[44] + parameters[45] * t400
+            - parameters[46] * t387;
+        let t510 = (t505 + t420 * t450 - t453 * t422) / t464;
+        let t512 = t119 * t422 - t453 * t510;
+        let t518 = t420 * t115 - t116 * t512 + t450 * t510;
+        Ok([
+            g1_vy_leg1 * t512 - minus_g1_vx_leg1 * t518 + g1_wz_leg1 * t510,
+            g1_wz_leg2 * t510 - (minus_g1_vx_leg2 * t518 + minus_g1_vy_leg2 * t512),
+            g1_wz_leg3 * t510 - (minus_g1_vx_leg3 * t518 + minus_g1_vy_leg3 * t512),
+            g1_vy_leg4 * t512 - minus_g1_vx_leg4 * t518 + g1_wz_leg4 * t510,
+        ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -3569,7 +5227,7 @@ impl Planar4Prr {
     ///
     /// Output: 4.
     ///
-    /// 564 operations (244 additions, 313 multiplications, 7 divisions), 0 square roots, 5 trigonometric pairs, 12 signs, 582 intermediates.
+    /// 617 operations (278 additions, 332 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 631 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3581,264 +5239,299 @@ impl Planar4Prr {
         start: &[f64; 3],
     ) -> Result<[f64; 4], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
-        let t2 = c2_leg1 - s2_leg1;
-        let t3 = 1.0 / s2_leg1;
-        let t4 = 0.7071067811865476 * t3;
-        let g1_vx_leg1 = t2 * t4;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t9 = c2_leg2 + s2_leg2;
-        let t10 = 1.0 / s2_leg2;
-        let t11 = 0.7071067811865476 * t10;
-        let minus_g1_vx_leg2 = t9 * t11;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
-        let t17 = s2_leg3 - c2_leg3;
-        let t18 = 1.0 / s2_leg3;
-        let t19 = 0.7071067811865476 * t18;
-        let g1_vx_leg3 = t17 * t19;
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
-        let t25 = c2_leg4 + s2_leg4;
-        let t26 = 1.0 / s2_leg4;
-        let t27 = 0.7071067811865476 * t26;
-        let g1_vx_leg4 = t25 * t27;
-        let t30 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t30, 3.4404761904750325, "actuators")?;
-        ::overact::guard::platform(t30, 3.4404761904750325, "actuators")?;
-        ::overact::guard::platform(t30, 3.4404761904750325, "actuators")?;
-        let t31 = 1.0 / t30;
-        let t32 = 0.2404163056034262 * t2;
-        let minus_g2_vx_leg1 = 2.079725827019258 * t3;
-        let t40 = g1_vx_leg1 * actuator_velocities[0]
-            - minus_g1_vx_leg2 * actuator_velocities[1]
-            + g1_vx_leg3 * actuator_velocities[2] + g1_vx_leg4 * actuator_velocities[3];
-        let t42 = s2_leg1 + c2_leg1;
-        let g1_vy_leg1 = t42 * t4;
-        let t45 = s2_leg2 - c2_leg2;
-        let minus_g1_vy_leg2 = t45 * t11;
-        let t49 = s2_leg3 + c2_leg3;
-        let minus_g1_vy_leg3 = t49 * t19;
-        let t53 = c2_leg4 - s2_leg4;
-        let minus_g1_vy_leg4 = t53 * t27;
-        let t56 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            - g1_vx_leg3 * minus_g1_vy_leg3 - g1_vx_leg4 * minus_g1_vy_leg4;
-        let t57 = t56 * t31;
-        let t66 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t56 * t57;
-        ::overact::guard::platform(t66, 3.440476190475036, "actuators")?;
-        ::overact::guard::platform(t66, 3.440476190475036, "actuators")?;
-        ::overact::guard::platform(t66, 3.440476190475036, "actuators")?;
-        let t67 = 1.0 / t66;
-        let t76 = g1_vy_leg1 * actuator_velocities[0]
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let t2 = s_phi + c_phi;
+        let t3 = 0.05656854249492381 * t2;
+        let t5 = pose[1] + t3 - 0.21213203435596426;
+        let t6 = c_phi - s_phi;
+        let t7 = 0.05656854249492381 * t6;
+        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t10 = t5 - t9;
+        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
+        ::overact::guard::reach(t18, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
+        let t20 = 0.7071067811865476 * minus_s2_leg1;
+        let t21 = t9 + t5;
+        let t22 = 1.4705882352941178 * t21;
+        let t23 = t20 - t22;
+        let t24 = 1.0 / minus_s2_leg1;
+        let g1_vy_leg1 = t23 * t24;
+        let t28 = pose[0] - t3 + 0.21213203435596426;
+        let t30 = pose[1] + t7 - 0.21213203435596426;
+        let t31 = t28 + t30;
+        let t39 = 8.650519031141869
+            * (0.5 * (t31 * t31) - (t28 * t28 + t30 * t30 - 0.1156));
+        ::overact::guard::reach(t39, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t39);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
+        let t41 = 0.7071067811865476 * minus_s2_leg2;
+        let t42 = t30 - t28;
+        let t43 = 1.4705882352941178 * t42;
+        let t44 = t41 + t43;
+        let t45 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t44 * t45;
+        let t50 = pose[0] - t7 + 0.21213203435596426;
+        let t52 = pose[1] - t3 + 0.21213203435596426;
+        let t53 = t50 - t52;
+        let t61 = 8.650519031141869
+            * (0.5 * (t53 * t53) - (t50 * t50 + t52 * t52 - 0.1156));
+        ::overact::guard::reach(t61, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t61);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
+        let t63 = 0.7071067811865476 * minus_s2_leg3;
+        let t64 = t50 + t52;
+        let t65 = 1.4705882352941178 * t64;
+        let t66 = t63 + t65;
+        let t67 = 1.0 / minus_s2_leg3;
+        let minus_g1_vy_leg3 = t66 * t67;
+        let t72 = pose[0] + t3 - 0.21213203435596426;
+        let t74 = pose[1] - t7 + 0.21213203435596426;
+        let t75 = t72 + t74;
+        let t83 = 8.650519031141869
+            * (0.5 * (t75 * t75) - (t72 * t72 + t74 * t74 - 0.1156));
+        ::overact::guard::reach(t83, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t83);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t85 = 0.7071067811865476 * minus_s2_leg4;
+        let t86 = t72 - t74;
+        let t87 = 1.4705882352941178 * t86;
+        let t88 = t85 + t87;
+        let t89 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = t88 * t89;
+        let t93 = t41 - t43;
+        let minus_g1_vx_leg2 = t93 * t45;
+        let t96 = t22 + t20;
+        let minus_g1_vx_leg1 = t96 * t24;
+        let t100 = t65 - t63;
+        let minus_g1_vx_leg3 = t100 * t67;
+        let t104 = t87 - t85;
+        let minus_g1_vx_leg4 = t104 * t89;
+        let t107 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+            + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
+        let t114 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+            + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
+            + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
+        let t115 = 1.0 / t114;
+        let t116 = t107 * t115;
+        let t118 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
+            - t107 * t116;
+        ::overact::guard::platform(t118, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t118, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t118, 3.440476190476192, "actuators")?;
+        let t119 = 1.0 / t118;
+        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
+        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
+        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
+        let t145 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+            + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
+        let t146 = t145 * t115;
+        let t157 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t107 * t146;
+        let t158 = t157 * t119;
+        let t160 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t145 * t146
+            - t157 * t158;
+        ::overact::guard::platform(t160, 0.02560000000000001, "actuators")?;
+        ::overact::guard::platform(t160, 0.02560000000000001, "actuators")?;
+        ::overact::guard::platform(t160, 0.02560000000000001, "actuators")?;
+        let t161 = 1.0 / t160;
+        let t175 = minus_g1_vx_leg1 * actuator_velocities[0]
+            + minus_g1_vx_leg2 * actuator_velocities[1]
+            + minus_g1_vx_leg3 * actuator_velocities[2]
+            + minus_g1_vx_leg4 * actuator_velocities[3];
+        let t186 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t40 * t57;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t80 = c_phi - s_phi;
-        let t81 = 0.05656854249492381 * t80;
-        let t83 = s_phi + c_phi;
-        let t84 = 0.05656854249492381 * t83;
-        let g1_wz_leg1 = g1_vy_leg1 * t81 - g1_vx_leg1 * t84;
-        let g1_wz_leg2 = t84 * minus_g1_vy_leg2 + t81 * minus_g1_vx_leg2;
-        let g1_wz_leg3 = t81 * minus_g1_vy_leg3 + t84 * g1_vx_leg3;
-        let g1_wz_leg4 = t81 * g1_vx_leg4 - t84 * minus_g1_vy_leg4;
-        let t109 = g1_vx_leg1 * g1_wz_leg1 - minus_g1_vx_leg2 * g1_wz_leg2
-            + g1_vx_leg3 * g1_wz_leg3 + g1_vx_leg4 * g1_wz_leg4;
-        let t110 = t109 * t31;
-        let t112 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 - minus_g1_vy_leg4 * g1_wz_leg4 - t56 * t110;
-        let t113 = t112 * t67;
-        let t124 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t109 * t110
-            - t112 * t113;
-        ::overact::guard::platform(t124, 0.02560000000000001, "actuators")?;
-        ::overact::guard::platform(t124, 0.02560000000000001, "actuators")?;
-        ::overact::guard::platform(t124, 0.02560000000000001, "actuators")?;
-        let t125 = 1.0 / t124;
-        let t136 = g1_wz_leg1 * actuator_velocities[0]
+            + g1_vy_leg4 * actuator_velocities[3] + t175 * t116;
+        let t188 = g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg2 * actuator_velocities[1] + g1_wz_leg3 * actuator_velocities[2]
-            + g1_wz_leg4 * actuator_velocities[3] - t40 * t110 - t113 * t76;
-        let rate_3_leg1 = t125 * t136;
-        let t139 = t67 * t76 - t113 * rate_3_leg1;
-        let t143 = t40 * t31 - t57 * t139 - t110 * rate_3_leg1;
-        let t144 = t84 * rate_3_leg1;
-        let t145 = t143 - t144;
-        let t147 = t81 * rate_3_leg1;
-        let t148 = t139 + t147;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t145 + minus_g2_vx_leg1 * t148;
-        let t151 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t153 = rate_3_leg1 * t147;
-        let t156 = 0.2404163056034262 * t42;
-        let t158 = rate_3_leg1 * t144;
-        let rate_dot_1_leg1 = g1_vx_leg1 * (t32 * t151 - t153)
-            + g1_vy_leg1 * (t156 * t151 - t158);
-        let t162 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t169 = t2 * t32 + t42 * t156;
-        let g2_vx_leg2 = 2.079725827019258 * t10;
-        let t171 = t143 - t147;
-        let t173 = t139 - t144;
-        let rate_2_leg2 = g2_vx_leg2 * t171 - g2_vx_leg2 * t173;
-        let t176 = rate_2_leg2 * rate_2_leg2;
-        let t177 = t169 * t176;
-        let rate_dot_1_leg2 = t11 * (t45 * t153 - t9 * t158 + t177);
-        let t180 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let g2_vx_leg3 = 2.079725827019258 * t18;
-        let t187 = t143 + t144;
-        let t189 = t139 - t147;
-        let rate_2_leg3 = g2_vx_leg3 * t187 + g2_vx_leg3 * t189;
-        let t192 = rate_2_leg3 * rate_2_leg3;
-        let t193 = t169 * t192;
-        let minus_rate_dot_1_leg3 = t19 * (t49 * t158 - t17 * t153 - t193);
-        let t196 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let minus_g2_vx_leg4 = 2.079725827019258 * t26;
-        let t200 = t139 + t144;
-        let t202 = t143 + t147;
-        let rate_2_leg4 = minus_g2_vx_leg4 * t200 - minus_g2_vx_leg4 * t202;
-        let t205 = rate_2_leg4 * rate_2_leg4;
-        let t206 = t169 * t205;
-        let rate_dot_1_leg4 = t27 * (t206 - (t25 * t158 + t53 * t153));
-        let t212 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t214 = g1_vx_leg1 * t162 - minus_g1_vx_leg2 * t180 + g1_vx_leg3 * t196
-            + g1_vx_leg4 * t212;
-        let t224 = g1_vy_leg1 * t162 - minus_g1_vy_leg2 * t180 - minus_g1_vy_leg3 * t196
-            - minus_g1_vy_leg4 * t212 - t57 * t214;
-        let t236 = g1_wz_leg1 * t162 + g1_wz_leg2 * t180 + g1_wz_leg3 * t196
-            + g1_wz_leg4 * t212 - t110 * t214 - t113 * t224;
-        let rate_dot_3_leg1 = t125 * t236;
-        let t239 = t67 * t224 - t113 * rate_dot_3_leg1;
-        let t243 = t31 * t214 - t57 * t239 - t110 * rate_dot_3_leg1;
-        let t244 = t84 * rate_dot_3_leg1;
-        let t246 = t243 - t244 - t153;
-        let t248 = t81 * rate_dot_3_leg1;
-        let t250 = t239 + t248 - t158;
-        let rate_dot_1_leg1_2 = t4 * (t2 * t246 + t42 * t250 + t151 * t169);
-        let rate_1_leg1 = g1_vx_leg1 * t145 + g1_vy_leg1 * t148;
-        let minus_rate_dot_2_leg1 = 2.9411764705882355 * t3
-            * (0.7071067811865476 * (t246 + t250) + t151 * (0.34 * c2_leg1));
-        let t277 = s2_leg1 * rate_dot_1_leg1_2;
-        let t281 = c2_leg1 * rate_dot_1_leg1_2;
-        let t288 = s2_leg1
-            * (parameters[7] * minus_rate_dot_2_leg1 - t151 * parameters[6]
-                + parameters[8] * t277)
+            + g1_wz_leg4 * actuator_velocities[3] - t175 * t146 - t158 * t186;
+        let rate_3_leg1 = t161 * t188;
+        let t190 = t7 * rate_3_leg1;
+        let t191 = rate_3_leg1 * t190;
+        let t193 = t3 * rate_3_leg1;
+        let t194 = rate_3_leg1 * t193;
+        let g2_vx_leg1 = 2.079725827019258 * t24;
+        let t202 = t119 * t186 - t158 * rate_3_leg1;
+        let t205 = t146 * rate_3_leg1 - (t175 * t115 + t116 * t202);
+        let t206 = t205 - t193;
+        let t208 = t202 + t190;
+        let rate_2_leg1 = g2_vx_leg1 * t206 + g2_vx_leg1 * t208;
+        let t211 = rate_2_leg1 * rate_2_leg1;
+        let t212 = 0.34 * t211;
+        let rate_dot_1_leg1 = t24 * (t96 * t191 - t23 * t194 - t212);
+        let t215 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t45;
+        let t221 = t202 - t193;
+        let t223 = t205 - t190;
+        let rate_2_leg2 = minus_g2_vx_leg2 * t221 - minus_g2_vx_leg2 * t223;
+        let t226 = rate_2_leg2 * rate_2_leg2;
+        let t227 = 0.34 * t226;
+        let minus_rate_dot_1_leg2 = t45 * (t93 * t194 - t44 * t191 + t227);
+        let t230 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t67;
+        let t237 = t205 + t193;
+        let t239 = t202 - t190;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t237 + minus_g2_vx_leg3 * t239;
+        let t242 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t243 = 0.34 * t242;
+        let minus_rate_dot_1_leg3 = t67 * (t100 * t191 + t66 * t194 + t243);
+        let t246 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = 2.079725827019258 * t89;
+        let t250 = t205 + t190;
+        let t252 = t202 + t193;
+        let rate_2_leg4 = g2_vx_leg4 * t250 - g2_vx_leg4 * t252;
+        let t255 = rate_2_leg4 * rate_2_leg4;
+        let t256 = 0.34 * t255;
+        let minus_rate_dot_1_leg4 = t89 * (t256 - (t104 * t194 + t88 * t191));
+        let t262 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
+        let t271 = minus_g1_vx_leg1 * t215 + minus_g1_vx_leg2 * t230
+            + minus_g1_vx_leg3 * t246 + minus_g1_vx_leg4 * t262;
+        let t273 = g1_vy_leg1 * t215 - minus_g1_vy_leg2 * t230 - minus_g1_vy_leg3 * t246
+            + g1_vy_leg4 * t262 + t116 * t271;
+        let t285 = g1_wz_leg1 * t215 + g1_wz_leg2 * t230 + g1_wz_leg3 * t246
+            + g1_wz_leg4 * t262 - t146 * t271 - t158 * t273;
+        let rate_dot_3_leg1 = t161 * t285;
+        let t288 = t119 * t273 - t158 * rate_dot_3_leg1;
+        let t289 = t7 * rate_dot_3_leg1;
+        let t291 = t288 + t289 - t194;
+        let t297 = t146 * rate_dot_3_leg1 - (t115 * t271 + t116 * t288);
+        let t298 = t3 * rate_dot_3_leg1;
+        let t300 = t297 - t298 - t191;
+        let t303 = t23 * t291 - t96 * t300 - t212;
+        let rate_dot_1_leg1_2 = t24 * t303;
+        let rate_1_leg1 = g1_vy_leg1 * t208 - minus_g1_vx_leg1 * t206;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t24
+            * (0.7071067811865476 * (t300 + t291) + 0.7071067811865476 * t21 * t211);
+        let c2_leg1 = 2.079725827019258 * t21;
+        let t333 = c2_leg1 * rate_dot_1_leg1_2;
+        let t337 = minus_s2_leg1
+            * (t211 * parameters[6] + parameters[7] * rate_dot_2_leg1
+                + parameters[8] * t303)
             + c2_leg1
-                * (parameters[8] * t281
-                    - (parameters[6] * minus_rate_dot_2_leg1 + t151 * parameters[7]));
-        let t289 = parameters[0] * rate_dot_1_leg1_2 + parameters[1] * rate_dot_1_leg1_2
+                * (parameters[6] * rate_dot_2_leg1 - t211 * parameters[7]
+                    + parameters[8] * t333);
+        let t338 = parameters[0] * rate_dot_1_leg1_2 + parameters[1] * rate_dot_1_leg1_2
             + rate_1_leg1 * parameters[2]
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t288;
-        let t299 = ::overact::math::signed(
-            parameters[10],
-            minus_rate_2_leg1 + rate_3_leg1,
-        );
-        let t300 = parameters[6] * t281 - parameters[5] * minus_rate_dot_2_leg1
-            - parameters[7] * t277
-            - ::overact::math::signed(parameters[9], minus_rate_2_leg1) - t299;
-        let t301 = minus_g2_vx_leg1 * t300;
-        let t305 = t243 - t248 + t158;
-        let t307 = t239 - t244 - t153;
-        let rate_dot_2_leg2 = 2.9411764705882355 * t10
-            * (0.7071067811865476 * (t305 - t307) - t176 * (0.34 * c2_leg2));
-        let rate_dot_1_leg2_2 = t11 * (t177 - (t9 * t305 + t45 * t307));
-        let t320 = c2_leg2 * rate_dot_1_leg2_2;
-        let t323 = s2_leg2 * rate_dot_1_leg2_2;
-        let t329 = ::overact::math::signed(parameters[21], rate_3_leg1 - rate_2_leg2);
-        let t330 = parameters[16] * rate_dot_2_leg2 + parameters[17] * t320
-            - parameters[18] * t323
-            + ::overact::math::signed(parameters[20], rate_2_leg2) - t329;
-        let t331 = g2_vx_leg2 * t330;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t171 + minus_g1_vy_leg2 * t173;
-        let t355 = s2_leg2
-            * (parameters[19] * t323
-                - (t176 * parameters[17] + parameters[18] * rate_dot_2_leg2))
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t337;
+        let t348 = ::overact::math::signed(parameters[10], rate_3_leg1 - rate_2_leg1);
+        let t349 = parameters[5] * rate_dot_2_leg1 + parameters[6] * t333
+            + parameters[7] * t303 + ::overact::math::signed(parameters[9], rate_2_leg1)
+            - t348;
+        let t350 = g2_vx_leg1 * t349;
+        let t355 = t297 - t289 + t194;
+        let t357 = t288 - t298 - t191;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t45
+            * (0.7071067811865476 * (t355 - t357) - 0.7071067811865476 * t42 * t226);
+        let c2_leg2 = 2.079725827019258 * t42;
+        let t369 = t93 * t355 + t44 * t357 + t227;
+        let minus_rate_dot_1_leg2_2 = t45 * t369;
+        let t371 = c2_leg2 * minus_rate_dot_1_leg2_2;
+        let t378 = ::overact::math::signed(parameters[21], rate_3_leg1 - rate_2_leg2);
+        let t379 = ::overact::math::signed(parameters[20], rate_2_leg2)
+            - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t371
+                + parameters[18] * t369) - t378;
+        let t380 = minus_g2_vx_leg2 * t379;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t223 + minus_g1_vy_leg2 * t221;
+        let t404 = minus_s2_leg2
+            * (parameters[18] * minus_rate_dot_2_leg2 - t226 * parameters[17]
+                + parameters[19] * t369)
             + c2_leg2
-                * (parameters[17] * rate_dot_2_leg2 - t176 * parameters[18]
-                    + parameters[19] * t320);
-        let t356 = parameters[11] * rate_dot_1_leg2_2
-            + parameters[12] * rate_dot_1_leg2_2 - minus_rate_1_leg2 * parameters[13]
-            - ::overact::math::signed(parameters[14], minus_rate_1_leg2) + parameters[15]
-            + t355;
-        let rate_1_leg3 = g1_vx_leg3 * t187 - minus_g1_vy_leg3 * t189;
-        let t365 = t239 - t248 + t158;
-        let t368 = t243 + t244 + t153;
-        let minus_rate_dot_1_leg3_2 = t19 * (t49 * t365 - t17 * t368 - t193);
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t18
-            * (t192 * (0.34 * c2_leg3) - 0.7071067811865476 * (t368 + t365));
-        let t390 = s2_leg3 * minus_rate_dot_1_leg3_2;
-        let t397 = c2_leg3 * minus_rate_dot_1_leg3_2;
-        let t401 = s2_leg3
-            * (parameters[29] * minus_rate_dot_2_leg3 - t192 * parameters[28]
-                - parameters[30] * t390)
-            - c2_leg3
-                * (parameters[28] * minus_rate_dot_2_leg3 + t192 * parameters[29]
-                    + parameters[30] * t397);
-        let t402 = rate_1_leg3 * parameters[24]
-            - parameters[23] * minus_rate_dot_1_leg3_2
-            + ::overact::math::signed(parameters[25], rate_1_leg3) + parameters[26]
-            - parameters[22] * minus_rate_dot_1_leg3_2 + t401;
-        let t412 = ::overact::math::signed(parameters[32], rate_3_leg1 - rate_2_leg3);
-        let t413 = parameters[29] * t390
-            - (parameters[27] * minus_rate_dot_2_leg3 + parameters[28] * t397)
-            + ::overact::math::signed(parameters[31], rate_2_leg3) - t412;
-        let t414 = g2_vx_leg3 * t413;
-        let t418 = t243 + t248 - t158;
-        let t421 = t239 + t244 + t153;
-        let rate_dot_1_leg4_2 = t27 * (t25 * t418 - t53 * t421 + t206);
-        let rate_1_leg4 = g1_vx_leg4 * t202 - minus_g1_vy_leg4 * t200;
-        let t437 = s2_leg4 * rate_dot_1_leg4_2;
-        let rate_dot_2_leg4 = 2.9411764705882355 * t26
-            * (0.7071067811865476 * (t421 - t418) - t205 * (0.34 * c2_leg4));
-        let t454 = c2_leg4 * rate_dot_1_leg4_2;
-        let t458 = s2_leg4
-            * (parameters[41] * t437
-                - (t205 * parameters[39] + parameters[40] * rate_dot_2_leg4))
+                * (parameters[17] * minus_rate_dot_2_leg2 + t226 * parameters[18]
+                    + parameters[19] * t371);
+        let t405 = parameters[15]
+            - (parameters[12] * minus_rate_dot_1_leg2_2
+                + minus_rate_1_leg2 * parameters[13]
+                + ::overact::math::signed(parameters[14], minus_rate_1_leg2))
+            - parameters[11] * minus_rate_dot_1_leg2_2 - t404;
+        let t410 = t297 + t298 + t191;
+        let t413 = t288 - t289 + t194;
+        let t416 = t100 * t410 + t66 * t413 + t243;
+        let minus_rate_dot_1_leg3_2 = t67 * t416;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t237 + minus_g1_vy_leg3 * t239;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t67
+            * (0.7071067811865476 * (t410 + t413) + 0.7071067811865476 * t64 * t242);
+        let minus_c2_leg3 = 2.079725827019258 * t64;
+        let t443 = minus_c2_leg3 * minus_rate_dot_1_leg3_2;
+        let t450 = minus_s2_leg3
+            * (parameters[29] * minus_rate_dot_2_leg3 - t242 * parameters[28]
+                + parameters[30] * t416)
+            + minus_c2_leg3
+                * (parameters[30] * t443
+                    - (parameters[28] * minus_rate_dot_2_leg3 + t242 * parameters[29]));
+        let t451 = parameters[26]
+            - (parameters[23] * minus_rate_dot_1_leg3_2
+                + minus_rate_1_leg3 * parameters[24]
+                + ::overact::math::signed(parameters[25], minus_rate_1_leg3))
+            - parameters[22] * minus_rate_dot_1_leg3_2 - t450;
+        let t461 = ::overact::math::signed(
+            parameters[32],
+            minus_rate_2_leg3 + rate_3_leg1,
+        );
+        let t462 = parameters[28] * t443 - parameters[27] * minus_rate_dot_2_leg3
+            - parameters[29] * t416
+            - ::overact::math::signed(parameters[31], minus_rate_2_leg3) - t461;
+        let t463 = minus_g2_vx_leg3 * t462;
+        let rate_1_leg4 = g1_vy_leg4 * t252 - minus_g1_vx_leg4 * t250;
+        let t471 = t297 + t289 - t194;
+        let t474 = t288 + t298 + t191;
+        let t477 = t104 * t471 - t88 * t474 + t256;
+        let minus_rate_dot_1_leg4_2 = t89 * t477;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t89
+            * (0.7071067811865476 * (t474 - t471) - 0.7071067811865476 * t86 * t255);
+        let c2_leg4 = 2.079725827019258 * t86;
+        let t503 = c2_leg4 * minus_rate_dot_1_leg4_2;
+        let t507 = minus_s2_leg4
+            * (parameters[40] * minus_rate_dot_2_leg4 - t255 * parameters[39]
+                + parameters[41] * t477)
             + c2_leg4
-                * (parameters[39] * rate_dot_2_leg4 - t205 * parameters[40]
-                    + parameters[41] * t454);
-        let t459 = parameters[33] * rate_dot_1_leg4_2
-            + parameters[34] * rate_dot_1_leg4_2 + rate_1_leg4 * parameters[35]
+                * (parameters[39] * minus_rate_dot_2_leg4 + t255 * parameters[40]
+                    + parameters[41] * t503);
+        let t508 = rate_1_leg4 * parameters[35]
+            - parameters[34] * minus_rate_dot_1_leg4_2
             + ::overact::math::signed(parameters[36], rate_1_leg4) + parameters[37]
-            + t458;
-        let t469 = ::overact::math::signed(parameters[43], rate_3_leg1 - rate_2_leg4);
-        let t470 = parameters[38] * rate_dot_2_leg4 + parameters[39] * t454
-            - parameters[40] * t437
-            + ::overact::math::signed(parameters[42], rate_2_leg4) - t469;
-        let t471 = minus_g2_vx_leg4 * t470;
-        let t473 = g1_vx_leg1 * t289 - t301 + t331 - minus_g1_vx_leg2 * t356
-            + g1_vx_leg3 * t402 + t414 + g1_vx_leg4 * t459 - t471;
-        let t476 = c_phi * t243 + s_phi * t239;
-        let t478 = rate_3_leg1 * rate_3_leg1;
-        let t482 = parameters[47] * t476
-            - (t478 * parameters[45] + rate_dot_3_leg1 * parameters[46]);
-        let t489 = c_phi * t239 - s_phi * t243;
-        let t491 = rate_dot_3_leg1 * parameters[45] - t478 * parameters[46]
-            + parameters[47] * t489;
-        let t494 = t473 + c_phi * t482 - s_phi * t491;
-        let t506 = g1_vy_leg1 * t289 - t301 - (minus_g1_vy_leg2 * t356 + t331) + t414
-            - minus_g1_vy_leg3 * t402 + t471 - minus_g1_vy_leg4 * t459;
-        let t512 = t506 + s_phi * t482 + c_phi * t491 - t57 * t494;
-        let g2_wz_leg1 = 0.11764705882352941 * (t3 * t83 - t3 * t80);
-        let g2_wz_leg2 = 0.11764705882352941 * (t83 * t10 - t80 * t10);
-        let g2_wz_leg3 = 0.11764705882352941 * (t83 * t18 - t80 * t18);
-        let t539 = g1_wz_leg1 * t289 + g2_wz_leg1 * t300 + t299 + g1_wz_leg2 * t356
-            + g2_wz_leg2 * t330 + t329 + g1_wz_leg3 * t402 + g2_wz_leg3 * t413 + t412;
-        let g2_wz_leg4 = 0.11764705882352941 * (t83 * t26 - t80 * t26);
-        let t554 = t539 + g1_wz_leg4 * t459 + g2_wz_leg4 * t470 + t469
-            + rate_dot_3_leg1 * parameters[44] + parameters[45] * t489
-            - parameters[46] * t476;
-        let t559 = t125 * (t554 - t110 * t494 - t113 * t512);
-        let t561 = t67 * t512 - t113 * t559;
-        let t565 = t31 * t494 - t57 * t561 - t110 * t559;
+            - parameters[33] * minus_rate_dot_1_leg4_2 - t507;
+        let t518 = ::overact::math::signed(parameters[43], rate_3_leg1 - rate_2_leg4);
+        let t519 = ::overact::math::signed(parameters[42], rate_2_leg4)
+            - (parameters[38] * minus_rate_dot_2_leg4 + parameters[39] * t503
+                + parameters[40] * t477) - t518;
+        let t520 = g2_vx_leg4 * t519;
+        let t522 = g1_vy_leg1 * t338 + t350 + t380 - minus_g1_vy_leg2 * t405
+            - (minus_g1_vy_leg3 * t451 + t463) + g1_vy_leg4 * t508 - t520;
+        let t525 = c_phi * t297 + s_phi * t288;
+        let t527 = rate_3_leg1 * rate_3_leg1;
+        let t531 = parameters[47] * t525
+            - (t527 * parameters[45] + rate_dot_3_leg1 * parameters[46]);
+        let t538 = c_phi * t288 - s_phi * t297;
+        let t540 = rate_dot_3_leg1 * parameters[45] - t527 * parameters[46]
+            + parameters[47] * t538;
+        let t554 = t350 - minus_g1_vx_leg1 * t338 - (minus_g1_vx_leg2 * t405 + t380)
+            - (minus_g1_vx_leg3 * t451 + t463) + t520 - minus_g1_vx_leg4 * t508;
+        let t558 = t554 + c_phi * t531 - s_phi * t540;
+        let t560 = t522 + s_phi * t531 + c_phi * t540 - t116 * t558;
+        let g2_wz_leg1 = 0.11764705882352941 * (t6 * t24 - t2 * t24);
+        let g2_wz_leg2 = 0.11764705882352941 * (t6 * t45 - t2 * t45);
+        let g2_wz_leg3 = 0.11764705882352941 * (t6 * t67 - t2 * t67);
+        let t587 = g1_wz_leg1 * t338 + g2_wz_leg1 * t349 + t348 + g1_wz_leg2 * t405
+            + g2_wz_leg2 * t379 + t378 + g1_wz_leg3 * t451 + g2_wz_leg3 * t462 + t461;
+        let g2_wz_leg4 = 0.11764705882352941 * (t6 * t89 - t2 * t89);
+        let t602 = t587 + g1_wz_leg4 * t508 + g2_wz_leg4 * t519 + t518
+            + rate_dot_3_leg1 * parameters[44] + parameters[45] * t538
+            - parameters[46] * t525;
+        let t607 = t161 * (t602 + t146 * t558 - t158 * t560);
+        let t609 = t119 * t560 - t158 * t607;
+        let t615 = t115 * t558 - t116 * t609 + t146 * t607;
         Ok([
-            g1_vx_leg1 * t565 + g1_vy_leg1 * t561 + g1_wz_leg1 * t559,
-            g1_wz_leg2 * t559 - (minus_g1_vx_leg2 * t565 + minus_g1_vy_leg2 * t561),
-            g1_vx_leg3 * t565 - minus_g1_vy_leg3 * t561 + g1_wz_leg3 * t559,
-            g1_vx_leg4 * t565 - minus_g1_vy_leg4 * t561 + g1_wz_leg4 * t559,
+            g1_vy_leg1 * t609 - minus_g1_vx_leg1 * t615 + g1_wz_leg1 * t607,
+            g1_wz_leg2 * t607 - (minus_g1_vx_leg2 * t615 + minus_g1_vy_leg2 * t609),
+            g1_wz_leg3 * t607 - (minus_g1_vx_leg3 * t615 + minus_g1_vy_leg3 * t609),
+            g1_vy_leg4 * t609 - minus_g1_vx_leg4 * t615 + g1_wz_leg4 * t607,
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -3849,7 +5542,7 @@ impl Planar4Prr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 381 operations (151 additions, 226 multiplications, 4 divisions), 0 square roots, 5 trigonometric pairs, 0 signs, 385 intermediates.
+    /// 445 operations (191 additions, 250 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 445 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3857,169 +5550,196 @@ impl Planar4Prr {
         pose: &[f64; 3],
         parameters: &[f64; 48],
     ) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
-        let t2 = c2_leg1 - s2_leg1;
-        let t3 = 1.0 / s2_leg1;
-        let t4 = 0.7071067811865476 * t3;
-        let g1_vx_leg1 = t2 * t4;
-        let minus_g2_vx_leg1 = 2.079725827019258 * t3;
-        let t10 = minus_g2_vx_leg1 * parameters[7];
-        let t11 = 0.7071067811865476 * t2;
-        let t15 = c2_leg1 * g1_vx_leg1;
-        let t17 = minus_g2_vx_leg1 * parameters[6];
-        let t21 = g1_vx_leg1 * parameters[0] + g1_vx_leg1 * parameters[1]
-            + s2_leg1 * (t10 + t11 * parameters[8])
-            + c2_leg1 * (parameters[8] * t15 - t17);
-        let t24 = minus_g2_vx_leg1 * parameters[5];
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t32 = 1.0 / s2_leg2;
-        let g2_vx_leg2 = 2.079725827019258 * t32;
-        let t34 = g2_vx_leg2 * parameters[16];
-        let t35 = c2_leg2 + s2_leg2;
-        let t36 = 0.7071067811865476 * t32;
-        let minus_g1_vx_leg2 = t35 * t36;
-        let t38 = c2_leg2 * minus_g1_vx_leg2;
-        let t41 = 0.7071067811865476 * t35;
-        let t45 = g2_vx_leg2 * parameters[17];
-        let t49 = g2_vx_leg2 * parameters[18];
-        let t57 = c2_leg2 * (t45 - parameters[19] * t38)
-            - s2_leg2 * (t49 + t41 * parameters[19])
-            - (minus_g1_vx_leg2 * parameters[12] + minus_g1_vx_leg2 * parameters[11]);
-        let t60 = g1_vx_leg1 * t21
-            - minus_g2_vx_leg1 * (parameters[6] * t15 - t24 - t11 * parameters[7])
-            + g2_vx_leg2 * (t34 - parameters[17] * t38 + t41 * parameters[18])
-            - minus_g1_vx_leg2 * t57;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
-        let t63 = s2_leg3 - c2_leg3;
-        let t64 = 1.0 / s2_leg3;
-        let t65 = 0.7071067811865476 * t64;
-        let g1_vx_leg3 = t63 * t65;
-        let g2_vx_leg3 = 2.079725827019258 * t64;
-        let t71 = g2_vx_leg3 * parameters[28];
-        let t72 = c2_leg3 * g1_vx_leg3;
-        let t76 = g2_vx_leg3 * parameters[29];
-        let t77 = 0.7071067811865476 * t63;
-        let t82 = g1_vx_leg3 * parameters[23] + g1_vx_leg3 * parameters[22]
-            + c2_leg3 * (t71 + parameters[30] * t72)
-            - s2_leg3 * (t76 - t77 * parameters[30]);
-        let t84 = g2_vx_leg3 * parameters[27];
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
-        let t94 = c2_leg4 + s2_leg4;
-        let t95 = 1.0 / s2_leg4;
-        let t96 = 0.7071067811865476 * t95;
-        let g1_vx_leg4 = t94 * t96;
-        let t101 = 0.7071067811865476 * t94;
-        let minus_g2_vx_leg4 = 2.079725827019258 * t95;
-        let t104 = minus_g2_vx_leg4 * parameters[40];
-        let t107 = c2_leg4 * g1_vx_leg4;
-        let t109 = minus_g2_vx_leg4 * parameters[39];
-        let t113 = g1_vx_leg4 * parameters[33] + g1_vx_leg4 * parameters[34]
-            + s2_leg4 * (t101 * parameters[41] + t104)
-            + c2_leg4 * (parameters[41] * t107 - t109);
-        let t116 = minus_g2_vx_leg4 * parameters[38];
-        let t122 = t60 + g1_vx_leg3 * t82
-            + g2_vx_leg3 * (t84 + parameters[28] * t72 - t77 * parameters[29])
-            + g1_vx_leg4 * t113
-            - minus_g2_vx_leg4 * (parameters[39] * t107 - t116 - t101 * parameters[40]);
-        let t124 = s2_leg1 + c2_leg1;
-        let g1_vy_leg1 = t124 * t4;
-        let t129 = 0.7071067811865476 * t124;
-        let t133 = c2_leg1 * g1_vy_leg1;
-        let t138 = g1_vy_leg1 * parameters[0] + g1_vy_leg1 * parameters[1]
-            + s2_leg1 * (t10 + t129 * parameters[8])
-            + c2_leg1 * (parameters[8] * t133 - t17);
-        let t144 = minus_g2_vx_leg1
-            * (parameters[6] * t133 - t24 - t129 * parameters[7]);
-        let t146 = s2_leg2 - c2_leg2;
-        let t147 = 0.7071067811865476 * t146;
-        let minus_g1_vy_leg2 = t146 * t36;
-        let t150 = c2_leg2 * minus_g1_vy_leg2;
-        let t154 = g2_vx_leg2 * (t147 * parameters[18] - (t34 + parameters[17] * t150));
-        let t165 = minus_g1_vy_leg2 * parameters[12] + minus_g1_vy_leg2 * parameters[11]
-            + c2_leg2 * (t45 + parameters[19] * t150)
-            + s2_leg2 * (t147 * parameters[19] - t49);
-        let t169 = s2_leg3 + c2_leg3;
-        let minus_g1_vy_leg3 = t169 * t65;
-        let t171 = c2_leg3 * minus_g1_vy_leg3;
-        let t175 = 0.7071067811865476 * t169;
-        let t183 = c2_leg3 * (t71 - parameters[30] * t171)
-            - s2_leg3 * (t76 + t175 * parameters[30])
-            - (minus_g1_vy_leg3 * parameters[23] + minus_g1_vy_leg3 * parameters[22]);
-        let t189 = g2_vx_leg3 * (t84 - parameters[28] * t171 + t175 * parameters[29]);
-        let t192 = c2_leg4 - s2_leg4;
-        let minus_g1_vy_leg4 = t192 * t96;
-        let t194 = c2_leg4 * minus_g1_vy_leg4;
-        let t198 = 0.7071067811865476 * t192;
-        let t206 = c2_leg4 * (t109 - parameters[41] * t194)
-            - s2_leg4 * (t198 * parameters[41] + t104)
-            - (minus_g1_vy_leg4 * parameters[33] + minus_g1_vy_leg4 * parameters[34]);
-        let t212 = minus_g2_vx_leg4
-            * (t116 - parameters[39] * t194 + t198 * parameters[40]);
-        let t214 = g1_vx_leg1 * t138 - t144 + t154 + minus_g1_vx_leg2 * t165
-            + g1_vx_leg3 * t183 + t189 + g1_vx_leg4 * t206 - t212;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t217 = c_phi - s_phi;
-        let t218 = 0.05656854249492381 * t217;
-        let t220 = s_phi + c_phi;
-        let t221 = 0.05656854249492381 * t220;
-        let g1_wz_leg1 = g1_vy_leg1 * t218 - g1_vx_leg1 * t221;
-        let t227 = s2_leg1 * g1_wz_leg1;
-        let g2_wz_leg1 = 0.11764705882352941 * (t3 * t220 - t3 * t217);
-        let t236 = c2_leg1 * g1_wz_leg1;
-        let t242 = g1_wz_leg1 * parameters[0] + g1_wz_leg1 * parameters[1]
-            + s2_leg1 * (parameters[8] * t227 - g2_wz_leg1 * parameters[7])
-            + c2_leg1 * (parameters[8] * t236 + g2_wz_leg1 * parameters[6]);
-        let t248 = parameters[6] * t236 + g2_wz_leg1 * parameters[5]
-            - parameters[7] * t227;
-        let t249 = minus_g2_vx_leg1 * t248;
-        let g2_wz_leg2 = 0.11764705882352941 * (t220 * t32 - t217 * t32);
-        let g1_wz_leg2 = t221 * minus_g1_vy_leg2 + t218 * minus_g1_vx_leg2;
-        let t259 = c2_leg2 * g1_wz_leg2;
-        let t262 = s2_leg2 * g1_wz_leg2;
-        let t264 = g2_wz_leg2 * parameters[16] + parameters[17] * t259
-            - parameters[18] * t262;
-        let t265 = g2_vx_leg2 * t264;
-        let t278 = g1_wz_leg2 * parameters[12] + g1_wz_leg2 * parameters[11]
-            + c2_leg2 * (g2_wz_leg2 * parameters[17] + parameters[19] * t259)
-            - s2_leg2 * (g2_wz_leg2 * parameters[18] - parameters[19] * t262);
-        let g1_wz_leg3 = t218 * minus_g1_vy_leg3 + t221 * g1_vx_leg3;
-        let g2_wz_leg3 = 0.11764705882352941 * (t220 * t64 - t217 * t64);
-        let t293 = c2_leg3 * g1_wz_leg3;
-        let t298 = s2_leg3 * g1_wz_leg3;
-        let t303 = g1_wz_leg3 * parameters[23] + g1_wz_leg3 * parameters[22]
-            + c2_leg3 * (g2_wz_leg3 * parameters[28] + parameters[30] * t293)
-            - s2_leg3 * (g2_wz_leg3 * parameters[29] - parameters[30] * t298);
-        let t309 = g2_wz_leg3 * parameters[27] + parameters[28] * t293
-            - parameters[29] * t298;
-        let t310 = g2_vx_leg3 * t309;
-        let g1_wz_leg4 = t218 * g1_vx_leg4 - t221 * minus_g1_vy_leg4;
-        let t319 = s2_leg4 * g1_wz_leg4;
-        let g2_wz_leg4 = 0.11764705882352941 * (t220 * t95 - t217 * t95);
-        let t329 = c2_leg4 * g1_wz_leg4;
-        let t334 = g1_wz_leg4 * parameters[33] + g1_wz_leg4 * parameters[34]
-            + s2_leg4 * (parameters[41] * t319 - g2_wz_leg4 * parameters[40])
-            + c2_leg4 * (g2_wz_leg4 * parameters[39] + parameters[41] * t329);
-        let t340 = g2_wz_leg4 * parameters[38] + parameters[39] * t329
-            - parameters[40] * t319;
-        let t341 = minus_g2_vx_leg4 * t340;
-        let t343 = g1_vx_leg1 * t242 - t249 + t265 - minus_g1_vx_leg2 * t278
-            + g1_vx_leg3 * t303 + t310 + g1_vx_leg4 * t334 - t341;
-        let t347 = t343 - (c_phi * parameters[46] + s_phi * parameters[45]);
-        let t358 = g1_vy_leg1 * t138 - t144 - (t154 - minus_g1_vy_leg2 * t165) + t189
-            - minus_g1_vy_leg3 * t183 + t212 - minus_g1_vy_leg4 * t206;
-        let t370 = g1_vy_leg1 * t242 - t249 - (minus_g1_vy_leg2 * t278 + t265) + t310
-            - minus_g1_vy_leg3 * t303 + t341 - minus_g1_vy_leg4 * t334;
-        let t374 = t370 + c_phi * parameters[45] - s_phi * parameters[46];
-        let t385 = g1_wz_leg1 * t242 + g2_wz_leg1 * t248 + g1_wz_leg2 * t278
-            + g2_wz_leg2 * t264 + g1_wz_leg3 * t303 + g2_wz_leg3 * t309;
+        let t2 = s_phi + c_phi;
+        let t3 = 0.05656854249492381 * t2;
+        let t5 = pose[1] + t3 - 0.21213203435596426;
+        let t6 = c_phi - s_phi;
+        let t7 = 0.05656854249492381 * t6;
+        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t10 = t5 - t9;
+        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
+        ::overact::guard::reach(t18, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
+        let t20 = 1.0 / minus_s2_leg1;
+        let g2_vx_leg1 = 2.079725827019258 * t20;
+        let t22 = g2_vx_leg1 * parameters[5];
+        let t23 = t9 + t5;
+        let c2_leg1 = 2.079725827019258 * t23;
+        let t25 = 1.4705882352941178 * t23;
+        let t26 = 0.7071067811865476 * minus_s2_leg1;
+        let t27 = t25 + t26;
+        let minus_g1_vx_leg1 = t27 * t20;
+        let t29 = c2_leg1 * minus_g1_vx_leg1;
+        let t35 = g2_vx_leg1 * parameters[7];
+        let t39 = g2_vx_leg1 * parameters[6];
+        let t47 = minus_s2_leg1 * (t35 - t27 * parameters[8])
+            + c2_leg1 * (t39 - parameters[8] * t29)
+            - (minus_g1_vx_leg1 * parameters[0] + minus_g1_vx_leg1 * parameters[1]);
+        let t51 = pose[0] - t3 + 0.21213203435596426;
+        let t53 = pose[1] + t7 - 0.21213203435596426;
+        let t54 = t51 + t53;
+        let t62 = 8.650519031141869
+            * (0.5 * (t54 * t54) - (t51 * t51 + t53 * t53 - 0.1156));
+        ::overact::guard::reach(t62, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t62);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
+        let t64 = 1.0 / minus_s2_leg2;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t64;
+        let t66 = minus_g2_vx_leg2 * parameters[16];
+        let t67 = t53 - t51;
+        let c2_leg2 = 2.079725827019258 * t67;
+        let t69 = 0.7071067811865476 * minus_s2_leg2;
+        let t70 = 1.4705882352941178 * t67;
+        let t71 = t69 - t70;
+        let minus_g1_vx_leg2 = t71 * t64;
+        let t73 = c2_leg2 * minus_g1_vx_leg2;
+        let t82 = minus_g2_vx_leg2 * parameters[18];
+        let t86 = minus_g2_vx_leg2 * parameters[17];
+        let t91 = minus_g1_vx_leg2 * parameters[12] + minus_g1_vx_leg2 * parameters[11]
+            + minus_s2_leg2 * (t82 + t71 * parameters[19])
+            + c2_leg2 * (t86 + parameters[19] * t73);
+        let t94 = g2_vx_leg1 * (t22 - parameters[6] * t29 - t27 * parameters[7])
+            - minus_g1_vx_leg1 * t47
+            + minus_g2_vx_leg2 * (t66 + parameters[17] * t73 + t71 * parameters[18])
+            + minus_g1_vx_leg2 * t91;
+        let t96 = pose[0] - t7 + 0.21213203435596426;
+        let t98 = pose[1] - t3 + 0.21213203435596426;
+        let t99 = t96 - t98;
+        let t107 = 8.650519031141869
+            * (0.5 * (t99 * t99) - (t96 * t96 + t98 * t98 - 0.1156));
+        ::overact::guard::reach(t107, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t107);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
+        let t109 = 1.0 / minus_s2_leg3;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t109;
+        let t111 = t96 + t98;
+        let minus_c2_leg3 = 2.079725827019258 * t111;
+        let t113 = 1.4705882352941178 * t111;
+        let t114 = 0.7071067811865476 * minus_s2_leg3;
+        let t115 = t113 - t114;
+        let minus_g1_vx_leg3 = t115 * t109;
+        let t117 = minus_c2_leg3 * minus_g1_vx_leg3;
+        let t119 = minus_g2_vx_leg3 * parameters[27];
+        let t127 = minus_g2_vx_leg3 * parameters[29];
+        let t132 = minus_g2_vx_leg3 * parameters[28];
+        let t136 = minus_g1_vx_leg3 * parameters[23] + minus_g1_vx_leg3 * parameters[22]
+            + minus_s2_leg3 * (t127 + t115 * parameters[30])
+            + minus_c2_leg3 * (parameters[30] * t117 - t132);
+        let t141 = pose[0] + t3 - 0.21213203435596426;
+        let t143 = pose[1] - t7 + 0.21213203435596426;
+        let t144 = t141 + t143;
+        let t152 = 8.650519031141869
+            * (0.5 * (t144 * t144) - (t141 * t141 + t143 * t143 - 0.1156));
+        ::overact::guard::reach(t152, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t152);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t154 = 1.0 / minus_s2_leg4;
+        let g2_vx_leg4 = 2.079725827019258 * t154;
+        let t156 = t141 - t143;
+        let c2_leg4 = 2.079725827019258 * t156;
+        let t158 = 1.4705882352941178 * t156;
+        let t159 = 0.7071067811865476 * minus_s2_leg4;
+        let t160 = t158 - t159;
+        let minus_g1_vx_leg4 = t160 * t154;
+        let t162 = c2_leg4 * minus_g1_vx_leg4;
+        let t164 = g2_vx_leg4 * parameters[38];
+        let t173 = g2_vx_leg4 * parameters[40];
+        let t177 = g2_vx_leg4 * parameters[39];
+        let t181 = minus_g1_vx_leg4 * parameters[34] + minus_g1_vx_leg4 * parameters[33]
+            + minus_s2_leg4 * (t160 * parameters[41] - t173)
+            + c2_leg4 * (parameters[41] * t162 - t177);
+        let t184 = t94
+            - (minus_g2_vx_leg3 * (parameters[28] * t117 - t119 - t115 * parameters[29])
+                - minus_g1_vx_leg3 * t136)
+            - (g2_vx_leg4 * (parameters[39] * t162 - t164 + t160 * parameters[40])
+                - minus_g1_vx_leg4 * t181);
+        let t186 = t26 - t25;
+        let g1_vy_leg1 = t186 * t20;
+        let t188 = c2_leg1 * g1_vy_leg1;
+        let t193 = g2_vx_leg1 * (t22 + parameters[6] * t188 + t186 * parameters[7]);
+        let t204 = g1_vy_leg1 * parameters[0] + g1_vy_leg1 * parameters[1]
+            + minus_s2_leg1 * (t35 + t186 * parameters[8])
+            + c2_leg1 * (t39 + parameters[8] * t188);
+        let t207 = t69 + t70;
+        let minus_g1_vy_leg2 = t207 * t64;
+        let t209 = c2_leg2 * minus_g1_vy_leg2;
+        let t214 = minus_g2_vx_leg2
+            * (parameters[17] * t209 - t66 + t207 * parameters[18]);
+        let t225 = minus_g1_vy_leg2 * parameters[12] + minus_g1_vy_leg2 * parameters[11]
+            + minus_s2_leg2 * (t207 * parameters[19] - t82)
+            + c2_leg2 * (parameters[19] * t209 - t86);
+        let t229 = t114 + t113;
+        let minus_g1_vy_leg3 = t229 * t109;
+        let t231 = minus_c2_leg3 * minus_g1_vy_leg3;
+        let t236 = minus_g2_vx_leg3
+            * (parameters[28] * t231 - t119 - t229 * parameters[29]);
+        let t247 = minus_g1_vy_leg3 * parameters[23] + minus_g1_vy_leg3 * parameters[22]
+            + minus_s2_leg3 * (t127 + t229 * parameters[30])
+            + minus_c2_leg3 * (parameters[30] * t231 - t132);
+        let t251 = t159 + t158;
+        let g1_vy_leg4 = t251 * t154;
+        let t259 = c2_leg4 * g1_vy_leg4;
+        let t264 = g1_vy_leg4 * parameters[34] + g1_vy_leg4 * parameters[33]
+            - (minus_s2_leg4 * (t173 - t251 * parameters[41])
+                + c2_leg4 * (t177 - parameters[41] * t259));
+        let t270 = g2_vx_leg4 * (t164 - parameters[39] * t259 - t251 * parameters[40]);
+        let t272 = t193 - minus_g1_vx_leg1 * t204 + t214 + minus_g1_vx_leg2 * t225
+            - (t236 - minus_g1_vx_leg3 * t247) - (minus_g1_vx_leg4 * t264 + t270);
+        let g2_wz_leg1 = 0.11764705882352941 * (t6 * t20 - t2 * t20);
+        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
+        let t281 = c2_leg1 * g1_wz_leg1;
+        let t286 = t7 * t186 + t3 * t27;
+        let t288 = g2_wz_leg1 * parameters[5] + parameters[6] * t281
+            + parameters[7] * t286;
+        let t289 = g2_vx_leg1 * t288;
+        let t302 = g1_wz_leg1 * parameters[0] + g1_wz_leg1 * parameters[1]
+            + minus_s2_leg1 * (g2_wz_leg1 * parameters[7] + parameters[8] * t286)
+            + c2_leg1 * (g2_wz_leg1 * parameters[6] + parameters[8] * t281);
+        let g2_wz_leg2 = 0.11764705882352941 * (t6 * t64 - t2 * t64);
+        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
+        let t313 = c2_leg2 * g1_wz_leg2;
+        let t318 = t7 * t71 + t3 * t207;
+        let t320 = g2_wz_leg2 * parameters[16] + parameters[17] * t313
+            + parameters[18] * t318;
+        let t321 = minus_g2_vx_leg2 * t320;
+        let t334 = g1_wz_leg2 * parameters[12] + g1_wz_leg2 * parameters[11]
+            + minus_s2_leg2 * (g2_wz_leg2 * parameters[18] + parameters[19] * t318)
+            + c2_leg2 * (g2_wz_leg2 * parameters[17] + parameters[19] * t313);
+        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
+        let t346 = t3 * t115 - t7 * t229;
+        let g2_wz_leg3 = 0.11764705882352941 * (t6 * t109 - t2 * t109);
+        let t356 = minus_c2_leg3 * g1_wz_leg3;
+        let t361 = g1_wz_leg3 * parameters[23] + g1_wz_leg3 * parameters[22]
+            - (minus_s2_leg3 * (parameters[30] * t346 - g2_wz_leg3 * parameters[29])
+                + minus_c2_leg3 * (g2_wz_leg3 * parameters[28] - parameters[30] * t356));
+        let t367 = g2_wz_leg3 * parameters[27] - parameters[28] * t356
+            - parameters[29] * t346;
+        let t368 = minus_g2_vx_leg3 * t367;
+        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
+        let t379 = t7 * t160 - t3 * t251;
+        let g2_wz_leg4 = 0.11764705882352941 * (t6 * t154 - t2 * t154);
+        let t389 = c2_leg4 * g1_wz_leg4;
+        let t394 = g1_wz_leg4 * parameters[34] + g1_wz_leg4 * parameters[33]
+            - (minus_s2_leg4 * (parameters[41] * t379 - g2_wz_leg4 * parameters[40])
+                - c2_leg4 * (g2_wz_leg4 * parameters[39] + parameters[41] * t389));
+        let t400 = parameters[40] * t379
+            - (g2_wz_leg4 * parameters[38] + parameters[39] * t389);
+        let t401 = g2_vx_leg4 * t400;
+        let t403 = t289 - minus_g1_vx_leg1 * t302 - (t321 + minus_g1_vx_leg2 * t334)
+            - (minus_g1_vx_leg3 * t361 + t368) - (minus_g1_vx_leg4 * t394 + t401);
+        let t407 = t403 - (c_phi * parameters[46] + s_phi * parameters[45]);
+        let t418 = g1_vy_leg1 * t204 + t193 - (t214 - minus_g1_vy_leg2 * t225)
+            - (t236 - minus_g1_vy_leg3 * t247) + g1_vy_leg4 * t264 + t270;
+        let t430 = g1_vy_leg1 * t302 + t289 - (minus_g1_vy_leg2 * t334 - t321)
+            - (minus_g1_vy_leg3 * t361 + t368) + g1_vy_leg4 * t394 + t401;
+        let t434 = t430 + c_phi * parameters[45] - s_phi * parameters[46];
+        let t445 = g1_wz_leg1 * t302 + g2_wz_leg1 * t288 + g1_wz_leg2 * t334
+            + g2_wz_leg2 * t320 + g1_wz_leg3 * t361 + g2_wz_leg3 * t367;
         Ok([
-            [t122 + parameters[47], t214, t347], [t214, t358 + parameters[47], t374],
-            [t347, t374, t385 + g1_wz_leg4 * t334 + g2_wz_leg4 * t340 + parameters[44]],
+            [t184 + parameters[47], t272, t407], [t272, t418 + parameters[47], t434],
+            [t407, t434, t445 + g1_wz_leg4 * t394 - g2_wz_leg4 * t400 + parameters[44]],
         ])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -4031,7 +5751,7 @@ impl Planar4Prr {
     ///
     /// Output: 3.
     ///
-    /// 330 operations (138 additions, 188 multiplications, 4 divisions), 0 square roots, 5 trigonometric pairs, 12 signs, 349 intermediates.
+    /// 386 operations (172 additions, 210 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 401 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4040,174 +5760,207 @@ impl Planar4Prr {
         twist: &[f64; 3],
         parameters: &[f64; 48],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
-        let t2 = c2_leg1 - s2_leg1;
-        let t3 = 1.0 / s2_leg1;
-        let t4 = 0.7071067811865476 * t3;
-        let g1_vx_leg1 = t2 * t4;
-        let t6 = 0.2404163056034262 * t2;
-        let minus_g2_vx_leg1 = 2.079725827019258 * t3;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t10 = s_phi + c_phi;
-        let t11 = 0.05656854249492381 * t10;
-        let t12 = t11 * twist[2];
-        let t13 = twist[0] - t12;
-        let t15 = c_phi - s_phi;
-        let t16 = 0.05656854249492381 * t15;
-        let t17 = t16 * twist[2];
-        let t18 = twist[1] + t17;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t13 + minus_g2_vx_leg1 * t18;
-        let t21 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t23 = twist[2] * t17;
-        let t24 = t6 * t21 - t23;
-        let t26 = s2_leg1 + c2_leg1;
-        let g1_vy_leg1 = t26 * t4;
-        let t28 = 0.2404163056034262 * t26;
-        let t30 = twist[2] * t12;
-        let t31 = t28 * t21 - t30;
-        let rate_dot_1_leg1 = g1_vx_leg1 * t24 + g1_vy_leg1 * t31;
-        let rate_1_leg1 = g1_vx_leg1 * t13 + g1_vy_leg1 * t18;
-        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * t24 + minus_g2_vx_leg1 * t31;
-        let t51 = s2_leg1 * rate_dot_1_leg1;
-        let t55 = c2_leg1 * rate_dot_1_leg1;
-        let t62 = s2_leg1
-            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t21
-                + parameters[8] * t51)
+        let t2 = s_phi + c_phi;
+        let t3 = 0.05656854249492381 * t2;
+        let t5 = pose[1] + t3 - 0.21213203435596426;
+        let t6 = c_phi - s_phi;
+        let t7 = 0.05656854249492381 * t6;
+        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t10 = t5 - t9;
+        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
+        ::overact::guard::reach(t18, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
+        let t20 = 1.0 / minus_s2_leg1;
+        let g2_vx_leg1 = 2.079725827019258 * t20;
+        let t23 = t9 + t5;
+        let t25 = t3 * twist[2];
+        let t26 = twist[0] - t25;
+        let t28 = t7 * twist[2];
+        let t29 = twist[1] + t28;
+        let rate_2_leg1 = g2_vx_leg1 * t26 + g2_vx_leg1 * t29;
+        let t32 = rate_2_leg1 * rate_2_leg1;
+        let t34 = twist[2] * t28;
+        let t35 = twist[2] * t25;
+        let t37 = 0.7071067811865476 * (t34 + t35);
+        let rate_dot_2_leg1 = 2.9411764705882355 * t20
+            * (0.7071067811865476 * t23 * t32 - t37);
+        let c2_leg1 = 2.079725827019258 * t23;
+        let t42 = 1.4705882352941178 * t23;
+        let t43 = 0.7071067811865476 * minus_s2_leg1;
+        let t44 = t42 + t43;
+        let t46 = t43 - t42;
+        let t50 = t44 * t34 - t46 * t35 - 0.34 * t32;
+        let rate_dot_1_leg1 = t20 * t50;
+        let t52 = c2_leg1 * rate_dot_1_leg1;
+        let t60 = ::overact::math::signed(parameters[10], twist[2] - rate_2_leg1);
+        let t61 = parameters[5] * rate_dot_2_leg1 + parameters[6] * t52
+            + parameters[7] * t50 + ::overact::math::signed(parameters[9], rate_2_leg1)
+            - t60;
+        let t62 = g2_vx_leg1 * t61;
+        let minus_g1_vx_leg1 = t44 * t20;
+        let g1_vy_leg1 = t46 * t20;
+        let rate_1_leg1 = g1_vy_leg1 * t29 - minus_g1_vx_leg1 * t26;
+        let t88 = minus_s2_leg1
+            * (parameters[6] * t32 + parameters[7] * rate_dot_2_leg1
+                + parameters[8] * t50)
             + c2_leg1
-                * (parameters[8] * t55
-                    - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t21));
-        let t63 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
+                * (parameters[6] * rate_dot_2_leg1 - parameters[7] * t32
+                    + parameters[8] * t52);
+        let t89 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
             + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t62;
-        let t73 = ::overact::math::signed(parameters[10], minus_rate_2_leg1 + twist[2]);
-        let t74 = parameters[6] * t55 - parameters[5] * minus_rate_dot_2_leg1
-            - parameters[7] * t51
-            - ::overact::math::signed(parameters[9], minus_rate_2_leg1) - t73;
-        let t75 = minus_g2_vx_leg1 * t74;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t79 = 1.0 / s2_leg2;
-        let g2_vx_leg2 = 2.079725827019258 * t79;
-        let t83 = 0.7071067811865476 * (t30 + t23);
-        let t84 = twist[0] - t17;
-        let t86 = twist[1] - t12;
-        let rate_2_leg2 = g2_vx_leg2 * t84 - g2_vx_leg2 * t86;
-        let t89 = rate_2_leg2 * rate_2_leg2;
-        let rate_dot_2_leg2 = 2.9411764705882355 * t79 * (t83 - t89 * (0.34 * c2_leg2));
-        let t95 = 0.7071067811865476 * t79;
-        let t96 = s2_leg2 - c2_leg2;
-        let t98 = c2_leg2 + s2_leg2;
-        let t103 = t2 * t6 + t26 * t28;
-        let rate_dot_1_leg2 = t95 * (t96 * t23 - t98 * t30 + t103 * t89);
-        let t107 = c2_leg2 * rate_dot_1_leg2;
-        let t110 = s2_leg2 * rate_dot_1_leg2;
-        let t116 = ::overact::math::signed(parameters[21], twist[2] - rate_2_leg2);
-        let t117 = parameters[16] * rate_dot_2_leg2 + parameters[17] * t107
-            - parameters[18] * t110
-            + ::overact::math::signed(parameters[20], rate_2_leg2) - t116;
-        let t118 = g2_vx_leg2 * t117;
-        let minus_g1_vx_leg2 = t98 * t95;
-        let minus_g1_vy_leg2 = t96 * t95;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t84 + minus_g1_vy_leg2 * t86;
-        let t144 = s2_leg2
-            * (parameters[19] * t110
-                - (parameters[17] * t89 + parameters[18] * rate_dot_2_leg2))
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t88;
+        let t93 = pose[0] - t3 + 0.21213203435596426;
+        let t95 = pose[1] + t7 - 0.21213203435596426;
+        let t96 = t93 + t95;
+        let t104 = 8.650519031141869
+            * (0.5 * (t96 * t96) - (t93 * t93 + t95 * t95 - 0.1156));
+        ::overact::guard::reach(t104, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t104);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
+        let t106 = 0.7071067811865476 * minus_s2_leg2;
+        let t107 = t95 - t93;
+        let t108 = 1.4705882352941178 * t107;
+        let t109 = t106 - t108;
+        let t110 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t109 * t110;
+        let t113 = t106 + t108;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t110;
+        let t117 = twist[1] - t25;
+        let t119 = twist[0] - t28;
+        let rate_2_leg2 = minus_g2_vx_leg2 * t117 - minus_g2_vx_leg2 * t119;
+        let t122 = rate_2_leg2 * rate_2_leg2;
+        let t124 = t109 * t35 - t113 * t34 + 0.34 * t122;
+        let minus_rate_dot_1_leg2 = t110 * t124;
+        let minus_g1_vy_leg2 = t113 * t110;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t119 + minus_g1_vy_leg2 * t117;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t110
+            * (t37 - 0.7071067811865476 * t107 * t122);
+        let c2_leg2 = 2.079725827019258 * t107;
+        let t153 = c2_leg2 * minus_rate_dot_1_leg2;
+        let t157 = minus_s2_leg2
+            * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t122
+                + parameters[19] * t124)
             + c2_leg2
-                * (parameters[17] * rate_dot_2_leg2 - parameters[18] * t89
-                    + parameters[19] * t107);
-        let t145 = parameters[11] * rate_dot_1_leg2 + parameters[12] * rate_dot_1_leg2
-            - parameters[13] * minus_rate_1_leg2
-            - ::overact::math::signed(parameters[14], minus_rate_1_leg2) + parameters[15]
-            + t144;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
-        let t151 = s2_leg3 - c2_leg3;
-        let t152 = 1.0 / s2_leg3;
-        let t153 = 0.7071067811865476 * t152;
-        let g1_vx_leg3 = t151 * t153;
-        let t155 = twist[0] + t12;
-        let t157 = s2_leg3 + c2_leg3;
-        let minus_g1_vy_leg3 = t157 * t153;
-        let t159 = twist[1] - t17;
-        let rate_1_leg3 = g1_vx_leg3 * t155 - minus_g1_vy_leg3 * t159;
-        let g2_vx_leg3 = 2.079725827019258 * t152;
-        let rate_2_leg3 = g2_vx_leg3 * t155 + g2_vx_leg3 * t159;
-        let t170 = rate_2_leg3 * rate_2_leg3;
-        let minus_rate_dot_1_leg3 = t153 * (t157 * t30 - t151 * t23 - t103 * t170);
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t152
-            * (t170 * (0.34 * c2_leg3) - t83);
-        let t189 = s2_leg3 * minus_rate_dot_1_leg3;
-        let t196 = c2_leg3 * minus_rate_dot_1_leg3;
-        let t200 = s2_leg3
-            * (parameters[29] * minus_rate_dot_2_leg3 - parameters[28] * t170
-                - parameters[30] * t189)
-            - c2_leg3
-                * (parameters[28] * minus_rate_dot_2_leg3 + parameters[29] * t170
-                    + parameters[30] * t196);
-        let t201 = parameters[24] * rate_1_leg3 - parameters[23] * minus_rate_dot_1_leg3
-            + ::overact::math::signed(parameters[25], rate_1_leg3) + parameters[26]
-            - parameters[22] * minus_rate_dot_1_leg3 + t200;
-        let t211 = ::overact::math::signed(parameters[32], twist[2] - rate_2_leg3);
-        let t212 = parameters[29] * t189
-            - (parameters[27] * minus_rate_dot_2_leg3 + parameters[28] * t196)
-            + ::overact::math::signed(parameters[31], rate_2_leg3) - t211;
-        let t213 = g2_vx_leg3 * t212;
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
-        let t218 = c2_leg4 + s2_leg4;
-        let t219 = 1.0 / s2_leg4;
-        let t220 = 0.7071067811865476 * t219;
-        let g1_vx_leg4 = t218 * t220;
-        let minus_g2_vx_leg4 = 2.079725827019258 * t219;
-        let t223 = twist[1] + t12;
-        let t225 = twist[0] + t17;
-        let rate_2_leg4 = minus_g2_vx_leg4 * t223 - minus_g2_vx_leg4 * t225;
-        let t228 = rate_2_leg4 * rate_2_leg4;
-        let t231 = c2_leg4 - s2_leg4;
-        let rate_dot_1_leg4 = t220 * (t103 * t228 - (t218 * t30 + t231 * t23));
-        let minus_g1_vy_leg4 = t231 * t220;
-        let rate_1_leg4 = g1_vx_leg4 * t225 - minus_g1_vy_leg4 * t223;
-        let t248 = s2_leg4 * rate_dot_1_leg4;
-        let rate_dot_2_leg4 = 2.9411764705882355 * t219
-            * (t83 - t228 * (0.34 * c2_leg4));
-        let t263 = c2_leg4 * rate_dot_1_leg4;
-        let t267 = s2_leg4
-            * (parameters[41] * t248
-                - (parameters[39] * t228 + parameters[40] * rate_dot_2_leg4))
+                * (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t122
+                    + parameters[19] * t153);
+        let t158 = parameters[15]
+            - (parameters[12] * minus_rate_dot_1_leg2
+                + parameters[13] * minus_rate_1_leg2
+                + ::overact::math::signed(parameters[14], minus_rate_1_leg2))
+            - parameters[11] * minus_rate_dot_1_leg2 - t157;
+        let t168 = ::overact::math::signed(parameters[21], twist[2] - rate_2_leg2);
+        let t169 = ::overact::math::signed(parameters[20], rate_2_leg2)
+            - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t153
+                + parameters[18] * t124) - t168;
+        let t170 = minus_g2_vx_leg2 * t169;
+        let t174 = pose[0] - t7 + 0.21213203435596426;
+        let t176 = pose[1] - t3 + 0.21213203435596426;
+        let t177 = t174 + t176;
+        let t178 = 1.4705882352941178 * t177;
+        let t179 = t174 - t176;
+        let t187 = 8.650519031141869
+            * (0.5 * (t179 * t179) - (t174 * t174 + t176 * t176 - 0.1156));
+        ::overact::guard::reach(t187, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t187);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
+        let t189 = 0.7071067811865476 * minus_s2_leg3;
+        let t190 = t178 - t189;
+        let t191 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t190 * t191;
+        let t194 = t189 + t178;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t191;
+        let t198 = twist[0] + t25;
+        let t200 = twist[1] - t28;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t198 + minus_g2_vx_leg3 * t200;
+        let t203 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t205 = t190 * t34 + t194 * t35 + 0.34 * t203;
+        let minus_rate_dot_1_leg3 = t191 * t205;
+        let minus_g1_vy_leg3 = t194 * t191;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t198 + minus_g1_vy_leg3 * t200;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t191
+            * (t37 + 0.7071067811865476 * t177 * t203);
+        let minus_c2_leg3 = 2.079725827019258 * t177;
+        let t231 = minus_c2_leg3 * minus_rate_dot_1_leg3;
+        let t238 = minus_s2_leg3
+            * (parameters[29] * minus_rate_dot_2_leg3 - parameters[28] * t203
+                + parameters[30] * t205)
+            + minus_c2_leg3
+                * (parameters[30] * t231
+                    - (parameters[28] * minus_rate_dot_2_leg3 + parameters[29] * t203));
+        let t239 = parameters[26]
+            - (parameters[23] * minus_rate_dot_1_leg3
+                + parameters[24] * minus_rate_1_leg3
+                + ::overact::math::signed(parameters[25], minus_rate_1_leg3))
+            - parameters[22] * minus_rate_dot_1_leg3 - t238;
+        let t249 = ::overact::math::signed(parameters[32], minus_rate_2_leg3 + twist[2]);
+        let t250 = parameters[28] * t231 - parameters[27] * minus_rate_dot_2_leg3
+            - parameters[29] * t205
+            - ::overact::math::signed(parameters[31], minus_rate_2_leg3) - t249;
+        let t251 = minus_g2_vx_leg3 * t250;
+        let t255 = pose[0] + t3 - 0.21213203435596426;
+        let t257 = pose[1] - t7 + 0.21213203435596426;
+        let t258 = t255 + t257;
+        let t266 = 8.650519031141869
+            * (0.5 * (t258 * t258) - (t255 * t255 + t257 * t257 - 0.1156));
+        ::overact::guard::reach(t266, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t266);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t268 = 1.0 / minus_s2_leg4;
+        let g2_vx_leg4 = 2.079725827019258 * t268;
+        let t270 = twist[0] + t28;
+        let t272 = twist[1] + t25;
+        let rate_2_leg4 = g2_vx_leg4 * t270 - g2_vx_leg4 * t272;
+        let t277 = t255 - t257;
+        let t279 = rate_2_leg4 * rate_2_leg4;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t268
+            * (t37 - 0.7071067811865476 * t277 * t279);
+        let c2_leg4 = 2.079725827019258 * t277;
+        let t286 = 1.4705882352941178 * t277;
+        let t287 = 0.7071067811865476 * minus_s2_leg4;
+        let t288 = t286 - t287;
+        let t290 = t287 + t286;
+        let t293 = 0.34 * t279 - (t288 * t35 + t290 * t34);
+        let minus_rate_dot_1_leg4 = t268 * t293;
+        let t295 = c2_leg4 * minus_rate_dot_1_leg4;
+        let t302 = ::overact::math::signed(parameters[43], twist[2] - rate_2_leg4);
+        let t303 = ::overact::math::signed(parameters[42], rate_2_leg4)
+            - (parameters[38] * minus_rate_dot_2_leg4 + parameters[39] * t295
+                + parameters[40] * t293) - t302;
+        let t304 = g2_vx_leg4 * t303;
+        let minus_g1_vx_leg4 = t288 * t268;
+        let g1_vy_leg4 = t290 * t268;
+        let rate_1_leg4 = g1_vy_leg4 * t272 - minus_g1_vx_leg4 * t270;
+        let t330 = minus_s2_leg4
+            * (parameters[40] * minus_rate_dot_2_leg4 - parameters[39] * t279
+                + parameters[41] * t293)
             + c2_leg4
-                * (parameters[39] * rate_dot_2_leg4 - parameters[40] * t228
-                    + parameters[41] * t263);
-        let t268 = parameters[33] * rate_dot_1_leg4 + parameters[34] * rate_dot_1_leg4
-            + parameters[35] * rate_1_leg4
+                * (parameters[39] * minus_rate_dot_2_leg4 + parameters[40] * t279
+                    + parameters[41] * t295);
+        let t331 = parameters[35] * rate_1_leg4 - parameters[34] * minus_rate_dot_1_leg4
             + ::overact::math::signed(parameters[36], rate_1_leg4) + parameters[37]
-            + t267;
-        let t278 = ::overact::math::signed(parameters[43], twist[2] - rate_2_leg4);
-        let t279 = parameters[38] * rate_dot_2_leg4 + parameters[39] * t263
-            - parameters[40] * t248
-            + ::overact::math::signed(parameters[42], rate_2_leg4) - t278;
-        let t280 = minus_g2_vx_leg4 * t279;
-        let t282 = g1_vx_leg1 * t63 - t75 + t118 - minus_g1_vx_leg2 * t145
-            + g1_vx_leg3 * t201 + t213 + g1_vx_leg4 * t268 - t280;
-        let t283 = twist[2] * twist[2];
-        let t284 = parameters[46] * t283;
-        let t286 = parameters[45] * t283;
-        let t300 = g1_vy_leg1 * t63 - t75 - (minus_g1_vy_leg2 * t145 + t118) + t213
-            - minus_g1_vy_leg3 * t201 + t280 - minus_g1_vy_leg4 * t268;
-        let g1_wz_leg1 = g1_vy_leg1 * t16 - g1_vx_leg1 * t11;
-        let g2_wz_leg1 = 0.11764705882352941 * (t3 * t10 - t3 * t15);
-        let g1_wz_leg2 = t11 * minus_g1_vy_leg2 + t16 * minus_g1_vx_leg2;
-        let g2_wz_leg2 = 0.11764705882352941 * (t10 * t79 - t15 * t79);
-        let g1_wz_leg3 = t16 * minus_g1_vy_leg3 + t11 * g1_vx_leg3;
-        let g2_wz_leg3 = 0.11764705882352941 * (t10 * t152 - t15 * t152);
-        let t339 = g1_wz_leg1 * t63 + g2_wz_leg1 * t74 + t73 + g1_wz_leg2 * t145
-            + g2_wz_leg2 * t117 + t116 + g1_wz_leg3 * t201 + g2_wz_leg3 * t212 + t211;
-        let g1_wz_leg4 = t16 * g1_vx_leg4 - t11 * minus_g1_vy_leg4;
-        let g2_wz_leg4 = 0.11764705882352941 * (t10 * t219 - t15 * t219);
+            - parameters[33] * minus_rate_dot_1_leg4 - t330;
+        let t334 = t62 - minus_g1_vx_leg1 * t89 - (minus_g1_vx_leg2 * t158 + t170)
+            - (minus_g1_vx_leg3 * t239 + t251) + t304 - minus_g1_vx_leg4 * t331;
+        let t335 = twist[2] * twist[2];
+        let t336 = parameters[46] * t335;
+        let t338 = parameters[45] * t335;
+        let t352 = g1_vy_leg1 * t89 + t62 + t170 - minus_g1_vy_leg2 * t158
+            - (minus_g1_vy_leg3 * t239 + t251) + g1_vy_leg4 * t331 - t304;
+        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
+        let g2_wz_leg1 = 0.11764705882352941 * (t6 * t20 - t2 * t20);
+        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
+        let g2_wz_leg2 = 0.11764705882352941 * (t6 * t110 - t2 * t110);
+        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
+        let g2_wz_leg3 = 0.11764705882352941 * (t6 * t191 - t2 * t191);
+        let t391 = g1_wz_leg1 * t89 + g2_wz_leg1 * t61 + t60 + g1_wz_leg2 * t158
+            + g2_wz_leg2 * t169 + t168 + g1_wz_leg3 * t239 + g2_wz_leg3 * t250 + t249;
+        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
+        let g2_wz_leg4 = 0.11764705882352941 * (t6 * t268 - t2 * t268);
         Ok([
-            t282 + s_phi * t284 - c_phi * t286, t300 - (s_phi * t286 + c_phi * t284),
-            t339 + g1_wz_leg4 * t268 + g2_wz_leg4 * t279 + t278,
+            t334 + s_phi * t336 - c_phi * t338, t352 - (s_phi * t338 + c_phi * t336),
+            t391 + g1_wz_leg4 * t331 + g2_wz_leg4 * t303 + t302,
         ])
     }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
@@ -4221,7 +5974,7 @@ impl Planar4Prr {
     ///
     /// Output: 4.
     ///
-    /// 511 operations (220 additions, 283 multiplications, 8 divisions), 1 square roots, 5 trigonometric pairs, 12 signs, 530 intermediates.
+    /// 570 operations (255 additions, 307 multiplications, 8 divisions), 5 square roots, 1 trigonometric pairs, 12 signs, 585 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4232,242 +5985,277 @@ impl Planar4Prr {
         parameters: &[f64; 48],
         preload: &[f64; 1],
     ) -> Result<[f64; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
-        let t2 = c2_leg1 - s2_leg1;
-        let t3 = 1.0 / s2_leg1;
-        let t4 = 0.7071067811865476 * t3;
-        let g1_vx_leg1 = t2 * t4;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t8 = s_phi + c_phi;
-        let t9 = 0.05656854249492381 * t8;
-        let t10 = t9 * acceleration[2];
-        let t12 = c_phi - s_phi;
-        let t13 = 0.05656854249492381 * t12;
-        let t14 = t13 * twist[2];
-        let t15 = twist[2] * t14;
-        let t17 = 0.2404163056034262 * t2;
-        let minus_g2_vx_leg1 = 2.079725827019258 * t3;
-        let t19 = t9 * twist[2];
-        let t20 = twist[0] - t19;
-        let t22 = twist[1] + t14;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t20 + minus_g2_vx_leg1 * t22;
-        let t25 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t27 = acceleration[0] - t10 - t15 + t17 * t25;
-        let t29 = s2_leg1 + c2_leg1;
-        let g1_vy_leg1 = t29 * t4;
-        let t31 = t13 * acceleration[2];
-        let t33 = twist[2] * t19;
-        let t35 = 0.2404163056034262 * t29;
-        let t37 = acceleration[1] + t31 - t33 + t35 * t25;
-        let rate_dot_1_leg1 = g1_vx_leg1 * t27 + g1_vy_leg1 * t37;
-        let rate_1_leg1 = g1_vx_leg1 * t20 + g1_vy_leg1 * t22;
-        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * t27 + minus_g2_vx_leg1 * t37;
-        let t57 = s2_leg1 * rate_dot_1_leg1;
-        let t61 = c2_leg1 * rate_dot_1_leg1;
-        let t68 = s2_leg1
-            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t25
-                + parameters[8] * t57)
+        let t2 = s_phi + c_phi;
+        let t3 = 0.05656854249492381 * t2;
+        let t5 = pose[1] + t3 - 0.21213203435596426;
+        let t6 = c_phi - s_phi;
+        let t7 = 0.05656854249492381 * t6;
+        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t10 = t5 - t9;
+        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
+        ::overact::guard::reach(t18, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
+        let t20 = 0.7071067811865476 * minus_s2_leg1;
+        let t21 = t9 + t5;
+        let t22 = 1.4705882352941178 * t21;
+        let t23 = t20 - t22;
+        let t24 = 1.0 / minus_s2_leg1;
+        let g1_vy_leg1 = t23 * t24;
+        let t28 = pose[0] - t3 + 0.21213203435596426;
+        let t30 = pose[1] + t7 - 0.21213203435596426;
+        let t31 = t28 + t30;
+        let t39 = 8.650519031141869
+            * (0.5 * (t31 * t31) - (t28 * t28 + t30 * t30 - 0.1156));
+        ::overact::guard::reach(t39, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t39);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
+        let t41 = 0.7071067811865476 * minus_s2_leg2;
+        let t42 = t30 - t28;
+        let t43 = 1.4705882352941178 * t42;
+        let t44 = t41 + t43;
+        let t45 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t44 * t45;
+        let t50 = pose[0] - t7 + 0.21213203435596426;
+        let t52 = pose[1] - t3 + 0.21213203435596426;
+        let t53 = t50 - t52;
+        let t61 = 8.650519031141869
+            * (0.5 * (t53 * t53) - (t50 * t50 + t52 * t52 - 0.1156));
+        ::overact::guard::reach(t61, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t61);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
+        let t63 = 0.7071067811865476 * minus_s2_leg3;
+        let t64 = t50 + t52;
+        let t65 = 1.4705882352941178 * t64;
+        let t66 = t63 + t65;
+        let t67 = 1.0 / minus_s2_leg3;
+        let minus_g1_vy_leg3 = t66 * t67;
+        let t72 = pose[0] + t3 - 0.21213203435596426;
+        let t74 = pose[1] - t7 + 0.21213203435596426;
+        let t75 = t72 + t74;
+        let t83 = 8.650519031141869
+            * (0.5 * (t75 * t75) - (t72 * t72 + t74 * t74 - 0.1156));
+        ::overact::guard::reach(t83, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t83);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t85 = 0.7071067811865476 * minus_s2_leg4;
+        let t86 = t72 - t74;
+        let t87 = 1.4705882352941178 * t86;
+        let t88 = t85 + t87;
+        let t89 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = t88 * t89;
+        let t93 = t41 - t43;
+        let minus_g1_vx_leg2 = t93 * t45;
+        let t96 = t22 + t20;
+        let minus_g1_vx_leg1 = t96 * t24;
+        let t100 = t65 - t63;
+        let minus_g1_vx_leg3 = t100 * t67;
+        let t104 = t87 - t85;
+        let minus_g1_vx_leg4 = t104 * t89;
+        let t107 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+            + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
+        let t114 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+            + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
+            + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
+        let t115 = 1.0 / t114;
+        let t116 = t107 * t115;
+        let t118 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
+            - t107 * t116;
+        ::overact::guard::platform(t118, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t118, 3.440476190476192, "actuators")?;
+        let t119 = 1.0 / t118;
+        let t120 = t7 * acceleration[2];
+        let t122 = t3 * twist[2];
+        let t123 = twist[2] * t122;
+        let t124 = acceleration[1] + t120 - t123;
+        let t126 = t3 * acceleration[2];
+        let t128 = t7 * twist[2];
+        let t129 = twist[2] * t128;
+        let t130 = acceleration[0] - t126 - t129;
+        let g2_vx_leg1 = 2.079725827019258 * t24;
+        let t134 = twist[0] - t122;
+        let t136 = twist[1] + t128;
+        let rate_2_leg1 = g2_vx_leg1 * t134 + g2_vx_leg1 * t136;
+        let t139 = rate_2_leg1 * rate_2_leg1;
+        let t141 = t23 * t124 - t96 * t130 - 0.34 * t139;
+        let rate_dot_1_leg1 = t24 * t141;
+        let rate_1_leg1 = g1_vy_leg1 * t136 - minus_g1_vx_leg1 * t134;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t24
+            * (0.7071067811865476 * (t130 + t124) + 0.7071067811865476 * t21 * t139);
+        let c2_leg1 = 2.079725827019258 * t21;
+        let t171 = c2_leg1 * rate_dot_1_leg1;
+        let t175 = minus_s2_leg1
+            * (parameters[6] * t139 + parameters[7] * rate_dot_2_leg1
+                + parameters[8] * t141)
             + c2_leg1
-                * (parameters[8] * t61
-                    - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t25));
-        let t69 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
+                * (parameters[6] * rate_dot_2_leg1 - parameters[7] * t139
+                    + parameters[8] * t171);
+        let t176 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
             + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t68;
-        let t79 = ::overact::math::signed(parameters[10], minus_rate_2_leg1 + twist[2]);
-        let t80 = parameters[6] * t61 - parameters[5] * minus_rate_dot_2_leg1
-            - parameters[7] * t57
-            - ::overact::math::signed(parameters[9], minus_rate_2_leg1) - t79;
-        let t81 = minus_g2_vx_leg1 * t80;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t85 = 1.0 / s2_leg2;
-        let g2_vx_leg2 = 2.079725827019258 * t85;
-        let t89 = acceleration[0] - t31 + t33;
-        let t91 = acceleration[1] - t10 - t15;
-        let t94 = twist[0] - t14;
-        let t96 = twist[1] - t19;
-        let rate_2_leg2 = g2_vx_leg2 * t94 - g2_vx_leg2 * t96;
-        let t99 = rate_2_leg2 * rate_2_leg2;
-        let rate_dot_2_leg2 = 2.9411764705882355 * t85
-            * (0.7071067811865476 * (t89 - t91) - t99 * (0.34 * c2_leg2));
-        let t105 = 0.7071067811865476 * t85;
-        let t108 = t2 * t17 + t29 * t35;
-        let t110 = c2_leg2 + s2_leg2;
-        let t112 = s2_leg2 - c2_leg2;
-        let rate_dot_1_leg2 = t105 * (t108 * t99 - (t110 * t89 + t112 * t91));
-        let t117 = c2_leg2 * rate_dot_1_leg2;
-        let t120 = s2_leg2 * rate_dot_1_leg2;
-        let t126 = ::overact::math::signed(parameters[21], twist[2] - rate_2_leg2);
-        let t127 = parameters[16] * rate_dot_2_leg2 + parameters[17] * t117
-            - parameters[18] * t120
-            + ::overact::math::signed(parameters[20], rate_2_leg2) - t126;
-        let t128 = g2_vx_leg2 * t127;
-        let minus_g1_vx_leg2 = t110 * t105;
-        let minus_g1_vy_leg2 = t112 * t105;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t94 + minus_g1_vy_leg2 * t96;
-        let t154 = s2_leg2
-            * (parameters[19] * t120
-                - (parameters[17] * t99 + parameters[18] * rate_dot_2_leg2))
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t175;
+        let t186 = ::overact::math::signed(parameters[10], twist[2] - rate_2_leg1);
+        let t187 = parameters[5] * rate_dot_2_leg1 + parameters[6] * t171
+            + parameters[7] * t141 + ::overact::math::signed(parameters[9], rate_2_leg1)
+            - t186;
+        let t188 = g2_vx_leg1 * t187;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t45;
+        let t191 = twist[1] - t122;
+        let t193 = twist[0] - t128;
+        let rate_2_leg2 = minus_g2_vx_leg2 * t191 - minus_g2_vx_leg2 * t193;
+        let t199 = acceleration[0] - t120 + t123;
+        let t201 = acceleration[1] - t126 - t129;
+        let t205 = rate_2_leg2 * rate_2_leg2;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t45
+            * (0.7071067811865476 * (t199 - t201) - 0.7071067811865476 * t42 * t205);
+        let c2_leg2 = 2.079725827019258 * t42;
+        let t215 = t93 * t199 + t44 * t201 + 0.34 * t205;
+        let minus_rate_dot_1_leg2 = t45 * t215;
+        let t217 = c2_leg2 * minus_rate_dot_1_leg2;
+        let t224 = ::overact::math::signed(parameters[21], twist[2] - rate_2_leg2);
+        let t225 = ::overact::math::signed(parameters[20], rate_2_leg2)
+            - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t217
+                + parameters[18] * t215) - t224;
+        let t226 = minus_g2_vx_leg2 * t225;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t193 + minus_g1_vy_leg2 * t191;
+        let t250 = minus_s2_leg2
+            * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t205
+                + parameters[19] * t215)
             + c2_leg2
-                * (parameters[17] * rate_dot_2_leg2 - parameters[18] * t99
-                    + parameters[19] * t117);
-        let t155 = parameters[11] * rate_dot_1_leg2 + parameters[12] * rate_dot_1_leg2
-            - parameters[13] * minus_rate_1_leg2
-            - ::overact::math::signed(parameters[14], minus_rate_1_leg2) + parameters[15]
-            + t154;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
-        let t161 = s2_leg3 - c2_leg3;
-        let t162 = 1.0 / s2_leg3;
-        let t163 = 0.7071067811865476 * t162;
-        let g1_vx_leg3 = t161 * t163;
-        let t165 = twist[0] + t19;
-        let t167 = s2_leg3 + c2_leg3;
-        let minus_g1_vy_leg3 = t167 * t163;
-        let t169 = twist[1] - t14;
-        let rate_1_leg3 = g1_vx_leg3 * t165 - minus_g1_vy_leg3 * t169;
-        let t174 = acceleration[1] - t31 + t33;
-        let t177 = acceleration[0] + t10 + t15;
-        let g2_vx_leg3 = 2.079725827019258 * t162;
-        let rate_2_leg3 = g2_vx_leg3 * t165 + g2_vx_leg3 * t169;
-        let t184 = rate_2_leg3 * rate_2_leg3;
-        let minus_rate_dot_1_leg3 = t163 * (t167 * t174 - t161 * t177 - t108 * t184);
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t162
-            * (t184 * (0.34 * c2_leg3) - 0.7071067811865476 * (t177 + t174));
-        let t205 = s2_leg3 * minus_rate_dot_1_leg3;
-        let t212 = c2_leg3 * minus_rate_dot_1_leg3;
-        let t216 = s2_leg3
-            * (parameters[29] * minus_rate_dot_2_leg3 - parameters[28] * t184
-                - parameters[30] * t205)
-            - c2_leg3
-                * (parameters[28] * minus_rate_dot_2_leg3 + parameters[29] * t184
-                    + parameters[30] * t212);
-        let t217 = parameters[24] * rate_1_leg3 - parameters[23] * minus_rate_dot_1_leg3
-            + ::overact::math::signed(parameters[25], rate_1_leg3) + parameters[26]
-            - parameters[22] * minus_rate_dot_1_leg3 + t216;
-        let t227 = ::overact::math::signed(parameters[32], twist[2] - rate_2_leg3);
-        let t228 = parameters[29] * t205
-            - (parameters[27] * minus_rate_dot_2_leg3 + parameters[28] * t212)
-            + ::overact::math::signed(parameters[31], rate_2_leg3) - t227;
-        let t229 = g2_vx_leg3 * t228;
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
-        let t234 = c2_leg4 + s2_leg4;
-        let t235 = 1.0 / s2_leg4;
-        let t236 = 0.7071067811865476 * t235;
-        let g1_vx_leg4 = t234 * t236;
-        let t239 = acceleration[0] + t31 - t33;
-        let t241 = c2_leg4 - s2_leg4;
-        let t243 = acceleration[1] + t10 + t15;
-        let minus_g2_vx_leg4 = 2.079725827019258 * t235;
-        let t247 = twist[1] + t19;
-        let t249 = twist[0] + t14;
-        let rate_2_leg4 = minus_g2_vx_leg4 * t247 - minus_g2_vx_leg4 * t249;
-        let t252 = rate_2_leg4 * rate_2_leg4;
-        let rate_dot_1_leg4 = t236 * (t234 * t239 - t241 * t243 + t108 * t252);
-        let minus_g1_vy_leg4 = t241 * t236;
-        let rate_1_leg4 = g1_vx_leg4 * t249 - minus_g1_vy_leg4 * t247;
-        let t268 = s2_leg4 * rate_dot_1_leg4;
-        let rate_dot_2_leg4 = 2.9411764705882355 * t235
-            * (0.7071067811865476 * (t243 - t239) - t252 * (0.34 * c2_leg4));
-        let t285 = c2_leg4 * rate_dot_1_leg4;
-        let t289 = s2_leg4
-            * (parameters[41] * t268
-                - (parameters[39] * t252 + parameters[40] * rate_dot_2_leg4))
+                * (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t205
+                    + parameters[19] * t217);
+        let t251 = parameters[15]
+            - (parameters[12] * minus_rate_dot_1_leg2
+                + parameters[13] * minus_rate_1_leg2
+                + ::overact::math::signed(parameters[14], minus_rate_1_leg2))
+            - parameters[11] * minus_rate_dot_1_leg2 - t250;
+        let t256 = acceleration[0] + t126 + t129;
+        let t259 = acceleration[1] - t120 + t123;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t67;
+        let t263 = twist[0] + t122;
+        let t265 = twist[1] - t128;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t263 + minus_g2_vx_leg3 * t265;
+        let t268 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t270 = t100 * t256 + t66 * t259 + 0.34 * t268;
+        let minus_rate_dot_1_leg3 = t67 * t270;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t263 + minus_g1_vy_leg3 * t265;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t67
+            * (0.7071067811865476 * (t256 + t259) + 0.7071067811865476 * t64 * t268);
+        let minus_c2_leg3 = 2.079725827019258 * t64;
+        let t297 = minus_c2_leg3 * minus_rate_dot_1_leg3;
+        let t304 = minus_s2_leg3
+            * (parameters[29] * minus_rate_dot_2_leg3 - parameters[28] * t268
+                + parameters[30] * t270)
+            + minus_c2_leg3
+                * (parameters[30] * t297
+                    - (parameters[28] * minus_rate_dot_2_leg3 + parameters[29] * t268));
+        let t305 = parameters[26]
+            - (parameters[23] * minus_rate_dot_1_leg3
+                + parameters[24] * minus_rate_1_leg3
+                + ::overact::math::signed(parameters[25], minus_rate_1_leg3))
+            - parameters[22] * minus_rate_dot_1_leg3 - t304;
+        let t315 = ::overact::math::signed(parameters[32], minus_rate_2_leg3 + twist[2]);
+        let t316 = parameters[28] * t297 - parameters[27] * minus_rate_dot_2_leg3
+            - parameters[29] * t270
+            - ::overact::math::signed(parameters[31], minus_rate_2_leg3) - t315;
+        let t317 = minus_g2_vx_leg3 * t316;
+        let t320 = twist[1] + t122;
+        let t322 = twist[0] + t128;
+        let rate_1_leg4 = g1_vy_leg4 * t320 - minus_g1_vx_leg4 * t322;
+        let t327 = acceleration[0] + t120 - t123;
+        let t330 = acceleration[1] + t126 + t129;
+        let g2_vx_leg4 = 2.079725827019258 * t89;
+        let rate_2_leg4 = g2_vx_leg4 * t322 - g2_vx_leg4 * t320;
+        let t337 = rate_2_leg4 * rate_2_leg4;
+        let t339 = t104 * t327 - t88 * t330 + 0.34 * t337;
+        let minus_rate_dot_1_leg4 = t89 * t339;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t89
+            * (0.7071067811865476 * (t330 - t327) - 0.7071067811865476 * t86 * t337);
+        let c2_leg4 = 2.079725827019258 * t86;
+        let t365 = c2_leg4 * minus_rate_dot_1_leg4;
+        let t369 = minus_s2_leg4
+            * (parameters[40] * minus_rate_dot_2_leg4 - parameters[39] * t337
+                + parameters[41] * t339)
             + c2_leg4
-                * (parameters[39] * rate_dot_2_leg4 - parameters[40] * t252
-                    + parameters[41] * t285);
-        let t290 = parameters[33] * rate_dot_1_leg4 + parameters[34] * rate_dot_1_leg4
-            + parameters[35] * rate_1_leg4
+                * (parameters[39] * minus_rate_dot_2_leg4 + parameters[40] * t337
+                    + parameters[41] * t365);
+        let t370 = parameters[35] * rate_1_leg4 - parameters[34] * minus_rate_dot_1_leg4
             + ::overact::math::signed(parameters[36], rate_1_leg4) + parameters[37]
-            + t289;
-        let t300 = ::overact::math::signed(parameters[43], twist[2] - rate_2_leg4);
-        let t301 = parameters[38] * rate_dot_2_leg4 + parameters[39] * t285
-            - parameters[40] * t268
-            + ::overact::math::signed(parameters[42], rate_2_leg4) - t300;
-        let t302 = minus_g2_vx_leg4 * t301;
-        let t304 = g1_vx_leg1 * t69 - t81 + t128 - minus_g1_vx_leg2 * t155
-            + g1_vx_leg3 * t217 + t229 + g1_vx_leg4 * t290 - t302;
-        let t307 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t309 = twist[2] * twist[2];
-        let t313 = parameters[47] * t307
-            - (parameters[45] * t309 + acceleration[2] * parameters[46]);
-        let t320 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t322 = acceleration[2] * parameters[45] - parameters[46] * t309
-            + parameters[47] * t320;
-        let t325 = t304 + c_phi * t313 - s_phi * t322;
-        let t332 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t332, 3.4404761904750325, "actuators")?;
-        ::overact::guard::platform(t332, 3.4404761904750325, "actuators")?;
-        let t333 = 1.0 / t332;
-        let t341 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            - g1_vx_leg3 * minus_g1_vy_leg3 - g1_vx_leg4 * minus_g1_vy_leg4;
-        let t342 = t341 * t333;
-        let t351 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t341 * t342;
-        ::overact::guard::platform(t351, 3.440476190475036, "actuators")?;
-        ::overact::guard::platform(t351, 3.440476190475036, "actuators")?;
-        let t352 = 1.0 / t351;
-        let t363 = g1_vy_leg1 * t69 - t81 - (minus_g1_vy_leg2 * t155 + t128) + t229
-            - minus_g1_vy_leg3 * t217 + t302 - minus_g1_vy_leg4 * t290;
-        let t369 = t363 + s_phi * t313 + c_phi * t322 - t325 * t342;
-        let g1_wz_leg1 = g1_vy_leg1 * t13 - g1_vx_leg1 * t9;
-        let g1_wz_leg2 = t9 * minus_g1_vy_leg2 + t13 * minus_g1_vx_leg2;
-        let g1_wz_leg3 = t13 * minus_g1_vy_leg3 + t9 * g1_vx_leg3;
-        let g1_wz_leg4 = t13 * g1_vx_leg4 - t9 * minus_g1_vy_leg4;
-        let t396 = g1_vx_leg1 * g1_wz_leg1 - minus_g1_vx_leg2 * g1_wz_leg2
-            + g1_vx_leg3 * g1_wz_leg3 + g1_vx_leg4 * g1_wz_leg4;
-        let t397 = t396 * t333;
-        let t399 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 - minus_g1_vy_leg4 * g1_wz_leg4
-            - t341 * t397;
-        let t400 = t399 * t352;
-        let t411 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t396 * t397
-            - t399 * t400;
-        ::overact::guard::platform(t411, 0.02560000000000001, "actuators")?;
-        ::overact::guard::platform(t411, 0.02560000000000001, "actuators")?;
-        let t412 = 1.0 / t411;
-        let g2_wz_leg1 = 0.11764705882352941 * (t3 * t8 - t3 * t12);
-        let g2_wz_leg2 = 0.11764705882352941 * (t8 * t85 - t12 * t85);
-        let g2_wz_leg3 = 0.11764705882352941 * (t8 * t162 - t12 * t162);
-        let t438 = g1_wz_leg1 * t69 + g2_wz_leg1 * t80 + t79 + g1_wz_leg2 * t155
-            + g2_wz_leg2 * t127 + t126 + g1_wz_leg3 * t217 + g2_wz_leg3 * t228 + t227;
-        let g2_wz_leg4 = 0.11764705882352941 * (t8 * t235 - t12 * t235);
-        let t453 = t438 + g1_wz_leg4 * t290 + g2_wz_leg4 * t301 + t300
-            + acceleration[2] * parameters[44] + parameters[45] * t320
-            - parameters[46] * t307;
-        let t458 = t412 * (t453 - t325 * t397 - t400 * t369);
-        let t460 = t352 * t369 - t400 * t458;
-        let t464 = t325 * t333 - t342 * t460 - t397 * t458;
-        let t472 = minus_g1_vy_leg4 + g1_vx_leg4 * t342;
-        let t478 = t412 * (g1_wz_leg4 - g1_vx_leg4 * t397 + t400 * t472);
-        let t480 = t352 * t472 + t400 * t478;
-        let t484 = g1_vx_leg4 * t333 + t342 * t480 - t397 * t478;
-        let t496 = ::overact::math::sqrt(
-            1.0 - (g1_vx_leg4 * t484 + minus_g1_vy_leg4 * t480 + g1_wz_leg4 * t478),
-        );
-        let t497 = 1.0 / t496;
-        let t500 = g1_vx_leg1 * t464 + g1_vy_leg1 * t460 + g1_wz_leg1 * t458
+            - parameters[33] * minus_rate_dot_1_leg4 - t369;
+        let t380 = ::overact::math::signed(parameters[43], twist[2] - rate_2_leg4);
+        let t381 = ::overact::math::signed(parameters[42], rate_2_leg4)
+            - (parameters[38] * minus_rate_dot_2_leg4 + parameters[39] * t365
+                + parameters[40] * t339) - t380;
+        let t382 = g2_vx_leg4 * t381;
+        let t384 = g1_vy_leg1 * t176 + t188 + t226 - minus_g1_vy_leg2 * t251
+            - (minus_g1_vy_leg3 * t305 + t317) + g1_vy_leg4 * t370 - t382;
+        let t387 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t389 = twist[2] * twist[2];
+        let t393 = parameters[47] * t387
+            - (parameters[45] * t389 + acceleration[2] * parameters[46]);
+        let t400 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t402 = acceleration[2] * parameters[45] - parameters[46] * t389
+            + parameters[47] * t400;
+        let t416 = t188 - minus_g1_vx_leg1 * t176 - (minus_g1_vx_leg2 * t251 + t226)
+            - (minus_g1_vx_leg3 * t305 + t317) + t382 - minus_g1_vx_leg4 * t370;
+        let t420 = t416 + c_phi * t393 - s_phi * t402;
+        let t422 = t384 + s_phi * t393 + c_phi * t402 - t420 * t116;
+        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
+        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
+        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
+        let t449 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+            + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
+        let t450 = t449 * t115;
+        let t452 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t107 * t450;
+        let t453 = t452 * t119;
+        let t464 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t449 * t450
+            - t452 * t453;
+        ::overact::guard::platform(t464, 0.02560000000000001, "actuators")?;
+        ::overact::guard::platform(t464, 0.02560000000000001, "actuators")?;
+        let t465 = 1.0 / t464;
+        let g2_wz_leg1 = 0.11764705882352941 * (t6 * t24 - t2 * t24);
+        let g2_wz_leg2 = 0.11764705882352941 * (t6 * t45 - t2 * t45);
+        let g2_wz_leg3 = 0.11764705882352941 * (t6 * t67 - t2 * t67);
+        let t491 = g1_wz_leg1 * t176 + g2_wz_leg1 * t187 + t186 + g1_wz_leg2 * t251
+            + g2_wz_leg2 * t225 + t224 + g1_wz_leg3 * t305 + g2_wz_leg3 * t316 + t315;
+        let g2_wz_leg4 = 0.11764705882352941 * (t6 * t89 - t2 * t89);
+        let t506 = t491 + g1_wz_leg4 * t370 + g2_wz_leg4 * t381 + t380
+            + acceleration[2] * parameters[44] + parameters[45] * t400
+            - parameters[46] * t387;
+        let t511 = t465 * (t506 + t420 * t450 - t453 * t422);
+        let t513 = t119 * t422 - t453 * t511;
+        let t519 = t420 * t115 - t116 * t513 + t450 * t511;
+        let t525 = g1_vy_leg4 + minus_g1_vx_leg4 * t116;
+        let t531 = t465 * (g1_wz_leg4 - minus_g1_vx_leg4 * t450 - t453 * t525);
+        let t533 = t119 * t525 - t453 * t531;
+        let t539 = t450 * t531 - (minus_g1_vx_leg4 * t115 + t116 * t533);
+        let t549 = 1.0
+            - (g1_vy_leg4 * t533 - minus_g1_vx_leg4 * t539 + g1_wz_leg4 * t531);
+        let t551 = 1.0 / ::overact::math::sqrt(t549);
+        let t554 = g1_vy_leg1 * t513 - minus_g1_vx_leg1 * t519 + g1_wz_leg1 * t511
             - preload[0]
-                * ((g1_vx_leg1 * t484 - g1_vy_leg1 * t480 + g1_wz_leg1 * t478) * t497);
-        let t513 = g1_wz_leg2 * t458
-            - (minus_g1_vx_leg2 * t464 + minus_g1_vy_leg2 * t460)
+                * ((g1_vy_leg1 * t533 - minus_g1_vx_leg1 * t539 + g1_wz_leg1 * t531)
+                    * t551);
+        let t567 = g1_wz_leg2 * t511
+            - (minus_g1_vx_leg2 * t519 + minus_g1_vy_leg2 * t513)
             - preload[0]
-                * ((minus_g1_vy_leg2 * t480 - minus_g1_vx_leg2 * t484
-                    + g1_wz_leg2 * t478) * t497);
-        let t526 = g1_vx_leg3 * t464 - minus_g1_vy_leg3 * t460 + g1_wz_leg3 * t458
+                * ((g1_wz_leg2 * t531
+                    - (minus_g1_vx_leg2 * t539 + minus_g1_vy_leg2 * t533)) * t551);
+        let t580 = g1_wz_leg3 * t511
+            - (minus_g1_vx_leg3 * t519 + minus_g1_vy_leg3 * t513)
             - preload[0]
-                * ((g1_vx_leg3 * t484 + minus_g1_vy_leg3 * t480 + g1_wz_leg3 * t478)
-                    * t497);
+                * ((g1_wz_leg3 * t531
+                    - (minus_g1_vx_leg3 * t539 + minus_g1_vy_leg3 * t533)) * t551);
         Ok([
-            t500, t513, t526,
-            g1_vx_leg4 * t464 - minus_g1_vy_leg4 * t460 + g1_wz_leg4 * t458
-                + preload[0] * t496,
+            t554, t567, t580,
+            g1_vy_leg4 * t513 - minus_g1_vx_leg4 * t519 + g1_wz_leg4 * t511
+                + preload[0] * (t549 * t551),
         ])
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50).
@@ -4478,7 +6266,7 @@ impl Planar4Prr {
     ///
     /// Output: 4.
     ///
-    /// 147 operations (59 additions, 81 multiplications, 7 divisions), 0 square roots, 5 trigonometric pairs, 0 signs, 153 intermediates.
+    /// 211 operations (95 additions, 109 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 213 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4486,71 +6274,102 @@ impl Planar4Prr {
         pose: &[f64; 3],
         torques: &[f64; 4],
     ) -> Result<[f64; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
-        let t3 = 0.7071067811865476 / s2_leg1;
-        let g1_vx_leg1 = (c2_leg1 - s2_leg1) * t3;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t9 = 0.7071067811865476 / s2_leg2;
-        let minus_g1_vx_leg2 = (c2_leg2 + s2_leg2) * t9;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
-        let t16 = 0.7071067811865476 / s2_leg3;
-        let g1_vx_leg3 = (s2_leg3 - c2_leg3) * t16;
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
-        let t23 = 0.7071067811865476 / s2_leg4;
-        let g1_vx_leg4 = (c2_leg4 + s2_leg4) * t23;
-        let t26 = g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
-            + g1_vx_leg3 * torques[2] + g1_vx_leg4 * torques[3];
-        let t33 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t33, 3.4404761904750325, "actuators")?;
-        let t34 = 1.0 / t33;
-        let g1_vy_leg1 = (s2_leg1 + c2_leg1) * t3;
-        let minus_g1_vy_leg2 = (s2_leg2 - c2_leg2) * t9;
-        let minus_g1_vy_leg3 = (s2_leg3 + c2_leg3) * t16;
-        let minus_g1_vy_leg4 = (c2_leg4 - s2_leg4) * t23;
-        let t50 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            - g1_vx_leg3 * minus_g1_vy_leg3 - g1_vx_leg4 * minus_g1_vy_leg4;
-        let t51 = t50 * t34;
-        let t60 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t50 * t51;
-        ::overact::guard::platform(t60, 3.440476190475036, "actuators")?;
-        let t61 = 1.0 / t60;
-        let t70 = g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
-            - minus_g1_vy_leg3 * torques[2] - minus_g1_vy_leg4 * torques[3] - t26 * t51;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t75 = 0.05656854249492381 * (c_phi - s_phi);
-        let t78 = 0.05656854249492381 * (s_phi + c_phi);
-        let g1_wz_leg1 = g1_vy_leg1 * t75 - g1_vx_leg1 * t78;
-        let g1_wz_leg2 = t78 * minus_g1_vy_leg2 + t75 * minus_g1_vx_leg2;
-        let g1_wz_leg3 = t75 * minus_g1_vy_leg3 + t78 * g1_vx_leg3;
-        let g1_wz_leg4 = t75 * g1_vx_leg4 - t78 * minus_g1_vy_leg4;
-        let t103 = g1_vx_leg1 * g1_wz_leg1 - minus_g1_vx_leg2 * g1_wz_leg2
-            + g1_vx_leg3 * g1_wz_leg3 + g1_vx_leg4 * g1_wz_leg4;
-        let t104 = t103 * t34;
-        let t106 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 - minus_g1_vy_leg4 * g1_wz_leg4 - t50 * t104;
-        let t107 = t106 * t61;
-        let t118 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t103 * t104
-            - t106 * t107;
-        ::overact::guard::platform(t118, 0.02560000000000001, "actuators")?;
-        let t129 = g1_wz_leg1 * torques[0] + g1_wz_leg2 * torques[1]
-            + g1_wz_leg3 * torques[2] + g1_wz_leg4 * torques[3] - t26 * t104
-            - t107 * t70;
-        let t130 = t129 / t118;
-        let t132 = t61 * t70 - t107 * t130;
-        let t136 = t26 * t34 - t51 * t132 - t104 * t130;
+        let t3 = 0.05656854249492381 * (s_phi + c_phi);
+        let t5 = pose[1] + t3 - 0.21213203435596426;
+        let t7 = 0.05656854249492381 * (c_phi - s_phi);
+        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t10 = t5 - t9;
+        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
+        ::overact::guard::reach(t18, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
+        let t20 = 0.7071067811865476 * minus_s2_leg1;
+        let t22 = 1.4705882352941178 * (t9 + t5);
+        let t24 = 1.0 / minus_s2_leg1;
+        let g1_vy_leg1 = (t20 - t22) * t24;
+        let t28 = pose[0] - t3 + 0.21213203435596426;
+        let t30 = pose[1] + t7 - 0.21213203435596426;
+        let t31 = t28 + t30;
+        let t39 = 8.650519031141869
+            * (0.5 * (t31 * t31) - (t28 * t28 + t30 * t30 - 0.1156));
+        ::overact::guard::reach(t39, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t39);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
+        let t41 = 0.7071067811865476 * minus_s2_leg2;
+        let t43 = 1.4705882352941178 * (t30 - t28);
+        let t45 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = (t41 + t43) * t45;
+        let t50 = pose[0] - t7 + 0.21213203435596426;
+        let t52 = pose[1] - t3 + 0.21213203435596426;
+        let t53 = t50 - t52;
+        let t61 = 8.650519031141869
+            * (0.5 * (t53 * t53) - (t50 * t50 + t52 * t52 - 0.1156));
+        ::overact::guard::reach(t61, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t61);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
+        let t63 = 0.7071067811865476 * minus_s2_leg3;
+        let t65 = 1.4705882352941178 * (t50 + t52);
+        let t67 = 1.0 / minus_s2_leg3;
+        let minus_g1_vy_leg3 = (t63 + t65) * t67;
+        let t72 = pose[0] + t3 - 0.21213203435596426;
+        let t74 = pose[1] - t7 + 0.21213203435596426;
+        let t75 = t72 + t74;
+        let t83 = 8.650519031141869
+            * (0.5 * (t75 * t75) - (t72 * t72 + t74 * t74 - 0.1156));
+        ::overact::guard::reach(t83, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t83);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t85 = 0.7071067811865476 * minus_s2_leg4;
+        let t87 = 1.4705882352941178 * (t72 - t74);
+        let t89 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = (t85 + t87) * t89;
+        let minus_g1_vx_leg2 = (t41 - t43) * t45;
+        let minus_g1_vx_leg1 = (t22 + t20) * t24;
+        let minus_g1_vx_leg3 = (t65 - t63) * t67;
+        let minus_g1_vx_leg4 = (t87 - t85) * t89;
+        let t107 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+            + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
+        let t114 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+            + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
+            + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
+        let t115 = 1.0 / t114;
+        let t116 = t107 * t115;
+        let t118 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
+            - t107 * t116;
+        ::overact::guard::platform(t118, 3.440476190476192, "actuators")?;
+        let t119 = 1.0 / t118;
+        let t133 = minus_g1_vx_leg1 * torques[0] + minus_g1_vx_leg2 * torques[1]
+            + minus_g1_vx_leg3 * torques[2] + minus_g1_vx_leg4 * torques[3];
+        let t135 = g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
+            - minus_g1_vy_leg3 * torques[2] + g1_vy_leg4 * torques[3] + t133 * t116;
+        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
+        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
+        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
+        let t162 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+            + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
+        let t163 = t162 * t115;
+        let t165 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t107 * t163;
+        let t166 = t165 * t119;
+        let t177 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t162 * t163
+            - t165 * t166;
+        ::overact::guard::platform(t177, 0.02560000000000001, "actuators")?;
+        let t188 = g1_wz_leg1 * torques[0] + g1_wz_leg2 * torques[1]
+            + g1_wz_leg3 * torques[2] + g1_wz_leg4 * torques[3] - t133 * t163
+            - t166 * t135;
+        let t189 = t188 / t177;
+        let t191 = t119 * t135 - t166 * t189;
+        let t197 = t163 * t189 - (t133 * t115 + t116 * t191);
         Ok([
-            g1_vx_leg1 * t136 + g1_vy_leg1 * t132 + g1_wz_leg1 * t130,
-            g1_wz_leg2 * t130 - (minus_g1_vx_leg2 * t136 + minus_g1_vy_leg2 * t132),
-            g1_vx_leg3 * t136 - minus_g1_vy_leg3 * t132 + g1_wz_leg3 * t130,
-            g1_vx_leg4 * t136 - minus_g1_vy_leg4 * t132 + g1_wz_leg4 * t130,
+            g1_vy_leg1 * t191 - minus_g1_vx_leg1 * t197 + g1_wz_leg1 * t189,
+            g1_wz_leg2 * t189 - (minus_g1_vx_leg2 * t197 + minus_g1_vy_leg2 * t191),
+            g1_wz_leg3 * t189 - (minus_g1_vx_leg3 * t197 + minus_g1_vy_leg3 * t191),
+            g1_vy_leg4 * t191 - minus_g1_vx_leg4 * t197 + g1_wz_leg4 * t189,
         ])
     }
     /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.
@@ -4560,79 +6379,113 @@ impl Planar4Prr {
     ///
     /// Output: 4 x 1.
     ///
-    /// 131 operations (51 additions, 72 multiplications, 8 divisions), 1 square roots, 5 trigonometric pairs, 0 signs, 138 intermediates.
+    /// 196 operations (87 additions, 101 multiplications, 8 divisions), 5 square roots, 1 trigonometric pairs, 0 signs, 199 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn null_space(pose: &[f64; 3]) -> Result<[[f64; 1]; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
-        let t3 = 0.7071067811865476 / s2_leg1;
-        let g1_vx_leg1 = (c2_leg1 - s2_leg1) * t3;
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
-        let t8 = 0.7071067811865476 / s2_leg4;
-        let g1_vx_leg4 = (c2_leg4 + s2_leg4) * t8;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t14 = 0.7071067811865476 / s2_leg2;
-        let minus_g1_vx_leg2 = (c2_leg2 + s2_leg2) * t14;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
-        let t21 = 0.7071067811865476 / s2_leg3;
-        let g1_vx_leg3 = (s2_leg3 - c2_leg3) * t21;
-        let t26 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t26, 3.4404761904750325, "actuators")?;
-        let t27 = 1.0 / t26;
-        let g1_vy_leg1 = (s2_leg1 + c2_leg1) * t3;
-        let minus_g1_vy_leg2 = (s2_leg2 - c2_leg2) * t14;
-        let minus_g1_vy_leg3 = (s2_leg3 + c2_leg3) * t21;
-        let minus_g1_vy_leg4 = (c2_leg4 - s2_leg4) * t8;
-        let t43 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            - g1_vx_leg3 * minus_g1_vy_leg3 - g1_vx_leg4 * minus_g1_vy_leg4;
-        let t44 = t43 * t27;
-        let t53 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t43 * t44;
-        ::overact::guard::platform(t53, 3.440476190475036, "actuators")?;
-        let t54 = 1.0 / t53;
-        let t56 = minus_g1_vy_leg4 + g1_vx_leg4 * t44;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t61 = 0.05656854249492381 * (c_phi - s_phi);
-        let t64 = 0.05656854249492381 * (s_phi + c_phi);
-        let g1_wz_leg1 = g1_vy_leg1 * t61 - g1_vx_leg1 * t64;
-        let g1_wz_leg2 = t64 * minus_g1_vy_leg2 + t61 * minus_g1_vx_leg2;
-        let g1_wz_leg3 = t61 * minus_g1_vy_leg3 + t64 * g1_vx_leg3;
-        let g1_wz_leg4 = t61 * g1_vx_leg4 - t64 * minus_g1_vy_leg4;
-        let t89 = g1_vx_leg1 * g1_wz_leg1 - minus_g1_vx_leg2 * g1_wz_leg2
-            + g1_vx_leg3 * g1_wz_leg3 + g1_vx_leg4 * g1_wz_leg4;
-        let t90 = t89 * t27;
-        let t92 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 - minus_g1_vy_leg4 * g1_wz_leg4 - t43 * t90;
-        let t93 = t92 * t54;
-        let t104 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t89 * t90 - t92 * t93;
-        ::overact::guard::platform(t104, 0.02560000000000001, "actuators")?;
-        let t109 = (g1_wz_leg4 - g1_vx_leg4 * t90 + t93 * t56) / t104;
-        let t111 = t54 * t56 + t93 * t109;
-        let t115 = g1_vx_leg4 * t27 + t44 * t111 - t90 * t109;
-        let t127 = ::overact::math::sqrt(
-            1.0 - (g1_vx_leg4 * t115 + minus_g1_vy_leg4 * t111 + g1_wz_leg4 * t109),
-        );
-        let t128 = 1.0 / t127;
+        let t3 = 0.05656854249492381 * (s_phi + c_phi);
+        let t5 = pose[1] + t3 - 0.21213203435596426;
+        let t7 = 0.05656854249492381 * (c_phi - s_phi);
+        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t10 = t5 - t9;
+        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
+        ::overact::guard::reach(t18, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
+        let t20 = 0.7071067811865476 * minus_s2_leg1;
+        let t22 = 1.4705882352941178 * (t9 + t5);
+        let t24 = 1.0 / minus_s2_leg1;
+        let g1_vy_leg1 = (t20 - t22) * t24;
+        let t28 = pose[0] - t3 + 0.21213203435596426;
+        let t30 = pose[1] + t7 - 0.21213203435596426;
+        let t31 = t28 + t30;
+        let t39 = 8.650519031141869
+            * (0.5 * (t31 * t31) - (t28 * t28 + t30 * t30 - 0.1156));
+        ::overact::guard::reach(t39, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t39);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
+        let t41 = 0.7071067811865476 * minus_s2_leg2;
+        let t43 = 1.4705882352941178 * (t30 - t28);
+        let t45 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = (t41 + t43) * t45;
+        let t50 = pose[0] - t7 + 0.21213203435596426;
+        let t52 = pose[1] - t3 + 0.21213203435596426;
+        let t53 = t50 - t52;
+        let t61 = 8.650519031141869
+            * (0.5 * (t53 * t53) - (t50 * t50 + t52 * t52 - 0.1156));
+        ::overact::guard::reach(t61, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t61);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
+        let t63 = 0.7071067811865476 * minus_s2_leg3;
+        let t65 = 1.4705882352941178 * (t50 + t52);
+        let t67 = 1.0 / minus_s2_leg3;
+        let minus_g1_vy_leg3 = (t63 + t65) * t67;
+        let t72 = pose[0] + t3 - 0.21213203435596426;
+        let t74 = pose[1] - t7 + 0.21213203435596426;
+        let t75 = t72 + t74;
+        let t83 = 8.650519031141869
+            * (0.5 * (t75 * t75) - (t72 * t72 + t74 * t74 - 0.1156));
+        ::overact::guard::reach(t83, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t83);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t85 = 0.7071067811865476 * minus_s2_leg4;
+        let t87 = 1.4705882352941178 * (t72 - t74);
+        let t89 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = (t85 + t87) * t89;
+        let minus_g1_vx_leg2 = (t41 - t43) * t45;
+        let minus_g1_vx_leg1 = (t22 + t20) * t24;
+        let minus_g1_vx_leg3 = (t65 - t63) * t67;
+        let minus_g1_vx_leg4 = (t87 - t85) * t89;
+        let t107 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+            + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
+        let t114 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+            + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
+            + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
+        let t115 = 1.0 / t114;
+        let t116 = t107 * t115;
+        let t118 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
+            - t107 * t116;
+        ::overact::guard::platform(t118, 3.440476190476192, "actuators")?;
+        let t119 = 1.0 / t118;
+        let t121 = g1_vy_leg4 + minus_g1_vx_leg4 * t116;
+        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
+        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
+        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
+        let t148 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+            + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
+        let t149 = t148 * t115;
+        let t151 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t107 * t149;
+        let t152 = t151 * t119;
+        let t163 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t148 * t149
+            - t151 * t152;
+        ::overact::guard::platform(t163, 0.02560000000000001, "actuators")?;
+        let t168 = (g1_wz_leg4 - minus_g1_vx_leg4 * t149 - t152 * t121) / t163;
+        let t170 = t119 * t121 - t152 * t168;
+        let t176 = t149 * t168 - (minus_g1_vx_leg4 * t115 + t116 * t170);
+        let t186 = 1.0
+            - (g1_vy_leg4 * t170 - minus_g1_vx_leg4 * t176 + g1_wz_leg4 * t168);
+        let t188 = 1.0 / ::overact::math::sqrt(t186);
         Ok([
-            [-((g1_vx_leg1 * t115 - g1_vy_leg1 * t111 + g1_wz_leg1 * t109) * t128)],
             [
-                -((minus_g1_vy_leg2 * t111 - minus_g1_vx_leg2 * t115 + g1_wz_leg2 * t109)
-                    * t128),
+                -((g1_vy_leg1 * t170 - minus_g1_vx_leg1 * t176 + g1_wz_leg1 * t168)
+                    * t188),
             ],
             [
-                -((g1_vx_leg3 * t115 + minus_g1_vy_leg3 * t111 + g1_wz_leg3 * t109)
-                    * t128),
+                -((g1_wz_leg2 * t168
+                    - (minus_g1_vx_leg2 * t176 + minus_g1_vy_leg2 * t170)) * t188),
             ],
-            [t127],
+            [
+                -((g1_wz_leg3 * t168
+                    - (minus_g1_vx_leg3 * t176 + minus_g1_vy_leg3 * t170)) * t188),
+            ],
+            [t186 * t188],
         ])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
@@ -4645,26 +6498,27 @@ impl Planar4Prr {
     ) -> Result<[f64; Self::POSE], ::overact::Error> {
         let mut pose = *start;
         ::overact::forward::gauss_newton(
-            ::overact::forward::Measured {
-                positions: actuators,
-                is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
-            },
-            &mut pose,
-            ::overact::forward::Workspace {
-                actuators: &mut [0.0; Self::ACTUATORS],
-                inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
-                normal: &mut [0.0; Self::DOF * Self::DOF],
-                step: &mut [0.0; Self::DOF],
-            },
-            |pose, positions, jacobian| {
-                let pose = ::overact::block::array(pose)?;
-                positions.copy_from_slice(&Self::actuator_positions(pose)?);
-                jacobian.copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
-                Ok(())
-            },
-            ::overact::forward::displace,
-        )?;
-        Ok(pose)
+                ::overact::forward::Measured {
+                    positions: actuators,
+                    is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
+                },
+                &mut pose,
+                ::overact::forward::Workspace {
+                    actuators: &mut [0.0; Self::ACTUATORS],
+                    inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
+                    normal: &mut [0.0; Self::DOF * Self::DOF],
+                    step: &mut [0.0; Self::DOF],
+                },
+                |pose, positions, jacobian| {
+                    let pose = ::overact::block::array(pose)?;
+                    positions.copy_from_slice(&Self::actuator_positions(pose)?);
+                    jacobian
+                        .copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
+                    Ok(())
+                },
+                ::overact::forward::displace,
+            )
+            .map(|()| pose)
     }
 }
 impl ::overact::Model for Planar4Prr {

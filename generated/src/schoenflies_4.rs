@@ -297,46 +297,160 @@ impl Schoenflies4 {
             BaseParameter::new("mz_rod_leg4", "mz_rod_leg4", &[]),
         ]
     };
-    /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration; by Newton's method.
+    /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
+    ///
+    /// Output: 12.
+    ///
+    /// 230 operations (100 additions, 118 multiplications, 12 divisions), 8 square roots, 1 trigonometric pairs, 0 signs, 247 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration on the way from home.
-    pub fn joints(
-        pose: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::JOINTS], ::overact::Error> {
-        let mut joints = Self::HOME_JOINTS;
-        ::overact::inverse::solve(
-            ::overact::inverse::Legs {
-                names: &Self::LEGS,
-                joints: &[3, 3, 3, 3],
-                home_pose: &Self::HOME_POSE,
-                home_joints: &Self::HOME_JOINTS,
-                has_quaternion: false,
-            },
-            pose,
-            &mut joints,
-            ::overact::inverse::Workspace {
-                error: &mut [0.0; Self::JOINTS],
-                jacobian: &mut [0.0; Self::JOINTS * Self::JOINTS],
-                pose: &mut [0.0; Self::POSE],
-            },
-            |pose, joints, error, jacobian| {
-                let (pose, joints) = (
-                    ::overact::block::array(pose)?,
-                    ::overact::block::array(joints)?,
-                );
-                ::overact::block::write(
-                    &Self::closure_error_from_joints(pose, joints),
-                    error,
-                );
-                ::overact::block::write(
-                    &Self::legs_jacobian_from_joints(pose, joints),
-                    jacobian,
-                );
-                Ok(())
-            },
-        )?;
-        Ok(joints)
+    /// A pose out of reach, or a singular configuration.
+    pub fn joints(pose: &[f64; 4]) -> Result<[f64; 12], ::overact::Error> {
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
+        let t2 = 0.05 * c_phi;
+        let t3 = 0.08660254037844387 * s_phi;
+        let t4 = t2 - t3;
+        let t6 = pose[0] + t4 - 0.24;
+        let t7 = t6 * t6;
+        let t8 = pose[2] * pose[2];
+        let t10 = 0.2704 * (t7 + t8);
+        let t11 = 1.0 / t10;
+        let t12 = 0.52 * pose[2];
+        let t13 = 0.05 * s_phi;
+        let t14 = 0.08660254037844387 * c_phi;
+        let t15 = t13 + t14;
+        let t16 = pose[1] + t15;
+        let t17 = t16 * t16;
+        let t19 = t7 + t17 + t8;
+        let t21 = t19 - 0.3364 + 0.0676;
+        let t23 = 0.52 * t6;
+        let t25 = t10 - t21 * t21;
+        ::overact::guard::reach(t25, "leg1")?;
+        let t26 = ::overact::math::sqrt(t25);
+        let minus_s_arm_leg1 = t11 * (t12 * t21 + t23 * t26);
+        let c_arm_leg1 = t11 * (t23 * t21 - t12 * t26);
+        let t45 = 1.0 - 2.972651605231867 * t17;
+        ::overact::guard::reach(t45, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t45);
+        let s_cross_leg1 = 1.9230769230769231 * t26 / (0.58 * c_rod_leg1);
+        let c_cross_leg1 = (t19 - (0.0676 + t17) - 0.3364 * t45) / (0.3016 * c_rod_leg1);
+        let t72 = t3 + t2;
+        let t74 = pose[1] + t72 - 0.24;
+        let t75 = t74 * t74;
+        let t77 = 0.2704 * (t75 + t8);
+        let t78 = 1.0 / t77;
+        let t79 = t14 - t13;
+        let t80 = pose[0] + t79;
+        let t81 = t80 * t80;
+        let t83 = t81 + t75 + t8;
+        let t85 = t83 - 0.3364 + 0.0676;
+        let t87 = 0.52 * t74;
+        let t89 = t77 - t85 * t85;
+        ::overact::guard::reach(t89, "leg2")?;
+        let t90 = ::overact::math::sqrt(t89);
+        let minus_s_arm_leg2 = t78 * (t12 * t85 + t87 * t90);
+        let c_arm_leg2 = t78 * (t87 * t85 - t12 * t90);
+        let t109 = 1.0 - 2.972651605231867 * t81;
+        ::overact::guard::reach(t109, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t109);
+        let s_cross_leg2 = 1.9230769230769231 * t90 / (0.58 * c_rod_leg2);
+        let c_cross_leg2 = (t83 - (0.0676 + t81) - 0.3364 * t109)
+            / (0.3016 * c_rod_leg2);
+        let t137 = pose[0] - t4 + 0.24;
+        let t138 = t137 * t137;
+        let t140 = 0.2704 * (t138 + t8);
+        let t141 = 1.0 / t140;
+        let t142 = 0.52 * t137;
+        let t143 = pose[1] - t15;
+        let t144 = t143 * t143;
+        let t146 = t138 + t144 + t8;
+        let t148 = t146 - 0.3364 + 0.0676;
+        let t150 = t140 - t148 * t148;
+        ::overact::guard::reach(t150, "leg3")?;
+        let t151 = ::overact::math::sqrt(t150);
+        let s_arm_leg3 = t141 * (t142 * t151 - t12 * t148);
+        let minus_c_arm_leg3 = t141 * (t142 * t148 + t12 * t151);
+        let t170 = 1.0 - 2.972651605231867 * t144;
+        ::overact::guard::reach(t170, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t170);
+        let s_cross_leg3 = 1.9230769230769231 * t151 / (0.58 * c_rod_leg3);
+        let c_cross_leg3 = (t146 - (0.0676 + t144) - 0.3364 * t170)
+            / (0.3016 * c_rod_leg3);
+        let t199 = pose[1] - t72 + 0.24;
+        let t200 = t199 * t199;
+        let t202 = 0.2704 * (t200 + t8);
+        let t203 = 1.0 / t202;
+        let t204 = 0.52 * t199;
+        let t205 = pose[0] - t79;
+        let t206 = t205 * t205;
+        let t208 = t206 + t200 + t8;
+        let t210 = t208 - 0.3364 + 0.0676;
+        let t212 = t202 - t210 * t210;
+        ::overact::guard::reach(t212, "leg4")?;
+        let t213 = ::overact::math::sqrt(t212);
+        let s_arm_leg4 = t203 * (t204 * t213 - t12 * t210);
+        let minus_c_arm_leg4 = t203 * (t204 * t210 + t12 * t213);
+        let t232 = 1.0 - 2.972651605231867 * t206;
+        ::overact::guard::reach(t232, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t232);
+        let s_cross_leg4 = 1.9230769230769231 * t213 / (0.58 * c_rod_leg4);
+        let c_cross_leg4 = (t208 - (0.0676 + t206) - 0.3364 * t232)
+            / (0.3016 * c_rod_leg4);
+        Ok([
+            ::overact::math::atan2(
+                -(0.8993876742748658 * minus_s_arm_leg1
+                    + 0.43715193166958316 * c_arm_leg1),
+                0.8993876742748658 * c_arm_leg1 - 0.43715193166958316 * minus_s_arm_leg1,
+            ) + 0.45242955243589006,
+            ::overact::math::atan2(
+                -(0.3701977654934756 * s_cross_leg1 + 0.9289529667446236 * c_cross_leg1),
+                0.9289529667446236 * s_cross_leg1 - 0.3701977654934756 * c_cross_leg1,
+            ) + 1.9500182292121202,
+            ::overact::math::atan2(
+                1.7048098643210157 * t16 - 0.14931472479038646 * c_rod_leg1,
+                0.9887897213061891 * c_rod_leg1 + 0.2574391806730801 * t16,
+            ) + 0.14987519202130234,
+            ::overact::math::atan2(
+                -(0.899387674274866 * minus_s_arm_leg2
+                    + 0.43715193166958277 * c_arm_leg2),
+                0.899387674274866 * c_arm_leg2 - 0.43715193166958277 * minus_s_arm_leg2,
+            ) + 0.4524295524358896,
+            ::overact::math::atan2(
+                -(0.3701977654934756 * s_cross_leg2 + 0.9289529667446236 * c_cross_leg2),
+                0.9289529667446236 * s_cross_leg2 - 0.3701977654934756 * c_cross_leg2,
+            ) + 1.9500182292121202,
+            ::overact::math::atan2(
+                0.14931472479038682 * c_rod_leg2 - 1.7048098643210154 * t80,
+                0.988789721306189 * c_rod_leg2 + 0.2574391806730807 * t80,
+            ) - 0.1498751920213027,
+            ::overact::math::atan2(
+                0.8993876742748662 * s_arm_leg3 + 0.4371519316695823 * minus_c_arm_leg3,
+                0.4371519316695823 * s_arm_leg3 - 0.8993876742748662 * minus_c_arm_leg3,
+            ) + 0.4524295524358891,
+            ::overact::math::atan2(
+                -(0.370197765493476 * s_cross_leg3 + 0.9289529667446234 * c_cross_leg3),
+                0.9289529667446234 * s_cross_leg3 - 0.370197765493476 * c_cross_leg3,
+            ) + 1.9500182292121206,
+            ::overact::math::atan2(
+                -(1.7048098643210157 * t143 + 0.14931472479038654 * c_rod_leg3),
+                0.9887897213061891 * c_rod_leg3 - 0.25743918067308025 * t143,
+            ) + 0.14987519202130242,
+            ::overact::math::atan2(
+                0.8993876742748661 * s_arm_leg4 + 0.4371519316695826 * minus_c_arm_leg4,
+                0.4371519316695826 * s_arm_leg4 - 0.8993876742748661 * minus_c_arm_leg4,
+            ) + 0.45242955243588945,
+            ::overact::math::atan2(
+                -(0.370197765493476 * s_cross_leg4 + 0.9289529667446234 * c_cross_leg4),
+                0.9289529667446234 * s_cross_leg4 - 0.370197765493476 * c_cross_leg4,
+            ) + 1.9500182292121206,
+            ::overact::math::atan2(
+                1.7048098643210157 * t205 + 0.14931472479038668 * c_rod_leg4,
+                0.9887897213061891 * c_rod_leg4 - 0.25743918067308047 * t205,
+            ) - 0.14987519202130256,
+        ])
     }
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
@@ -345,13 +459,90 @@ impl Schoenflies4 {
     ///
     /// Output: 4.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 130 operations (60 additions, 66 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 138 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn actuator_positions(pose: &[f64; 4]) -> Result<[f64; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Ok([joints[0], joints[3], joints[6], joints[9]])
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
+        let t2 = 0.05 * c_phi;
+        let t3 = 0.08660254037844387 * s_phi;
+        let t4 = t2 - t3;
+        let t6 = pose[0] + t4 - 0.24;
+        let t7 = t6 * t6;
+        let t8 = pose[2] * pose[2];
+        let t10 = 0.2704 * (t7 + t8);
+        let t11 = 1.0 / t10;
+        let t12 = 0.52 * pose[2];
+        let t13 = 0.05 * s_phi;
+        let t14 = 0.08660254037844387 * c_phi;
+        let t15 = t13 + t14;
+        let t16 = pose[1] + t15;
+        let t21 = t7 + t16 * t16 + t8 - 0.3364 + 0.0676;
+        let t23 = 0.52 * t6;
+        let t25 = t10 - t21 * t21;
+        ::overact::guard::reach(t25, "leg1")?;
+        let t26 = ::overact::math::sqrt(t25);
+        let minus_s_arm_leg1 = t11 * (t12 * t21 + t23 * t26);
+        let c_arm_leg1 = t11 * (t23 * t21 - t12 * t26);
+        let t43 = t3 + t2;
+        let t45 = pose[1] + t43 - 0.24;
+        let t46 = t45 * t45;
+        let t48 = 0.2704 * (t46 + t8);
+        let t49 = 1.0 / t48;
+        let t50 = t14 - t13;
+        let t51 = pose[0] + t50;
+        let t56 = t51 * t51 + t46 + t8 - 0.3364 + 0.0676;
+        let t58 = 0.52 * t45;
+        let t60 = t48 - t56 * t56;
+        ::overact::guard::reach(t60, "leg2")?;
+        let t61 = ::overact::math::sqrt(t60);
+        let minus_s_arm_leg2 = t49 * (t12 * t56 + t58 * t61);
+        let c_arm_leg2 = t49 * (t58 * t56 - t12 * t61);
+        let t79 = pose[0] - t4 + 0.24;
+        let t80 = t79 * t79;
+        let t82 = 0.2704 * (t80 + t8);
+        let t83 = 1.0 / t82;
+        let t84 = 0.52 * t79;
+        let t85 = pose[1] - t15;
+        let t90 = t80 + t85 * t85 + t8 - 0.3364 + 0.0676;
+        let t92 = t82 - t90 * t90;
+        ::overact::guard::reach(t92, "leg3")?;
+        let t93 = ::overact::math::sqrt(t92);
+        let s_arm_leg3 = t83 * (t84 * t93 - t12 * t90);
+        let minus_c_arm_leg3 = t83 * (t84 * t90 + t12 * t93);
+        let t111 = pose[1] - t43 + 0.24;
+        let t112 = t111 * t111;
+        let t114 = 0.2704 * (t112 + t8);
+        let t115 = 1.0 / t114;
+        let t116 = 0.52 * t111;
+        let t117 = pose[0] - t50;
+        let t122 = t117 * t117 + t112 + t8 - 0.3364 + 0.0676;
+        let t124 = t114 - t122 * t122;
+        ::overact::guard::reach(t124, "leg4")?;
+        let t125 = ::overact::math::sqrt(t124);
+        let s_arm_leg4 = t115 * (t116 * t125 - t12 * t122);
+        let minus_c_arm_leg4 = t115 * (t116 * t122 + t12 * t125);
+        Ok([
+            ::overact::math::atan2(
+                -(0.8993876742748658 * minus_s_arm_leg1
+                    + 0.43715193166958316 * c_arm_leg1),
+                0.8993876742748658 * c_arm_leg1 - 0.43715193166958316 * minus_s_arm_leg1,
+            ) + 0.45242955243589006,
+            ::overact::math::atan2(
+                -(0.899387674274866 * minus_s_arm_leg2
+                    + 0.43715193166958277 * c_arm_leg2),
+                0.899387674274866 * c_arm_leg2 - 0.43715193166958277 * minus_s_arm_leg2,
+            ) + 0.4524295524358896,
+            ::overact::math::atan2(
+                0.8993876742748662 * s_arm_leg3 + 0.4371519316695823 * minus_c_arm_leg3,
+                0.4371519316695823 * s_arm_leg3 - 0.8993876742748662 * minus_c_arm_leg3,
+            ) + 0.4524295524358891,
+            ::overact::math::atan2(
+                0.8993876742748661 * s_arm_leg4 + 0.4371519316695826 * minus_c_arm_leg4,
+                0.4371519316695826 * s_arm_leg4 - 0.8993876742748661 * minus_c_arm_leg4,
+            ) + 0.45242955243588945,
+        ])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -360,13 +551,104 @@ impl Schoenflies4 {
     ///
     /// Output: 4 x 4.
     ///
-    /// 60 operations (16 additions, 40 multiplications, 4 divisions), 0 square roots, 13 trigonometric pairs, 0 signs, 70 intermediates.
+    /// 150 operations (64 additions, 78 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 140 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian(pose: &[f64; 4]) -> Result<[[f64; 4]; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::inverse_jacobian_from_joints(pose, joints)
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
+        let t2 = 0.05 * c_phi;
+        let t3 = 0.08660254037844387 * s_phi;
+        let t4 = t2 - t3;
+        let t5 = pose[0] + t4;
+        let t6 = t5 - 0.24;
+        let t7 = t6 * t6;
+        let t8 = pose[2] * pose[2];
+        let t10 = 0.2704 * (t7 + t8);
+        let t11 = 1.0 / t10;
+        let t12 = 0.52 * t6;
+        let t13 = 0.05 * s_phi;
+        let t14 = 0.08660254037844387 * c_phi;
+        let t15 = t13 + t14;
+        let t16 = pose[1] + t15;
+        let t21 = t7 + t16 * t16 + t8 - 0.3364 + 0.0676;
+        let t23 = 0.52 * pose[2];
+        let t25 = t10 - t21 * t21;
+        ::overact::guard::reach(t25, "leg1")?;
+        let t26 = ::overact::math::sqrt(t25);
+        ::overact::guard::leg(t26, 0.27703140616182853, "leg1")?;
+        let c_arm_leg1 = t11 * (t12 * t21 - t23 * t26);
+        let t33 = 2.0 / t26;
+        let garm_vx_leg1 = (t5 - (0.24 + 0.26 * c_arm_leg1)) * t33;
+        let t35 = t14 - t13;
+        let t36 = pose[0] + t35;
+        let t37 = t3 + t2;
+        let t38 = pose[1] + t37;
+        let t39 = t38 - 0.24;
+        let t40 = t39 * t39;
+        let t42 = 0.2704 * (t40 + t8);
+        let t47 = t36 * t36 + t40 + t8 - 0.3364 + 0.0676;
+        let t49 = t42 - t47 * t47;
+        ::overact::guard::reach(t49, "leg2")?;
+        let t50 = ::overact::math::sqrt(t49);
+        ::overact::guard::leg(t50, 0.27703140616182853, "leg2")?;
+        let t51 = 2.0 / t50;
+        let garm_vx_leg2 = t36 * t51;
+        let t53 = pose[0] - t4;
+        let t54 = t53 + 0.24;
+        let t55 = t54 * t54;
+        let t57 = 0.2704 * (t55 + t8);
+        let t58 = 1.0 / t57;
+        let t59 = 0.52 * t54;
+        let t60 = pose[1] - t15;
+        let t65 = t55 + t60 * t60 + t8 - 0.3364 + 0.0676;
+        let t68 = t57 - t65 * t65;
+        ::overact::guard::reach(t68, "leg3")?;
+        let t69 = ::overact::math::sqrt(t68);
+        ::overact::guard::leg(t69, 0.27703140616182853, "leg3")?;
+        let minus_c_arm_leg3 = t58 * (t59 * t65 + t23 * t69);
+        let t76 = 2.0 / t69;
+        let garm_vx_leg3 = (t53 - (0.26 * minus_c_arm_leg3 - 0.24)) * t76;
+        let t78 = pose[0] - t35;
+        let t79 = pose[1] - t37;
+        let t80 = t79 + 0.24;
+        let t81 = t80 * t80;
+        let t83 = 0.2704 * (t81 + t8);
+        let t88 = t78 * t78 + t81 + t8 - 0.3364 + 0.0676;
+        let t90 = t83 - t88 * t88;
+        ::overact::guard::reach(t90, "leg4")?;
+        let t91 = ::overact::math::sqrt(t90);
+        ::overact::guard::leg(t91, 0.27703140616182853, "leg4")?;
+        let t92 = 2.0 / t91;
+        let garm_vx_leg4 = t78 * t92;
+        let garm_vy_leg1 = t16 * t33;
+        let t95 = 1.0 / t42;
+        let t96 = 0.52 * t39;
+        let c_arm_leg2 = t95 * (t96 * t47 - t23 * t50);
+        let garm_vy_leg2 = (t38 - (0.24 + 0.26 * c_arm_leg2)) * t51;
+        let garm_vy_leg3 = t60 * t76;
+        let t106 = 1.0 / t83;
+        let t107 = 0.52 * t80;
+        let minus_c_arm_leg4 = t106 * (t107 * t88 + t23 * t91);
+        let garm_vy_leg4 = (t79 - (0.26 * minus_c_arm_leg4 - 0.24)) * t92;
+        let minus_s_arm_leg1 = t11 * (t23 * t21 + t12 * t26);
+        let garm_vz_leg1 = (pose[2] - 0.26 * minus_s_arm_leg1) * t33;
+        let minus_s_arm_leg2 = t95 * (t23 * t47 + t96 * t50);
+        let garm_vz_leg2 = (pose[2] - 0.26 * minus_s_arm_leg2) * t51;
+        let s_arm_leg3 = t58 * (t59 * t69 - t23 * t65);
+        let garm_vz_leg3 = (pose[2] + 0.26 * s_arm_leg3) * t76;
+        let s_arm_leg4 = t106 * (t107 * t91 - t23 * t88);
+        let garm_vz_leg4 = (pose[2] + 0.26 * s_arm_leg4) * t92;
+        let garm_wz_leg1 = t4 * garm_vy_leg1 - t15 * garm_vx_leg1;
+        let garm_wz_leg2 = t35 * garm_vy_leg2 - t37 * garm_vx_leg2;
+        let garm_wz_leg3 = t15 * garm_vx_leg3 - t4 * garm_vy_leg3;
+        let garm_wz_leg4 = t37 * garm_vx_leg4 - t35 * garm_vy_leg4;
+        Ok([
+            [garm_vx_leg1, garm_vy_leg1, garm_vz_leg1, garm_wz_leg1],
+            [garm_vx_leg2, garm_vy_leg2, garm_vz_leg2, garm_wz_leg2],
+            [garm_vx_leg3, garm_vy_leg3, garm_vz_leg3, garm_wz_leg3],
+            [garm_vx_leg4, garm_vy_leg4, garm_vz_leg4, garm_wz_leg4],
+        ])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -461,152 +743,170 @@ impl Schoenflies4 {
     ///
     /// Output: 4 x 4.
     ///
-    /// 272 operations (104 additions, 160 multiplications, 8 divisions), 0 square roots, 13 trigonometric pairs, 0 signs, 282 intermediates.
+    /// 362 operations (152 additions, 198 multiplications, 12 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 352 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn jacobian(pose: &[f64; 4]) -> Result<[[f64; 4]; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let t0 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t0);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        let t5 = c_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t9 = s_armcross_leg1 * c_rod_leg1;
-        let t11 = s_arm_leg1 * t5 - c_arm_leg1 * t9;
-        ::overact::guard::leg(t11, 0.9185391450939739, "leg1")?;
-        let t12 = 3.8461538461538463 / t11;
-        let minus_garm_vx_leg1 = t5 * t12;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t19 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t19);
-        let t22 = c_armcross_leg2 * c_rod_leg2;
-        let t24 = s_armcross_leg2 * c_rod_leg2;
-        let t26 = s_arm_leg2 * t22 - c_arm_leg2 * t24;
-        ::overact::guard::leg(t26, 0.9185391450939737, "leg2")?;
-        let t27 = 3.8461538461538463 / t26;
-        let garm_vx_leg2 = s_rod_leg2 * t27;
-        let t31 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t31);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t36 = c_armcross_leg3 * c_rod_leg3;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t39 = s_armcross_leg3 * c_rod_leg3;
-        let t42 = c_arm_leg3 * t39 - s_arm_leg3 * t36;
-        ::overact::guard::leg(t42, 0.9185391450939737, "leg3")?;
-        let t43 = 3.8461538461538463 / t42;
-        let minus_garm_vx_leg3 = t36 * t43;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let t51 = joints[9] + joints[10];
-        let (s_armcross_leg4, c_armcross_leg4) = ::overact::math::sin_cos(t51);
-        let t54 = s_armcross_leg4 * c_rod_leg4;
-        let t56 = c_armcross_leg4 * c_rod_leg4;
-        let t58 = c_arm_leg4 * t54 - s_arm_leg4 * t56;
-        ::overact::guard::leg(t58, 0.9185391450939737, "leg4")?;
-        let t59 = 3.8461538461538463 / t58;
-        let garm_vx_leg4 = s_rod_leg4 * t59;
-        let t62 = minus_garm_vx_leg1 * minus_garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
-            + minus_garm_vx_leg3 * minus_garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
-        ::overact::guard::platform(t62, 19.50747081825307, "actuators")?;
-        let t63 = 1.0 / t62;
-        let minus_garm_vy_leg1 = s_rod_leg1 * t12;
-        let minus_garm_vy_leg2 = t22 * t27;
-        let minus_garm_vy_leg3 = s_rod_leg3 * t43;
-        let minus_garm_vy_leg4 = t56 * t59;
-        let t75 = minus_garm_vx_leg1 * minus_garm_vy_leg1
-            - garm_vx_leg2 * minus_garm_vy_leg2 + minus_garm_vx_leg3 * minus_garm_vy_leg3
-            - garm_vx_leg4 * minus_garm_vy_leg4;
-        let t76 = t75 * t63;
-        let t85 = minus_garm_vy_leg1 * minus_garm_vy_leg1
-            + minus_garm_vy_leg2 * minus_garm_vy_leg2
-            + minus_garm_vy_leg3 * minus_garm_vy_leg3
-            + minus_garm_vy_leg4 * minus_garm_vy_leg4 - t75 * t76;
-        ::overact::guard::platform(t85, 16.505615552607473, "actuators")?;
-        let t86 = 1.0 / t85;
-        let t88 = minus_garm_vx_leg1 * t76 - minus_garm_vy_leg1;
-        let minus_garm_vz_leg3 = t39 * t43;
-        let garm_vz_leg1 = t9 * t12;
-        let garm_vz_leg2 = t24 * t27;
-        let minus_garm_vz_leg4 = t54 * t59;
-        let t107 = garm_vx_leg2 * garm_vz_leg2 - minus_garm_vx_leg1 * garm_vz_leg1
-            + minus_garm_vx_leg3 * minus_garm_vz_leg3
-            - garm_vx_leg4 * minus_garm_vz_leg4;
-        let t108 = t107 * t63;
-        let t110 = minus_garm_vy_leg3 * minus_garm_vz_leg3
-            - (minus_garm_vy_leg1 * garm_vz_leg1 + minus_garm_vy_leg2 * garm_vz_leg2)
-            + minus_garm_vy_leg4 * minus_garm_vz_leg4 - t75 * t108;
-        let t111 = t110 * t86;
-        let t122 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3
-            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t107 * t108 - t110 * t111;
-        ::overact::guard::platform(t122, 31.117338184537527, "actuators")?;
-        let t123 = 1.0 / t122;
-        let t127 = garm_vz_leg1 + minus_garm_vx_leg1 * t108 - t111 * t88;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
-        let t131 = 0.05 * s_phi;
-        let t132 = 0.08660254037844387 * c_phi;
-        let t133 = t131 + t132;
-        let t135 = 0.05 * c_phi;
-        let t136 = 0.08660254037844387 * s_phi;
-        let t137 = t135 - t136;
-        let garm_wz_leg1 = minus_garm_vx_leg1 * t133 - minus_garm_vy_leg1 * t137;
-        let t141 = t132 - t131;
-        let t143 = t136 + t135;
-        let minus_garm_wz_leg2 = minus_garm_vy_leg2 * t141 + garm_vx_leg2 * t143;
-        let garm_wz_leg3 = t137 * minus_garm_vy_leg3 - t133 * minus_garm_vx_leg3;
-        let garm_wz_leg4 = t141 * minus_garm_vy_leg4 + t143 * garm_vx_leg4;
-        let t164 = garm_vx_leg4 * garm_wz_leg4
-            - (minus_garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * minus_garm_wz_leg2
-                + minus_garm_vx_leg3 * garm_wz_leg3);
-        let t165 = t164 * t63;
-        let t176 = minus_garm_vy_leg2 * minus_garm_wz_leg2
-            - minus_garm_vy_leg1 * garm_wz_leg1 - minus_garm_vy_leg3 * garm_wz_leg3
-            - minus_garm_vy_leg4 * garm_wz_leg4 - t75 * t165;
-        let t177 = t176 * t86;
-        let t179 = garm_vz_leg1 * garm_wz_leg1 - garm_vz_leg2 * minus_garm_wz_leg2
-            - minus_garm_vz_leg3 * garm_wz_leg3 - minus_garm_vz_leg4 * garm_wz_leg4
-            - t107 * t165 - t110 * t177;
-        let t180 = t179 * t123;
-        let t191 = garm_wz_leg1 * garm_wz_leg1 + minus_garm_wz_leg2 * minus_garm_wz_leg2
-            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t164 * t165
-            - t176 * t177;
-        let t193 = t191 - t179 * t180;
-        ::overact::guard::platform(t193, 0.351065482163043, "actuators")?;
-        let t194 = 1.0 / t193;
-        let t201 = t194
-            * (garm_wz_leg1 + minus_garm_vx_leg1 * t165 - t177 * t88 - t180 * t127);
-        let t203 = t123 * t127 - t180 * t201;
-        let t207 = t86 * t88 - t111 * t203 - t177 * t201;
-        let t216 = minus_garm_vy_leg2 + garm_vx_leg2 * t76;
-        let t221 = garm_vz_leg2 - garm_vx_leg2 * t108 + t111 * t216;
-        let t229 = t194
-            * (t177 * t216 - (minus_garm_wz_leg2 + garm_vx_leg2 * t165) - t180 * t221);
-        let t231 = t123 * t221 - t180 * t229;
-        let t235 = t86 * t216 + t111 * t231 + t177 * t229;
-        let t244 = minus_garm_vx_leg3 * t76 - minus_garm_vy_leg3;
-        let t249 = minus_garm_vx_leg3 * t108 - minus_garm_vz_leg3 - t111 * t244;
-        let t257 = t194
-            * (garm_wz_leg3 + minus_garm_vx_leg3 * t165 - t177 * t244 - t180 * t249);
-        let t259 = t123 * t249 - t180 * t257;
-        let t263 = t86 * t244 - t111 * t259 - t177 * t257;
-        let t272 = minus_garm_vy_leg4 + garm_vx_leg4 * t76;
-        let t277 = t111 * t272 - (minus_garm_vz_leg4 + garm_vx_leg4 * t108);
-        let t285 = t194
-            * (garm_wz_leg4 - garm_vx_leg4 * t165 + t177 * t272 - t180 * t277);
-        let t287 = t123 * t277 - t180 * t285;
-        let t291 = t86 * t272 + t111 * t287 + t177 * t285;
+        let t2 = 0.05 * c_phi;
+        let t3 = 0.08660254037844387 * s_phi;
+        let t4 = t2 - t3;
+        let t5 = pose[0] + t4;
+        let t6 = t5 - 0.24;
+        let t7 = t6 * t6;
+        let t8 = pose[2] * pose[2];
+        let t10 = 0.2704 * (t7 + t8);
+        let t11 = 1.0 / t10;
+        let t12 = 0.52 * t6;
+        let t13 = 0.05 * s_phi;
+        let t14 = 0.08660254037844387 * c_phi;
+        let t15 = t13 + t14;
+        let t16 = pose[1] + t15;
+        let t21 = t7 + t16 * t16 + t8 - 0.3364 + 0.0676;
+        let t23 = 0.52 * pose[2];
+        let t25 = t10 - t21 * t21;
+        ::overact::guard::reach(t25, "leg1")?;
+        let t26 = ::overact::math::sqrt(t25);
+        ::overact::guard::leg(t26, 0.27703140616182853, "leg1")?;
+        let c_arm_leg1 = t11 * (t12 * t21 - t23 * t26);
+        let t33 = 2.0 / t26;
+        let garm_vx_leg1 = (t5 - (0.24 + 0.26 * c_arm_leg1)) * t33;
+        let t36 = t14 - t13;
+        let t37 = pose[0] + t36;
+        let t38 = t3 + t2;
+        let t39 = pose[1] + t38;
+        let t40 = t39 - 0.24;
+        let t41 = t40 * t40;
+        let t43 = 0.2704 * (t41 + t8);
+        let t48 = t37 * t37 + t41 + t8 - 0.3364 + 0.0676;
+        let t50 = t43 - t48 * t48;
+        ::overact::guard::reach(t50, "leg2")?;
+        let t51 = ::overact::math::sqrt(t50);
+        ::overact::guard::leg(t51, 0.27703140616182853, "leg2")?;
+        let t52 = 2.0 / t51;
+        let garm_vx_leg2 = t37 * t52;
+        let t56 = pose[0] - t4;
+        let t57 = t56 + 0.24;
+        let t58 = t57 * t57;
+        let t60 = 0.2704 * (t58 + t8);
+        let t61 = 1.0 / t60;
+        let t62 = 0.52 * t57;
+        let t63 = pose[1] - t15;
+        let t68 = t58 + t63 * t63 + t8 - 0.3364 + 0.0676;
+        let t71 = t60 - t68 * t68;
+        ::overact::guard::reach(t71, "leg3")?;
+        let t72 = ::overact::math::sqrt(t71);
+        ::overact::guard::leg(t72, 0.27703140616182853, "leg3")?;
+        let minus_c_arm_leg3 = t61 * (t62 * t68 + t23 * t72);
+        let t79 = 2.0 / t72;
+        let garm_vx_leg3 = (t56 - (0.26 * minus_c_arm_leg3 - 0.24)) * t79;
+        let t83 = pose[0] - t36;
+        let t84 = pose[1] - t38;
+        let t85 = t84 + 0.24;
+        let t86 = t85 * t85;
+        let t88 = 0.2704 * (t86 + t8);
+        let t93 = t83 * t83 + t86 + t8 - 0.3364 + 0.0676;
+        let t95 = t88 - t93 * t93;
+        ::overact::guard::reach(t95, "leg4")?;
+        let t96 = ::overact::math::sqrt(t95);
+        ::overact::guard::leg(t96, 0.27703140616182853, "leg4")?;
+        let t97 = 2.0 / t96;
+        let garm_vx_leg4 = t83 * t97;
+        let t100 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t100, 19.507470815645043, "actuators")?;
+        let t101 = 1.0 / t100;
+        let garm_vy_leg1 = t16 * t33;
+        let t105 = 1.0 / t43;
+        let t106 = 0.52 * t40;
+        let c_arm_leg2 = t105 * (t106 * t48 - t23 * t51);
+        let garm_vy_leg2 = (t39 - (0.24 + 0.26 * c_arm_leg2)) * t52;
+        let garm_vy_leg3 = t63 * t79;
+        let t120 = 1.0 / t88;
+        let t121 = 0.52 * t85;
+        let minus_c_arm_leg4 = t120 * (t121 * t93 + t23 * t96);
+        let garm_vy_leg4 = (t84 - (0.26 * minus_c_arm_leg4 - 0.24)) * t97;
+        let t131 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3 + garm_vx_leg4 * garm_vy_leg4;
+        let t132 = t131 * t101;
+        let t141 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t131 * t132;
+        ::overact::guard::platform(t141, 16.505615550045768, "actuators")?;
+        let t142 = 1.0 / t141;
+        let t144 = garm_vy_leg1 - garm_vx_leg1 * t132;
+        let minus_s_arm_leg1 = t11 * (t23 * t21 + t12 * t26);
+        let garm_vz_leg1 = (pose[2] - 0.26 * minus_s_arm_leg1) * t33;
+        let minus_s_arm_leg2 = t105 * (t23 * t48 + t106 * t51);
+        let garm_vz_leg2 = (pose[2] - 0.26 * minus_s_arm_leg2) * t52;
+        let s_arm_leg3 = t61 * (t62 * t72 - t23 * t68);
+        let garm_vz_leg3 = (pose[2] + 0.26 * s_arm_leg3) * t79;
+        let s_arm_leg4 = t120 * (t121 * t96 - t23 * t93);
+        let garm_vz_leg4 = (pose[2] + 0.26 * s_arm_leg4) * t97;
+        let t187 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3 + garm_vx_leg4 * garm_vz_leg4;
+        let t188 = t187 * t101;
+        let t190 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 + garm_vy_leg4 * garm_vz_leg4 - t131 * t188;
+        let t191 = t190 * t142;
+        let t202 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 + garm_vz_leg4 * garm_vz_leg4 - t187 * t188
+            - t190 * t191;
+        ::overact::guard::platform(t202, 31.11733818900116, "actuators")?;
+        let t203 = 1.0 / t202;
+        let t207 = garm_vz_leg1 - garm_vx_leg1 * t188 - t191 * t144;
+        let garm_wz_leg1 = t4 * garm_vy_leg1 - t15 * garm_vx_leg1;
+        let garm_wz_leg2 = t36 * garm_vy_leg2 - t38 * garm_vx_leg2;
+        let garm_wz_leg3 = t15 * garm_vx_leg3 - t4 * garm_vy_leg3;
+        let garm_wz_leg4 = t38 * garm_vx_leg4 - t36 * garm_vy_leg4;
+        let t234 = garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * garm_wz_leg2
+            + garm_vx_leg3 * garm_wz_leg3 + garm_vx_leg4 * garm_wz_leg4;
+        let t235 = t234 * t101;
+        let t246 = garm_vy_leg1 * garm_wz_leg1 + garm_vy_leg2 * garm_wz_leg2
+            + garm_vy_leg3 * garm_wz_leg3 + garm_vy_leg4 * garm_wz_leg4 - t131 * t235;
+        let t247 = t246 * t142;
+        let t249 = garm_vz_leg1 * garm_wz_leg1 + garm_vz_leg2 * garm_wz_leg2
+            + garm_vz_leg3 * garm_wz_leg3 + garm_vz_leg4 * garm_wz_leg4 - t187 * t235
+            - t190 * t247;
+        let t250 = t249 * t203;
+        let t261 = garm_wz_leg1 * garm_wz_leg1 + garm_wz_leg2 * garm_wz_leg2
+            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t234 * t235
+            - t246 * t247;
+        let t263 = t261 - t249 * t250;
+        ::overact::guard::platform(t263, 0.35106548211906174, "actuators")?;
+        let t264 = 1.0 / t263;
+        let t271 = t264
+            * (garm_wz_leg1 - garm_vx_leg1 * t235 - t247 * t144 - t250 * t207);
+        let t273 = t203 * t207 - t250 * t271;
+        let t277 = t142 * t144 - t191 * t273 - t247 * t271;
+        let t286 = garm_vy_leg2 - garm_vx_leg2 * t132;
+        let t291 = garm_vz_leg2 - garm_vx_leg2 * t188 - t191 * t286;
+        let t299 = t264
+            * (garm_wz_leg2 - garm_vx_leg2 * t235 - t247 * t286 - t250 * t291);
+        let t301 = t203 * t291 - t250 * t299;
+        let t305 = t142 * t286 - t191 * t301 - t247 * t299;
+        let t314 = garm_vy_leg3 - garm_vx_leg3 * t132;
+        let t319 = garm_vz_leg3 - garm_vx_leg3 * t188 - t191 * t314;
+        let t327 = t264
+            * (garm_wz_leg3 - garm_vx_leg3 * t235 - t247 * t314 - t250 * t319);
+        let t329 = t203 * t319 - t250 * t327;
+        let t333 = t142 * t314 - t191 * t329 - t247 * t327;
+        let t342 = garm_vy_leg4 - garm_vx_leg4 * t132;
+        let t347 = garm_vz_leg4 - garm_vx_leg4 * t188 - t191 * t342;
+        let t355 = t264
+            * (garm_wz_leg4 - garm_vx_leg4 * t235 - t247 * t342 - t250 * t347);
+        let t357 = t203 * t347 - t250 * t355;
+        let t361 = t142 * t342 - t191 * t357 - t247 * t355;
         Ok([
             [
-                -(minus_garm_vx_leg1 * t63 + t76 * t207 + t108 * t203 + t165 * t201),
-                garm_vx_leg2 * t63 + t76 * t235 - t108 * t231 - t165 * t229,
-                -(minus_garm_vx_leg3 * t63 + t76 * t263 + t108 * t259 + t165 * t257),
-                garm_vx_leg4 * t63 + t76 * t291 - t108 * t287 - t165 * t285,
+                garm_vx_leg1 * t101 - t132 * t277 - t188 * t273 - t235 * t271,
+                garm_vx_leg2 * t101 - t132 * t305 - t188 * t301 - t235 * t299,
+                garm_vx_leg3 * t101 - t132 * t333 - t188 * t329 - t235 * t327,
+                garm_vx_leg4 * t101 - t132 * t361 - t188 * t357 - t235 * t355,
             ],
-            [t207, -t235, t263, -t291],
-            [t203, t231, t259, t287],
-            [t201, t229, t257, t285],
+            [t277, t305, t333, t361],
+            [t273, t301, t329, t357],
+            [t271, t299, t327, t355],
         ])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -885,61 +1185,6 @@ impl Schoenflies4 {
             ],
         ]
     }
-    /// By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m, rad).
-    ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = `[x, y, z, phi]` (m, rad), in the base frame
-    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    ///
-    /// Output: 12.
-    ///
-    /// 72 operations (40 additions, 32 multiplications, 0 divisions), 0 square roots, 13 trigonometric pairs, 0 signs, 86 intermediates.
-    #[must_use]
-    pub fn closure_error_from_joints(pose: &[f64; 4], joints: &[f64; 12]) -> [f64; 12] {
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
-        let t2 = 0.05 * c_phi;
-        let t3 = 0.08660254037844387 * s_phi;
-        let t4 = t2 - t3;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t10 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t10);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        let t19 = 0.05 * s_phi;
-        let t20 = 0.08660254037844387 * c_phi;
-        let t21 = t19 + t20;
-        let t30 = t20 - t19;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t36 = t3 + t2;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t42 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t42);
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t59 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t59);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let t86 = joints[9] + joints[10];
-        let (s_armcross_leg4, c_armcross_leg4) = ::overact::math::sin_cos(t86);
-        [
-            pose[0] + t4
-                - (0.24 + 0.26 * c_arm_leg1 + 0.58 * (c_armcross_leg1 * c_rod_leg1)),
-            pose[1] + t21 - 0.58 * s_rod_leg1,
-            pose[2] + 0.26 * s_arm_leg1 + 0.58 * (s_armcross_leg1 * c_rod_leg1),
-            pose[0] + t30 + 0.58 * s_rod_leg2,
-            pose[1] + t36
-                - (0.24 + 0.26 * c_arm_leg2 + 0.58 * (c_armcross_leg2 * c_rod_leg2)),
-            pose[2] + 0.26 * s_arm_leg2 + 0.58 * (s_armcross_leg2 * c_rod_leg2),
-            pose[0] - t4 + 0.24 + 0.26 * c_arm_leg3
-                + 0.58 * (c_armcross_leg3 * c_rod_leg3),
-            pose[1] - t21 + 0.58 * s_rod_leg3,
-            pose[2] + 0.26 * s_arm_leg3 + 0.58 * (s_armcross_leg3 * c_rod_leg3),
-            pose[0] - t30 - 0.58 * s_rod_leg4,
-            pose[1] - t36 + 0.24 + 0.26 * c_arm_leg4
-                + 0.58 * (c_armcross_leg4 * c_rod_leg4),
-            pose[2] + 0.26 * s_arm_leg4 + 0.58 * (s_armcross_leg4 * c_rod_leg4),
-        ]
-    }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
     /// From the platform's pose and motion.
@@ -948,7 +1193,7 @@ impl Schoenflies4 {
     ///
     /// Output: 12.
     ///
-    /// 164 operations (44 additions, 112 multiplications, 8 divisions), 0 square roots, 13 trigonometric pairs, 0 signs, 178 intermediates.
+    /// 326 operations (116 additions, 190 multiplications, 20 divisions), 8 square roots, 1 trigonometric pairs, 0 signs, 324 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -956,136 +1201,216 @@ impl Schoenflies4 {
         pose: &[f64; 4],
         twist: &[f64; 4],
     ) -> Result<[f64; 12], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let t0 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t0);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        ::overact::guard::leg(c_rod_leg1, 0.9887897213061891, "leg1")?;
-        let t5 = s_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t8 = c_armcross_leg1 * c_rod_leg1;
-        let t11 = s_arm_leg1 * t8 - c_arm_leg1 * t5;
-        ::overact::guard::leg(t11, 0.9185391450939739, "leg1")?;
-        let t12 = 1.0 / t11;
-        let t13 = 3.8461538461538463 * t12;
-        let garm_vz_leg1 = t5 * t13;
-        let minus_garm_vx_leg1 = t8 * t13;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
-        let t19 = 0.05 * s_phi;
-        let t20 = 0.08660254037844387 * c_phi;
-        let t22 = (t19 + t20) * twist[3];
-        let t23 = twist[0] - t22;
-        let minus_garm_vy_leg1 = s_rod_leg1 * t13;
-        let t26 = 0.05 * c_phi;
-        let t27 = 0.08660254037844387 * s_phi;
-        let t29 = (t26 - t27) * twist[3];
-        let t30 = twist[1] + t29;
-        let rate_arm_leg1 = garm_vz_leg1 * twist[2]
-            - (minus_garm_vx_leg1 * t23 + minus_garm_vy_leg1 * t30);
-        let t34 = 1.7241379310344827 * t12;
-        let gcross_vx_leg1 = c_arm_leg1 * t34;
-        let t38 = 1.0 / c_rod_leg1;
-        let gcross_vy_leg1 = t34
-            * (c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t38)
-                + s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t38));
-        let minus_gcross_vz_leg1 = s_arm_leg1 * t34;
-        let rate_cross_leg1 = gcross_vx_leg1 * t23 + gcross_vy_leg1 * t30
-            - minus_gcross_vz_leg1 * twist[2];
-        let grod_vy_leg1 = 1.7241379310344827 * t38;
-        let rate_rod_leg1 = grod_vy_leg1 * t30;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        ::overact::guard::leg(c_rod_leg2, 0.988789721306189, "leg2")?;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t58 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t58);
-        let t61 = c_armcross_leg2 * c_rod_leg2;
-        let t63 = s_armcross_leg2 * c_rod_leg2;
-        let t65 = s_arm_leg2 * t61 - c_arm_leg2 * t63;
-        ::overact::guard::leg(t65, 0.9185391450939737, "leg2")?;
-        let t66 = 1.0 / t65;
-        let t67 = 3.8461538461538463 * t66;
-        let garm_vx_leg2 = s_rod_leg2 * t67;
-        let t70 = (t27 + t26) * twist[3];
-        let t71 = twist[0] - t70;
-        let minus_garm_vy_leg2 = t61 * t67;
-        let t75 = (t20 - t19) * twist[3];
-        let t76 = twist[1] + t75;
-        let garm_vz_leg2 = t63 * t67;
-        let rate_arm_leg2 = garm_vx_leg2 * t71 - minus_garm_vy_leg2 * t76
+        let t2 = 0.05 * c_phi;
+        let t3 = 0.08660254037844387 * s_phi;
+        let t4 = t2 - t3;
+        let t5 = pose[0] + t4;
+        let t6 = t5 - 0.24;
+        let t7 = t6 * t6;
+        let t8 = pose[2] * pose[2];
+        let t10 = 0.2704 * (t7 + t8);
+        let t11 = 1.0 / t10;
+        let t12 = 0.52 * t6;
+        let t13 = 0.05 * s_phi;
+        let t14 = 0.08660254037844387 * c_phi;
+        let t15 = t13 + t14;
+        let t16 = pose[1] + t15;
+        let t17 = t16 * t16;
+        let t19 = t7 + t17 + t8;
+        let t21 = t19 - 0.3364 + 0.0676;
+        let t23 = 0.52 * pose[2];
+        let t25 = t10 - t21 * t21;
+        ::overact::guard::reach(t25, "leg1")?;
+        let t26 = ::overact::math::sqrt(t25);
+        ::overact::guard::leg(t26, 0.27703140616182853, "leg1")?;
+        let c_arm_leg1 = t11 * (t12 * t21 - t23 * t26);
+        let t33 = 1.0 / t26;
+        let t34 = 2.0 * t33;
+        let garm_vx_leg1 = (t5 - (0.24 + 0.26 * c_arm_leg1)) * t34;
+        let t36 = t15 * twist[3];
+        let t37 = twist[0] - t36;
+        let garm_vy_leg1 = t16 * t34;
+        let t40 = t4 * twist[3];
+        let t41 = twist[1] + t40;
+        let minus_s_arm_leg1 = t11 * (t23 * t21 + t12 * t26);
+        let garm_vz_leg1 = (pose[2] - 0.26 * minus_s_arm_leg1) * t34;
+        let rate_arm_leg1 = garm_vx_leg1 * t37 + garm_vy_leg1 * t41
+            + garm_vz_leg1 * twist[2];
+        let t53 = 0.52 * t33;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t53;
+        let s_rod_leg1 = 1.7241379310344827 * t16;
+        let t60 = 1.0 - 2.972651605231867 * t17;
+        ::overact::guard::reach(t60, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t60);
+        ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
+        let c_cross_leg1 = (t19 - (0.0676 + t17) - 0.3364 * t60) / (0.3016 * c_rod_leg1);
+        let s_cross_leg1 = 1.9230769230769231 * t26 / (0.58 * c_rod_leg1);
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let t73 = 1.0 / c_rod_leg1;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let minus_gcross_vy_leg1 = t53
+            * (c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t73)
+                - minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t73));
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t53;
+        let minus_rate_cross_leg1 = minus_gcross_vx_leg1 * t37
+            + minus_gcross_vy_leg1 * t41 + minus_gcross_vz_leg1 * twist[2];
+        let grod_vy_leg1 = 1.7241379310344827 * t73;
+        let rate_rod_leg1 = grod_vy_leg1 * t41;
+        let t92 = t14 - t13;
+        let t93 = pose[0] + t92;
+        let t94 = t3 + t2;
+        let t95 = pose[1] + t94;
+        let t96 = t95 - 0.24;
+        let t97 = t96 * t96;
+        let t99 = 0.2704 * (t97 + t8);
+        let t100 = t93 * t93;
+        let t102 = t100 + t97 + t8;
+        let t104 = t102 - 0.3364 + 0.0676;
+        let t106 = t99 - t104 * t104;
+        ::overact::guard::reach(t106, "leg2")?;
+        let t107 = ::overact::math::sqrt(t106);
+        ::overact::guard::leg(t107, 0.27703140616182853, "leg2")?;
+        let t108 = 1.0 / t107;
+        let t109 = 2.0 * t108;
+        let garm_vx_leg2 = t93 * t109;
+        let t111 = t94 * twist[3];
+        let t112 = twist[0] - t111;
+        let t114 = 1.0 / t99;
+        let t115 = 0.52 * t96;
+        let c_arm_leg2 = t114 * (t115 * t104 - t23 * t107);
+        let garm_vy_leg2 = (t95 - (0.24 + 0.26 * c_arm_leg2)) * t109;
+        let t124 = t92 * twist[3];
+        let t125 = twist[1] + t124;
+        let minus_s_arm_leg2 = t114 * (t23 * t104 + t115 * t107);
+        let garm_vz_leg2 = (pose[2] - 0.26 * minus_s_arm_leg2) * t109;
+        let rate_arm_leg2 = garm_vx_leg2 * t112 + garm_vy_leg2 * t125
             + garm_vz_leg2 * twist[2];
-        let t82 = 1.7241379310344827 * t66;
-        let gcross_vy_leg2 = c_arm_leg2 * t82;
-        let t86 = 1.0 / c_rod_leg2;
-        let minus_gcross_vx_leg2 = t82
-            * (c_arm_leg2 * (c_armcross_leg2 * s_rod_leg2 * t86)
-                + s_arm_leg2 * (s_armcross_leg2 * s_rod_leg2 * t86));
-        let minus_gcross_vz_leg2 = s_arm_leg2 * t82;
-        let rate_cross_leg2 = gcross_vy_leg2 * t76 - minus_gcross_vx_leg2 * t71
-            - minus_gcross_vz_leg2 * twist[2];
-        let minus_grod_vx_leg2 = 1.7241379310344827 * t86;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t71;
-        let t102 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t102);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        ::overact::guard::leg(c_rod_leg3, 0.9887897213061891, "leg3")?;
-        let t107 = c_armcross_leg3 * c_rod_leg3;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t110 = s_armcross_leg3 * c_rod_leg3;
-        let t113 = c_arm_leg3 * t110 - s_arm_leg3 * t107;
-        ::overact::guard::leg(t113, 0.9185391450939737, "leg3")?;
-        let t114 = 1.0 / t113;
-        let t115 = 3.8461538461538463 * t114;
-        let minus_garm_vx_leg3 = t107 * t115;
-        let t117 = twist[0] + t22;
-        let minus_garm_vy_leg3 = s_rod_leg3 * t115;
-        let t120 = twist[1] - t29;
-        let minus_garm_vz_leg3 = t110 * t115;
-        let minus_rate_arm_leg3 = minus_garm_vx_leg3 * t117 + minus_garm_vy_leg3 * t120
-            + minus_garm_vz_leg3 * twist[2];
-        let t126 = 1.7241379310344827 * t114;
-        let gcross_vx_leg3 = c_arm_leg3 * t126;
-        let t130 = 1.0 / c_rod_leg3;
-        let gcross_vy_leg3 = t126
-            * (c_arm_leg3 * (c_armcross_leg3 * s_rod_leg3 * t130)
-                + s_arm_leg3 * (s_armcross_leg3 * s_rod_leg3 * t130));
-        let gcross_vz_leg3 = s_arm_leg3 * t126;
-        let rate_cross_leg3 = gcross_vx_leg3 * t117 + gcross_vy_leg3 * t120
-            + gcross_vz_leg3 * twist[2];
-        let minus_grod_vy_leg3 = 1.7241379310344827 * t130;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t120;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        ::overact::guard::leg(c_rod_leg4, 0.9887897213061891, "leg4")?;
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let t150 = joints[9] + joints[10];
-        let (s_armcross_leg4, c_armcross_leg4) = ::overact::math::sin_cos(t150);
-        let t153 = s_armcross_leg4 * c_rod_leg4;
-        let t155 = c_armcross_leg4 * c_rod_leg4;
-        let t157 = c_arm_leg4 * t153 - s_arm_leg4 * t155;
-        ::overact::guard::leg(t157, 0.9185391450939737, "leg4")?;
-        let t158 = 1.0 / t157;
-        let t159 = 3.8461538461538463 * t158;
-        let garm_vx_leg4 = s_rod_leg4 * t159;
-        let t161 = twist[0] + t70;
-        let minus_garm_vy_leg4 = t155 * t159;
-        let t164 = twist[1] - t75;
-        let minus_garm_vz_leg4 = t153 * t159;
-        let rate_arm_leg4 = garm_vx_leg4 * t161 - minus_garm_vy_leg4 * t164
-            - minus_garm_vz_leg4 * twist[2];
-        let t170 = 1.7241379310344827 * t158;
-        let gcross_vy_leg4 = c_arm_leg4 * t170;
-        let t174 = 1.0 / c_rod_leg4;
-        let minus_gcross_vx_leg4 = t170
-            * (c_arm_leg4 * (c_armcross_leg4 * s_rod_leg4 * t174)
-                + s_arm_leg4 * (s_armcross_leg4 * s_rod_leg4 * t174));
-        let gcross_vz_leg4 = s_arm_leg4 * t170;
-        let rate_cross_leg4 = gcross_vy_leg4 * t164 - minus_gcross_vx_leg4 * t161
-            + gcross_vz_leg4 * twist[2];
-        let grod_vx_leg4 = 1.7241379310344827 * t174;
-        let rate_rod_leg4 = grod_vx_leg4 * t161;
+        let t137 = 0.52 * t108;
+        let minus_s_rod_leg2 = 1.7241379310344827 * t93;
+        let t142 = 1.0 - 2.972651605231867 * t100;
+        ::overact::guard::reach(t142, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t142);
+        ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
+        let c_cross_leg2 = (t102 - (0.0676 + t100) - 0.3364 * t142)
+            / (0.3016 * c_rod_leg2);
+        let s_cross_leg2 = 1.9230769230769231 * t107 / (0.58 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t155 = 1.0 / c_rod_leg2;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let minus_gcross_vx_leg2 = t137
+            * (c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t155)
+                - minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t155));
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t137;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t137;
+        let minus_rate_cross_leg2 = minus_gcross_vx_leg2 * t112
+            + minus_gcross_vy_leg2 * t125 + minus_gcross_vz_leg2 * twist[2];
+        let minus_grod_vx_leg2 = 1.7241379310344827 * t155;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t112;
+        let t176 = pose[0] - t4;
+        let t177 = t176 + 0.24;
+        let t178 = t177 * t177;
+        let t180 = 0.2704 * (t178 + t8);
+        let t181 = 1.0 / t180;
+        let t182 = 0.52 * t177;
+        let t183 = pose[1] - t15;
+        let t184 = t183 * t183;
+        let t186 = t178 + t184 + t8;
+        let t188 = t186 - 0.3364 + 0.0676;
+        let t191 = t180 - t188 * t188;
+        ::overact::guard::reach(t191, "leg3")?;
+        let t192 = ::overact::math::sqrt(t191);
+        ::overact::guard::leg(t192, 0.27703140616182853, "leg3")?;
+        let minus_c_arm_leg3 = t181 * (t182 * t188 + t23 * t192);
+        let t199 = 1.0 / t192;
+        let t200 = 2.0 * t199;
+        let garm_vx_leg3 = (t176 - (0.26 * minus_c_arm_leg3 - 0.24)) * t200;
+        let t202 = twist[0] + t36;
+        let garm_vy_leg3 = t183 * t200;
+        let t205 = twist[1] - t40;
+        let s_arm_leg3 = t181 * (t182 * t192 - t23 * t188);
+        let garm_vz_leg3 = (pose[2] + 0.26 * s_arm_leg3) * t200;
+        let rate_arm_leg3 = garm_vx_leg3 * t202 + garm_vy_leg3 * t205
+            + garm_vz_leg3 * twist[2];
+        let t217 = 0.52 * t199;
+        let gcross_vz_leg3 = s_arm_leg3 * t217;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t217;
+        let minus_s_rod_leg3 = 1.7241379310344827 * t183;
+        let t226 = 1.0 - 2.972651605231867 * t184;
+        ::overact::guard::reach(t226, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t226);
+        ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
+        let c_cross_leg3 = (t186 - (0.0676 + t184) - 0.3364 * t226)
+            / (0.3016 * c_rod_leg3);
+        let s_cross_leg3 = 1.9230769230769231 * t192 / (0.58 * c_rod_leg3);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t239 = 1.0 / c_rod_leg3;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t217
+            * (minus_c_arm_leg3 * (minus_s_rod_leg3 * minus_c_armcross_leg3 * t239)
+                + s_arm_leg3 * (minus_s_rod_leg3 * s_armcross_leg3 * t239));
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * t202 + minus_gcross_vy_leg3 * t205);
+        let minus_grod_vy_leg3 = 1.7241379310344827 * t239;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t205;
+        let t256 = pose[0] - t92;
+        let t257 = pose[1] - t94;
+        let t258 = t257 + 0.24;
+        let t259 = t258 * t258;
+        let t261 = 0.2704 * (t259 + t8);
+        let t262 = t256 * t256;
+        let t264 = t262 + t259 + t8;
+        let t266 = t264 - 0.3364 + 0.0676;
+        let t268 = t261 - t266 * t266;
+        ::overact::guard::reach(t268, "leg4")?;
+        let t269 = ::overact::math::sqrt(t268);
+        ::overact::guard::leg(t269, 0.27703140616182853, "leg4")?;
+        let t270 = 1.0 / t269;
+        let t271 = 2.0 * t270;
+        let garm_vx_leg4 = t256 * t271;
+        let t273 = twist[0] + t111;
+        let t275 = 1.0 / t261;
+        let t276 = 0.52 * t258;
+        let minus_c_arm_leg4 = t275 * (t276 * t266 + t23 * t269);
+        let garm_vy_leg4 = (t257 - (0.26 * minus_c_arm_leg4 - 0.24)) * t271;
+        let t285 = twist[1] - t124;
+        let s_arm_leg4 = t275 * (t276 * t269 - t23 * t266);
+        let garm_vz_leg4 = (pose[2] + 0.26 * s_arm_leg4) * t271;
+        let rate_arm_leg4 = garm_vx_leg4 * t273 + garm_vy_leg4 * t285
+            + garm_vz_leg4 * twist[2];
+        let t297 = 0.52 * t270;
+        let gcross_vz_leg4 = s_arm_leg4 * t297;
+        let s_rod_leg4 = 1.7241379310344827 * t256;
+        let t304 = 1.0 - 2.972651605231867 * t262;
+        ::overact::guard::reach(t304, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t304);
+        ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
+        let c_cross_leg4 = (t264 - (0.0676 + t262) - 0.3364 * t304)
+            / (0.3016 * c_rod_leg4);
+        let s_cross_leg4 = 1.9230769230769231 * t269 / (0.58 * c_rod_leg4);
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let t317 = 1.0 / c_rod_leg4;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t297
+            * (minus_c_arm_leg4 * (s_rod_leg4 * minus_c_armcross_leg4 * t317)
+                + s_arm_leg4 * (s_rod_leg4 * s_armcross_leg4 * t317));
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t297;
+        let rate_cross_leg4 = gcross_vz_leg4 * twist[2]
+            - (minus_gcross_vx_leg4 * t273 + minus_gcross_vy_leg4 * t285);
+        let grod_vx_leg4 = 1.7241379310344827 * t317;
+        let rate_rod_leg4 = grod_vx_leg4 * t273;
         Ok([
-            rate_arm_leg1, rate_cross_leg1 - rate_arm_leg1, rate_rod_leg1, rate_arm_leg2,
-            rate_cross_leg2 - rate_arm_leg2, -minus_rate_rod_leg2, -minus_rate_arm_leg3,
-            minus_rate_arm_leg3 + rate_cross_leg3, -minus_rate_rod_leg3, rate_arm_leg4,
+            rate_arm_leg1, -(rate_arm_leg1 + minus_rate_cross_leg1), rate_rod_leg1, rate_arm_leg2,
+            -(rate_arm_leg2 + minus_rate_cross_leg2), -minus_rate_rod_leg2, rate_arm_leg3,
+            rate_cross_leg3 - rate_arm_leg3, -minus_rate_rod_leg3, rate_arm_leg4,
             rate_cross_leg4 - rate_arm_leg4, rate_rod_leg4,
         ])
     }
@@ -1098,7 +1423,7 @@ impl Schoenflies4 {
     ///
     /// Output: 12.
     ///
-    /// 368 operations (124 additions, 236 multiplications, 8 divisions), 0 square roots, 13 trigonometric pairs, 0 signs, 382 intermediates.
+    /// 510 operations (196 additions, 294 multiplications, 20 divisions), 8 square roots, 1 trigonometric pairs, 0 signs, 508 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1107,220 +1432,304 @@ impl Schoenflies4 {
         twist: &[f64; 4],
         acceleration: &[f64; 4],
     ) -> Result<[f64; 12], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let t0 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t0);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        ::overact::guard::leg(c_rod_leg1, 0.9887897213061891, "leg1")?;
-        let t5 = s_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t8 = c_armcross_leg1 * c_rod_leg1;
-        let t11 = s_arm_leg1 * t8 - c_arm_leg1 * t5;
-        ::overact::guard::leg(t11, 0.9185391450939739, "leg1")?;
-        let t12 = 1.0 / t11;
-        let t13 = 3.8461538461538463 * t12;
-        let garm_vz_leg1 = t5 * t13;
-        let minus_garm_vx_leg1 = t8 * t13;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
-        let t20 = 0.05 * s_phi;
-        let t21 = 0.08660254037844387 * c_phi;
-        let t22 = t20 + t21;
-        let t23 = t22 * twist[3];
-        let t24 = twist[0] - t23;
-        let minus_garm_vy_leg1 = s_rod_leg1 * t13;
-        let t27 = 0.05 * c_phi;
-        let t28 = 0.08660254037844387 * s_phi;
-        let t29 = t27 - t28;
-        let t30 = t29 * twist[3];
-        let t31 = twist[1] + t30;
-        let rate_arm_leg1 = garm_vz_leg1 * twist[2]
-            - (minus_garm_vx_leg1 * t24 + minus_garm_vy_leg1 * t31);
-        let t35 = rate_arm_leg1 * rate_arm_leg1;
-        let t38 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.7241379310344827 * t38;
-        let rate_rod_leg1 = grod_vy_leg1 * t31;
-        let t41 = s_armcross_leg1 * rate_rod_leg1;
-        let t43 = 1.7241379310344827 * t12;
-        let gcross_vx_leg1 = c_arm_leg1 * t43;
-        let gcross_vy_leg1 = t43
-            * (c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t38)
-                + s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t38));
-        let minus_gcross_vz_leg1 = s_arm_leg1 * t43;
-        let rate_cross_leg1 = gcross_vx_leg1 * t24 + gcross_vy_leg1 * t31
-            - minus_gcross_vz_leg1 * twist[2];
-        let t61 = c_armcross_leg1 * rate_rod_leg1;
-        let t63 = t41 * t41 + rate_cross_leg1 * rate_cross_leg1 + t61 * t61;
-        let t66 = 0.58 * s_rod_leg1;
-        let t68 = t66 * (rate_cross_leg1 * t61);
-        let t71 = acceleration[2]
-            - (0.26 * s_arm_leg1 * t35 + 0.58 * t5 * t63 + t68 + t68);
-        let t73 = t22 * acceleration[3];
-        let t75 = twist[3] * t30;
-        let t78 = t66 * (rate_cross_leg1 * t41);
-        let t86 = acceleration[0] - t73 - t75
-            - (t78 - (0.26 * c_arm_leg1 * t35 + 0.58 * t8 * t63) + t78);
-        let t88 = t29 * acceleration[3];
-        let t90 = twist[3] * t23;
-        let t96 = acceleration[1] + t88 - t90
-            - (rate_cross_leg1 * (t66 * rate_cross_leg1) - t66 * t63);
-        let rate_dot_arm_leg1 = garm_vz_leg1 * t71
-            - (minus_garm_vx_leg1 * t86 + minus_garm_vy_leg1 * t96);
-        let rate_dot_cross_leg1 = gcross_vx_leg1 * t86 + gcross_vy_leg1 * t96
-            - minus_gcross_vz_leg1 * t71;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t96;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        ::overact::guard::leg(c_rod_leg2, 0.988789721306189, "leg2")?;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t111 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t111);
-        let t114 = c_armcross_leg2 * c_rod_leg2;
-        let t116 = s_armcross_leg2 * c_rod_leg2;
-        let t118 = s_arm_leg2 * t114 - c_arm_leg2 * t116;
-        ::overact::guard::leg(t118, 0.9185391450939737, "leg2")?;
-        let t119 = 1.0 / t118;
-        let t120 = 3.8461538461538463 * t119;
-        let garm_vx_leg2 = s_rod_leg2 * t120;
-        let t122 = t28 + t27;
-        let t123 = t122 * acceleration[3];
-        let t125 = t21 - t20;
-        let t126 = t125 * twist[3];
-        let t127 = twist[3] * t126;
-        let t129 = 0.58 * s_rod_leg2;
-        let t130 = 1.7241379310344827 * t119;
-        let gcross_vy_leg2 = c_arm_leg2 * t130;
-        let t132 = twist[1] + t126;
-        let t135 = 1.0 / c_rod_leg2;
-        let minus_gcross_vx_leg2 = t130
-            * (c_arm_leg2 * (c_armcross_leg2 * s_rod_leg2 * t135)
-                + s_arm_leg2 * (s_armcross_leg2 * s_rod_leg2 * t135));
-        let t143 = t122 * twist[3];
-        let t144 = twist[0] - t143;
-        let minus_gcross_vz_leg2 = s_arm_leg2 * t130;
-        let rate_cross_leg2 = gcross_vy_leg2 * t132 - minus_gcross_vx_leg2 * t144
-            - minus_gcross_vz_leg2 * twist[2];
-        let minus_grod_vx_leg2 = 1.7241379310344827 * t135;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t144;
-        let t153 = s_armcross_leg2 * minus_rate_rod_leg2;
-        let t156 = c_armcross_leg2 * minus_rate_rod_leg2;
-        let t158 = rate_cross_leg2 * rate_cross_leg2 + t153 * t153 + t156 * t156;
-        let t163 = acceleration[0] - t123 - t127
-            - (t129 * t158 - rate_cross_leg2 * (t129 * rate_cross_leg2));
-        let minus_garm_vy_leg2 = t114 * t120;
-        let t166 = t125 * acceleration[3];
-        let t168 = twist[3] * t143;
-        let garm_vz_leg2 = t116 * t120;
-        let rate_arm_leg2 = garm_vx_leg2 * t144 - minus_garm_vy_leg2 * t132
+        let t2 = 0.05 * c_phi;
+        let t3 = 0.08660254037844387 * s_phi;
+        let t4 = t2 - t3;
+        let t5 = pose[0] + t4;
+        let t6 = t5 - 0.24;
+        let t7 = t6 * t6;
+        let t8 = pose[2] * pose[2];
+        let t10 = 0.2704 * (t7 + t8);
+        let t11 = 1.0 / t10;
+        let t12 = 0.52 * t6;
+        let t13 = 0.05 * s_phi;
+        let t14 = 0.08660254037844387 * c_phi;
+        let t15 = t13 + t14;
+        let t16 = pose[1] + t15;
+        let t17 = t16 * t16;
+        let t19 = t7 + t17 + t8;
+        let t21 = t19 - 0.3364 + 0.0676;
+        let t23 = 0.52 * pose[2];
+        let t25 = t10 - t21 * t21;
+        ::overact::guard::reach(t25, "leg1")?;
+        let t26 = ::overact::math::sqrt(t25);
+        ::overact::guard::leg(t26, 0.27703140616182853, "leg1")?;
+        let c_arm_leg1 = t11 * (t12 * t21 - t23 * t26);
+        let t30 = 0.26 * c_arm_leg1;
+        let t32 = t5 - (0.24 + t30);
+        let t33 = 1.0 / t26;
+        let t34 = 2.0 * t33;
+        let garm_vx_leg1 = t32 * t34;
+        let t36 = t15 * acceleration[3];
+        let t38 = t4 * twist[3];
+        let t39 = twist[3] * t38;
+        let t41 = t15 * twist[3];
+        let t42 = twist[0] - t41;
+        let garm_vy_leg1 = t16 * t34;
+        let t45 = twist[1] + t38;
+        let minus_s_arm_leg1 = t11 * (t23 * t21 + t12 * t26);
+        let t52 = 0.26 * minus_s_arm_leg1;
+        let t53 = pose[2] - t52;
+        let garm_vz_leg1 = t53 * t34;
+        let rate_arm_leg1 = garm_vx_leg1 * t42 + garm_vy_leg1 * t45
+            + garm_vz_leg1 * twist[2];
+        let t57 = rate_arm_leg1 * rate_arm_leg1;
+        let t61 = 1.0 - 2.972651605231867 * t17;
+        ::overact::guard::reach(t61, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t61);
+        ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
+        let s_cross_leg1 = 1.9230769230769231 * t26 / (0.58 * c_rod_leg1);
+        let c_cross_leg1 = (t19 - (0.0676 + t17) - 0.3364 * t61) / (0.3016 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t74 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7241379310344827 * t74;
+        let rate_rod_leg1 = grod_vy_leg1 * t45;
+        let t77 = s_armcross_leg1 * rate_rod_leg1;
+        let t79 = 0.52 * t33;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t79;
+        let s_rod_leg1 = 1.7241379310344827 * t16;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let minus_gcross_vy_leg1 = t79
+            * (c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t74)
+                - minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t74));
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t79;
+        let minus_rate_cross_leg1 = minus_gcross_vx_leg1 * t42
+            + minus_gcross_vy_leg1 * t45 + minus_gcross_vz_leg1 * twist[2];
+        let t101 = c_armcross_leg1 * rate_rod_leg1;
+        let t103 = t77 * t77 + minus_rate_cross_leg1 * minus_rate_cross_leg1
+            + t101 * t101;
+        let t107 = t16 * (minus_rate_cross_leg1 * t77);
+        let t110 = acceleration[0] - t36 - t39 + t30 * t57 + t32 * t103 + t107 + t107;
+        let t112 = t4 * acceleration[3];
+        let t114 = twist[3] * t41;
+        let t120 = acceleration[1] + t112 - t114
+            - (minus_rate_cross_leg1 * (t16 * minus_rate_cross_leg1) - t16 * t103);
+        let t127 = t16 * (minus_rate_cross_leg1 * t101);
+        let t130 = acceleration[2] + t52 * t57 + t53 * t103 + t127 + t127;
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t110 + garm_vy_leg1 * t120
+            + garm_vz_leg1 * t130;
+        let minus_rate_dot_cross_leg1 = minus_gcross_vx_leg1 * t110
+            + minus_gcross_vy_leg1 * t120 + minus_gcross_vz_leg1 * t130;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t120;
+        let t140 = t14 - t13;
+        let t141 = pose[0] + t140;
+        let t142 = t3 + t2;
+        let t143 = pose[1] + t142;
+        let t144 = t143 - 0.24;
+        let t145 = t144 * t144;
+        let t147 = 0.2704 * (t145 + t8);
+        let t148 = t141 * t141;
+        let t150 = t148 + t145 + t8;
+        let t152 = t150 - 0.3364 + 0.0676;
+        let t154 = t147 - t152 * t152;
+        ::overact::guard::reach(t154, "leg2")?;
+        let t155 = ::overact::math::sqrt(t154);
+        ::overact::guard::leg(t155, 0.27703140616182853, "leg2")?;
+        let t156 = 1.0 / t155;
+        let t157 = 2.0 * t156;
+        let garm_vx_leg2 = t141 * t157;
+        let t159 = t142 * acceleration[3];
+        let t161 = t140 * twist[3];
+        let t162 = twist[3] * t161;
+        let t164 = 0.52 * t156;
+        let t165 = 1.0 / t147;
+        let t166 = 0.52 * t144;
+        let c_arm_leg2 = t165 * (t166 * t152 - t23 * t155);
+        let minus_s_rod_leg2 = 1.7241379310344827 * t141;
+        let t175 = 1.0 - 2.972651605231867 * t148;
+        ::overact::guard::reach(t175, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t175);
+        ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
+        let c_cross_leg2 = (t150 - (0.0676 + t148) - 0.3364 * t175)
+            / (0.3016 * c_rod_leg2);
+        let minus_s_arm_leg2 = t165 * (t23 * t152 + t166 * t155);
+        let s_cross_leg2 = 1.9230769230769231 * t155 / (0.58 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t192 = 1.0 / c_rod_leg2;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let minus_gcross_vx_leg2 = t164
+            * (c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t192)
+                - minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t192));
+        let t203 = t142 * twist[3];
+        let t204 = twist[0] - t203;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t164;
+        let t207 = twist[1] + t161;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t164;
+        let minus_rate_cross_leg2 = minus_gcross_vx_leg2 * t204
+            + minus_gcross_vy_leg2 * t207 + minus_gcross_vz_leg2 * twist[2];
+        let minus_grod_vx_leg2 = 1.7241379310344827 * t192;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t204;
+        let t218 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t221 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t223 = minus_rate_cross_leg2 * minus_rate_cross_leg2 + t218 * t218
+            + t221 * t221;
+        let t226 = acceleration[0] - t159 - t162
+            - (minus_rate_cross_leg2 * (t141 * minus_rate_cross_leg2) - t141 * t223);
+        let t228 = 0.26 * c_arm_leg2;
+        let t230 = t143 - (0.24 + t228);
+        let garm_vy_leg2 = t230 * t157;
+        let t232 = t140 * acceleration[3];
+        let t234 = twist[3] * t203;
+        let t239 = 0.26 * minus_s_arm_leg2;
+        let t240 = pose[2] - t239;
+        let garm_vz_leg2 = t240 * t157;
+        let rate_arm_leg2 = garm_vx_leg2 * t204 + garm_vy_leg2 * t207
             + garm_vz_leg2 * twist[2];
-        let t177 = rate_arm_leg2 * rate_arm_leg2;
-        let t183 = t129 * (rate_cross_leg2 * t153);
-        let t186 = acceleration[1] + t166 - t168 + 0.26 * c_arm_leg2 * t177
-            + 0.58 * t114 * t158 + t183 + t183;
-        let t195 = t129 * (rate_cross_leg2 * t156);
-        let t198 = acceleration[2]
-            - (0.26 * s_arm_leg2 * t177 + 0.58 * t116 * t158 - t195 - t195);
-        let rate_dot_arm_leg2 = garm_vx_leg2 * t163 - minus_garm_vy_leg2 * t186
-            + garm_vz_leg2 * t198;
-        let rate_dot_cross_leg2 = gcross_vy_leg2 * t186 - minus_gcross_vx_leg2 * t163
-            - minus_gcross_vz_leg2 * t198;
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t163;
-        let t208 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t208);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        ::overact::guard::leg(c_rod_leg3, 0.9887897213061891, "leg3")?;
-        let t213 = c_armcross_leg3 * c_rod_leg3;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t216 = s_armcross_leg3 * c_rod_leg3;
-        let t219 = c_arm_leg3 * t216 - s_arm_leg3 * t213;
-        ::overact::guard::leg(t219, 0.9185391450939737, "leg3")?;
-        let t220 = 1.0 / t219;
-        let t221 = 3.8461538461538463 * t220;
-        let minus_garm_vx_leg3 = t213 * t221;
-        let t226 = twist[0] + t23;
-        let minus_garm_vy_leg3 = s_rod_leg3 * t221;
-        let t229 = twist[1] - t30;
-        let minus_garm_vz_leg3 = t216 * t221;
-        let minus_rate_arm_leg3 = minus_garm_vx_leg3 * t226 + minus_garm_vy_leg3 * t229
-            + minus_garm_vz_leg3 * twist[2];
-        let t235 = minus_rate_arm_leg3 * minus_rate_arm_leg3;
-        let t238 = 1.0 / c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.7241379310344827 * t238;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t229;
-        let t241 = s_armcross_leg3 * minus_rate_rod_leg3;
-        let t243 = 1.7241379310344827 * t220;
-        let gcross_vx_leg3 = c_arm_leg3 * t243;
-        let gcross_vy_leg3 = t243
-            * (c_arm_leg3 * (c_armcross_leg3 * s_rod_leg3 * t238)
-                + s_arm_leg3 * (s_armcross_leg3 * s_rod_leg3 * t238));
-        let gcross_vz_leg3 = s_arm_leg3 * t243;
-        let rate_cross_leg3 = gcross_vx_leg3 * t226 + gcross_vy_leg3 * t229
-            + gcross_vz_leg3 * twist[2];
-        let t261 = c_armcross_leg3 * minus_rate_rod_leg3;
-        let t263 = t241 * t241 + rate_cross_leg3 * rate_cross_leg3 + t261 * t261;
-        let t266 = 0.58 * s_rod_leg3;
-        let t268 = t266 * (rate_cross_leg3 * t241);
-        let t271 = acceleration[0] + t73 + t75
-            - (0.26 * c_arm_leg3 * t235 + 0.58 * t213 * t263 + t268 + t268);
-        let t279 = acceleration[1] - t88 + t90
-            - (t266 * t263 - rate_cross_leg3 * (t266 * rate_cross_leg3));
-        let t288 = t266 * (rate_cross_leg3 * t261);
-        let t291 = acceleration[2]
-            - (0.26 * s_arm_leg3 * t235 + 0.58 * t216 * t263 - t288 - t288);
-        let minus_rate_dot_arm_leg3 = minus_garm_vx_leg3 * t271
-            + minus_garm_vy_leg3 * t279 + minus_garm_vz_leg3 * t291;
-        let rate_dot_cross_leg3 = gcross_vx_leg3 * t271 + gcross_vy_leg3 * t279
-            + gcross_vz_leg3 * t291;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t279;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        ::overact::guard::leg(c_rod_leg4, 0.9887897213061891, "leg4")?;
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let t305 = joints[9] + joints[10];
-        let (s_armcross_leg4, c_armcross_leg4) = ::overact::math::sin_cos(t305);
-        let t308 = s_armcross_leg4 * c_rod_leg4;
-        let t310 = c_armcross_leg4 * c_rod_leg4;
-        let t312 = c_arm_leg4 * t308 - s_arm_leg4 * t310;
-        ::overact::guard::leg(t312, 0.9185391450939737, "leg4")?;
-        let t313 = 1.0 / t312;
-        let t314 = 3.8461538461538463 * t313;
-        let garm_vx_leg4 = s_rod_leg4 * t314;
-        let t318 = 1.7241379310344827 * t313;
-        let gcross_vy_leg4 = c_arm_leg4 * t318;
-        let t320 = twist[1] - t126;
-        let t323 = 1.0 / c_rod_leg4;
-        let minus_gcross_vx_leg4 = t318
-            * (c_arm_leg4 * (c_armcross_leg4 * s_rod_leg4 * t323)
-                + s_arm_leg4 * (s_armcross_leg4 * s_rod_leg4 * t323));
-        let t331 = twist[0] + t143;
-        let gcross_vz_leg4 = s_arm_leg4 * t318;
-        let rate_cross_leg4 = gcross_vy_leg4 * t320 - minus_gcross_vx_leg4 * t331
-            + gcross_vz_leg4 * twist[2];
-        let t337 = 0.58 * s_rod_leg4;
-        let grod_vx_leg4 = 1.7241379310344827 * t323;
-        let rate_rod_leg4 = grod_vx_leg4 * t331;
-        let t343 = s_armcross_leg4 * rate_rod_leg4;
-        let t346 = c_armcross_leg4 * rate_rod_leg4;
-        let t348 = rate_cross_leg4 * rate_cross_leg4 + t343 * t343 + t346 * t346;
-        let t351 = acceleration[0] + t123 + t127
-            - (rate_cross_leg4 * (t337 * rate_cross_leg4) - t337 * t348);
-        let minus_garm_vy_leg4 = t310 * t314;
-        let minus_garm_vz_leg4 = t308 * t314;
-        let rate_arm_leg4 = garm_vx_leg4 * t331 - minus_garm_vy_leg4 * t320
-            - minus_garm_vz_leg4 * twist[2];
-        let t363 = rate_arm_leg4 * rate_arm_leg4;
-        let t369 = t337 * (rate_cross_leg4 * t343);
-        let t372 = acceleration[1] - t166 + t168
-            - (0.26 * c_arm_leg4 * t363 + 0.58 * t310 * t348 - t369 - t369);
-        let t381 = t337 * (rate_cross_leg4 * t346);
-        let t384 = acceleration[2]
-            - (0.26 * s_arm_leg4 * t363 + 0.58 * t308 * t348 + t381 + t381);
-        let rate_dot_arm_leg4 = garm_vx_leg4 * t351 - minus_garm_vy_leg4 * t372
-            - minus_garm_vz_leg4 * t384;
-        let rate_dot_cross_leg4 = gcross_vy_leg4 * t372 - minus_gcross_vx_leg4 * t351
-            + gcross_vz_leg4 * t384;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t351;
+        let t244 = rate_arm_leg2 * rate_arm_leg2;
+        let t249 = t141 * (minus_rate_cross_leg2 * t218);
+        let t252 = acceleration[1] + t232 - t234 + t228 * t244 + t230 * t223 + t249
+            + t249;
+        let t259 = t141 * (minus_rate_cross_leg2 * t221);
+        let t262 = acceleration[2] + t239 * t244 + t240 * t223 + t259 + t259;
+        let rate_dot_arm_leg2 = garm_vx_leg2 * t226 + garm_vy_leg2 * t252
+            + garm_vz_leg2 * t262;
+        let minus_rate_dot_cross_leg2 = minus_gcross_vx_leg2 * t226
+            + minus_gcross_vy_leg2 * t252 + minus_gcross_vz_leg2 * t262;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t226;
+        let t272 = pose[0] - t4;
+        let t273 = t272 + 0.24;
+        let t274 = t273 * t273;
+        let t276 = 0.2704 * (t274 + t8);
+        let t277 = 1.0 / t276;
+        let t278 = 0.52 * t273;
+        let t279 = pose[1] - t15;
+        let t280 = t279 * t279;
+        let t282 = t274 + t280 + t8;
+        let t284 = t282 - 0.3364 + 0.0676;
+        let t287 = t276 - t284 * t284;
+        ::overact::guard::reach(t287, "leg3")?;
+        let t288 = ::overact::math::sqrt(t287);
+        ::overact::guard::leg(t288, 0.27703140616182853, "leg3")?;
+        let minus_c_arm_leg3 = t277 * (t278 * t284 + t23 * t288);
+        let t292 = 0.26 * minus_c_arm_leg3;
+        let t294 = t272 - (t292 - 0.24);
+        let t295 = 1.0 / t288;
+        let t296 = 2.0 * t295;
+        let garm_vx_leg3 = t294 * t296;
+        let t300 = twist[0] + t41;
+        let garm_vy_leg3 = t279 * t296;
+        let t303 = twist[1] - t38;
+        let s_arm_leg3 = t277 * (t278 * t288 - t23 * t284);
+        let t310 = 0.26 * s_arm_leg3;
+        let t311 = pose[2] + t310;
+        let garm_vz_leg3 = t311 * t296;
+        let rate_arm_leg3 = garm_vx_leg3 * t300 + garm_vy_leg3 * t303
+            + garm_vz_leg3 * twist[2];
+        let t315 = rate_arm_leg3 * rate_arm_leg3;
+        let t320 = 1.0 - 2.972651605231867 * t280;
+        ::overact::guard::reach(t320, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t320);
+        ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
+        let c_cross_leg3 = (t282 - (0.0676 + t280) - 0.3364 * t320)
+            / (0.3016 * c_rod_leg3);
+        let s_cross_leg3 = 1.9230769230769231 * t288 / (0.58 * c_rod_leg3);
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t332 = 1.0 / c_rod_leg3;
+        let minus_grod_vy_leg3 = 1.7241379310344827 * t332;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t303;
+        let t335 = s_armcross_leg3 * minus_rate_rod_leg3;
+        let t337 = 0.52 * t295;
+        let gcross_vz_leg3 = s_arm_leg3 * t337;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t337;
+        let minus_s_rod_leg3 = 1.7241379310344827 * t279;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t337
+            * (minus_c_arm_leg3 * (minus_s_rod_leg3 * minus_c_armcross_leg3 * t332)
+                + s_arm_leg3 * (minus_s_rod_leg3 * s_armcross_leg3 * t332));
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * t300 + minus_gcross_vy_leg3 * t303);
+        let t359 = minus_c_armcross_leg3 * minus_rate_rod_leg3;
+        let t361 = t335 * t335 + rate_cross_leg3 * rate_cross_leg3 + t359 * t359;
+        let t365 = t279 * (rate_cross_leg3 * t335);
+        let t368 = acceleration[0] + t36 + t39 + t292 * t315 + t294 * t361 + t365 + t365;
+        let t376 = acceleration[1] - t112 + t114
+            - (rate_cross_leg3 * (t279 * rate_cross_leg3) - t279 * t361);
+        let t383 = t279 * (rate_cross_leg3 * t359);
+        let t386 = acceleration[2] - (t310 * t315 - t311 * t361 - t383 - t383);
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t368 + garm_vy_leg3 * t376
+            + garm_vz_leg3 * t386;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * t386
+            - (minus_gcross_vx_leg3 * t368 + minus_gcross_vy_leg3 * t376);
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t376;
+        let t396 = pose[0] - t140;
+        let t397 = pose[1] - t142;
+        let t398 = t397 + 0.24;
+        let t399 = t398 * t398;
+        let t401 = 0.2704 * (t399 + t8);
+        let t402 = t396 * t396;
+        let t404 = t402 + t399 + t8;
+        let t406 = t404 - 0.3364 + 0.0676;
+        let t408 = t401 - t406 * t406;
+        ::overact::guard::reach(t408, "leg4")?;
+        let t409 = ::overact::math::sqrt(t408);
+        ::overact::guard::leg(t409, 0.27703140616182853, "leg4")?;
+        let t410 = 1.0 / t409;
+        let t411 = 2.0 * t410;
+        let garm_vx_leg4 = t396 * t411;
+        let t415 = 1.0 / t401;
+        let t416 = 0.52 * t398;
+        let s_arm_leg4 = t415 * (t416 * t409 - t23 * t406);
+        let t421 = 0.52 * t410;
+        let gcross_vz_leg4 = s_arm_leg4 * t421;
+        let minus_c_arm_leg4 = t415 * (t416 * t406 + t23 * t409);
+        let s_rod_leg4 = 1.7241379310344827 * t396;
+        let t432 = 1.0 - 2.972651605231867 * t402;
+        ::overact::guard::reach(t432, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t432);
+        ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
+        let c_cross_leg4 = (t404 - (0.0676 + t402) - 0.3364 * t432)
+            / (0.3016 * c_rod_leg4);
+        let s_cross_leg4 = 1.9230769230769231 * t409 / (0.58 * c_rod_leg4);
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let t445 = 1.0 / c_rod_leg4;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t421
+            * (minus_c_arm_leg4 * (s_rod_leg4 * minus_c_armcross_leg4 * t445)
+                + s_arm_leg4 * (s_rod_leg4 * s_armcross_leg4 * t445));
+        let t456 = twist[0] + t203;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t421;
+        let t459 = twist[1] - t161;
+        let rate_cross_leg4 = gcross_vz_leg4 * twist[2]
+            - (minus_gcross_vx_leg4 * t456 + minus_gcross_vy_leg4 * t459);
+        let grod_vx_leg4 = 1.7241379310344827 * t445;
+        let rate_rod_leg4 = grod_vx_leg4 * t456;
+        let t468 = s_armcross_leg4 * rate_rod_leg4;
+        let t471 = minus_c_armcross_leg4 * rate_rod_leg4;
+        let t473 = rate_cross_leg4 * rate_cross_leg4 + t468 * t468 + t471 * t471;
+        let t476 = acceleration[0] + t159 + t162
+            - (rate_cross_leg4 * (t396 * rate_cross_leg4) - t396 * t473);
+        let t478 = 0.26 * minus_c_arm_leg4;
+        let t480 = t397 - (t478 - 0.24);
+        let garm_vy_leg4 = t480 * t411;
+        let t487 = 0.26 * s_arm_leg4;
+        let t488 = pose[2] + t487;
+        let garm_vz_leg4 = t488 * t411;
+        let rate_arm_leg4 = garm_vx_leg4 * t456 + garm_vy_leg4 * t459
+            + garm_vz_leg4 * twist[2];
+        let t492 = rate_arm_leg4 * rate_arm_leg4;
+        let t497 = t396 * (rate_cross_leg4 * t468);
+        let t500 = acceleration[1] - t232 + t234 + t478 * t492 + t480 * t473 + t497
+            + t497;
+        let t507 = t396 * (rate_cross_leg4 * t471);
+        let t510 = acceleration[2] - (t487 * t492 - t488 * t473 - t507 - t507);
+        let rate_dot_arm_leg4 = garm_vx_leg4 * t476 + garm_vy_leg4 * t500
+            + garm_vz_leg4 * t510;
+        let rate_dot_cross_leg4 = gcross_vz_leg4 * t510
+            - (minus_gcross_vx_leg4 * t476 + minus_gcross_vy_leg4 * t500);
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t476;
         Ok([
-            rate_dot_arm_leg1, rate_dot_cross_leg1 - rate_dot_arm_leg1, rate_dot_rod_leg1,
-            rate_dot_arm_leg2, rate_dot_cross_leg2 - rate_dot_arm_leg2, -minus_rate_dot_rod_leg2,
-            -minus_rate_dot_arm_leg3, minus_rate_dot_arm_leg3 + rate_dot_cross_leg3,
+            rate_dot_arm_leg1, -(rate_dot_arm_leg1 + minus_rate_dot_cross_leg1), rate_dot_rod_leg1,
+            rate_dot_arm_leg2, -(rate_dot_arm_leg2 + minus_rate_dot_cross_leg2),
+            -minus_rate_dot_rod_leg2, rate_dot_arm_leg3, rate_dot_cross_leg3 - rate_dot_arm_leg3,
             -minus_rate_dot_rod_leg3, rate_dot_arm_leg4, rate_dot_cross_leg4 - rate_dot_arm_leg4,
             rate_dot_rod_leg4,
         ])
@@ -1333,7 +1742,7 @@ impl Schoenflies4 {
     ///
     /// Output: 4.
     ///
-    /// 215 operations (80 additions, 127 multiplications, 8 divisions), 0 square roots, 13 trigonometric pairs, 0 signs, 237 intermediates.
+    /// 305 operations (128 additions, 165 multiplications, 12 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 307 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1341,132 +1750,150 @@ impl Schoenflies4 {
         pose: &[f64; 4],
         actuator_velocities: &[f64; 4],
     ) -> Result<[f64; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t4 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t4);
-        let t7 = c_armcross_leg2 * c_rod_leg2;
-        let t9 = s_armcross_leg2 * c_rod_leg2;
-        let t11 = s_arm_leg2 * t7 - c_arm_leg2 * t9;
-        ::overact::guard::leg(t11, 0.9185391450939737, "leg2")?;
-        let t12 = 3.8461538461538463 / t11;
-        let garm_vx_leg2 = s_rod_leg2 * t12;
-        let t15 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t15);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        let t20 = c_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t24 = s_armcross_leg1 * c_rod_leg1;
-        let t26 = s_arm_leg1 * t20 - c_arm_leg1 * t24;
-        ::overact::guard::leg(t26, 0.9185391450939739, "leg1")?;
-        let t27 = 3.8461538461538463 / t26;
-        let minus_garm_vx_leg1 = t20 * t27;
-        let t31 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t31);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t36 = c_armcross_leg3 * c_rod_leg3;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t39 = s_armcross_leg3 * c_rod_leg3;
-        let t42 = c_arm_leg3 * t39 - s_arm_leg3 * t36;
-        ::overact::guard::leg(t42, 0.9185391450939737, "leg3")?;
-        let t43 = 3.8461538461538463 / t42;
-        let minus_garm_vx_leg3 = t36 * t43;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let t51 = joints[9] + joints[10];
-        let (s_armcross_leg4, c_armcross_leg4) = ::overact::math::sin_cos(t51);
-        let t54 = s_armcross_leg4 * c_rod_leg4;
-        let t56 = c_armcross_leg4 * c_rod_leg4;
-        let t58 = c_arm_leg4 * t54 - s_arm_leg4 * t56;
-        ::overact::guard::leg(t58, 0.9185391450939737, "leg4")?;
-        let t59 = 3.8461538461538463 / t58;
-        let garm_vx_leg4 = s_rod_leg4 * t59;
-        let t62 = garm_vx_leg2 * actuator_velocities[1]
-            - minus_garm_vx_leg1 * actuator_velocities[0]
-            - minus_garm_vx_leg3 * actuator_velocities[2]
-            + garm_vx_leg4 * actuator_velocities[3];
-        let t69 = minus_garm_vx_leg1 * minus_garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
-            + minus_garm_vx_leg3 * minus_garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
-        ::overact::guard::platform(t69, 19.50747081825307, "actuators")?;
-        let t70 = 1.0 / t69;
-        let minus_garm_vy_leg1 = s_rod_leg1 * t27;
-        let minus_garm_vy_leg2 = t7 * t12;
-        let minus_garm_vy_leg3 = s_rod_leg3 * t43;
-        let minus_garm_vy_leg4 = t56 * t59;
-        let t82 = minus_garm_vx_leg1 * minus_garm_vy_leg1
-            - garm_vx_leg2 * minus_garm_vy_leg2 + minus_garm_vx_leg3 * minus_garm_vy_leg3
-            - garm_vx_leg4 * minus_garm_vy_leg4;
-        let t83 = t82 * t70;
-        let t92 = minus_garm_vy_leg1 * minus_garm_vy_leg1
-            + minus_garm_vy_leg2 * minus_garm_vy_leg2
-            + minus_garm_vy_leg3 * minus_garm_vy_leg3
-            + minus_garm_vy_leg4 * minus_garm_vy_leg4 - t82 * t83;
-        ::overact::guard::platform(t92, 16.505615552607473, "actuators")?;
-        let t93 = 1.0 / t92;
-        let t102 = minus_garm_vy_leg1 * actuator_velocities[0]
-            + minus_garm_vy_leg2 * actuator_velocities[1]
-            + minus_garm_vy_leg3 * actuator_velocities[2]
-            + minus_garm_vy_leg4 * actuator_velocities[3] + t62 * t83;
-        let minus_garm_vz_leg3 = t39 * t43;
-        let garm_vz_leg1 = t24 * t27;
-        let garm_vz_leg2 = t9 * t12;
-        let minus_garm_vz_leg4 = t54 * t59;
-        let t121 = garm_vx_leg2 * garm_vz_leg2 - minus_garm_vx_leg1 * garm_vz_leg1
-            + minus_garm_vx_leg3 * minus_garm_vz_leg3
-            - garm_vx_leg4 * minus_garm_vz_leg4;
-        let t122 = t121 * t70;
-        let t124 = minus_garm_vy_leg3 * minus_garm_vz_leg3
-            - (minus_garm_vy_leg1 * garm_vz_leg1 + minus_garm_vy_leg2 * garm_vz_leg2)
-            + minus_garm_vy_leg4 * minus_garm_vz_leg4 - t82 * t122;
-        let t125 = t124 * t93;
-        let t136 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3
-            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t121 * t122 - t124 * t125;
-        ::overact::guard::platform(t136, 31.117338184537527, "actuators")?;
-        let t137 = 1.0 / t136;
-        let t148 = garm_vz_leg1 * actuator_velocities[0]
-            + garm_vz_leg2 * actuator_velocities[1]
-            - minus_garm_vz_leg3 * actuator_velocities[2]
-            - minus_garm_vz_leg4 * actuator_velocities[3] - t62 * t122 + t125 * t102;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
-        let t152 = 0.05 * s_phi;
-        let t153 = 0.08660254037844387 * c_phi;
-        let t154 = t152 + t153;
-        let t156 = 0.05 * c_phi;
-        let t157 = 0.08660254037844387 * s_phi;
-        let t158 = t156 - t157;
-        let garm_wz_leg1 = minus_garm_vx_leg1 * t154 - minus_garm_vy_leg1 * t158;
-        let t162 = t153 - t152;
-        let t164 = t157 + t156;
-        let minus_garm_wz_leg2 = minus_garm_vy_leg2 * t162 + garm_vx_leg2 * t164;
-        let garm_wz_leg3 = t158 * minus_garm_vy_leg3 - t154 * minus_garm_vx_leg3;
-        let garm_wz_leg4 = t162 * minus_garm_vy_leg4 + t164 * garm_vx_leg4;
-        let t185 = garm_vx_leg4 * garm_wz_leg4
-            - (minus_garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * minus_garm_wz_leg2
-                + minus_garm_vx_leg3 * garm_wz_leg3);
-        let t186 = t185 * t70;
-        let t197 = minus_garm_vy_leg2 * minus_garm_wz_leg2
-            - minus_garm_vy_leg1 * garm_wz_leg1 - minus_garm_vy_leg3 * garm_wz_leg3
-            - minus_garm_vy_leg4 * garm_wz_leg4 - t82 * t186;
-        let t198 = t197 * t93;
-        let t200 = garm_vz_leg1 * garm_wz_leg1 - garm_vz_leg2 * minus_garm_wz_leg2
-            - minus_garm_vz_leg3 * garm_wz_leg3 - minus_garm_vz_leg4 * garm_wz_leg4
-            - t121 * t186 - t124 * t198;
-        let t201 = t200 * t137;
-        let t212 = garm_wz_leg1 * garm_wz_leg1 + minus_garm_wz_leg2 * minus_garm_wz_leg2
-            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t185 * t186
-            - t197 * t198;
-        let t214 = t212 - t200 * t201;
-        ::overact::guard::platform(t214, 0.351065482163043, "actuators")?;
-        let t225 = garm_wz_leg1 * actuator_velocities[0]
-            - minus_garm_wz_leg2 * actuator_velocities[1]
+        let t2 = 0.05 * c_phi;
+        let t3 = 0.08660254037844387 * s_phi;
+        let t4 = t2 - t3;
+        let t5 = pose[0] + t4;
+        let t6 = t5 - 0.24;
+        let t7 = t6 * t6;
+        let t8 = pose[2] * pose[2];
+        let t10 = 0.2704 * (t7 + t8);
+        let t11 = 1.0 / t10;
+        let t12 = 0.52 * t6;
+        let t13 = 0.05 * s_phi;
+        let t14 = 0.08660254037844387 * c_phi;
+        let t15 = t13 + t14;
+        let t16 = pose[1] + t15;
+        let t21 = t7 + t16 * t16 + t8 - 0.3364 + 0.0676;
+        let t23 = 0.52 * pose[2];
+        let t25 = t10 - t21 * t21;
+        ::overact::guard::reach(t25, "leg1")?;
+        let t26 = ::overact::math::sqrt(t25);
+        ::overact::guard::leg(t26, 0.27703140616182853, "leg1")?;
+        let c_arm_leg1 = t11 * (t12 * t21 - t23 * t26);
+        let t33 = 2.0 / t26;
+        let garm_vx_leg1 = (t5 - (0.24 + 0.26 * c_arm_leg1)) * t33;
+        let t36 = t14 - t13;
+        let t37 = pose[0] + t36;
+        let t38 = t3 + t2;
+        let t39 = pose[1] + t38;
+        let t40 = t39 - 0.24;
+        let t41 = t40 * t40;
+        let t43 = 0.2704 * (t41 + t8);
+        let t48 = t37 * t37 + t41 + t8 - 0.3364 + 0.0676;
+        let t50 = t43 - t48 * t48;
+        ::overact::guard::reach(t50, "leg2")?;
+        let t51 = ::overact::math::sqrt(t50);
+        ::overact::guard::leg(t51, 0.27703140616182853, "leg2")?;
+        let t52 = 2.0 / t51;
+        let garm_vx_leg2 = t37 * t52;
+        let t56 = pose[0] - t4;
+        let t57 = t56 + 0.24;
+        let t58 = t57 * t57;
+        let t60 = 0.2704 * (t58 + t8);
+        let t61 = 1.0 / t60;
+        let t62 = 0.52 * t57;
+        let t63 = pose[1] - t15;
+        let t68 = t58 + t63 * t63 + t8 - 0.3364 + 0.0676;
+        let t71 = t60 - t68 * t68;
+        ::overact::guard::reach(t71, "leg3")?;
+        let t72 = ::overact::math::sqrt(t71);
+        ::overact::guard::leg(t72, 0.27703140616182853, "leg3")?;
+        let minus_c_arm_leg3 = t61 * (t62 * t68 + t23 * t72);
+        let t79 = 2.0 / t72;
+        let garm_vx_leg3 = (t56 - (0.26 * minus_c_arm_leg3 - 0.24)) * t79;
+        let t83 = pose[0] - t36;
+        let t84 = pose[1] - t38;
+        let t85 = t84 + 0.24;
+        let t86 = t85 * t85;
+        let t88 = 0.2704 * (t86 + t8);
+        let t93 = t83 * t83 + t86 + t8 - 0.3364 + 0.0676;
+        let t95 = t88 - t93 * t93;
+        ::overact::guard::reach(t95, "leg4")?;
+        let t96 = ::overact::math::sqrt(t95);
+        ::overact::guard::leg(t96, 0.27703140616182853, "leg4")?;
+        let t97 = 2.0 / t96;
+        let garm_vx_leg4 = t83 * t97;
+        let t100 = garm_vx_leg1 * actuator_velocities[0]
+            + garm_vx_leg2 * actuator_velocities[1]
+            + garm_vx_leg3 * actuator_velocities[2]
+            + garm_vx_leg4 * actuator_velocities[3];
+        let t107 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t107, 19.507470815645043, "actuators")?;
+        let t108 = 1.0 / t107;
+        let garm_vy_leg1 = t16 * t33;
+        let t112 = 1.0 / t43;
+        let t113 = 0.52 * t40;
+        let c_arm_leg2 = t112 * (t113 * t48 - t23 * t51);
+        let garm_vy_leg2 = (t39 - (0.24 + 0.26 * c_arm_leg2)) * t52;
+        let garm_vy_leg3 = t63 * t79;
+        let t127 = 1.0 / t88;
+        let t128 = 0.52 * t85;
+        let minus_c_arm_leg4 = t127 * (t128 * t93 + t23 * t96);
+        let garm_vy_leg4 = (t84 - (0.26 * minus_c_arm_leg4 - 0.24)) * t97;
+        let t138 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3 + garm_vx_leg4 * garm_vy_leg4;
+        let t139 = t138 * t108;
+        let t148 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t138 * t139;
+        ::overact::guard::platform(t148, 16.505615550045768, "actuators")?;
+        let t149 = 1.0 / t148;
+        let t158 = garm_vy_leg1 * actuator_velocities[0]
+            + garm_vy_leg2 * actuator_velocities[1]
+            + garm_vy_leg3 * actuator_velocities[2]
+            + garm_vy_leg4 * actuator_velocities[3] - t100 * t139;
+        let minus_s_arm_leg1 = t11 * (t23 * t21 + t12 * t26);
+        let garm_vz_leg1 = (pose[2] - 0.26 * minus_s_arm_leg1) * t33;
+        let minus_s_arm_leg2 = t112 * (t23 * t48 + t113 * t51);
+        let garm_vz_leg2 = (pose[2] - 0.26 * minus_s_arm_leg2) * t52;
+        let s_arm_leg3 = t61 * (t62 * t72 - t23 * t68);
+        let garm_vz_leg3 = (pose[2] + 0.26 * s_arm_leg3) * t79;
+        let s_arm_leg4 = t127 * (t128 * t96 - t23 * t93);
+        let garm_vz_leg4 = (pose[2] + 0.26 * s_arm_leg4) * t97;
+        let t201 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3 + garm_vx_leg4 * garm_vz_leg4;
+        let t202 = t201 * t108;
+        let t204 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 + garm_vy_leg4 * garm_vz_leg4 - t138 * t202;
+        let t205 = t204 * t149;
+        let t216 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 + garm_vz_leg4 * garm_vz_leg4 - t201 * t202
+            - t204 * t205;
+        ::overact::guard::platform(t216, 31.11733818900116, "actuators")?;
+        let t217 = 1.0 / t216;
+        let t228 = garm_vz_leg1 * actuator_velocities[0]
+            + garm_vz_leg2 * actuator_velocities[1]
+            + garm_vz_leg3 * actuator_velocities[2]
+            + garm_vz_leg4 * actuator_velocities[3] - t100 * t202 - t205 * t158;
+        let garm_wz_leg1 = t4 * garm_vy_leg1 - t15 * garm_vx_leg1;
+        let garm_wz_leg2 = t36 * garm_vy_leg2 - t38 * garm_vx_leg2;
+        let garm_wz_leg3 = t15 * garm_vx_leg3 - t4 * garm_vy_leg3;
+        let garm_wz_leg4 = t38 * garm_vx_leg4 - t36 * garm_vy_leg4;
+        let t255 = garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * garm_wz_leg2
+            + garm_vx_leg3 * garm_wz_leg3 + garm_vx_leg4 * garm_wz_leg4;
+        let t256 = t255 * t108;
+        let t267 = garm_vy_leg1 * garm_wz_leg1 + garm_vy_leg2 * garm_wz_leg2
+            + garm_vy_leg3 * garm_wz_leg3 + garm_vy_leg4 * garm_wz_leg4 - t138 * t256;
+        let t268 = t267 * t149;
+        let t270 = garm_vz_leg1 * garm_wz_leg1 + garm_vz_leg2 * garm_wz_leg2
+            + garm_vz_leg3 * garm_wz_leg3 + garm_vz_leg4 * garm_wz_leg4 - t201 * t256
+            - t204 * t268;
+        let t271 = t270 * t217;
+        let t282 = garm_wz_leg1 * garm_wz_leg1 + garm_wz_leg2 * garm_wz_leg2
+            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t255 * t256
+            - t267 * t268;
+        let t284 = t282 - t270 * t271;
+        ::overact::guard::platform(t284, 0.35106548211906174, "actuators")?;
+        let t295 = garm_wz_leg1 * actuator_velocities[0]
+            + garm_wz_leg2 * actuator_velocities[1]
             + garm_wz_leg3 * actuator_velocities[2]
-            + garm_wz_leg4 * actuator_velocities[3] - t62 * t186 + t198 * t102;
-        let t228 = (t225 - t201 * t148) / t214;
-        let t230 = t137 * t148 - t201 * t228;
-        let t234 = t93 * t102 + t125 * t230 + t198 * t228;
-        Ok([t62 * t70 + t83 * t234 - t122 * t230 - t186 * t228, -t234, t230, t228])
+            + garm_wz_leg4 * actuator_velocities[3] - t100 * t256 - t268 * t158;
+        let t298 = (t295 - t271 * t228) / t284;
+        let t300 = t217 * t228 - t271 * t298;
+        let t304 = t149 * t158 - t205 * t300 - t268 * t298;
+        Ok([t100 * t108 - t139 * t304 - t202 * t300 - t256 * t298, t304, t300, t298])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1477,7 +1904,7 @@ impl Schoenflies4 {
     ///
     /// Output: 4.
     ///
-    /// 487 operations (164 additions, 311 multiplications, 12 divisions), 0 square roots, 13 trigonometric pairs, 0 signs, 509 intermediates.
+    /// 629 operations (236 additions, 369 multiplications, 24 divisions), 8 square roots, 1 trigonometric pairs, 0 signs, 635 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1486,258 +1913,336 @@ impl Schoenflies4 {
         twist: &[f64; 4],
         actuator_accelerations: &[f64; 4],
     ) -> Result<[f64; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        ::overact::guard::leg(c_rod_leg2, 0.988789721306189, "leg2")?;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t4 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t4);
-        let t7 = c_armcross_leg2 * c_rod_leg2;
-        let t9 = s_armcross_leg2 * c_rod_leg2;
-        let t11 = s_arm_leg2 * t7 - c_arm_leg2 * t9;
-        ::overact::guard::leg(t11, 0.9185391450939737, "leg2")?;
-        let t12 = 1.0 / t11;
-        let t13 = 3.8461538461538463 * t12;
-        let garm_vx_leg2 = s_rod_leg2 * t13;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
-        let t17 = 0.08660254037844387 * c_phi;
-        let t18 = 0.05 * s_phi;
-        let t19 = t17 - t18;
-        let t20 = t19 * twist[3];
-        let t21 = twist[3] * t20;
-        let t22 = 0.58 * s_rod_leg2;
-        let t23 = 1.7241379310344827 * t12;
-        let gcross_vy_leg2 = c_arm_leg2 * t23;
-        let t25 = twist[1] + t20;
-        let t28 = 1.0 / c_rod_leg2;
-        let minus_gcross_vx_leg2 = t23
-            * (c_arm_leg2 * (c_armcross_leg2 * s_rod_leg2 * t28)
-                + s_arm_leg2 * (s_armcross_leg2 * s_rod_leg2 * t28));
-        let t36 = 0.08660254037844387 * s_phi;
-        let t37 = 0.05 * c_phi;
-        let t38 = t36 + t37;
-        let t39 = t38 * twist[3];
-        let t40 = twist[0] - t39;
-        let minus_gcross_vz_leg2 = s_arm_leg2 * t23;
-        let rate_cross_leg2 = gcross_vy_leg2 * t25 - minus_gcross_vx_leg2 * t40
-            - minus_gcross_vz_leg2 * twist[2];
-        let minus_grod_vx_leg2 = 1.7241379310344827 * t28;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t40;
-        let t49 = s_armcross_leg2 * minus_rate_rod_leg2;
-        let t52 = c_armcross_leg2 * minus_rate_rod_leg2;
-        let t54 = rate_cross_leg2 * rate_cross_leg2 + t49 * t49 + t52 * t52;
-        let minus_garm_vy_leg2 = t7 * t13;
-        let garm_vz_leg2 = t9 * t13;
-        let rate_arm_leg2 = garm_vx_leg2 * t40 - minus_garm_vy_leg2 * t25
+        let t2 = 0.05 * c_phi;
+        let t3 = 0.08660254037844387 * s_phi;
+        let t4 = t2 - t3;
+        let t5 = pose[0] + t4;
+        let t6 = t5 - 0.24;
+        let t7 = t6 * t6;
+        let t8 = pose[2] * pose[2];
+        let t10 = 0.2704 * (t7 + t8);
+        let t11 = 1.0 / t10;
+        let t12 = 0.52 * t6;
+        let t13 = 0.05 * s_phi;
+        let t14 = 0.08660254037844387 * c_phi;
+        let t15 = t13 + t14;
+        let t16 = pose[1] + t15;
+        let t17 = t16 * t16;
+        let t19 = t7 + t17 + t8;
+        let t21 = t19 - 0.3364 + 0.0676;
+        let t23 = 0.52 * pose[2];
+        let t25 = t10 - t21 * t21;
+        ::overact::guard::reach(t25, "leg1")?;
+        let t26 = ::overact::math::sqrt(t25);
+        ::overact::guard::leg(t26, 0.27703140616182853, "leg1")?;
+        let c_arm_leg1 = t11 * (t12 * t21 - t23 * t26);
+        let t30 = 0.26 * c_arm_leg1;
+        let t32 = t5 - (0.24 + t30);
+        let t33 = 1.0 / t26;
+        let t34 = 2.0 * t33;
+        let garm_vx_leg1 = t32 * t34;
+        let t36 = t15 * twist[3];
+        let t37 = twist[0] - t36;
+        let garm_vy_leg1 = t16 * t34;
+        let t40 = t4 * twist[3];
+        let t41 = twist[1] + t40;
+        let minus_s_arm_leg1 = t11 * (t23 * t21 + t12 * t26);
+        let t48 = 0.26 * minus_s_arm_leg1;
+        let t49 = pose[2] - t48;
+        let garm_vz_leg1 = t49 * t34;
+        let rate_arm_leg1 = garm_vx_leg1 * t37 + garm_vy_leg1 * t41
+            + garm_vz_leg1 * twist[2];
+        let t53 = rate_arm_leg1 * rate_arm_leg1;
+        let t57 = 1.0 - 2.972651605231867 * t17;
+        ::overact::guard::reach(t57, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t57);
+        ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
+        let s_cross_leg1 = 1.9230769230769231 * t26 / (0.58 * c_rod_leg1);
+        let c_cross_leg1 = (t19 - (0.0676 + t17) - 0.3364 * t57) / (0.3016 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t70 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7241379310344827 * t70;
+        let rate_rod_leg1 = grod_vy_leg1 * t41;
+        let t73 = s_armcross_leg1 * rate_rod_leg1;
+        let t75 = 0.52 * t33;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t75;
+        let s_rod_leg1 = 1.7241379310344827 * t16;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let minus_gcross_vy_leg1 = t75
+            * (c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t70)
+                - minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t70));
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t75;
+        let minus_rate_cross_leg1 = minus_gcross_vx_leg1 * t37
+            + minus_gcross_vy_leg1 * t41 + minus_gcross_vz_leg1 * twist[2];
+        let t97 = c_armcross_leg1 * rate_rod_leg1;
+        let t99 = t73 * t73 + minus_rate_cross_leg1 * minus_rate_cross_leg1 + t97 * t97;
+        let t103 = t16 * (minus_rate_cross_leg1 * t73);
+        let t106 = twist[3] * t40;
+        let t109 = twist[3] * t36;
+        let t116 = garm_vx_leg1 * (t30 * t53 + t32 * t99 + t103 + t103 - t106)
+            - garm_vy_leg1
+                * (t109 + minus_rate_cross_leg1 * (t16 * minus_rate_cross_leg1)
+                    - t16 * t99);
+        let t121 = t16 * (minus_rate_cross_leg1 * t97);
+        let rate_dot_arm_leg1 = t116
+            + garm_vz_leg1 * (t48 * t53 + t49 * t99 + t121 + t121);
+        let t126 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t128 = t14 - t13;
+        let t129 = pose[0] + t128;
+        let t130 = t3 + t2;
+        let t131 = pose[1] + t130;
+        let t132 = t131 - 0.24;
+        let t133 = t132 * t132;
+        let t135 = 0.2704 * (t133 + t8);
+        let t136 = t129 * t129;
+        let t138 = t136 + t133 + t8;
+        let t140 = t138 - 0.3364 + 0.0676;
+        let t142 = t135 - t140 * t140;
+        ::overact::guard::reach(t142, "leg2")?;
+        let t143 = ::overact::math::sqrt(t142);
+        ::overact::guard::leg(t143, 0.27703140616182853, "leg2")?;
+        let t144 = 1.0 / t143;
+        let t145 = 2.0 * t144;
+        let garm_vx_leg2 = t129 * t145;
+        let t147 = 1.0 / t135;
+        let t148 = 0.52 * t132;
+        let c_arm_leg2 = t147 * (t148 * t140 - t23 * t143);
+        let t153 = 0.26 * c_arm_leg2;
+        let t155 = t131 - (0.24 + t153);
+        let garm_vy_leg2 = t155 * t145;
+        let t157 = t130 * twist[3];
+        let t158 = twist[0] - t157;
+        let t160 = t128 * twist[3];
+        let t161 = twist[1] + t160;
+        let minus_s_arm_leg2 = t147 * (t23 * t140 + t148 * t143);
+        let t168 = 0.26 * minus_s_arm_leg2;
+        let t169 = pose[2] - t168;
+        let garm_vz_leg2 = t169 * t145;
+        let rate_arm_leg2 = garm_vx_leg2 * t158 + garm_vy_leg2 * t161
             + garm_vz_leg2 * twist[2];
-        let t69 = rate_arm_leg2 * rate_arm_leg2;
-        let t75 = t22 * (rate_cross_leg2 * t49);
-        let t78 = twist[3] * t39;
-        let t81 = garm_vx_leg2
-            * (t21 + t22 * t54 - rate_cross_leg2 * (t22 * rate_cross_leg2))
-            + minus_garm_vy_leg2
-                * (0.26 * c_arm_leg2 * t69 + 0.58 * t7 * t54 + t75 + t75 - t78);
-        let t88 = t22 * (rate_cross_leg2 * t52);
-        let minus_rate_dot_arm_leg2 = t81
-            + garm_vz_leg2 * (0.26 * s_arm_leg2 * t69 + 0.58 * t9 * t54 - t88 - t88);
-        let t93 = actuator_accelerations[1] + minus_rate_dot_arm_leg2;
-        let t95 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t95);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        ::overact::guard::leg(c_rod_leg1, 0.9887897213061891, "leg1")?;
-        let t100 = c_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t104 = s_armcross_leg1 * c_rod_leg1;
-        let t106 = s_arm_leg1 * t100 - c_arm_leg1 * t104;
-        ::overact::guard::leg(t106, 0.9185391450939739, "leg1")?;
-        let t107 = 1.0 / t106;
-        let t108 = 3.8461538461538463 * t107;
-        let minus_garm_vx_leg1 = t100 * t108;
-        let t110 = t37 - t36;
-        let t111 = t110 * twist[3];
-        let t112 = twist[3] * t111;
-        let t113 = 0.58 * s_rod_leg1;
-        let t114 = 1.7241379310344827 * t107;
-        let gcross_vx_leg1 = c_arm_leg1 * t114;
-        let t116 = t18 + t17;
-        let t117 = t116 * twist[3];
-        let t118 = twist[0] - t117;
-        let t121 = 1.0 / c_rod_leg1;
-        let gcross_vy_leg1 = t114
-            * (c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t121)
-                + s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t121));
-        let t129 = twist[1] + t111;
-        let minus_gcross_vz_leg1 = s_arm_leg1 * t114;
-        let rate_cross_leg1 = gcross_vx_leg1 * t118 + gcross_vy_leg1 * t129
-            - minus_gcross_vz_leg1 * twist[2];
-        let grod_vy_leg1 = 1.7241379310344827 * t121;
-        let rate_rod_leg1 = grod_vy_leg1 * t129;
-        let t137 = s_armcross_leg1 * rate_rod_leg1;
-        let t139 = t113 * (rate_cross_leg1 * t137);
-        let garm_vz_leg1 = t104 * t108;
-        let minus_garm_vy_leg1 = s_rod_leg1 * t108;
-        let rate_arm_leg1 = garm_vz_leg1 * twist[2]
-            - (minus_garm_vx_leg1 * t118 + minus_garm_vy_leg1 * t129);
-        let t148 = rate_arm_leg1 * rate_arm_leg1;
-        let t154 = c_armcross_leg1 * rate_rod_leg1;
-        let t156 = t137 * t137 + rate_cross_leg1 * rate_cross_leg1 + t154 * t154;
-        let t163 = twist[3] * t117;
-        let t170 = minus_garm_vx_leg1
-            * (t112 + t139 - (0.26 * c_arm_leg1 * t148 + 0.58 * t100 * t156) + t139)
-            + minus_garm_vy_leg1
-                * (t163 + rate_cross_leg1 * (t113 * rate_cross_leg1) - t113 * t156);
-        let t177 = t113 * (rate_cross_leg1 * t154);
-        let rate_dot_arm_leg1 = t170
-            - garm_vz_leg1
-                * (0.26 * s_arm_leg1 * t148 + 0.58 * t104 * t156 + t177 + t177);
-        let t182 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t185 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t185);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        ::overact::guard::leg(c_rod_leg3, 0.9887897213061891, "leg3")?;
-        let t190 = c_armcross_leg3 * c_rod_leg3;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t193 = s_armcross_leg3 * c_rod_leg3;
-        let t196 = c_arm_leg3 * t193 - s_arm_leg3 * t190;
-        ::overact::guard::leg(t196, 0.9185391450939737, "leg3")?;
-        let t197 = 1.0 / t196;
-        let t198 = 3.8461538461538463 * t197;
-        let minus_garm_vx_leg3 = t190 * t198;
-        let minus_garm_vz_leg3 = t193 * t198;
-        let t202 = twist[0] + t117;
-        let minus_garm_vy_leg3 = s_rod_leg3 * t198;
-        let t205 = twist[1] - t111;
-        let minus_rate_arm_leg3 = minus_garm_vx_leg3 * t202 + minus_garm_vy_leg3 * t205
-            + minus_garm_vz_leg3 * twist[2];
-        let t210 = minus_rate_arm_leg3 * minus_rate_arm_leg3;
-        let t213 = 1.0 / c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.7241379310344827 * t213;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t205;
-        let t216 = s_armcross_leg3 * minus_rate_rod_leg3;
-        let t218 = 1.7241379310344827 * t197;
-        let gcross_vx_leg3 = c_arm_leg3 * t218;
-        let gcross_vy_leg3 = t218
-            * (c_arm_leg3 * (c_armcross_leg3 * s_rod_leg3 * t213)
-                + s_arm_leg3 * (s_armcross_leg3 * s_rod_leg3 * t213));
-        let gcross_vz_leg3 = s_arm_leg3 * t218;
-        let rate_cross_leg3 = gcross_vx_leg3 * t202 + gcross_vy_leg3 * t205
-            + gcross_vz_leg3 * twist[2];
-        let t236 = c_armcross_leg3 * minus_rate_rod_leg3;
-        let t238 = t216 * t216 + rate_cross_leg3 * rate_cross_leg3 + t236 * t236;
-        let t241 = 0.58 * s_rod_leg3;
-        let t243 = t241 * (rate_cross_leg3 * t236);
-        let t253 = t241 * (rate_cross_leg3 * t216);
-        let t264 = minus_garm_vx_leg3
-            * (t112 - (0.26 * c_arm_leg3 * t210 + 0.58 * t190 * t238 + t253 + t253))
-            + minus_garm_vy_leg3
-                * (t163 - (t241 * t238 - rate_cross_leg3 * (t241 * rate_cross_leg3)));
-        let rate_dot_arm_leg3 = minus_garm_vz_leg3
-            * (0.26 * s_arm_leg3 * t210 + 0.58 * t193 * t238 - t243 - t243) - t264;
-        let t266 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        ::overact::guard::leg(c_rod_leg4, 0.9887897213061891, "leg4")?;
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let t273 = joints[9] + joints[10];
-        let (s_armcross_leg4, c_armcross_leg4) = ::overact::math::sin_cos(t273);
-        let t276 = s_armcross_leg4 * c_rod_leg4;
-        let t278 = c_armcross_leg4 * c_rod_leg4;
-        let t280 = c_arm_leg4 * t276 - s_arm_leg4 * t278;
-        ::overact::guard::leg(t280, 0.9185391450939737, "leg4")?;
-        let t281 = 1.0 / t280;
-        let t282 = 3.8461538461538463 * t281;
-        let garm_vx_leg4 = s_rod_leg4 * t282;
-        let t284 = 1.7241379310344827 * t281;
-        let gcross_vy_leg4 = c_arm_leg4 * t284;
-        let t286 = twist[1] - t20;
-        let t289 = 1.0 / c_rod_leg4;
-        let minus_gcross_vx_leg4 = t284
-            * (c_arm_leg4 * (c_armcross_leg4 * s_rod_leg4 * t289)
-                + s_arm_leg4 * (s_armcross_leg4 * s_rod_leg4 * t289));
-        let t297 = twist[0] + t39;
-        let gcross_vz_leg4 = s_arm_leg4 * t284;
-        let rate_cross_leg4 = gcross_vy_leg4 * t286 - minus_gcross_vx_leg4 * t297
-            + gcross_vz_leg4 * twist[2];
-        let t303 = 0.58 * s_rod_leg4;
-        let grod_vx_leg4 = 1.7241379310344827 * t289;
-        let rate_rod_leg4 = grod_vx_leg4 * t297;
-        let t309 = s_armcross_leg4 * rate_rod_leg4;
-        let t312 = c_armcross_leg4 * rate_rod_leg4;
-        let t314 = rate_cross_leg4 * rate_cross_leg4 + t309 * t309 + t312 * t312;
-        let minus_garm_vy_leg4 = t278 * t282;
-        let minus_garm_vz_leg4 = t276 * t282;
-        let rate_arm_leg4 = garm_vx_leg4 * t297 - minus_garm_vy_leg4 * t286
-            - minus_garm_vz_leg4 * twist[2];
-        let t327 = rate_arm_leg4 * rate_arm_leg4;
-        let t333 = t303 * (rate_cross_leg4 * t309);
-        let t338 = garm_vx_leg4
-            * (t21 - (rate_cross_leg4 * (t303 * rate_cross_leg4) - t303 * t314))
-            - minus_garm_vy_leg4
-                * (t78 - (0.26 * c_arm_leg4 * t327 + 0.58 * t278 * t314 - t333 - t333));
-        let t345 = t303 * (rate_cross_leg4 * t312);
-        let rate_dot_arm_leg4 = t338
-            + minus_garm_vz_leg4
-                * (0.26 * s_arm_leg4 * t327 + 0.58 * t276 * t314 + t345 + t345);
-        let t350 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t352 = garm_vx_leg2 * t93 - minus_garm_vx_leg1 * t182
-            - minus_garm_vx_leg3 * t266 + garm_vx_leg4 * t350;
-        let t359 = minus_garm_vx_leg1 * minus_garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
-            + minus_garm_vx_leg3 * minus_garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
-        ::overact::guard::platform(t359, 19.50747081825307, "actuators")?;
-        let t360 = 1.0 / t359;
-        let t368 = minus_garm_vx_leg1 * minus_garm_vy_leg1
-            - garm_vx_leg2 * minus_garm_vy_leg2 + minus_garm_vx_leg3 * minus_garm_vy_leg3
-            - garm_vx_leg4 * minus_garm_vy_leg4;
-        let t369 = t368 * t360;
-        let t378 = minus_garm_vy_leg1 * minus_garm_vy_leg1
-            + minus_garm_vy_leg2 * minus_garm_vy_leg2
-            + minus_garm_vy_leg3 * minus_garm_vy_leg3
-            + minus_garm_vy_leg4 * minus_garm_vy_leg4 - t368 * t369;
-        ::overact::guard::platform(t378, 16.505615552607473, "actuators")?;
-        let t379 = 1.0 / t378;
-        let t388 = minus_garm_vy_leg1 * t182 + minus_garm_vy_leg2 * t93
-            + minus_garm_vy_leg3 * t266 + minus_garm_vy_leg4 * t350 + t352 * t369;
-        let t403 = garm_vx_leg2 * garm_vz_leg2 - minus_garm_vx_leg1 * garm_vz_leg1
-            + minus_garm_vx_leg3 * minus_garm_vz_leg3
-            - garm_vx_leg4 * minus_garm_vz_leg4;
-        let t404 = t403 * t360;
-        let t406 = minus_garm_vy_leg3 * minus_garm_vz_leg3
-            - (minus_garm_vy_leg1 * garm_vz_leg1 + minus_garm_vy_leg2 * garm_vz_leg2)
-            + minus_garm_vy_leg4 * minus_garm_vz_leg4 - t368 * t404;
-        let t407 = t406 * t379;
-        let t418 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3
-            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t403 * t404 - t406 * t407;
-        ::overact::guard::platform(t418, 31.117338184537527, "actuators")?;
-        let t419 = 1.0 / t418;
-        let t430 = garm_vz_leg1 * t182 + garm_vz_leg2 * t93 - minus_garm_vz_leg3 * t266
-            - minus_garm_vz_leg4 * t350 - t352 * t404 + t407 * t388;
-        let garm_wz_leg1 = minus_garm_vx_leg1 * t116 - minus_garm_vy_leg1 * t110;
-        let minus_garm_wz_leg2 = minus_garm_vy_leg2 * t19 + garm_vx_leg2 * t38;
-        let garm_wz_leg3 = t110 * minus_garm_vy_leg3 - t116 * minus_garm_vx_leg3;
-        let garm_wz_leg4 = t19 * minus_garm_vy_leg4 + t38 * garm_vx_leg4;
-        let t457 = garm_vx_leg4 * garm_wz_leg4
-            - (minus_garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * minus_garm_wz_leg2
-                + minus_garm_vx_leg3 * garm_wz_leg3);
-        let t458 = t457 * t360;
-        let t469 = minus_garm_vy_leg2 * minus_garm_wz_leg2
-            - minus_garm_vy_leg1 * garm_wz_leg1 - minus_garm_vy_leg3 * garm_wz_leg3
-            - minus_garm_vy_leg4 * garm_wz_leg4 - t368 * t458;
-        let t470 = t469 * t379;
-        let t472 = garm_vz_leg1 * garm_wz_leg1 - garm_vz_leg2 * minus_garm_wz_leg2
-            - minus_garm_vz_leg3 * garm_wz_leg3 - minus_garm_vz_leg4 * garm_wz_leg4
-            - t403 * t458 - t406 * t470;
-        let t473 = t472 * t419;
-        let t484 = garm_wz_leg1 * garm_wz_leg1 + minus_garm_wz_leg2 * minus_garm_wz_leg2
-            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t457 * t458
-            - t469 * t470;
-        let t486 = t484 - t472 * t473;
-        ::overact::guard::platform(t486, 0.351065482163043, "actuators")?;
-        let t497 = garm_wz_leg1 * t182 - minus_garm_wz_leg2 * t93 + garm_wz_leg3 * t266
-            + garm_wz_leg4 * t350 - t352 * t458 + t470 * t388;
-        let t500 = (t497 - t473 * t430) / t486;
-        let t502 = t419 * t430 - t473 * t500;
-        let t506 = t379 * t388 + t407 * t502 + t470 * t500;
-        Ok([t352 * t360 + t369 * t506 - t404 * t502 - t458 * t500, -t506, t502, t500])
+        let t173 = rate_arm_leg2 * rate_arm_leg2;
+        let t175 = 0.52 * t144;
+        let minus_s_rod_leg2 = 1.7241379310344827 * t129;
+        let t180 = 1.0 - 2.972651605231867 * t136;
+        ::overact::guard::reach(t180, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t180);
+        ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
+        let c_cross_leg2 = (t138 - (0.0676 + t136) - 0.3364 * t180)
+            / (0.3016 * c_rod_leg2);
+        let s_cross_leg2 = 1.9230769230769231 * t143 / (0.58 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t193 = 1.0 / c_rod_leg2;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let minus_gcross_vx_leg2 = t175
+            * (c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t193)
+                - minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t193));
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t175;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t175;
+        let minus_rate_cross_leg2 = minus_gcross_vx_leg2 * t158
+            + minus_gcross_vy_leg2 * t161 + minus_gcross_vz_leg2 * twist[2];
+        let minus_grod_vx_leg2 = 1.7241379310344827 * t193;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t158;
+        let t214 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t217 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t219 = minus_rate_cross_leg2 * minus_rate_cross_leg2 + t214 * t214
+            + t217 * t217;
+        let t223 = t129 * (minus_rate_cross_leg2 * t214);
+        let t226 = twist[3] * t157;
+        let t229 = twist[3] * t160;
+        let t236 = garm_vy_leg2 * (t153 * t173 + t155 * t219 + t223 + t223 - t226)
+            - garm_vx_leg2
+                * (t229 + minus_rate_cross_leg2 * (t129 * minus_rate_cross_leg2)
+                    - t129 * t219);
+        let t241 = t129 * (minus_rate_cross_leg2 * t217);
+        let rate_dot_arm_leg2 = t236
+            + garm_vz_leg2 * (t168 * t173 + t169 * t219 + t241 + t241);
+        let t246 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t249 = pose[0] - t4;
+        let t250 = t249 + 0.24;
+        let t251 = t250 * t250;
+        let t253 = 0.2704 * (t251 + t8);
+        let t254 = 1.0 / t253;
+        let t255 = 0.52 * t250;
+        let t256 = pose[1] - t15;
+        let t257 = t256 * t256;
+        let t259 = t251 + t257 + t8;
+        let t261 = t259 - 0.3364 + 0.0676;
+        let t264 = t253 - t261 * t261;
+        ::overact::guard::reach(t264, "leg3")?;
+        let t265 = ::overact::math::sqrt(t264);
+        ::overact::guard::leg(t265, 0.27703140616182853, "leg3")?;
+        let minus_c_arm_leg3 = t254 * (t255 * t261 + t23 * t265);
+        let t269 = 0.26 * minus_c_arm_leg3;
+        let t271 = t249 - (t269 - 0.24);
+        let t272 = 1.0 / t265;
+        let t273 = 2.0 * t272;
+        let garm_vx_leg3 = t271 * t273;
+        let t275 = twist[0] + t36;
+        let garm_vy_leg3 = t256 * t273;
+        let t278 = twist[1] - t40;
+        let s_arm_leg3 = t254 * (t255 * t265 - t23 * t261);
+        let t285 = 0.26 * s_arm_leg3;
+        let t286 = pose[2] + t285;
+        let garm_vz_leg3 = t286 * t273;
+        let rate_arm_leg3 = garm_vx_leg3 * t275 + garm_vy_leg3 * t278
+            + garm_vz_leg3 * twist[2];
+        let t290 = rate_arm_leg3 * rate_arm_leg3;
+        let t295 = 1.0 - 2.972651605231867 * t257;
+        ::overact::guard::reach(t295, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t295);
+        ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
+        let c_cross_leg3 = (t259 - (0.0676 + t257) - 0.3364 * t295)
+            / (0.3016 * c_rod_leg3);
+        let s_cross_leg3 = 1.9230769230769231 * t265 / (0.58 * c_rod_leg3);
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t307 = 1.0 / c_rod_leg3;
+        let minus_grod_vy_leg3 = 1.7241379310344827 * t307;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t278;
+        let t310 = s_armcross_leg3 * minus_rate_rod_leg3;
+        let t312 = 0.52 * t272;
+        let gcross_vz_leg3 = s_arm_leg3 * t312;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t312;
+        let minus_s_rod_leg3 = 1.7241379310344827 * t256;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t312
+            * (minus_c_arm_leg3 * (minus_s_rod_leg3 * minus_c_armcross_leg3 * t307)
+                + s_arm_leg3 * (minus_s_rod_leg3 * s_armcross_leg3 * t307));
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * t275 + minus_gcross_vy_leg3 * t278);
+        let t334 = minus_c_armcross_leg3 * minus_rate_rod_leg3;
+        let t336 = t310 * t310 + rate_cross_leg3 * rate_cross_leg3 + t334 * t334;
+        let t340 = t256 * (rate_cross_leg3 * t310);
+        let t351 = garm_vx_leg3 * (t106 + t269 * t290 + t271 * t336 + t340 + t340)
+            + garm_vy_leg3
+                * (t109 - (rate_cross_leg3 * (t256 * rate_cross_leg3) - t256 * t336));
+        let t356 = t256 * (rate_cross_leg3 * t334);
+        let rate_dot_arm_leg3 = t351
+            - garm_vz_leg3 * (t285 * t290 - t286 * t336 - t356 - t356);
+        let t361 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t364 = pose[0] - t128;
+        let t365 = pose[1] - t130;
+        let t366 = t365 + 0.24;
+        let t367 = t366 * t366;
+        let t369 = 0.2704 * (t367 + t8);
+        let t370 = t364 * t364;
+        let t372 = t370 + t367 + t8;
+        let t374 = t372 - 0.3364 + 0.0676;
+        let t376 = t369 - t374 * t374;
+        ::overact::guard::reach(t376, "leg4")?;
+        let t377 = ::overact::math::sqrt(t376);
+        ::overact::guard::leg(t377, 0.27703140616182853, "leg4")?;
+        let t378 = 1.0 / t377;
+        let t379 = 2.0 * t378;
+        let garm_vx_leg4 = t364 * t379;
+        let t381 = 1.0 / t369;
+        let t382 = 0.52 * t366;
+        let s_arm_leg4 = t381 * (t382 * t377 - t23 * t374);
+        let t387 = 0.52 * t378;
+        let gcross_vz_leg4 = s_arm_leg4 * t387;
+        let minus_c_arm_leg4 = t381 * (t382 * t374 + t23 * t377);
+        let s_rod_leg4 = 1.7241379310344827 * t364;
+        let t398 = 1.0 - 2.972651605231867 * t370;
+        ::overact::guard::reach(t398, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t398);
+        ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
+        let c_cross_leg4 = (t372 - (0.0676 + t370) - 0.3364 * t398)
+            / (0.3016 * c_rod_leg4);
+        let s_cross_leg4 = 1.9230769230769231 * t377 / (0.58 * c_rod_leg4);
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let t411 = 1.0 / c_rod_leg4;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t387
+            * (minus_c_arm_leg4 * (s_rod_leg4 * minus_c_armcross_leg4 * t411)
+                + s_arm_leg4 * (s_rod_leg4 * s_armcross_leg4 * t411));
+        let t422 = twist[0] + t157;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t387;
+        let t425 = twist[1] - t160;
+        let rate_cross_leg4 = gcross_vz_leg4 * twist[2]
+            - (minus_gcross_vx_leg4 * t422 + minus_gcross_vy_leg4 * t425);
+        let grod_vx_leg4 = 1.7241379310344827 * t411;
+        let rate_rod_leg4 = grod_vx_leg4 * t422;
+        let t434 = s_armcross_leg4 * rate_rod_leg4;
+        let t437 = minus_c_armcross_leg4 * rate_rod_leg4;
+        let t439 = rate_cross_leg4 * rate_cross_leg4 + t434 * t434 + t437 * t437;
+        let t444 = 0.26 * minus_c_arm_leg4;
+        let t446 = t365 - (t444 - 0.24);
+        let garm_vy_leg4 = t446 * t379;
+        let t451 = 0.26 * s_arm_leg4;
+        let t452 = pose[2] + t451;
+        let garm_vz_leg4 = t452 * t379;
+        let rate_arm_leg4 = garm_vx_leg4 * t422 + garm_vy_leg4 * t425
+            + garm_vz_leg4 * twist[2];
+        let t456 = rate_arm_leg4 * rate_arm_leg4;
+        let t461 = t364 * (rate_cross_leg4 * t434);
+        let t466 = garm_vx_leg4
+            * (t229 - (rate_cross_leg4 * (t364 * rate_cross_leg4) - t364 * t439))
+            + garm_vy_leg4 * (t226 + t444 * t456 + t446 * t439 + t461 + t461);
+        let t471 = t364 * (rate_cross_leg4 * t437);
+        let rate_dot_arm_leg4 = t466
+            - garm_vz_leg4 * (t451 * t456 - t452 * t439 - t471 - t471);
+        let t476 = actuator_accelerations[3] - rate_dot_arm_leg4;
+        let t478 = garm_vx_leg1 * t126 + garm_vx_leg2 * t246 + garm_vx_leg3 * t361
+            + garm_vx_leg4 * t476;
+        let t485 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t485, 19.507470815645043, "actuators")?;
+        let t486 = 1.0 / t485;
+        let t494 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3 + garm_vx_leg4 * garm_vy_leg4;
+        let t495 = t494 * t486;
+        let t504 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t494 * t495;
+        ::overact::guard::platform(t504, 16.505615550045768, "actuators")?;
+        let t505 = 1.0 / t504;
+        let t514 = garm_vy_leg1 * t126 + garm_vy_leg2 * t246 + garm_vy_leg3 * t361
+            + garm_vy_leg4 * t476 - t478 * t495;
+        let t529 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3 + garm_vx_leg4 * garm_vz_leg4;
+        let t530 = t529 * t486;
+        let t532 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 + garm_vy_leg4 * garm_vz_leg4 - t494 * t530;
+        let t533 = t532 * t505;
+        let t544 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 + garm_vz_leg4 * garm_vz_leg4 - t529 * t530
+            - t532 * t533;
+        ::overact::guard::platform(t544, 31.11733818900116, "actuators")?;
+        let t545 = 1.0 / t544;
+        let t556 = garm_vz_leg1 * t126 + garm_vz_leg2 * t246 + garm_vz_leg3 * t361
+            + garm_vz_leg4 * t476 - t478 * t530 - t533 * t514;
+        let garm_wz_leg1 = t4 * garm_vy_leg1 - t15 * garm_vx_leg1;
+        let garm_wz_leg2 = t128 * garm_vy_leg2 - t130 * garm_vx_leg2;
+        let garm_wz_leg3 = t15 * garm_vx_leg3 - t4 * garm_vy_leg3;
+        let garm_wz_leg4 = t130 * garm_vx_leg4 - t128 * garm_vy_leg4;
+        let t583 = garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * garm_wz_leg2
+            + garm_vx_leg3 * garm_wz_leg3 + garm_vx_leg4 * garm_wz_leg4;
+        let t584 = t583 * t486;
+        let t595 = garm_vy_leg1 * garm_wz_leg1 + garm_vy_leg2 * garm_wz_leg2
+            + garm_vy_leg3 * garm_wz_leg3 + garm_vy_leg4 * garm_wz_leg4 - t494 * t584;
+        let t596 = t595 * t505;
+        let t598 = garm_vz_leg1 * garm_wz_leg1 + garm_vz_leg2 * garm_wz_leg2
+            + garm_vz_leg3 * garm_wz_leg3 + garm_vz_leg4 * garm_wz_leg4 - t529 * t584
+            - t532 * t596;
+        let t599 = t598 * t545;
+        let t610 = garm_wz_leg1 * garm_wz_leg1 + garm_wz_leg2 * garm_wz_leg2
+            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t583 * t584
+            - t595 * t596;
+        let t612 = t610 - t598 * t599;
+        ::overact::guard::platform(t612, 0.35106548211906174, "actuators")?;
+        let t623 = garm_wz_leg1 * t126 + garm_wz_leg2 * t246 + garm_wz_leg3 * t361
+            + garm_wz_leg4 * t476 - t478 * t584 - t596 * t514;
+        let t626 = (t623 - t599 * t556) / t612;
+        let t628 = t545 * t556 - t599 * t626;
+        let t632 = t505 * t514 - t533 * t628 - t596 * t626;
+        Ok([t478 * t486 - t495 * t632 - t530 * t628 - t584 * t626, t632, t628, t626])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1749,7 +2254,7 @@ impl Schoenflies4 {
     /// Output: 4 x 72.
     /// Columns: `PARAMETERS`.
     ///
-    /// 1118 operations (337 additions, 773 multiplications, 8 divisions), 0 square roots, 13 trigonometric pairs, 16 signs, 907 intermediates.
+    /// 1240 operations (405 additions, 815 multiplications, 20 divisions), 8 square roots, 1 trigonometric pairs, 16 signs, 1013 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1758,8 +2263,748 @@ impl Schoenflies4 {
         twist: &[f64; 4],
         acceleration: &[f64; 4],
     ) -> Result<[[f64; 72]; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_platform_from_joints(pose, joints, twist, acceleration)
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
+        let t2 = 0.05 * c_phi;
+        let t3 = 0.08660254037844387 * s_phi;
+        let t4 = t2 - t3;
+        let t5 = pose[0] + t4;
+        let t6 = t5 - 0.24;
+        let t7 = t6 * t6;
+        let t8 = pose[2] * pose[2];
+        let t10 = 0.2704 * (t7 + t8);
+        let t11 = 1.0 / t10;
+        let t12 = 0.52 * t6;
+        let t13 = 0.05 * s_phi;
+        let t14 = 0.08660254037844387 * c_phi;
+        let t15 = t13 + t14;
+        let t16 = pose[1] + t15;
+        let t17 = t16 * t16;
+        let t19 = t7 + t17 + t8;
+        let t21 = t19 - 0.3364 + 0.0676;
+        let t23 = 0.52 * pose[2];
+        let t25 = t10 - t21 * t21;
+        ::overact::guard::reach(t25, "leg1")?;
+        let t26 = ::overact::math::sqrt(t25);
+        ::overact::guard::leg(t26, 0.27703140616182853, "leg1")?;
+        let c_arm_leg1 = t11 * (t12 * t21 - t23 * t26);
+        let t30 = 0.26 * c_arm_leg1;
+        let t32 = t5 - (0.24 + t30);
+        let t33 = 1.0 / t26;
+        let t34 = 2.0 * t33;
+        let garm_vx_leg1 = t32 * t34;
+        let t36 = t15 * acceleration[3];
+        let t38 = t4 * twist[3];
+        let t39 = twist[3] * t38;
+        let t41 = t15 * twist[3];
+        let t42 = twist[0] - t41;
+        let garm_vy_leg1 = t16 * t34;
+        let t45 = twist[1] + t38;
+        let minus_s_arm_leg1 = t11 * (t23 * t21 + t12 * t26);
+        let t52 = 0.26 * minus_s_arm_leg1;
+        let t53 = pose[2] - t52;
+        let garm_vz_leg1 = t53 * t34;
+        let rate_arm_leg1 = garm_vx_leg1 * t42 + garm_vy_leg1 * t45
+            + garm_vz_leg1 * twist[2];
+        let t57 = rate_arm_leg1 * rate_arm_leg1;
+        let t61 = 1.0 - 2.972651605231867 * t17;
+        ::overact::guard::reach(t61, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t61);
+        ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
+        let s_cross_leg1 = 1.9230769230769231 * t26 / (0.58 * c_rod_leg1);
+        let c_cross_leg1 = (t19 - (0.0676 + t17) - 0.3364 * t61) / (0.3016 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t74 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7241379310344827 * t74;
+        let rate_rod_leg1 = grod_vy_leg1 * t45;
+        let t77 = s_armcross_leg1 * rate_rod_leg1;
+        let t79 = 0.52 * t33;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t79;
+        let s_rod_leg1 = 1.7241379310344827 * t16;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let minus_gcross_vy_leg1 = t79
+            * (c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t74)
+                - minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t74));
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t79;
+        let minus_rate_cross_leg1 = minus_gcross_vx_leg1 * t42
+            + minus_gcross_vy_leg1 * t45 + minus_gcross_vz_leg1 * twist[2];
+        let t99 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t101 = c_armcross_leg1 * rate_rod_leg1;
+        let t103 = t77 * t77 + t99 + t101 * t101;
+        let t107 = t16 * (minus_rate_cross_leg1 * t77);
+        let t110 = acceleration[0] - t36 - t39 + t30 * t57 + t32 * t103 + t107 + t107;
+        let t112 = t4 * acceleration[3];
+        let t114 = twist[3] * t41;
+        let t115 = acceleration[1] + t112 - t114;
+        let t116 = t16 * minus_rate_cross_leg1;
+        let t117 = minus_rate_cross_leg1 * t116;
+        let t120 = t115 - (t117 - t16 * t103);
+        let t127 = t16 * (minus_rate_cross_leg1 * t101);
+        let t130 = acceleration[2] + t52 * t57 + t53 * t103 + t127 + t127;
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t110 + garm_vy_leg1 * t120
+            + garm_vz_leg1 * t130;
+        let t133 = garm_vx_leg1 * rate_dot_arm_leg1;
+        let t134 = garm_vy_leg1 * rate_dot_arm_leg1;
+        let t135 = garm_vz_leg1 * rate_dot_arm_leg1;
+        let garm_wz_leg1 = t4 * garm_vy_leg1 - t15 * garm_vx_leg1;
+        let t139 = garm_wz_leg1 * rate_dot_arm_leg1;
+        let t140 = 9.81 * c_arm_leg1;
+        let t145 = 9.81 * minus_s_arm_leg1;
+        let minus_rate_dot_cross_leg1 = minus_gcross_vx_leg1 * t110
+            + minus_gcross_vy_leg1 * t120 + minus_gcross_vz_leg1 * t130;
+        let t163 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t164 = c_rod_leg1 * minus_rate_cross_leg1;
+        let t165 = rate_rod_leg1 * t164;
+        let t166 = t163 + t165;
+        let t168 = 1.7241379310344827 * t116;
+        let t169 = rate_rod_leg1 * t168;
+        let t170 = c_rod_leg1 * t169;
+        let t171 = s_rod_leg1 * t166 + t170;
+        let t174 = 2.972651605231867 * t117;
+        let gcross_wz_leg1 = t15 * minus_gcross_vx_leg1 - t4 * minus_gcross_vy_leg1;
+        let grod_wz_leg1 = t4 * grod_vy_leg1;
+        let t182 = t168 * t164;
+        let t183 = grod_wz_leg1 * t182;
+        let t185 = c_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t186 = t169 - t185;
+        let t187 = t169 + t186;
+        let t189 = t165 + t166;
+        let t191 = s_rod_leg1 * t187 - c_rod_leg1 * t189;
+        let t194 = 2.972651605231867 * (t116 * t116);
+        let t195 = t164 * t164;
+        let t196 = t194 - t195;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t120;
+        let t205 = t182 + rate_dot_rod_leg1;
+        let t207 = rate_rod_leg1 * rate_rod_leg1;
+        let t210 = s_rod_leg1 * t205 + c_rod_leg1 * (t207 - t194);
+        let t220 = t170 + c_rod_leg1 * t186;
+        let t227 = 1.7241379310344827 * t115;
+        let t238 = 0.26 * c_cross_leg1;
+        let t240 = 0.8620689655172413 * t26;
+        let t244 = 0.4482758620689655 * (t16 * s_cross_leg1);
+        let t247 = t238 * t187 - (t240 * (t195 + t207) + t244 * t205);
+        let t250 = 0.26 * rate_dot_arm_leg1 - t140;
+        let t253 = t145 - 0.26 * t57;
+        let t255 = c_cross_leg1 * t250 - s_cross_leg1 * t253;
+        let t256 = c_rod_leg1 * t255;
+        let t264 = c_cross_leg1 * t253 + s_cross_leg1 * t250;
+        let t265 = s_rod_leg1 * t264;
+        let t282 = t240 * (t182 - rate_dot_rod_leg1) + t244 * (t194 + t207)
+            + t238 * t189;
+        let t284 = s_rod_leg1 * t255;
+        let t305 = t99 * t238 - (t185 * t240 + t163 * t244);
+        let t318 = 0.26 * t250;
+        let t323 = t14 - t13;
+        let t324 = pose[0] + t323;
+        let t325 = t3 + t2;
+        let t326 = pose[1] + t325;
+        let t327 = t326 - 0.24;
+        let t328 = t327 * t327;
+        let t330 = 0.2704 * (t328 + t8);
+        let t331 = t324 * t324;
+        let t333 = t331 + t328 + t8;
+        let t335 = t333 - 0.3364 + 0.0676;
+        let t337 = t330 - t335 * t335;
+        ::overact::guard::reach(t337, "leg2")?;
+        let t338 = ::overact::math::sqrt(t337);
+        ::overact::guard::leg(t338, 0.27703140616182853, "leg2")?;
+        let t339 = 1.0 / t338;
+        let t340 = 2.0 * t339;
+        let garm_vx_leg2 = t324 * t340;
+        let t342 = t325 * acceleration[3];
+        let t344 = t323 * twist[3];
+        let t345 = twist[3] * t344;
+        let t346 = acceleration[0] - t342 - t345;
+        let t347 = 0.52 * t339;
+        let t348 = 1.0 / t330;
+        let t349 = 0.52 * t327;
+        let c_arm_leg2 = t348 * (t349 * t335 - t23 * t338);
+        let minus_s_rod_leg2 = 1.7241379310344827 * t324;
+        let t358 = 1.0 - 2.972651605231867 * t331;
+        ::overact::guard::reach(t358, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t358);
+        ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
+        let c_cross_leg2 = (t333 - (0.0676 + t331) - 0.3364 * t358)
+            / (0.3016 * c_rod_leg2);
+        let minus_s_arm_leg2 = t348 * (t23 * t335 + t349 * t338);
+        let s_cross_leg2 = 1.9230769230769231 * t338 / (0.58 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t375 = 1.0 / c_rod_leg2;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let minus_gcross_vx_leg2 = t347
+            * (c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t375)
+                - minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t375));
+        let t386 = t325 * twist[3];
+        let t387 = twist[0] - t386;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t347;
+        let t390 = twist[1] + t344;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t347;
+        let minus_rate_cross_leg2 = minus_gcross_vx_leg2 * t387
+            + minus_gcross_vy_leg2 * t390 + minus_gcross_vz_leg2 * twist[2];
+        let t396 = t324 * minus_rate_cross_leg2;
+        let t397 = minus_rate_cross_leg2 * t396;
+        let t398 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let minus_grod_vx_leg2 = 1.7241379310344827 * t375;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t387;
+        let t401 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t404 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t406 = t398 + t401 * t401 + t404 * t404;
+        let t409 = t346 - (t397 - t324 * t406);
+        let t411 = 0.26 * c_arm_leg2;
+        let t413 = t326 - (0.24 + t411);
+        let garm_vy_leg2 = t413 * t340;
+        let t415 = t323 * acceleration[3];
+        let t417 = twist[3] * t386;
+        let t422 = 0.26 * minus_s_arm_leg2;
+        let t423 = pose[2] - t422;
+        let garm_vz_leg2 = t423 * t340;
+        let rate_arm_leg2 = garm_vx_leg2 * t387 + garm_vy_leg2 * t390
+            + garm_vz_leg2 * twist[2];
+        let t427 = rate_arm_leg2 * rate_arm_leg2;
+        let t432 = t324 * (minus_rate_cross_leg2 * t401);
+        let t435 = acceleration[1] + t415 - t417 + t411 * t427 + t413 * t406 + t432
+            + t432;
+        let t442 = t324 * (minus_rate_cross_leg2 * t404);
+        let t445 = acceleration[2] + t422 * t427 + t423 * t406 + t442 + t442;
+        let rate_dot_arm_leg2 = garm_vx_leg2 * t409 + garm_vy_leg2 * t435
+            + garm_vz_leg2 * t445;
+        let t448 = garm_vx_leg2 * rate_dot_arm_leg2;
+        let t449 = garm_vy_leg2 * rate_dot_arm_leg2;
+        let t450 = garm_vz_leg2 * rate_dot_arm_leg2;
+        let garm_wz_leg2 = t323 * garm_vy_leg2 - t325 * garm_vx_leg2;
+        let t454 = garm_wz_leg2 * rate_dot_arm_leg2;
+        let t455 = 9.81 * c_arm_leg2;
+        let t460 = 9.81 * minus_s_arm_leg2;
+        let minus_rate_dot_cross_leg2 = minus_gcross_vx_leg2 * t409
+            + minus_gcross_vy_leg2 * t435 + minus_gcross_vz_leg2 * t445;
+        let t478 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t479 = c_rod_leg2 * minus_rate_cross_leg2;
+        let t480 = minus_rate_rod_leg2 * t479;
+        let t481 = t478 + t480;
+        let t483 = 1.7241379310344827 * t396;
+        let t484 = minus_rate_rod_leg2 * t483;
+        let t485 = c_rod_leg2 * t484;
+        let t486 = minus_s_rod_leg2 * t481 + t485;
+        let t488 = 2.972651605231867 * t397;
+        let grod_wz_leg2 = t325 * minus_grod_vx_leg2;
+        let t493 = t483 * t479;
+        let t494 = grod_wz_leg2 * t493;
+        let gcross_wz_leg2 = t325 * minus_gcross_vx_leg2 - t323 * minus_gcross_vy_leg2;
+        let t500 = t480 + t481;
+        let t502 = c_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t503 = t484 - t502;
+        let t504 = t484 + t503;
+        let t506 = c_rod_leg2 * t500 - minus_s_rod_leg2 * t504;
+        let t509 = 2.972651605231867 * (t396 * t396);
+        let t510 = t479 * t479;
+        let t511 = t509 - t510;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t409;
+        let t520 = t493 + minus_rate_dot_rod_leg2;
+        let t522 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t525 = minus_s_rod_leg2 * t520 + c_rod_leg2 * (t522 - t509);
+        let t535 = t485 + c_rod_leg2 * t503;
+        let t542 = 1.7241379310344827 * t346;
+        let t553 = 0.26 * c_cross_leg2;
+        let t555 = 0.8620689655172413 * t338;
+        let t559 = 0.4482758620689655 * (t324 * s_cross_leg2);
+        let t562 = t553 * t504 - (t555 * (t510 + t522) + t559 * t520);
+        let t565 = 0.26 * rate_dot_arm_leg2 - t455;
+        let t568 = t460 - 0.26 * t427;
+        let t570 = c_cross_leg2 * t565 - s_cross_leg2 * t568;
+        let t571 = c_rod_leg2 * t570;
+        let t576 = c_cross_leg2 * t568 + s_cross_leg2 * t565;
+        let t577 = minus_s_rod_leg2 * t576;
+        let t597 = t555 * (minus_rate_dot_rod_leg2 - t493) - t559 * (t509 + t522)
+            - t553 * t500;
+        let t599 = minus_s_rod_leg2 * t570;
+        let t620 = t398 * t553 - (t502 * t555 + t478 * t559);
+        let t633 = 0.26 * t565;
+        let t638 = pose[0] - t4;
+        let t639 = t638 + 0.24;
+        let t640 = t639 * t639;
+        let t642 = 0.2704 * (t640 + t8);
+        let t643 = 1.0 / t642;
+        let t644 = 0.52 * t639;
+        let t645 = pose[1] - t15;
+        let t646 = t645 * t645;
+        let t648 = t640 + t646 + t8;
+        let t650 = t648 - 0.3364 + 0.0676;
+        let t653 = t642 - t650 * t650;
+        ::overact::guard::reach(t653, "leg3")?;
+        let t654 = ::overact::math::sqrt(t653);
+        ::overact::guard::leg(t654, 0.27703140616182853, "leg3")?;
+        let minus_c_arm_leg3 = t643 * (t644 * t650 + t23 * t654);
+        let t658 = 0.26 * minus_c_arm_leg3;
+        let t660 = t638 - (t658 - 0.24);
+        let t661 = 1.0 / t654;
+        let t662 = 2.0 * t661;
+        let garm_vx_leg3 = t660 * t662;
+        let t666 = twist[0] + t41;
+        let garm_vy_leg3 = t645 * t662;
+        let t669 = twist[1] - t38;
+        let s_arm_leg3 = t643 * (t644 * t654 - t23 * t650);
+        let t676 = 0.26 * s_arm_leg3;
+        let t677 = pose[2] + t676;
+        let garm_vz_leg3 = t677 * t662;
+        let rate_arm_leg3 = garm_vx_leg3 * t666 + garm_vy_leg3 * t669
+            + garm_vz_leg3 * twist[2];
+        let t681 = rate_arm_leg3 * rate_arm_leg3;
+        let t686 = 1.0 - 2.972651605231867 * t646;
+        ::overact::guard::reach(t686, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t686);
+        ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
+        let c_cross_leg3 = (t648 - (0.0676 + t646) - 0.3364 * t686)
+            / (0.3016 * c_rod_leg3);
+        let s_cross_leg3 = 1.9230769230769231 * t654 / (0.58 * c_rod_leg3);
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t698 = 1.0 / c_rod_leg3;
+        let minus_grod_vy_leg3 = 1.7241379310344827 * t698;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t669;
+        let t701 = s_armcross_leg3 * minus_rate_rod_leg3;
+        let t703 = 0.52 * t661;
+        let gcross_vz_leg3 = s_arm_leg3 * t703;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t703;
+        let minus_s_rod_leg3 = 1.7241379310344827 * t645;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t703
+            * (minus_c_arm_leg3 * (minus_s_rod_leg3 * minus_c_armcross_leg3 * t698)
+                + s_arm_leg3 * (minus_s_rod_leg3 * s_armcross_leg3 * t698));
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * t666 + minus_gcross_vy_leg3 * t669);
+        let t723 = rate_cross_leg3 * rate_cross_leg3;
+        let t725 = minus_c_armcross_leg3 * minus_rate_rod_leg3;
+        let t727 = t701 * t701 + t723 + t725 * t725;
+        let t731 = t645 * (rate_cross_leg3 * t701);
+        let t734 = acceleration[0] + t36 + t39 + t658 * t681 + t660 * t727 + t731 + t731;
+        let t737 = acceleration[1] - t112 + t114;
+        let t738 = t645 * rate_cross_leg3;
+        let t739 = rate_cross_leg3 * t738;
+        let t742 = t737 - (t739 - t645 * t727);
+        let t749 = t645 * (rate_cross_leg3 * t725);
+        let t752 = acceleration[2] - (t676 * t681 - t677 * t727 - t749 - t749);
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t734 + garm_vy_leg3 * t742
+            + garm_vz_leg3 * t752;
+        let t755 = garm_vx_leg3 * rate_dot_arm_leg3;
+        let t756 = garm_vy_leg3 * rate_dot_arm_leg3;
+        let t757 = garm_vz_leg3 * rate_dot_arm_leg3;
+        let garm_wz_leg3 = t15 * garm_vx_leg3 - t4 * garm_vy_leg3;
+        let t761 = garm_wz_leg3 * rate_dot_arm_leg3;
+        let t762 = 9.81 * minus_c_arm_leg3;
+        let t767 = 9.81 * s_arm_leg3;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * t752
+            - (minus_gcross_vx_leg3 * t734 + minus_gcross_vy_leg3 * t742);
+        let t785 = minus_s_rod_leg3 * rate_dot_cross_leg3;
+        let t786 = c_rod_leg3 * rate_cross_leg3;
+        let t787 = minus_rate_rod_leg3 * t786;
+        let t788 = t785 + t787;
+        let t790 = 1.7241379310344827 * t738;
+        let t791 = minus_rate_rod_leg3 * t790;
+        let t792 = c_rod_leg3 * t791;
+        let t793 = minus_s_rod_leg3 * t788 + t792;
+        let t796 = 2.972651605231867 * t739;
+        let gcross_wz_leg3 = t4 * minus_gcross_vy_leg3 - t15 * minus_gcross_vx_leg3;
+        let grod_wz_leg3 = t4 * minus_grod_vy_leg3;
+        let t804 = t790 * t786;
+        let t805 = grod_wz_leg3 * t804;
+        let t807 = c_rod_leg3 * rate_dot_cross_leg3;
+        let t808 = t807 - t791;
+        let t809 = t791 - t808;
+        let t811 = t787 + t788;
+        let t813 = minus_s_rod_leg3 * t809 - c_rod_leg3 * t811;
+        let t817 = 2.972651605231867 * (t738 * t738);
+        let t818 = t786 * t786;
+        let t819 = t817 - t818;
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t742;
+        let t827 = t804 + minus_rate_dot_rod_leg3;
+        let t829 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t832 = minus_s_rod_leg3 * t827 + c_rod_leg3 * (t829 - t817);
+        let t842 = c_rod_leg3 * t808 - t792;
+        let t849 = 1.7241379310344827 * t737;
+        let t860 = 0.8620689655172413 * t654;
+        let t864 = 0.4482758620689655 * (t645 * s_cross_leg3);
+        let t867 = 0.26 * c_cross_leg3;
+        let t869 = t860 * (t818 + t829) + t864 * t827 + t867 * t809;
+        let t872 = t767 + 0.26 * t681;
+        let t875 = t762 + 0.26 * rate_dot_arm_leg3;
+        let t877 = s_cross_leg3 * t872 + c_cross_leg3 * t875;
+        let t878 = c_rod_leg3 * t877;
+        let t886 = s_cross_leg3 * t875 - c_cross_leg3 * t872;
+        let t887 = minus_s_rod_leg3 * t886;
+        let t904 = t860 * (minus_rate_dot_rod_leg3 - t804) - t864 * (t817 + t829)
+            + t867 * t811;
+        let t906 = minus_s_rod_leg3 * t877;
+        let t927 = t807 * t860 + t785 * t864 + t723 * t867;
+        let t940 = 0.26 * t875;
+        let t945 = pose[0] - t323;
+        let t946 = pose[1] - t325;
+        let t947 = t946 + 0.24;
+        let t948 = t947 * t947;
+        let t950 = 0.2704 * (t948 + t8);
+        let t951 = t945 * t945;
+        let t953 = t951 + t948 + t8;
+        let t955 = t953 - 0.3364 + 0.0676;
+        let t957 = t950 - t955 * t955;
+        ::overact::guard::reach(t957, "leg4")?;
+        let t958 = ::overact::math::sqrt(t957);
+        ::overact::guard::leg(t958, 0.27703140616182853, "leg4")?;
+        let t959 = 1.0 / t958;
+        let t960 = 2.0 * t959;
+        let garm_vx_leg4 = t945 * t960;
+        let t963 = acceleration[0] + t342 + t345;
+        let t964 = 1.0 / t950;
+        let t965 = 0.52 * t947;
+        let s_arm_leg4 = t964 * (t965 * t958 - t23 * t955);
+        let t970 = 0.52 * t959;
+        let gcross_vz_leg4 = s_arm_leg4 * t970;
+        let minus_c_arm_leg4 = t964 * (t965 * t955 + t23 * t958);
+        let s_rod_leg4 = 1.7241379310344827 * t945;
+        let t981 = 1.0 - 2.972651605231867 * t951;
+        ::overact::guard::reach(t981, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t981);
+        ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
+        let c_cross_leg4 = (t953 - (0.0676 + t951) - 0.3364 * t981)
+            / (0.3016 * c_rod_leg4);
+        let s_cross_leg4 = 1.9230769230769231 * t958 / (0.58 * c_rod_leg4);
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let t994 = 1.0 / c_rod_leg4;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t970
+            * (minus_c_arm_leg4 * (s_rod_leg4 * minus_c_armcross_leg4 * t994)
+                + s_arm_leg4 * (s_rod_leg4 * s_armcross_leg4 * t994));
+        let t1005 = twist[0] + t386;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t970;
+        let t1008 = twist[1] - t344;
+        let rate_cross_leg4 = gcross_vz_leg4 * twist[2]
+            - (minus_gcross_vx_leg4 * t1005 + minus_gcross_vy_leg4 * t1008);
+        let t1012 = t945 * rate_cross_leg4;
+        let t1013 = rate_cross_leg4 * t1012;
+        let t1014 = rate_cross_leg4 * rate_cross_leg4;
+        let grod_vx_leg4 = 1.7241379310344827 * t994;
+        let rate_rod_leg4 = grod_vx_leg4 * t1005;
+        let t1017 = s_armcross_leg4 * rate_rod_leg4;
+        let t1020 = minus_c_armcross_leg4 * rate_rod_leg4;
+        let t1022 = t1014 + t1017 * t1017 + t1020 * t1020;
+        let t1025 = t963 - (t1013 - t945 * t1022);
+        let t1027 = 0.26 * minus_c_arm_leg4;
+        let t1029 = t946 - (t1027 - 0.24);
+        let garm_vy_leg4 = t1029 * t960;
+        let t1036 = 0.26 * s_arm_leg4;
+        let t1037 = pose[2] + t1036;
+        let garm_vz_leg4 = t1037 * t960;
+        let rate_arm_leg4 = garm_vx_leg4 * t1005 + garm_vy_leg4 * t1008
+            + garm_vz_leg4 * twist[2];
+        let t1041 = rate_arm_leg4 * rate_arm_leg4;
+        let t1046 = t945 * (rate_cross_leg4 * t1017);
+        let t1049 = acceleration[1] - t415 + t417 + t1027 * t1041 + t1029 * t1022 + t1046
+            + t1046;
+        let t1056 = t945 * (rate_cross_leg4 * t1020);
+        let t1059 = acceleration[2] - (t1036 * t1041 - t1037 * t1022 - t1056 - t1056);
+        let rate_dot_arm_leg4 = garm_vx_leg4 * t1025 + garm_vy_leg4 * t1049
+            + garm_vz_leg4 * t1059;
+        let t1062 = garm_vx_leg4 * rate_dot_arm_leg4;
+        let t1063 = garm_vy_leg4 * rate_dot_arm_leg4;
+        let t1064 = garm_vz_leg4 * rate_dot_arm_leg4;
+        let garm_wz_leg4 = t325 * garm_vx_leg4 - t323 * garm_vy_leg4;
+        let t1068 = garm_wz_leg4 * rate_dot_arm_leg4;
+        let t1069 = 9.81 * minus_c_arm_leg4;
+        let t1074 = 9.81 * s_arm_leg4;
+        let rate_dot_cross_leg4 = gcross_vz_leg4 * t1059
+            - (minus_gcross_vx_leg4 * t1025 + minus_gcross_vy_leg4 * t1049);
+        let t1092 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t1093 = c_rod_leg4 * rate_cross_leg4;
+        let t1094 = rate_rod_leg4 * t1093;
+        let t1095 = t1092 + t1094;
+        let t1097 = 1.7241379310344827 * t1012;
+        let t1098 = rate_rod_leg4 * t1097;
+        let t1099 = c_rod_leg4 * t1098;
+        let t1100 = s_rod_leg4 * t1095 + t1099;
+        let t1102 = 2.972651605231867 * t1013;
+        let gcross_wz_leg4 = t323 * minus_gcross_vy_leg4 - t325 * minus_gcross_vx_leg4;
+        let grod_wz_leg4 = t325 * grod_vx_leg4;
+        let t1111 = t1097 * t1093;
+        let t1112 = grod_wz_leg4 * t1111;
+        let t1115 = 2.972651605231867 * (t1012 * t1012);
+        let t1116 = t1093 * t1093;
+        let t1117 = t1115 - t1116;
+        let t1119 = t1094 + t1095;
+        let t1121 = c_rod_leg4 * rate_dot_cross_leg4;
+        let t1122 = t1121 - t1098;
+        let t1123 = t1098 - t1122;
+        let t1125 = c_rod_leg4 * t1119 - s_rod_leg4 * t1123;
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t1025;
+        let t1135 = t1111 + rate_dot_rod_leg4;
+        let t1137 = rate_rod_leg4 * rate_rod_leg4;
+        let t1140 = s_rod_leg4 * t1135 + c_rod_leg4 * (t1137 - t1115);
+        let t1149 = c_rod_leg4 * t1122 - t1099;
+        let t1157 = 1.7241379310344827 * t963;
+        let t1167 = 0.8620689655172413 * t958;
+        let t1171 = 0.4482758620689655 * (t945 * s_cross_leg4);
+        let t1174 = 0.26 * c_cross_leg4;
+        let t1176 = t1167 * (t1116 + t1137) + t1171 * t1135 + t1174 * t1123;
+        let t1179 = t1074 + 0.26 * t1041;
+        let t1182 = t1069 + 0.26 * rate_dot_arm_leg4;
+        let t1184 = s_cross_leg4 * t1179 + c_cross_leg4 * t1182;
+        let t1185 = c_rod_leg4 * t1184;
+        let t1190 = s_cross_leg4 * t1182 - c_cross_leg4 * t1179;
+        let t1191 = s_rod_leg4 * t1190;
+        let t1211 = t1167 * (t1111 - rate_dot_rod_leg4) + t1171 * (t1115 + t1137)
+            - t1174 * t1119;
+        let t1213 = s_rod_leg4 * t1184;
+        let t1234 = t1121 * t1167 + t1092 * t1171 + t1014 * t1174;
+        let t1247 = 0.26 * t1182;
+        let t1252 = twist[3] * twist[3];
+        let t1255 = c_phi * t1252 + s_phi * acceleration[3];
+        let t1258 = c_phi * acceleration[3] - s_phi * t1252;
+        Ok([
+            [
+                t133, -(garm_vx_leg1 * t140), -(garm_vx_leg1 * t145), t133,
+                garm_vx_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
+                garm_vx_leg1, minus_gcross_vx_leg1 * t171, -(minus_gcross_vx_leg1 * t191),
+                -(minus_gcross_vx_leg1 * t210), -(minus_gcross_vx_leg1 * t220),
+                -(minus_gcross_vx_leg1 * t227), 0.0,
+                garm_vx_leg1 * t247 - minus_gcross_vx_leg1 * t256,
+                garm_vx_leg1 * t282 + minus_gcross_vx_leg1 * t284,
+                garm_vx_leg1 * t305 - minus_gcross_vx_leg1 * t264, garm_vx_leg1 * t318, t448,
+                -(garm_vx_leg2 * t455), -(garm_vx_leg2 * t460), t448, garm_vx_leg2 * rate_arm_leg2,
+                ::overact::math::signed(garm_vx_leg2, rate_arm_leg2), garm_vx_leg2,
+                minus_gcross_vx_leg2 * t486 - t488,
+                -(minus_gcross_vx_leg2 * t506 + minus_grod_vx_leg2 * t511),
+                -(minus_gcross_vx_leg2 * t525 + minus_grod_vx_leg2 * t478),
+                t488 - minus_gcross_vx_leg2 * t535,
+                minus_gcross_vx_leg2 * t542
+                    + 1.7241379310344827 * minus_rate_dot_cross_leg2,
+                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
+                garm_vx_leg2 * t562 - minus_gcross_vx_leg2 * t571
+                    - minus_grod_vx_leg2 * t577,
+                garm_vx_leg2 * t597 - minus_gcross_vx_leg2 * t599
+                    + 1.7241379310344827 * t576,
+                garm_vx_leg2 * t620 - minus_gcross_vx_leg2 * t576,
+                garm_vx_leg2 * t633,
+                t755,
+                garm_vx_leg3 * t762,
+                garm_vx_leg3 * t767,
+                t755,
+                garm_vx_leg3 * rate_arm_leg3,
+                ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
+                garm_vx_leg3,
+                -(minus_gcross_vx_leg3 * t793),
+                -(minus_gcross_vx_leg3 * t813),
+                -(minus_gcross_vx_leg3 * t832),
+                -(minus_gcross_vx_leg3 * t842),
+                minus_gcross_vx_leg3 * t849,
+                0.0,
+                -(garm_vx_leg3 * t869 + minus_gcross_vx_leg3 * t878),
+                garm_vx_leg3 * t904 - minus_gcross_vx_leg3 * t906,
+                garm_vx_leg3 * t927 - minus_gcross_vx_leg3 * t886,
+                garm_vx_leg3 * t940,
+                t1062,
+                garm_vx_leg4 * t1069,
+                garm_vx_leg4 * t1074,
+                t1062,
+                garm_vx_leg4 * rate_arm_leg4,
+                ::overact::math::signed(garm_vx_leg4, rate_arm_leg4),
+                garm_vx_leg4,
+                -(minus_gcross_vx_leg4 * t1100 + t1102),
+                grod_vx_leg4 * t1117 - minus_gcross_vx_leg4 * t1125,
+                grod_vx_leg4 * t1092 - minus_gcross_vx_leg4 * t1140,
+                t1102 - minus_gcross_vx_leg4 * t1149,
+                1.7241379310344827 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t1157,
+                grod_vx_leg4 * rate_dot_rod_leg4,
+                -(garm_vx_leg4 * t1176 + minus_gcross_vx_leg4 * t1185
+                    + grod_vx_leg4 * t1191),
+                garm_vx_leg4 * t1211 + minus_gcross_vx_leg4 * t1213
+                    - 1.7241379310344827 * t1190,
+                garm_vx_leg4 * t1234 - minus_gcross_vx_leg4 * t1190,
+                garm_vx_leg4 * t1247,
+                0.0,
+                -t1255,
+                -t1258,
+                acceleration[0],
+            ],
+            [
+                t134, -(garm_vy_leg1 * t140), -(garm_vy_leg1 * t145), t134,
+                garm_vy_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
+                garm_vy_leg1, minus_gcross_vy_leg1 * t171 - t174,
+                grod_vy_leg1 * t196 - minus_gcross_vy_leg1 * t191,
+                -(minus_gcross_vy_leg1 * t210 + grod_vy_leg1 * t163),
+                t174 - minus_gcross_vy_leg1 * t220,
+                -(minus_gcross_vy_leg1 * t227
+                    + 1.7241379310344827 * minus_rate_dot_cross_leg1),
+                grod_vy_leg1 * rate_dot_rod_leg1,
+                garm_vy_leg1 * t247 - minus_gcross_vy_leg1 * t256 - grod_vy_leg1 * t265,
+                garm_vy_leg1 * t282 + minus_gcross_vy_leg1 * t284
+                    - 1.7241379310344827 * t264,
+                garm_vy_leg1 * t305 - minus_gcross_vy_leg1 * t264,
+                garm_vy_leg1 * t318,
+                t449,
+                -(garm_vy_leg2 * t455),
+                -(garm_vy_leg2 * t460),
+                t449,
+                garm_vy_leg2 * rate_arm_leg2,
+                ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
+                garm_vy_leg2,
+                minus_gcross_vy_leg2 * t486,
+                -(minus_gcross_vy_leg2 * t506),
+                -(minus_gcross_vy_leg2 * t525),
+                -(minus_gcross_vy_leg2 * t535),
+                minus_gcross_vy_leg2 * t542,
+                0.0,
+                garm_vy_leg2 * t562 - minus_gcross_vy_leg2 * t571,
+                garm_vy_leg2 * t597 - minus_gcross_vy_leg2 * t599,
+                garm_vy_leg2 * t620 - minus_gcross_vy_leg2 * t576,
+                garm_vy_leg2 * t633,
+                t756,
+                garm_vy_leg3 * t762,
+                garm_vy_leg3 * t767,
+                t756,
+                garm_vy_leg3 * rate_arm_leg3,
+                ::overact::math::signed(garm_vy_leg3, rate_arm_leg3),
+                garm_vy_leg3,
+                -(minus_gcross_vy_leg3 * t793 + t796),
+                -(minus_gcross_vy_leg3 * t813 + minus_grod_vy_leg3 * t819),
+                minus_grod_vy_leg3 * t785 - minus_gcross_vy_leg3 * t832,
+                t796 - minus_gcross_vy_leg3 * t842,
+                minus_gcross_vy_leg3 * t849 - 1.7241379310344827 * rate_dot_cross_leg3,
+                minus_grod_vy_leg3 * minus_rate_dot_rod_leg3,
+                -(garm_vy_leg3 * t869 + minus_gcross_vy_leg3 * t878
+                    + minus_grod_vy_leg3 * t887),
+                garm_vy_leg3 * t904 - minus_gcross_vy_leg3 * t906
+                    + 1.7241379310344827 * t886,
+                garm_vy_leg3 * t927 - minus_gcross_vy_leg3 * t886,
+                garm_vy_leg3 * t940,
+                t1063,
+                garm_vy_leg4 * t1069,
+                garm_vy_leg4 * t1074,
+                t1063,
+                garm_vy_leg4 * rate_arm_leg4,
+                ::overact::math::signed(garm_vy_leg4, rate_arm_leg4),
+                garm_vy_leg4,
+                -(minus_gcross_vy_leg4 * t1100),
+                -(minus_gcross_vy_leg4 * t1125),
+                -(minus_gcross_vy_leg4 * t1140),
+                -(minus_gcross_vy_leg4 * t1149),
+                -(minus_gcross_vy_leg4 * t1157),
+                0.0,
+                -(garm_vy_leg4 * t1176 + minus_gcross_vy_leg4 * t1185),
+                garm_vy_leg4 * t1211 + minus_gcross_vy_leg4 * t1213,
+                garm_vy_leg4 * t1234 - minus_gcross_vy_leg4 * t1190,
+                garm_vy_leg4 * t1247,
+                0.0,
+                t1258,
+                -t1255,
+                acceleration[1],
+            ],
+            [
+                t135, -(garm_vz_leg1 * t140), -(garm_vz_leg1 * t145), t135,
+                garm_vz_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vz_leg1, rate_arm_leg1),
+                garm_vz_leg1, minus_gcross_vz_leg1 * t171, -(minus_gcross_vz_leg1 * t191),
+                -(minus_gcross_vz_leg1 * t210), -(minus_gcross_vz_leg1 * t220),
+                -(minus_gcross_vz_leg1 * t227), 0.0,
+                garm_vz_leg1 * t247 - minus_gcross_vz_leg1 * t256,
+                garm_vz_leg1 * t282 + minus_gcross_vz_leg1 * t284,
+                garm_vz_leg1 * t305 - minus_gcross_vz_leg1 * t264, garm_vz_leg1 * t318, t450,
+                -(garm_vz_leg2 * t455), -(garm_vz_leg2 * t460), t450, garm_vz_leg2 * rate_arm_leg2,
+                ::overact::math::signed(garm_vz_leg2, rate_arm_leg2), garm_vz_leg2,
+                minus_gcross_vz_leg2 * t486, -(minus_gcross_vz_leg2 * t506),
+                -(minus_gcross_vz_leg2 * t525), -(minus_gcross_vz_leg2 * t535),
+                minus_gcross_vz_leg2 * t542, 0.0, garm_vz_leg2 * t562 - minus_gcross_vz_leg2 * t571,
+                garm_vz_leg2 * t597 - minus_gcross_vz_leg2 * t599,
+                garm_vz_leg2 * t620 - minus_gcross_vz_leg2 * t576, garm_vz_leg2 * t633, t757,
+                garm_vz_leg3 * t762, garm_vz_leg3 * t767, t757, garm_vz_leg3 * rate_arm_leg3,
+                ::overact::math::signed(garm_vz_leg3, rate_arm_leg3), garm_vz_leg3,
+                gcross_vz_leg3 * t793, gcross_vz_leg3 * t813, gcross_vz_leg3 * t832,
+                gcross_vz_leg3 * t842, -(gcross_vz_leg3 * t849), 0.0,
+                gcross_vz_leg3 * t878 - garm_vz_leg3 * t869,
+                garm_vz_leg3 * t904 + gcross_vz_leg3 * t906,
+                garm_vz_leg3 * t927 + gcross_vz_leg3 * t886, garm_vz_leg3 * t940, t1064,
+                garm_vz_leg4 * t1069, garm_vz_leg4 * t1074, t1064, garm_vz_leg4 * rate_arm_leg4,
+                ::overact::math::signed(garm_vz_leg4, rate_arm_leg4), garm_vz_leg4,
+                gcross_vz_leg4 * t1100, gcross_vz_leg4 * t1125, gcross_vz_leg4 * t1140,
+                gcross_vz_leg4 * t1149, gcross_vz_leg4 * t1157, 0.0,
+                gcross_vz_leg4 * t1185 - garm_vz_leg4 * t1176,
+                garm_vz_leg4 * t1211 - gcross_vz_leg4 * t1213,
+                garm_vz_leg4 * t1234 + gcross_vz_leg4 * t1190, garm_vz_leg4 * t1247, 0.0, 0.0, 0.0,
+                acceleration[2] + 9.81,
+            ],
+            [
+                t139, -(garm_wz_leg1 * t140), -(garm_wz_leg1 * t145), t139,
+                garm_wz_leg1 * rate_arm_leg1, ::overact::math::signed(garm_wz_leg1, rate_arm_leg1),
+                garm_wz_leg1, -(gcross_wz_leg1 * t171 + t183),
+                gcross_wz_leg1 * t191 + grod_wz_leg1 * t196,
+                gcross_wz_leg1 * t210 - grod_wz_leg1 * t163, gcross_wz_leg1 * t220 + t183,
+                gcross_wz_leg1 * t227 - grod_wz_leg1 * t185, grod_wz_leg1 * rate_dot_rod_leg1,
+                garm_wz_leg1 * t247 + gcross_wz_leg1 * t256 - grod_wz_leg1 * t265,
+                garm_wz_leg1 * t282 - gcross_wz_leg1 * t284
+                    - grod_wz_leg1 * (c_rod_leg1 * t264),
+                garm_wz_leg1 * t305 + gcross_wz_leg1 * t264,
+                garm_wz_leg1 * t318,
+                t454,
+                -(garm_wz_leg2 * t455),
+                -(garm_wz_leg2 * t460),
+                t454,
+                garm_wz_leg2 * rate_arm_leg2,
+                ::overact::math::signed(garm_wz_leg2, rate_arm_leg2),
+                garm_wz_leg2,
+                t494 - gcross_wz_leg2 * t486,
+                gcross_wz_leg2 * t506 + grod_wz_leg2 * t511,
+                gcross_wz_leg2 * t525 + grod_wz_leg2 * t478,
+                gcross_wz_leg2 * t535 - t494,
+                -(gcross_wz_leg2 * t542 + grod_wz_leg2 * t502),
+                -(grod_wz_leg2 * minus_rate_dot_rod_leg2),
+                garm_wz_leg2 * t562 + gcross_wz_leg2 * t571 + grod_wz_leg2 * t577,
+                garm_wz_leg2 * t597 + gcross_wz_leg2 * t599
+                    - grod_wz_leg2 * (c_rod_leg2 * t576),
+                garm_wz_leg2 * t620 + gcross_wz_leg2 * t576,
+                garm_wz_leg2 * t633,
+                t761,
+                garm_wz_leg3 * t762,
+                garm_wz_leg3 * t767,
+                t761,
+                garm_wz_leg3 * rate_arm_leg3,
+                ::overact::math::signed(garm_wz_leg3, rate_arm_leg3),
+                garm_wz_leg3,
+                gcross_wz_leg3 * t793 + t805,
+                gcross_wz_leg3 * t813 + grod_wz_leg3 * t819,
+                gcross_wz_leg3 * t832 - grod_wz_leg3 * t785,
+                gcross_wz_leg3 * t842 - t805,
+                grod_wz_leg3 * t807 - gcross_wz_leg3 * t849,
+                -(grod_wz_leg3 * minus_rate_dot_rod_leg3),
+                gcross_wz_leg3 * t878 - garm_wz_leg3 * t869 + grod_wz_leg3 * t887,
+                garm_wz_leg3 * t904 + gcross_wz_leg3 * t906
+                    - grod_wz_leg3 * (c_rod_leg3 * t886),
+                garm_wz_leg3 * t927 + gcross_wz_leg3 * t886,
+                garm_wz_leg3 * t940,
+                t1068,
+                garm_wz_leg4 * t1069,
+                garm_wz_leg4 * t1074,
+                t1068,
+                garm_wz_leg4 * rate_arm_leg4,
+                ::overact::math::signed(garm_wz_leg4, rate_arm_leg4),
+                garm_wz_leg4,
+                gcross_wz_leg4 * t1100 - t1112,
+                gcross_wz_leg4 * t1125 + grod_wz_leg4 * t1117,
+                gcross_wz_leg4 * t1140 + grod_wz_leg4 * t1092,
+                gcross_wz_leg4 * t1149 + t1112,
+                gcross_wz_leg4 * t1157 + grod_wz_leg4 * t1121,
+                grod_wz_leg4 * rate_dot_rod_leg4,
+                gcross_wz_leg4 * t1185 - garm_wz_leg4 * t1176 - grod_wz_leg4 * t1191,
+                garm_wz_leg4 * t1211 - gcross_wz_leg4 * t1213
+                    - grod_wz_leg4 * (c_rod_leg4 * t1190),
+                garm_wz_leg4 * t1234 + gcross_wz_leg4 * t1190,
+                garm_wz_leg4 * t1247,
+                acceleration[3],
+                c_phi * acceleration[1] - s_phi * acceleration[0],
+                -(c_phi * acceleration[0] + s_phi * acceleration[1]),
+                0.0,
+            ],
+        ])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -2457,7 +3702,7 @@ impl Schoenflies4 {
     /// Output: 4 x 72.
     /// Columns: `PARAMETERS`.
     ///
-    /// 1306 operations (429 additions, 865 multiplications, 12 divisions), 0 square roots, 13 trigonometric pairs, 16 signs, 1092 intermediates.
+    /// 1428 operations (497 additions, 907 multiplications, 24 divisions), 8 square roots, 1 trigonometric pairs, 16 signs, 1198 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2468,736 +3713,821 @@ impl Schoenflies4 {
         start: &[f64; 4],
     ) -> Result<[[f64; 72]; 4], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
-        let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        ::overact::guard::leg(c_rod_leg1, 0.9887897213061891, "leg1")?;
-        let t12 = c_armcross_leg1 * c_rod_leg1;
-        let t14 = s_armcross_leg1 * c_rod_leg1;
-        let t16 = s_arm_leg1 * t12 - c_arm_leg1 * t14;
-        ::overact::guard::leg(t16, 0.9185391450939739, "leg1")?;
-        let t17 = 1.0 / t16;
-        let t18 = 3.8461538461538463 * t17;
-        let minus_garm_vx_leg1 = t12 * t18;
-        let t20 = minus_garm_vx_leg1 * actuator_accelerations[0];
-        let minus_garm_vy_leg1 = s_rod_leg1 * t18;
-        let t22 = minus_garm_vy_leg1 * actuator_accelerations[0];
-        let garm_vz_leg1 = t14 * t18;
-        let t24 = garm_vz_leg1 * actuator_accelerations[0];
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
-        let t27 = 0.05 * s_phi;
-        let t28 = 0.08660254037844387 * c_phi;
-        let t29 = t27 + t28;
-        let t31 = 0.05 * c_phi;
-        let t32 = 0.08660254037844387 * s_phi;
-        let t33 = t31 - t32;
-        let garm_wz_leg1 = minus_garm_vx_leg1 * t29 - minus_garm_vy_leg1 * t33;
-        let t36 = garm_wz_leg1 * actuator_accelerations[0];
-        let t37 = 9.81 * c_arm_leg1;
-        let t42 = 9.81 * s_arm_leg1;
-        let t47 = minus_garm_vx_leg1 * actuator_velocities[0];
-        let t48 = minus_garm_vy_leg1 * actuator_velocities[0];
-        let t49 = garm_vz_leg1 * actuator_velocities[0];
-        let t50 = garm_wz_leg1 * actuator_velocities[0];
-        let t55 = 1.7241379310344827 * t17;
-        let gcross_vx_leg1 = c_arm_leg1 * t55;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        ::overact::guard::leg(c_rod_leg2, 0.988789721306189, "leg2")?;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
-        let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t70 = c_armcross_leg2 * c_rod_leg2;
-        let t72 = s_armcross_leg2 * c_rod_leg2;
-        let t74 = s_arm_leg2 * t70 - c_arm_leg2 * t72;
-        ::overact::guard::leg(t74, 0.9185391450939737, "leg2")?;
-        let t75 = 1.0 / t74;
-        let t76 = 3.8461538461538463 * t75;
-        let garm_vx_leg2 = s_rod_leg2 * t76;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
-        let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        ::overact::guard::leg(c_rod_leg3, 0.9887897213061891, "leg3")?;
-        let t92 = c_armcross_leg3 * c_rod_leg3;
-        let t93 = s_armcross_leg3 * c_rod_leg3;
-        let t96 = c_arm_leg3 * t93 - s_arm_leg3 * t92;
-        ::overact::guard::leg(t96, 0.9185391450939737, "leg3")?;
-        let t97 = 1.0 / t96;
-        let t98 = 3.8461538461538463 * t97;
-        let minus_garm_vx_leg3 = t92 * t98;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        ::overact::guard::leg(c_rod_leg4, 0.9887897213061891, "leg4")?;
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let (s_cross_leg4, c_cross_leg4) = ::overact::math::sin_cos(joints[10]);
-        let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
-        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let t114 = s_armcross_leg4 * c_rod_leg4;
-        let t116 = c_armcross_leg4 * c_rod_leg4;
-        let t118 = c_arm_leg4 * t114 - s_arm_leg4 * t116;
-        ::overact::guard::leg(t118, 0.9185391450939737, "leg4")?;
-        let t119 = 1.0 / t118;
-        let t120 = 3.8461538461538463 * t119;
-        let garm_vx_leg4 = s_rod_leg4 * t120;
-        let t123 = minus_garm_vx_leg1 * minus_garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
-            + minus_garm_vx_leg3 * minus_garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
-        ::overact::guard::platform(t123, 19.50747081825307, "actuators")?;
-        ::overact::guard::platform(t123, 19.50747081825307, "actuators")?;
-        let t124 = 1.0 / t123;
-        let minus_garm_vy_leg2 = t70 * t76;
-        let t127 = t28 - t27;
-        let t129 = t32 + t31;
-        let minus_garm_wz_leg2 = minus_garm_vy_leg2 * t127 + garm_vx_leg2 * t129;
-        let minus_garm_vy_leg3 = s_rod_leg3 * t98;
-        let garm_wz_leg3 = t33 * minus_garm_vy_leg3 - t29 * minus_garm_vx_leg3;
-        let minus_garm_vy_leg4 = t116 * t120;
-        let garm_wz_leg4 = t127 * minus_garm_vy_leg4 + t129 * garm_vx_leg4;
-        let t152 = garm_vx_leg4 * garm_wz_leg4
-            - (minus_garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * minus_garm_wz_leg2
-                + minus_garm_vx_leg3 * garm_wz_leg3);
-        let t153 = t152 * t124;
-        let t169 = minus_garm_vx_leg1 * minus_garm_vy_leg1
-            - garm_vx_leg2 * minus_garm_vy_leg2 + minus_garm_vx_leg3 * minus_garm_vy_leg3
-            - garm_vx_leg4 * minus_garm_vy_leg4;
-        let t171 = minus_garm_vy_leg2 * minus_garm_wz_leg2
-            - minus_garm_vy_leg1 * garm_wz_leg1 - minus_garm_vy_leg3 * garm_wz_leg3
-            - minus_garm_vy_leg4 * garm_wz_leg4 - t169 * t153;
-        let t179 = t169 * t124;
-        let t181 = minus_garm_vy_leg1 * minus_garm_vy_leg1
-            + minus_garm_vy_leg2 * minus_garm_vy_leg2
-            + minus_garm_vy_leg3 * minus_garm_vy_leg3
-            + minus_garm_vy_leg4 * minus_garm_vy_leg4 - t169 * t179;
-        ::overact::guard::platform(t181, 16.505615552607473, "actuators")?;
-        ::overact::guard::platform(t181, 16.505615552607473, "actuators")?;
-        let t182 = 1.0 / t181;
-        let t183 = t171 * t182;
-        let t185 = garm_wz_leg1 * garm_wz_leg1 + minus_garm_wz_leg2 * minus_garm_wz_leg2
-            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t152 * t153
-            - t171 * t183;
-        let garm_vz_leg2 = t72 * t76;
-        let minus_garm_vz_leg3 = t93 * t98;
-        let minus_garm_vz_leg4 = t114 * t120;
-        let t202 = garm_vx_leg2 * garm_vz_leg2 - minus_garm_vx_leg1 * garm_vz_leg1
-            + minus_garm_vx_leg3 * minus_garm_vz_leg3
-            - garm_vx_leg4 * minus_garm_vz_leg4;
-        let t212 = t202 * t124;
-        let t214 = minus_garm_vy_leg3 * minus_garm_vz_leg3
-            - (minus_garm_vy_leg1 * garm_vz_leg1 + minus_garm_vy_leg2 * garm_vz_leg2)
-            + minus_garm_vy_leg4 * minus_garm_vz_leg4 - t169 * t212;
-        let t216 = garm_vz_leg1 * garm_wz_leg1 - garm_vz_leg2 * minus_garm_wz_leg2
-            - minus_garm_vz_leg3 * garm_wz_leg3 - minus_garm_vz_leg4 * garm_wz_leg4
-            - t202 * t153 - t214 * t183;
-        let t226 = t214 * t182;
-        let t228 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3
-            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t202 * t212 - t214 * t226;
-        ::overact::guard::platform(t228, 31.117338184537527, "actuators")?;
-        ::overact::guard::platform(t228, 31.117338184537527, "actuators")?;
-        let t229 = 1.0 / t228;
-        let t230 = t216 * t229;
-        let t232 = t185 - t216 * t230;
-        ::overact::guard::platform(t232, 0.351065482163043, "actuators")?;
-        ::overact::guard::platform(t232, 0.351065482163043, "actuators")?;
-        let t233 = 1.0 / t232;
-        let t234 = minus_garm_wz_leg2 * actuator_velocities[1];
-        let t236 = garm_wz_leg3 * actuator_velocities[2];
-        let t238 = garm_wz_leg4 * actuator_velocities[3];
-        let t240 = garm_vx_leg2 * actuator_velocities[1];
-        let t242 = minus_garm_vx_leg3 * actuator_velocities[2];
-        let t244 = garm_vx_leg4 * actuator_velocities[3];
-        let t245 = t240 - t47 - t242 + t244;
-        let t248 = minus_garm_vy_leg2 * actuator_velocities[1];
-        let t250 = minus_garm_vy_leg3 * actuator_velocities[2];
-        let t252 = minus_garm_vy_leg4 * actuator_velocities[3];
-        let t255 = t48 + t248 + t250 + t252 + t245 * t179;
-        let t258 = garm_vz_leg2 * actuator_velocities[1];
-        let t260 = minus_garm_vz_leg3 * actuator_velocities[2];
-        let t262 = minus_garm_vz_leg4 * actuator_velocities[3];
-        let t267 = t49 + t258 - t260 - t262 - t245 * t212 + t226 * t255;
-        let t270 = t233
-            * (t50 - t234 + t236 + t238 - t245 * t153 + t183 * t255 - t230 * t267);
-        let t271 = t127 * t270;
-        let t272 = t270 * t271;
-        let t273 = 0.58 * s_rod_leg2;
-        let t274 = 1.7241379310344827 * t75;
-        let gcross_vy_leg2 = c_arm_leg2 * t274;
-        let t279 = t229 * t267 - t230 * t270;
-        let t283 = t182 * t255 + t226 * t279 + t183 * t270;
-        let t287 = 1.0 / c_rod_leg2;
-        let minus_gcross_vx_leg2 = t274
-            * (c_arm_leg2 * (c_armcross_leg2 * s_rod_leg2 * t287)
-                + s_arm_leg2 * (s_armcross_leg2 * s_rod_leg2 * t287));
-        let t301 = t245 * t124 + t179 * t283 - t212 * t279 - t153 * t270;
-        let t302 = t129 * t270;
-        let t303 = t301 - t302;
-        let minus_gcross_vz_leg2 = s_arm_leg2 * t274;
-        let rate_cross_leg2 = gcross_vy_leg2 * (t271 - t283)
-            - minus_gcross_vx_leg2 * t303 - minus_gcross_vz_leg2 * t279;
-        let t309 = rate_cross_leg2 * rate_cross_leg2;
-        let minus_grod_vx_leg2 = 1.7241379310344827 * t287;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t303;
-        let t312 = s_armcross_leg2 * minus_rate_rod_leg2;
-        let t315 = c_armcross_leg2 * minus_rate_rod_leg2;
-        let t317 = t309 + t312 * t312 + t315 * t315;
-        let t319 = t273 * rate_cross_leg2;
-        let t320 = rate_cross_leg2 * t319;
-        let t321 = t273 * t317 - t320;
-        let t325 = actuator_velocities[1] * actuator_velocities[1];
-        let t331 = t273 * (rate_cross_leg2 * t312);
-        let t333 = 0.26 * c_arm_leg2 * t325 + 0.58 * t70 * t317 + t331 + t331;
-        let t334 = t270 * t302;
-        let t344 = t273 * (rate_cross_leg2 * t315);
-        let t346 = 0.26 * s_arm_leg2 * t325 + 0.58 * t72 * t317 - t344 - t344;
-        let minus_rate_dot_arm_leg2 = garm_vx_leg2 * (t272 + t321)
-            + minus_garm_vy_leg2 * (t333 - t334) + garm_vz_leg2 * t346;
-        let t349 = actuator_accelerations[1] + minus_rate_dot_arm_leg2;
-        let t351 = t33 * t270;
-        let t352 = t270 * t351;
-        let t353 = 0.58 * s_rod_leg1;
-        let t354 = t29 * t270;
-        let t358 = 1.0 / c_rod_leg1;
-        let gcross_vy_leg1 = t55
-            * (c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t358)
-                + s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t358));
-        let t366 = t351 - t283;
-        let minus_gcross_vz_leg1 = s_arm_leg1 * t55;
-        let rate_cross_leg1 = gcross_vx_leg1 * (t301 - t354) + gcross_vy_leg1 * t366
-            - minus_gcross_vz_leg1 * t279;
-        let grod_vy_leg1 = 1.7241379310344827 * t358;
-        let rate_rod_leg1 = grod_vy_leg1 * t366;
-        let t374 = s_armcross_leg1 * rate_rod_leg1;
-        let t376 = t353 * (rate_cross_leg1 * t374);
-        let t378 = actuator_velocities[0] * actuator_velocities[0];
-        let t382 = rate_cross_leg1 * rate_cross_leg1;
-        let t384 = c_armcross_leg1 * rate_rod_leg1;
-        let t386 = t374 * t374 + t382 + t384 * t384;
-        let t390 = t376 - (0.26 * c_arm_leg1 * t378 + 0.58 * t12 * t386) + t376;
-        let t393 = t270 * t354;
-        let t394 = t353 * rate_cross_leg1;
-        let t395 = rate_cross_leg1 * t394;
-        let t397 = t395 - t353 * t386;
-        let t407 = t353 * (rate_cross_leg1 * t384);
-        let t409 = 0.26 * s_arm_leg1 * t378 + 0.58 * t14 * t386 + t407 + t407;
-        let rate_dot_arm_leg1 = minus_garm_vx_leg1 * (t352 + t390)
-            + minus_garm_vy_leg1 * (t393 + t397) - garm_vz_leg1 * t409;
-        let t412 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t416 = actuator_velocities[2] * actuator_velocities[2];
-        let t419 = 1.0 / c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.7241379310344827 * t419;
-        let t421 = t283 + t351;
-        let rate_rod_leg3 = minus_grod_vy_leg3 * t421;
-        let t423 = s_armcross_leg3 * rate_rod_leg3;
-        let t425 = 1.7241379310344827 * t97;
-        let gcross_vx_leg3 = c_arm_leg3 * t425;
-        let gcross_vy_leg3 = t425
-            * (c_arm_leg3 * (c_armcross_leg3 * s_rod_leg3 * t419)
-                + s_arm_leg3 * (s_armcross_leg3 * s_rod_leg3 * t419));
-        let gcross_vz_leg3 = s_arm_leg3 * t425;
-        let rate_cross_leg3 = gcross_vx_leg3 * (t301 + t354) - gcross_vy_leg3 * t421
-            + gcross_vz_leg3 * t279;
-        let t442 = rate_cross_leg3 * rate_cross_leg3;
-        let t444 = c_armcross_leg3 * rate_rod_leg3;
-        let t446 = t423 * t423 + t442 + t444 * t444;
-        let t449 = 0.58 * s_rod_leg3;
-        let t451 = t449 * (rate_cross_leg3 * t444);
-        let t453 = 0.26 * s_arm_leg3 * t416 + 0.58 * t93 * t446 + t451 + t451;
-        let t461 = t449 * (rate_cross_leg3 * t423);
-        let t463 = 0.26 * c_arm_leg3 * t416 + 0.58 * t92 * t446 - t461 - t461;
-        let t467 = t449 * rate_cross_leg3;
-        let t468 = rate_cross_leg3 * t467;
-        let t469 = t449 * t446 - t468;
-        let rate_dot_arm_leg3 = minus_garm_vz_leg3 * t453
-            - (minus_garm_vx_leg3 * (t352 - t463) + minus_garm_vy_leg3 * (t393 - t469));
-        let t474 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t477 = 1.7241379310344827 * t119;
-        let gcross_vz_leg4 = s_arm_leg4 * t477;
-        let t481 = 1.0 / c_rod_leg4;
-        let minus_gcross_vx_leg4 = t477
-            * (c_arm_leg4 * (c_armcross_leg4 * s_rod_leg4 * t481)
-                + s_arm_leg4 * (s_armcross_leg4 * s_rod_leg4 * t481));
-        let t489 = t301 + t302;
-        let gcross_vy_leg4 = c_arm_leg4 * t477;
-        let rate_cross_leg4 = gcross_vz_leg4 * t279
-            - (minus_gcross_vx_leg4 * t489 + gcross_vy_leg4 * (t283 + t271));
-        let t496 = 0.58 * s_rod_leg4;
-        let t497 = t496 * rate_cross_leg4;
-        let t498 = rate_cross_leg4 * t497;
-        let t499 = rate_cross_leg4 * rate_cross_leg4;
-        let grod_vx_leg4 = 1.7241379310344827 * t481;
-        let rate_rod_leg4 = grod_vx_leg4 * t489;
-        let t502 = s_armcross_leg4 * rate_rod_leg4;
-        let t505 = c_armcross_leg4 * rate_rod_leg4;
-        let t507 = t499 + t502 * t502 + t505 * t505;
-        let t509 = t498 - t496 * t507;
-        let t513 = actuator_velocities[3] * actuator_velocities[3];
-        let t519 = t496 * (rate_cross_leg4 * t502);
-        let t521 = 0.26 * c_arm_leg4 * t513 + 0.58 * t116 * t507 - t519 - t519;
-        let t531 = t496 * (rate_cross_leg4 * t505);
-        let t533 = 0.26 * s_arm_leg4 * t513 + 0.58 * t114 * t507 + t531 + t531;
-        let rate_dot_arm_leg4 = garm_vx_leg4 * (t272 - t509)
-            - minus_garm_vy_leg4 * (t334 - t521) + minus_garm_vz_leg4 * t533;
-        let t536 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t538 = garm_vx_leg2 * t349 - minus_garm_vx_leg1 * t412
-            - minus_garm_vx_leg3 * t474 + garm_vx_leg4 * t536;
-        let t548 = minus_garm_vy_leg1 * t412 + minus_garm_vy_leg2 * t349
-            + minus_garm_vy_leg3 * t474 + minus_garm_vy_leg4 * t536 + t179 * t538;
-        let t560 = garm_vz_leg1 * t412 + garm_vz_leg2 * t349 - minus_garm_vz_leg3 * t474
-            - minus_garm_vz_leg4 * t536 - t212 * t538 + t226 * t548;
-        let t572 = garm_wz_leg1 * t412 - minus_garm_wz_leg2 * t349 + garm_wz_leg3 * t474
-            + garm_wz_leg4 * t536 - t153 * t538 + t183 * t548;
-        let t575 = t233 * (t572 - t230 * t560);
-        let t577 = t229 * t560 - t230 * t575;
-        let t581 = t182 * t548 + t226 * t577 + t183 * t575;
-        let t587 = t124 * t538 + t179 * t581 - t212 * t577 - t153 * t575;
-        let t588 = t29 * t575;
-        let t593 = t33 * t575;
-        let t595 = t593 - t581 - t393;
-        let t596 = t595 - t397;
-        let rate_dot_cross_leg1 = gcross_vx_leg1 * (t587 - t588 - t352 - t390)
-            + gcross_vy_leg1 * t596 - minus_gcross_vz_leg1 * (t577 - t409);
-        let t602 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t603 = c_rod_leg1 * rate_cross_leg1;
-        let t604 = rate_rod_leg1 * t603;
-        let t605 = t602 + t604;
-        let t607 = 1.7241379310344827 * t394;
-        let t608 = rate_rod_leg1 * t607;
-        let t609 = c_rod_leg1 * t608;
-        let t610 = s_rod_leg1 * t605 + t609;
-        let t613 = 2.972651605231867 * t395;
-        let gcross_wz_leg1 = gcross_vy_leg1 * t33 - gcross_vx_leg1 * t29;
-        let grod_wz_leg1 = grod_vy_leg1 * t33;
-        let t621 = t607 * t603;
-        let t622 = grod_wz_leg1 * t621;
-        let t624 = t604 + t605;
-        let t626 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t627 = t626 - t608;
-        let t628 = t608 - t627;
-        let t630 = c_rod_leg1 * t624 - s_rod_leg1 * t628;
-        let t634 = 2.972651605231867 * (t394 * t394);
-        let t635 = t603 * t603;
-        let t636 = t634 - t635;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t596;
-        let t644 = t621 + rate_dot_rod_leg1;
-        let t646 = rate_rod_leg1 * rate_rod_leg1;
-        let t649 = s_rod_leg1 * t644 + c_rod_leg1 * (t646 - t634);
-        let t659 = c_rod_leg1 * t627 - t609;
-        let t666 = 1.7241379310344827 * t595;
-        let t678 = t42 + 0.26 * t378;
-        let t681 = 0.26 * actuator_accelerations[0] - t37;
-        let t683 = s_cross_leg1 * t678 + c_cross_leg1 * t681;
-        let t684 = c_rod_leg1 * t683;
-        let t686 = 0.26 * t16;
-        let t690 = s_rod_leg1 * (0.26 * s_cross_leg1);
-        let t693 = 0.26 * c_cross_leg1;
-        let t695 = t686 * (t635 + t646) - t690 * t644 - t693 * t628;
-        let t703 = s_cross_leg1 * t681 - c_cross_leg1 * t678;
-        let t704 = s_rod_leg1 * t703;
-        let t721 = t690 * (t634 + t646) - t686 * (t621 - rate_dot_rod_leg1)
-            - t693 * t624;
-        let t723 = s_rod_leg1 * t683;
-        let t745 = t690 * t602 - t686 * t626 + t382 * t693;
-        let t757 = 0.26 * t681;
-        let t762 = garm_vx_leg2 * actuator_accelerations[1];
-        let t763 = minus_garm_vy_leg2 * actuator_accelerations[1];
-        let t764 = garm_vz_leg2 * actuator_accelerations[1];
-        let t765 = minus_garm_wz_leg2 * actuator_accelerations[1];
-        let t766 = 9.81 * c_arm_leg2;
-        let t771 = 9.81 * s_arm_leg2;
-        let t780 = 2.972651605231867 * t320;
-        let t781 = t127 * t575;
-        let t786 = t129 * t575;
-        let t788 = t587 - t786 - t272;
-        let t789 = t788 - t321;
-        let rate_dot_cross_leg2 = gcross_vy_leg2 * (t781 - t581 - t334 + t333)
-            - minus_gcross_vx_leg2 * t789 - minus_gcross_vz_leg2 * (t577 - t346);
-        let t795 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t796 = c_rod_leg2 * rate_cross_leg2;
-        let t797 = minus_rate_rod_leg2 * t796;
-        let t798 = t795 - t797;
-        let t800 = 1.7241379310344827 * t319;
-        let t801 = minus_rate_rod_leg2 * t800;
-        let t802 = c_rod_leg2 * t801;
-        let t803 = s_rod_leg2 * t798 - t802;
-        let gcross_wz_leg2 = gcross_vy_leg2 * t127 + minus_gcross_vx_leg2 * t129;
-        let grod_wz_leg2 = minus_grod_vx_leg2 * t129;
-        let t813 = t800 * t796;
-        let t814 = grod_wz_leg2 * t813;
-        let t816 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t817 = t816 + t801;
-        let t818 = t801 + t817;
-        let t820 = t798 - t797;
-        let t822 = s_rod_leg2 * t818 + c_rod_leg2 * t820;
-        let t825 = 2.972651605231867 * (t319 * t319);
-        let t826 = t796 * t796;
-        let t827 = t825 - t826;
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t789;
-        let t836 = t813 - minus_rate_dot_rod_leg2;
-        let t838 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t841 = s_rod_leg2 * t836 + c_rod_leg2 * (t838 - t825);
-        let t851 = t802 + c_rod_leg2 * t817;
-        let t858 = 1.7241379310344827 * t788;
-        let t869 = 0.26 * t74;
-        let t873 = s_rod_leg2 * (0.26 * s_cross_leg2);
-        let t876 = 0.26 * c_cross_leg2;
-        let t878 = t869 * (t826 + t838) - t873 * t836 + t876 * t818;
-        let t881 = t771 + 0.26 * t325;
-        let t884 = 0.26 * actuator_accelerations[1] - t766;
-        let t886 = s_cross_leg2 * t881 + c_cross_leg2 * t884;
-        let t887 = c_rod_leg2 * t886;
-        let t892 = s_cross_leg2 * t884 - c_cross_leg2 * t881;
-        let t893 = s_rod_leg2 * t892;
-        let t913 = t873 * (t825 + t838) - t869 * (t813 + minus_rate_dot_rod_leg2)
-            - t876 * t820;
-        let t915 = s_rod_leg2 * t886;
-        let t936 = t873 * t795 - t869 * t816 + t309 * t876;
-        let t949 = 0.26 * t884;
-        let t954 = minus_garm_vx_leg3 * actuator_accelerations[2];
-        let t955 = minus_garm_vy_leg3 * actuator_accelerations[2];
-        let t956 = minus_garm_vz_leg3 * actuator_accelerations[2];
-        let t957 = garm_wz_leg3 * actuator_accelerations[2];
-        let t958 = 9.81 * c_arm_leg3;
-        let t963 = 9.81 * s_arm_leg3;
-        let t977 = t393 - (t581 + t593);
-        let t978 = t977 - t469;
-        let rate_dot_cross_leg3 = gcross_vx_leg3 * (t587 + t588 + t352 - t463)
-            + gcross_vy_leg3 * t978 + gcross_vz_leg3 * (t577 - t453);
-        let t984 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t985 = c_rod_leg3 * rate_cross_leg3;
-        let t986 = rate_rod_leg3 * t985;
-        let t987 = t984 + t986;
-        let t989 = 1.7241379310344827 * t467;
-        let t990 = rate_rod_leg3 * t989;
-        let t991 = c_rod_leg3 * t990;
-        let t992 = s_rod_leg3 * t987 + t991;
-        let t995 = 2.972651605231867 * t468;
-        let gcross_wz_leg3 = t29 * gcross_vx_leg3 - t33 * gcross_vy_leg3;
-        let grod_wz_leg3 = t33 * minus_grod_vy_leg3;
-        let t1003 = t989 * t985;
-        let t1004 = grod_wz_leg3 * t1003;
-        let t1006 = t986 + t987;
-        let t1008 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t1009 = t1008 - t990;
-        let t1010 = t990 - t1009;
-        let t1012 = c_rod_leg3 * t1006 - s_rod_leg3 * t1010;
-        let t1016 = 2.972651605231867 * (t467 * t467);
-        let t1017 = t985 * t985;
-        let t1018 = t1016 - t1017;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t978;
-        let t1026 = t1003 - minus_rate_dot_rod_leg3;
-        let t1028 = rate_rod_leg3 * rate_rod_leg3;
-        let t1031 = s_rod_leg3 * t1026 + c_rod_leg3 * (t1028 - t1016);
-        let t1041 = c_rod_leg3 * t1009 - t991;
-        let t1048 = 1.7241379310344827 * t977;
-        let t1059 = 0.26 * t96;
-        let t1063 = s_rod_leg3 * (0.26 * s_cross_leg3);
-        let t1066 = 0.26 * c_cross_leg3;
-        let t1068 = t1059 * (t1017 + t1028) + t1063 * t1026 + t1066 * t1010;
-        let t1071 = t963 + 0.26 * t416;
-        let t1074 = 0.26 * actuator_accelerations[2] - t958;
-        let t1076 = s_cross_leg3 * t1071 + c_cross_leg3 * t1074;
-        let t1077 = c_rod_leg3 * t1076;
-        let t1085 = s_cross_leg3 * t1074 - c_cross_leg3 * t1071;
-        let t1086 = s_rod_leg3 * t1085;
-        let t1103 = t1059 * (t1003 + minus_rate_dot_rod_leg3) + t1063 * (t1016 + t1028)
-            - t1066 * t1006;
-        let t1105 = s_rod_leg3 * t1076;
-        let t1127 = t1059 * t1008 + t1063 * t984 + t442 * t1066;
-        let t1139 = 0.26 * t1074;
-        let t1144 = garm_vx_leg4 * actuator_accelerations[3];
-        let t1145 = minus_garm_vy_leg4 * actuator_accelerations[3];
-        let t1146 = minus_garm_vz_leg4 * actuator_accelerations[3];
-        let t1147 = garm_wz_leg4 * actuator_accelerations[3];
-        let t1148 = 9.81 * c_arm_leg4;
-        let t1153 = 9.81 * s_arm_leg4;
-        let t1167 = t587 + t786 + t272;
-        let t1168 = t1167 - t509;
-        let rate_dot_cross_leg4 = gcross_vy_leg4 * (t334 - (t581 + t781) - t521)
-            - minus_gcross_vx_leg4 * t1168 + gcross_vz_leg4 * (t577 - t533);
-        let t1174 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t1175 = c_rod_leg4 * rate_cross_leg4;
-        let t1176 = rate_rod_leg4 * t1175;
-        let t1177 = t1174 + t1176;
-        let t1179 = 1.7241379310344827 * t497;
-        let t1180 = rate_rod_leg4 * t1179;
-        let t1181 = c_rod_leg4 * t1180;
-        let t1182 = s_rod_leg4 * t1177 + t1181;
-        let t1184 = 2.972651605231867 * t498;
-        let minus_gcross_wz_leg4 = t127 * gcross_vy_leg4 + t129 * minus_gcross_vx_leg4;
-        let grod_wz_leg4 = t129 * grod_vx_leg4;
-        let t1193 = t1179 * t1175;
-        let t1194 = grod_wz_leg4 * t1193;
-        let t1197 = 2.972651605231867 * (t497 * t497);
-        let t1198 = t1175 * t1175;
-        let t1199 = t1197 - t1198;
-        let t1201 = t1176 + t1177;
-        let t1203 = c_rod_leg4 * rate_dot_cross_leg4;
-        let t1204 = t1203 - t1180;
-        let t1205 = t1180 - t1204;
-        let t1207 = c_rod_leg4 * t1201 - s_rod_leg4 * t1205;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t1168;
-        let t1217 = t1193 + rate_dot_rod_leg4;
-        let t1219 = rate_rod_leg4 * rate_rod_leg4;
-        let t1222 = s_rod_leg4 * t1217 + c_rod_leg4 * (t1219 - t1197);
-        let t1231 = c_rod_leg4 * t1204 - t1181;
-        let t1239 = 1.7241379310344827 * t1167;
-        let t1249 = 0.26 * t118;
-        let t1253 = s_rod_leg4 * (0.26 * s_cross_leg4);
-        let t1256 = 0.26 * c_cross_leg4;
-        let t1258 = t1249 * (t1198 + t1219) + t1253 * t1217 + t1256 * t1205;
-        let t1261 = t1153 + 0.26 * t513;
-        let t1264 = 0.26 * actuator_accelerations[3] - t1148;
-        let t1266 = s_cross_leg4 * t1261 + c_cross_leg4 * t1264;
-        let t1267 = c_rod_leg4 * t1266;
-        let t1272 = s_cross_leg4 * t1264 - c_cross_leg4 * t1261;
-        let t1273 = s_rod_leg4 * t1272;
-        let t1293 = t1249 * (t1193 - rate_dot_rod_leg4) + t1253 * (t1197 + t1219)
-            - t1256 * t1201;
-        let t1295 = s_rod_leg4 * t1266;
-        let t1316 = t1249 * t1203 + t1253 * t1174 + t499 * t1256;
-        let t1329 = 0.26 * t1264;
-        let t1334 = t270 * t270;
-        let t1337 = c_phi * t1334 + s_phi * t575;
-        let t1340 = c_phi * t575 - s_phi * t1334;
+        let t2 = 0.05 * c_phi;
+        let t3 = 0.08660254037844387 * s_phi;
+        let t4 = t2 - t3;
+        let t5 = pose[0] + t4;
+        let t6 = t5 - 0.24;
+        let t7 = t6 * t6;
+        let t8 = pose[2] * pose[2];
+        let t10 = 0.2704 * (t7 + t8);
+        let t11 = 1.0 / t10;
+        let t12 = 0.52 * t6;
+        let t13 = 0.05 * s_phi;
+        let t14 = 0.08660254037844387 * c_phi;
+        let t15 = t13 + t14;
+        let t16 = pose[1] + t15;
+        let t17 = t16 * t16;
+        let t19 = t7 + t17 + t8;
+        let t21 = t19 - 0.3364 + 0.0676;
+        let t23 = 0.52 * pose[2];
+        let t25 = t10 - t21 * t21;
+        ::overact::guard::reach(t25, "leg1")?;
+        let t26 = ::overact::math::sqrt(t25);
+        ::overact::guard::leg(t26, 0.27703140616182853, "leg1")?;
+        let c_arm_leg1 = t11 * (t12 * t21 - t23 * t26);
+        let t30 = 0.26 * c_arm_leg1;
+        let t32 = t5 - (0.24 + t30);
+        let t33 = 1.0 / t26;
+        let t34 = 2.0 * t33;
+        let garm_vx_leg1 = t32 * t34;
+        let t36 = garm_vx_leg1 * actuator_accelerations[0];
+        let garm_vy_leg1 = t16 * t34;
+        let t38 = garm_vy_leg1 * actuator_accelerations[0];
+        let minus_s_arm_leg1 = t11 * (t23 * t21 + t12 * t26);
+        let t43 = 0.26 * minus_s_arm_leg1;
+        let t44 = pose[2] - t43;
+        let garm_vz_leg1 = t44 * t34;
+        let t46 = garm_vz_leg1 * actuator_accelerations[0];
+        let garm_wz_leg1 = t4 * garm_vy_leg1 - t15 * garm_vx_leg1;
+        let t50 = garm_wz_leg1 * actuator_accelerations[0];
+        let t51 = 9.81 * c_arm_leg1;
+        let t56 = 9.81 * minus_s_arm_leg1;
+        let t61 = garm_vx_leg1 * actuator_velocities[0];
+        let t62 = garm_vy_leg1 * actuator_velocities[0];
+        let t63 = garm_vz_leg1 * actuator_velocities[0];
+        let t64 = garm_wz_leg1 * actuator_velocities[0];
+        let t69 = 0.52 * t33;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t69;
+        let s_rod_leg1 = 1.7241379310344827 * t16;
+        let t73 = t14 - t13;
+        let t74 = pose[0] + t73;
+        let t75 = t3 + t2;
+        let t76 = pose[1] + t75;
+        let t77 = t76 - 0.24;
+        let t78 = t77 * t77;
+        let t80 = 0.2704 * (t78 + t8);
+        let t81 = t74 * t74;
+        let t83 = t81 + t78 + t8;
+        let t85 = t83 - 0.3364 + 0.0676;
+        let t87 = t80 - t85 * t85;
+        ::overact::guard::reach(t87, "leg2")?;
+        let t88 = ::overact::math::sqrt(t87);
+        ::overact::guard::leg(t88, 0.27703140616182853, "leg2")?;
+        let t89 = 1.0 / t88;
+        let t90 = 2.0 * t89;
+        let garm_vx_leg2 = t74 * t90;
+        let t94 = pose[0] - t4;
+        let t95 = t94 + 0.24;
+        let t96 = t95 * t95;
+        let t98 = 0.2704 * (t96 + t8);
+        let t99 = 1.0 / t98;
+        let t100 = 0.52 * t95;
+        let t101 = pose[1] - t15;
+        let t102 = t101 * t101;
+        let t104 = t96 + t102 + t8;
+        let t106 = t104 - 0.3364 + 0.0676;
+        let t109 = t98 - t106 * t106;
+        ::overact::guard::reach(t109, "leg3")?;
+        let t110 = ::overact::math::sqrt(t109);
+        ::overact::guard::leg(t110, 0.27703140616182853, "leg3")?;
+        let minus_c_arm_leg3 = t99 * (t100 * t106 + t23 * t110);
+        let t114 = 0.26 * minus_c_arm_leg3;
+        let t116 = t94 - (t114 - 0.24);
+        let t117 = 1.0 / t110;
+        let t118 = 2.0 * t117;
+        let garm_vx_leg3 = t116 * t118;
+        let t122 = pose[0] - t73;
+        let t123 = pose[1] - t75;
+        let t124 = t123 + 0.24;
+        let t125 = t124 * t124;
+        let t127 = 0.2704 * (t125 + t8);
+        let t128 = t122 * t122;
+        let t130 = t128 + t125 + t8;
+        let t132 = t130 - 0.3364 + 0.0676;
+        let t134 = t127 - t132 * t132;
+        ::overact::guard::reach(t134, "leg4")?;
+        let t135 = ::overact::math::sqrt(t134);
+        ::overact::guard::leg(t135, 0.27703140616182853, "leg4")?;
+        let t136 = 1.0 / t135;
+        let t137 = 2.0 * t136;
+        let garm_vx_leg4 = t122 * t137;
+        let t140 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t140, 19.507470815645043, "actuators")?;
+        ::overact::guard::platform(t140, 19.507470815645043, "actuators")?;
+        let t141 = 1.0 / t140;
+        let t142 = actuator_velocities[0] * actuator_velocities[0];
+        let t146 = 1.0 - 2.972651605231867 * t17;
+        ::overact::guard::reach(t146, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t146);
+        ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
+        let s_cross_leg1 = 1.9230769230769231 * t26 / (0.58 * c_rod_leg1);
+        let c_cross_leg1 = (t19 - (0.0676 + t17) - 0.3364 * t146)
+            / (0.3016 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t159 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7241379310344827 * t159;
+        let t162 = 1.0 / t80;
+        let t163 = 0.52 * t77;
+        let c_arm_leg2 = t162 * (t163 * t85 - t23 * t88);
+        let t168 = 0.26 * c_arm_leg2;
+        let t170 = t76 - (0.24 + t168);
+        let garm_vy_leg2 = t170 * t90;
+        let garm_vy_leg3 = t101 * t118;
+        let t177 = 1.0 / t127;
+        let t178 = 0.52 * t124;
+        let minus_c_arm_leg4 = t177 * (t178 * t132 + t23 * t135);
+        let t183 = 0.26 * minus_c_arm_leg4;
+        let t185 = t123 - (t183 - 0.24);
+        let garm_vy_leg4 = t185 * t137;
+        let t195 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3 + garm_vx_leg4 * garm_vy_leg4;
+        let t196 = t195 * t141;
+        let t198 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t195 * t196;
+        ::overact::guard::platform(t198, 16.505615550045768, "actuators")?;
+        ::overact::guard::platform(t198, 16.505615550045768, "actuators")?;
+        let t199 = 1.0 / t198;
+        let t200 = garm_vy_leg2 * actuator_velocities[1];
+        let t202 = garm_vy_leg3 * actuator_velocities[2];
+        let t204 = garm_vy_leg4 * actuator_velocities[3];
+        let t206 = garm_vx_leg2 * actuator_velocities[1];
+        let t208 = garm_vx_leg3 * actuator_velocities[2];
+        let t210 = garm_vx_leg4 * actuator_velocities[3];
+        let t211 = t61 + t206 + t208 + t210;
+        let t213 = t62 + t200 + t202 + t204 - t211 * t196;
+        let minus_s_arm_leg2 = t162 * (t23 * t85 + t163 * t88);
+        let t220 = 0.26 * minus_s_arm_leg2;
+        let t221 = pose[2] - t220;
+        let garm_vz_leg2 = t221 * t90;
+        let s_arm_leg3 = t99 * (t100 * t110 - t23 * t106);
+        let t229 = 0.26 * s_arm_leg3;
+        let t230 = pose[2] + t229;
+        let garm_vz_leg3 = t230 * t118;
+        let s_arm_leg4 = t177 * (t178 * t135 - t23 * t132);
+        let t238 = 0.26 * s_arm_leg4;
+        let t239 = pose[2] + t238;
+        let garm_vz_leg4 = t239 * t137;
+        let t249 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3 + garm_vx_leg4 * garm_vz_leg4;
+        let t250 = t249 * t141;
+        let t252 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 + garm_vy_leg4 * garm_vz_leg4 - t195 * t250;
+        let t253 = t252 * t199;
+        let t264 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 + garm_vz_leg4 * garm_vz_leg4 - t249 * t250
+            - t252 * t253;
+        ::overact::guard::platform(t264, 31.11733818900116, "actuators")?;
+        ::overact::guard::platform(t264, 31.11733818900116, "actuators")?;
+        let t265 = 1.0 / t264;
+        let t266 = garm_vz_leg2 * actuator_velocities[1];
+        let t268 = garm_vz_leg3 * actuator_velocities[2];
+        let t270 = garm_vz_leg4 * actuator_velocities[3];
+        let t275 = t63 + t266 + t268 + t270 - t211 * t250 - t253 * t213;
+        let garm_wz_leg2 = t73 * garm_vy_leg2 - t75 * garm_vx_leg2;
+        let garm_wz_leg3 = t15 * garm_vx_leg3 - t4 * garm_vy_leg3;
+        let garm_wz_leg4 = t75 * garm_vx_leg4 - t73 * garm_vy_leg4;
+        let t299 = garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * garm_wz_leg2
+            + garm_vx_leg3 * garm_wz_leg3 + garm_vx_leg4 * garm_wz_leg4;
+        let t300 = t299 * t141;
+        let t311 = garm_vy_leg1 * garm_wz_leg1 + garm_vy_leg2 * garm_wz_leg2
+            + garm_vy_leg3 * garm_wz_leg3 + garm_vy_leg4 * garm_wz_leg4 - t195 * t300;
+        let t312 = t311 * t199;
+        let t314 = garm_vz_leg1 * garm_wz_leg1 + garm_vz_leg2 * garm_wz_leg2
+            + garm_vz_leg3 * garm_wz_leg3 + garm_vz_leg4 * garm_wz_leg4 - t249 * t300
+            - t252 * t312;
+        let t315 = t314 * t265;
+        let t326 = garm_wz_leg1 * garm_wz_leg1 + garm_wz_leg2 * garm_wz_leg2
+            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t299 * t300
+            - t311 * t312;
+        let t328 = t326 - t314 * t315;
+        ::overact::guard::platform(t328, 0.35106548211906174, "actuators")?;
+        ::overact::guard::platform(t328, 0.35106548211906174, "actuators")?;
+        let t329 = 1.0 / t328;
+        let t330 = garm_wz_leg2 * actuator_velocities[1];
+        let t332 = garm_wz_leg3 * actuator_velocities[2];
+        let t334 = garm_wz_leg4 * actuator_velocities[3];
+        let t342 = t329
+            * (t64 + t330 + t332 + t334 - t211 * t300 - t312 * t213 - t315 * t275);
+        let t344 = t265 * t275 - t315 * t342;
+        let t348 = t199 * t213 - t253 * t344 - t312 * t342;
+        let t349 = t4 * t342;
+        let t350 = t348 + t349;
+        let rate_rod_leg1 = grod_vy_leg1 * t350;
+        let t352 = s_armcross_leg1 * rate_rod_leg1;
+        let t360 = t211 * t141 - t196 * t348 - t250 * t344 - t300 * t342;
+        let t361 = t15 * t342;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let minus_gcross_vy_leg1 = t69
+            * (c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t159)
+                - minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t159));
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t69;
+        let minus_rate_cross_leg1 = minus_gcross_vx_leg1 * (t360 - t361)
+            + minus_gcross_vy_leg1 * t350 + minus_gcross_vz_leg1 * t344;
+        let t380 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t382 = c_armcross_leg1 * rate_rod_leg1;
+        let t384 = t352 * t352 + t380 + t382 * t382;
+        let t388 = t16 * (minus_rate_cross_leg1 * t352);
+        let t390 = t30 * t142 + t32 * t384 + t388 + t388;
+        let t391 = t342 * t349;
+        let t394 = t342 * t361;
+        let t395 = t16 * minus_rate_cross_leg1;
+        let t396 = minus_rate_cross_leg1 * t395;
+        let t398 = t396 - t16 * t384;
+        let t406 = t16 * (minus_rate_cross_leg1 * t382);
+        let t408 = t43 * t142 + t44 * t384 + t406 + t406;
+        let rate_dot_arm_leg1 = garm_vx_leg1 * (t390 - t391)
+            - garm_vy_leg1 * (t394 + t398) + garm_vz_leg1 * t408;
+        let t411 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t413 = actuator_velocities[1] * actuator_velocities[1];
+        let t415 = 0.52 * t89;
+        let minus_s_rod_leg2 = 1.7241379310344827 * t74;
+        let t420 = 1.0 - 2.972651605231867 * t81;
+        ::overact::guard::reach(t420, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t420);
+        ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
+        let c_cross_leg2 = (t83 - (0.0676 + t81) - 0.3364 * t420)
+            / (0.3016 * c_rod_leg2);
+        let s_cross_leg2 = 1.9230769230769231 * t88 / (0.58 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t433 = 1.0 / c_rod_leg2;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let minus_gcross_vx_leg2 = t415
+            * (c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t433)
+                - minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t433));
+        let t444 = t75 * t342;
+        let t445 = t360 - t444;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t415;
+        let t448 = t73 * t342;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t415;
+        let minus_rate_cross_leg2 = minus_gcross_vx_leg2 * t445
+            + minus_gcross_vy_leg2 * (t348 + t448) + minus_gcross_vz_leg2 * t344;
+        let t455 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let minus_grod_vx_leg2 = 1.7241379310344827 * t433;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t445;
+        let t458 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t461 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t463 = t455 + t458 * t458 + t461 * t461;
+        let t467 = t74 * (minus_rate_cross_leg2 * t458);
+        let t469 = t168 * t413 + t170 * t463 + t467 + t467;
+        let t470 = t342 * t444;
+        let t473 = t342 * t448;
+        let t474 = t74 * minus_rate_cross_leg2;
+        let t475 = minus_rate_cross_leg2 * t474;
+        let t477 = t475 - t74 * t463;
+        let t485 = t74 * (minus_rate_cross_leg2 * t461);
+        let t487 = t220 * t413 + t221 * t463 + t485 + t485;
+        let rate_dot_arm_leg2 = garm_vy_leg2 * (t469 - t470)
+            - garm_vx_leg2 * (t473 + t477) + garm_vz_leg2 * t487;
+        let t490 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t493 = actuator_velocities[2] * actuator_velocities[2];
+        let t498 = 1.0 - 2.972651605231867 * t102;
+        ::overact::guard::reach(t498, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t498);
+        ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
+        let c_cross_leg3 = (t104 - (0.0676 + t102) - 0.3364 * t498)
+            / (0.3016 * c_rod_leg3);
+        let s_cross_leg3 = 1.9230769230769231 * t110 / (0.58 * c_rod_leg3);
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t510 = 1.0 / c_rod_leg3;
+        let minus_grod_vy_leg3 = 1.7241379310344827 * t510;
+        let t512 = t348 - t349;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t512;
+        let t514 = s_armcross_leg3 * minus_rate_rod_leg3;
+        let t516 = 0.52 * t117;
+        let gcross_vz_leg3 = s_arm_leg3 * t516;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t516;
+        let minus_s_rod_leg3 = 1.7241379310344827 * t101;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t516
+            * (minus_c_arm_leg3 * (minus_s_rod_leg3 * minus_c_armcross_leg3 * t510)
+                + s_arm_leg3 * (minus_s_rod_leg3 * s_armcross_leg3 * t510));
+        let rate_cross_leg3 = gcross_vz_leg3 * t344
+            - (minus_gcross_vx_leg3 * (t360 + t361) + minus_gcross_vy_leg3 * t512);
+        let t537 = rate_cross_leg3 * rate_cross_leg3;
+        let t539 = minus_c_armcross_leg3 * minus_rate_rod_leg3;
+        let t541 = t514 * t514 + t537 + t539 * t539;
+        let t545 = t101 * (rate_cross_leg3 * t514);
+        let t547 = t114 * t493 + t116 * t541 + t545 + t545;
+        let t550 = t101 * rate_cross_leg3;
+        let t551 = rate_cross_leg3 * t550;
+        let t553 = t551 - t101 * t541;
+        let t561 = t101 * (rate_cross_leg3 * t539);
+        let t563 = t229 * t493 - t230 * t541 - t561 - t561;
+        let rate_dot_arm_leg3 = garm_vx_leg3 * (t391 + t547)
+            + garm_vy_leg3 * (t394 - t553) - garm_vz_leg3 * t563;
+        let t566 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t569 = 0.52 * t136;
+        let gcross_vz_leg4 = s_arm_leg4 * t569;
+        let s_rod_leg4 = 1.7241379310344827 * t122;
+        let t576 = 1.0 - 2.972651605231867 * t128;
+        ::overact::guard::reach(t576, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t576);
+        ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
+        let c_cross_leg4 = (t130 - (0.0676 + t128) - 0.3364 * t576)
+            / (0.3016 * c_rod_leg4);
+        let s_cross_leg4 = 1.9230769230769231 * t135 / (0.58 * c_rod_leg4);
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let t589 = 1.0 / c_rod_leg4;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t569
+            * (minus_c_arm_leg4 * (s_rod_leg4 * minus_c_armcross_leg4 * t589)
+                + s_arm_leg4 * (s_rod_leg4 * s_armcross_leg4 * t589));
+        let t600 = t360 + t444;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t569;
+        let rate_cross_leg4 = gcross_vz_leg4 * t344
+            - (minus_gcross_vx_leg4 * t600 + minus_gcross_vy_leg4 * (t348 - t448));
+        let t607 = t122 * rate_cross_leg4;
+        let t608 = rate_cross_leg4 * t607;
+        let t609 = rate_cross_leg4 * rate_cross_leg4;
+        let grod_vx_leg4 = 1.7241379310344827 * t589;
+        let rate_rod_leg4 = grod_vx_leg4 * t600;
+        let t612 = s_armcross_leg4 * rate_rod_leg4;
+        let t615 = minus_c_armcross_leg4 * rate_rod_leg4;
+        let t617 = t609 + t612 * t612 + t615 * t615;
+        let t619 = t608 - t122 * t617;
+        let t622 = actuator_velocities[3] * actuator_velocities[3];
+        let t627 = t122 * (rate_cross_leg4 * t612);
+        let t629 = t183 * t622 + t185 * t617 + t627 + t627;
+        let t637 = t122 * (rate_cross_leg4 * t615);
+        let t639 = t238 * t622 - t239 * t617 - t637 - t637;
+        let rate_dot_arm_leg4 = garm_vx_leg4 * (t473 - t619)
+            + garm_vy_leg4 * (t470 + t629) - garm_vz_leg4 * t639;
+        let t642 = actuator_accelerations[3] - rate_dot_arm_leg4;
+        let t644 = garm_vx_leg1 * t411 + garm_vx_leg2 * t490 + garm_vx_leg3 * t566
+            + garm_vx_leg4 * t642;
+        let t654 = garm_vy_leg1 * t411 + garm_vy_leg2 * t490 + garm_vy_leg3 * t566
+            + garm_vy_leg4 * t642 - t196 * t644;
+        let t666 = garm_vz_leg1 * t411 + garm_vz_leg2 * t490 + garm_vz_leg3 * t566
+            + garm_vz_leg4 * t642 - t250 * t644 - t253 * t654;
+        let t678 = garm_wz_leg1 * t411 + garm_wz_leg2 * t490 + garm_wz_leg3 * t566
+            + garm_wz_leg4 * t642 - t300 * t644 - t312 * t654;
+        let t681 = t329 * (t678 - t315 * t666);
+        let t683 = t265 * t666 - t315 * t681;
+        let t687 = t199 * t654 - t253 * t683 - t312 * t681;
+        let t693 = t141 * t644 - t196 * t687 - t250 * t683 - t300 * t681;
+        let t694 = t15 * t681;
+        let t699 = t4 * t681;
+        let t701 = t687 + t699 - t394;
+        let t702 = t701 - t398;
+        let minus_rate_dot_cross_leg1 = minus_gcross_vx_leg1
+            * (t693 - t694 - t391 + t390) + minus_gcross_vy_leg1 * t702
+            + minus_gcross_vz_leg1 * (t683 + t408);
+        let t708 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t709 = c_rod_leg1 * minus_rate_cross_leg1;
+        let t710 = rate_rod_leg1 * t709;
+        let t711 = t708 + t710;
+        let t713 = 1.7241379310344827 * t395;
+        let t714 = rate_rod_leg1 * t713;
+        let t715 = c_rod_leg1 * t714;
+        let t716 = s_rod_leg1 * t711 + t715;
+        let t719 = 2.972651605231867 * t396;
+        let gcross_wz_leg1 = t15 * minus_gcross_vx_leg1 - t4 * minus_gcross_vy_leg1;
+        let grod_wz_leg1 = t4 * grod_vy_leg1;
+        let t727 = t713 * t709;
+        let t728 = grod_wz_leg1 * t727;
+        let t730 = c_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t731 = t714 - t730;
+        let t732 = t714 + t731;
+        let t734 = t710 + t711;
+        let t736 = s_rod_leg1 * t732 - c_rod_leg1 * t734;
+        let t739 = 2.972651605231867 * (t395 * t395);
+        let t740 = t709 * t709;
+        let t741 = t739 - t740;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t702;
+        let t750 = t727 + rate_dot_rod_leg1;
+        let t752 = rate_rod_leg1 * rate_rod_leg1;
+        let t755 = s_rod_leg1 * t750 + c_rod_leg1 * (t752 - t739);
+        let t765 = t715 + c_rod_leg1 * t731;
+        let t772 = 1.7241379310344827 * t701;
+        let t783 = 0.26 * c_cross_leg1;
+        let t785 = 0.8620689655172413 * t26;
+        let t789 = 0.4482758620689655 * (t16 * s_cross_leg1);
+        let t792 = t783 * t732 - (t785 * (t740 + t752) + t789 * t750);
+        let t795 = 0.26 * actuator_accelerations[0] - t51;
+        let t798 = t56 - 0.26 * t142;
+        let t800 = c_cross_leg1 * t795 - s_cross_leg1 * t798;
+        let t801 = c_rod_leg1 * t800;
+        let t809 = c_cross_leg1 * t798 + s_cross_leg1 * t795;
+        let t810 = s_rod_leg1 * t809;
+        let t827 = t785 * (t727 - rate_dot_rod_leg1) + t789 * (t739 + t752)
+            + t783 * t734;
+        let t829 = s_rod_leg1 * t800;
+        let t850 = t380 * t783 - (t785 * t730 + t789 * t708);
+        let t863 = 0.26 * t795;
+        let t868 = garm_vx_leg2 * actuator_accelerations[1];
+        let t869 = garm_vy_leg2 * actuator_accelerations[1];
+        let t870 = garm_vz_leg2 * actuator_accelerations[1];
+        let t871 = garm_wz_leg2 * actuator_accelerations[1];
+        let t872 = 9.81 * c_arm_leg2;
+        let t877 = 9.81 * minus_s_arm_leg2;
+        let t886 = t75 * t681;
+        let t888 = t693 - t886 - t473;
+        let t889 = t888 - t477;
+        let t891 = t73 * t681;
+        let minus_rate_dot_cross_leg2 = minus_gcross_vx_leg2 * t889
+            + minus_gcross_vy_leg2 * (t687 + t891 - t470 + t469)
+            + minus_gcross_vz_leg2 * (t683 + t487);
+        let t900 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t901 = c_rod_leg2 * minus_rate_cross_leg2;
+        let t902 = minus_rate_rod_leg2 * t901;
+        let t903 = t900 + t902;
+        let t905 = 1.7241379310344827 * t474;
+        let t906 = minus_rate_rod_leg2 * t905;
+        let t907 = c_rod_leg2 * t906;
+        let t908 = minus_s_rod_leg2 * t903 + t907;
+        let t910 = 2.972651605231867 * t475;
+        let grod_wz_leg2 = t75 * minus_grod_vx_leg2;
+        let t915 = t905 * t901;
+        let t916 = grod_wz_leg2 * t915;
+        let gcross_wz_leg2 = t75 * minus_gcross_vx_leg2 - t73 * minus_gcross_vy_leg2;
+        let t922 = t902 + t903;
+        let t924 = c_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t925 = t906 - t924;
+        let t926 = t906 + t925;
+        let t928 = c_rod_leg2 * t922 - minus_s_rod_leg2 * t926;
+        let t931 = 2.972651605231867 * (t474 * t474);
+        let t932 = t901 * t901;
+        let t933 = t931 - t932;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t889;
+        let t942 = t915 + minus_rate_dot_rod_leg2;
+        let t944 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t947 = minus_s_rod_leg2 * t942 + c_rod_leg2 * (t944 - t931);
+        let t957 = t907 + c_rod_leg2 * t925;
+        let t964 = 1.7241379310344827 * t888;
+        let t975 = 0.26 * c_cross_leg2;
+        let t977 = 0.8620689655172413 * t88;
+        let t981 = 0.4482758620689655 * (t74 * s_cross_leg2);
+        let t984 = t975 * t926 - (t977 * (t932 + t944) + t981 * t942);
+        let t987 = 0.26 * actuator_accelerations[1] - t872;
+        let t990 = t877 - 0.26 * t413;
+        let t992 = c_cross_leg2 * t987 - s_cross_leg2 * t990;
+        let t993 = c_rod_leg2 * t992;
+        let t998 = c_cross_leg2 * t990 + s_cross_leg2 * t987;
+        let t999 = minus_s_rod_leg2 * t998;
+        let t1019 = t977 * (minus_rate_dot_rod_leg2 - t915) - t981 * (t931 + t944)
+            - t975 * t922;
+        let t1021 = minus_s_rod_leg2 * t992;
+        let t1042 = t455 * t975 - (t977 * t924 + t981 * t900);
+        let t1055 = 0.26 * t987;
+        let t1060 = garm_vx_leg3 * actuator_accelerations[2];
+        let t1061 = garm_vy_leg3 * actuator_accelerations[2];
+        let t1062 = garm_vz_leg3 * actuator_accelerations[2];
+        let t1063 = garm_wz_leg3 * actuator_accelerations[2];
+        let t1064 = 9.81 * minus_c_arm_leg3;
+        let t1069 = 9.81 * s_arm_leg3;
+        let t1085 = t687 - t699 + t394;
+        let t1086 = t1085 - t553;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * (t683 - t563)
+            - (minus_gcross_vx_leg3 * (t693 + t694 + t391 + t547)
+                + minus_gcross_vy_leg3 * t1086);
+        let t1090 = minus_s_rod_leg3 * rate_dot_cross_leg3;
+        let t1091 = c_rod_leg3 * rate_cross_leg3;
+        let t1092 = minus_rate_rod_leg3 * t1091;
+        let t1093 = t1090 + t1092;
+        let t1095 = 1.7241379310344827 * t550;
+        let t1096 = minus_rate_rod_leg3 * t1095;
+        let t1097 = c_rod_leg3 * t1096;
+        let t1098 = minus_s_rod_leg3 * t1093 + t1097;
+        let t1101 = 2.972651605231867 * t551;
+        let gcross_wz_leg3 = t4 * minus_gcross_vy_leg3 - t15 * minus_gcross_vx_leg3;
+        let grod_wz_leg3 = t4 * minus_grod_vy_leg3;
+        let t1109 = t1095 * t1091;
+        let t1110 = grod_wz_leg3 * t1109;
+        let t1112 = c_rod_leg3 * rate_dot_cross_leg3;
+        let t1113 = t1112 - t1096;
+        let t1114 = t1096 - t1113;
+        let t1116 = t1092 + t1093;
+        let t1118 = minus_s_rod_leg3 * t1114 - c_rod_leg3 * t1116;
+        let t1122 = 2.972651605231867 * (t550 * t550);
+        let t1123 = t1091 * t1091;
+        let t1124 = t1122 - t1123;
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t1086;
+        let t1132 = t1109 + minus_rate_dot_rod_leg3;
+        let t1134 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t1137 = minus_s_rod_leg3 * t1132 + c_rod_leg3 * (t1134 - t1122);
+        let t1147 = c_rod_leg3 * t1113 - t1097;
+        let t1154 = 1.7241379310344827 * t1085;
+        let t1165 = 0.8620689655172413 * t110;
+        let t1169 = 0.4482758620689655 * (t101 * s_cross_leg3);
+        let t1172 = 0.26 * c_cross_leg3;
+        let t1174 = t1165 * (t1123 + t1134) + t1169 * t1132 + t1172 * t1114;
+        let t1177 = t1069 + 0.26 * t493;
+        let t1180 = t1064 + 0.26 * actuator_accelerations[2];
+        let t1182 = s_cross_leg3 * t1177 + c_cross_leg3 * t1180;
+        let t1183 = c_rod_leg3 * t1182;
+        let t1191 = s_cross_leg3 * t1180 - c_cross_leg3 * t1177;
+        let t1192 = minus_s_rod_leg3 * t1191;
+        let t1209 = t1165 * (minus_rate_dot_rod_leg3 - t1109) - t1169 * (t1122 + t1134)
+            + t1172 * t1116;
+        let t1211 = minus_s_rod_leg3 * t1182;
+        let t1232 = t1165 * t1112 + t1169 * t1090 + t537 * t1172;
+        let t1245 = 0.26 * t1180;
+        let t1250 = garm_vx_leg4 * actuator_accelerations[3];
+        let t1251 = garm_vy_leg4 * actuator_accelerations[3];
+        let t1252 = garm_vz_leg4 * actuator_accelerations[3];
+        let t1253 = garm_wz_leg4 * actuator_accelerations[3];
+        let t1254 = 9.81 * minus_c_arm_leg4;
+        let t1259 = 9.81 * s_arm_leg4;
+        let t1271 = t693 + t886 + t473;
+        let t1272 = t1271 - t619;
+        let rate_dot_cross_leg4 = gcross_vz_leg4 * (t683 - t639)
+            - (minus_gcross_vx_leg4 * t1272
+                + minus_gcross_vy_leg4 * (t687 - t891 + t470 + t629));
+        let t1280 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t1281 = c_rod_leg4 * rate_cross_leg4;
+        let t1282 = rate_rod_leg4 * t1281;
+        let t1283 = t1280 + t1282;
+        let t1285 = 1.7241379310344827 * t607;
+        let t1286 = rate_rod_leg4 * t1285;
+        let t1287 = c_rod_leg4 * t1286;
+        let t1288 = s_rod_leg4 * t1283 + t1287;
+        let t1290 = 2.972651605231867 * t608;
+        let gcross_wz_leg4 = t73 * minus_gcross_vy_leg4 - t75 * minus_gcross_vx_leg4;
+        let grod_wz_leg4 = t75 * grod_vx_leg4;
+        let t1299 = t1285 * t1281;
+        let t1300 = grod_wz_leg4 * t1299;
+        let t1303 = 2.972651605231867 * (t607 * t607);
+        let t1304 = t1281 * t1281;
+        let t1305 = t1303 - t1304;
+        let t1307 = t1282 + t1283;
+        let t1309 = c_rod_leg4 * rate_dot_cross_leg4;
+        let t1310 = t1309 - t1286;
+        let t1311 = t1286 - t1310;
+        let t1313 = c_rod_leg4 * t1307 - s_rod_leg4 * t1311;
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t1272;
+        let t1323 = t1299 + rate_dot_rod_leg4;
+        let t1325 = rate_rod_leg4 * rate_rod_leg4;
+        let t1328 = s_rod_leg4 * t1323 + c_rod_leg4 * (t1325 - t1303);
+        let t1337 = c_rod_leg4 * t1310 - t1287;
+        let t1345 = 1.7241379310344827 * t1271;
+        let t1355 = 0.8620689655172413 * t135;
+        let t1359 = 0.4482758620689655 * (t122 * s_cross_leg4);
+        let t1362 = 0.26 * c_cross_leg4;
+        let t1364 = t1355 * (t1304 + t1325) + t1359 * t1323 + t1362 * t1311;
+        let t1367 = t1259 + 0.26 * t622;
+        let t1370 = t1254 + 0.26 * actuator_accelerations[3];
+        let t1372 = s_cross_leg4 * t1367 + c_cross_leg4 * t1370;
+        let t1373 = c_rod_leg4 * t1372;
+        let t1378 = s_cross_leg4 * t1370 - c_cross_leg4 * t1367;
+        let t1379 = s_rod_leg4 * t1378;
+        let t1399 = t1355 * (t1299 - rate_dot_rod_leg4) + t1359 * (t1303 + t1325)
+            - t1362 * t1307;
+        let t1401 = s_rod_leg4 * t1372;
+        let t1422 = t1355 * t1309 + t1359 * t1280 + t609 * t1362;
+        let t1435 = 0.26 * t1370;
+        let t1440 = t342 * t342;
+        let t1443 = c_phi * t1440 + s_phi * t681;
+        let t1446 = c_phi * t681 - s_phi * t1440;
         Ok([
             [
-                -t20, minus_garm_vx_leg1 * t37, -(minus_garm_vx_leg1 * t42), -t20, -t47,
-                -::overact::math::signed(minus_garm_vx_leg1, actuator_velocities[0]),
-                -minus_garm_vx_leg1, gcross_vx_leg1 * t610, gcross_vx_leg1 * t630,
-                gcross_vx_leg1 * t649, gcross_vx_leg1 * t659, gcross_vx_leg1 * t666, 0.0,
-                gcross_vx_leg1 * t684 - minus_garm_vx_leg1 * t695,
-                -(minus_garm_vx_leg1 * t721 + gcross_vx_leg1 * t723),
-                gcross_vx_leg1 * t703 - minus_garm_vx_leg1 * t745, -(minus_garm_vx_leg1 * t757),
-                t762, -(garm_vx_leg2 * t766), garm_vx_leg2 * t771, t762, t240,
+                t36, -(garm_vx_leg1 * t51), -(garm_vx_leg1 * t56), t36, t61,
+                ::overact::math::signed(garm_vx_leg1, actuator_velocities[0]), garm_vx_leg1,
+                minus_gcross_vx_leg1 * t716, -(minus_gcross_vx_leg1 * t736),
+                -(minus_gcross_vx_leg1 * t755), -(minus_gcross_vx_leg1 * t765),
+                -(minus_gcross_vx_leg1 * t772), 0.0,
+                garm_vx_leg1 * t792 - minus_gcross_vx_leg1 * t801,
+                garm_vx_leg1 * t827 + minus_gcross_vx_leg1 * t829,
+                garm_vx_leg1 * t850 - minus_gcross_vx_leg1 * t809, garm_vx_leg1 * t863, t868,
+                -(garm_vx_leg2 * t872), -(garm_vx_leg2 * t877), t868, t206,
                 ::overact::math::signed(garm_vx_leg2, actuator_velocities[1]), garm_vx_leg2,
-                t780 - minus_gcross_vx_leg2 * t803,
-                -(minus_gcross_vx_leg2 * t822 + minus_grod_vx_leg2 * t827),
-                -(minus_gcross_vx_leg2 * t841 + minus_grod_vx_leg2 * t795),
-                -(minus_gcross_vx_leg2 * t851 + t780),
-                minus_gcross_vx_leg2 * t858 - 1.7241379310344827 * rate_dot_cross_leg2,
+                minus_gcross_vx_leg2 * t908 - t910,
+                -(minus_gcross_vx_leg2 * t928 + minus_grod_vx_leg2 * t933),
+                -(minus_gcross_vx_leg2 * t947 + minus_grod_vx_leg2 * t900),
+                t910 - minus_gcross_vx_leg2 * t957,
+                minus_gcross_vx_leg2 * t964
+                    + 1.7241379310344827 * minus_rate_dot_cross_leg2,
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
-                garm_vx_leg2 * t878 - minus_gcross_vx_leg2 * t887
-                    + minus_grod_vx_leg2 * t893,
-                garm_vx_leg2 * t913 + minus_gcross_vx_leg2 * t915
-                    + 1.7241379310344827 * t892,
-                garm_vx_leg2 * t936 - minus_gcross_vx_leg2 * t892,
-                garm_vx_leg2 * t949,
-                -t954,
-                minus_garm_vx_leg3 * t958,
-                -(minus_garm_vx_leg3 * t963),
-                -t954,
-                -t242,
-                -::overact::math::signed(minus_garm_vx_leg3, actuator_velocities[2]),
-                -minus_garm_vx_leg3,
-                gcross_vx_leg3 * t992,
-                gcross_vx_leg3 * t1012,
-                gcross_vx_leg3 * t1031,
-                gcross_vx_leg3 * t1041,
-                -(gcross_vx_leg3 * t1048),
+                garm_vx_leg2 * t984 - minus_gcross_vx_leg2 * t993
+                    - minus_grod_vx_leg2 * t999,
+                garm_vx_leg2 * t1019 - minus_gcross_vx_leg2 * t1021
+                    + 1.7241379310344827 * t998,
+                garm_vx_leg2 * t1042 - minus_gcross_vx_leg2 * t998,
+                garm_vx_leg2 * t1055,
+                t1060,
+                garm_vx_leg3 * t1064,
+                garm_vx_leg3 * t1069,
+                t1060,
+                t208,
+                ::overact::math::signed(garm_vx_leg3, actuator_velocities[2]),
+                garm_vx_leg3,
+                -(minus_gcross_vx_leg3 * t1098),
+                -(minus_gcross_vx_leg3 * t1118),
+                -(minus_gcross_vx_leg3 * t1137),
+                -(minus_gcross_vx_leg3 * t1147),
+                minus_gcross_vx_leg3 * t1154,
                 0.0,
-                minus_garm_vx_leg3 * t1068 + gcross_vx_leg3 * t1077,
-                -(minus_garm_vx_leg3 * t1103 + gcross_vx_leg3 * t1105),
-                gcross_vx_leg3 * t1085 - minus_garm_vx_leg3 * t1127,
-                -(minus_garm_vx_leg3 * t1139),
-                t1144,
-                -(garm_vx_leg4 * t1148),
-                garm_vx_leg4 * t1153,
-                t1144,
-                t244,
+                -(garm_vx_leg3 * t1174 + minus_gcross_vx_leg3 * t1183),
+                garm_vx_leg3 * t1209 - minus_gcross_vx_leg3 * t1211,
+                garm_vx_leg3 * t1232 - minus_gcross_vx_leg3 * t1191,
+                garm_vx_leg3 * t1245,
+                t1250,
+                garm_vx_leg4 * t1254,
+                garm_vx_leg4 * t1259,
+                t1250,
+                t210,
                 ::overact::math::signed(garm_vx_leg4, actuator_velocities[3]),
                 garm_vx_leg4,
-                -(minus_gcross_vx_leg4 * t1182 + t1184),
-                grod_vx_leg4 * t1199 - minus_gcross_vx_leg4 * t1207,
-                grod_vx_leg4 * t1174 - minus_gcross_vx_leg4 * t1222,
-                t1184 - minus_gcross_vx_leg4 * t1231,
-                1.7241379310344827 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t1239,
+                -(minus_gcross_vx_leg4 * t1288 + t1290),
+                grod_vx_leg4 * t1305 - minus_gcross_vx_leg4 * t1313,
+                grod_vx_leg4 * t1280 - minus_gcross_vx_leg4 * t1328,
+                t1290 - minus_gcross_vx_leg4 * t1337,
+                1.7241379310344827 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t1345,
                 grod_vx_leg4 * rate_dot_rod_leg4,
-                -(garm_vx_leg4 * t1258 + minus_gcross_vx_leg4 * t1267
-                    + grod_vx_leg4 * t1273),
-                garm_vx_leg4 * t1293 + minus_gcross_vx_leg4 * t1295
-                    - 1.7241379310344827 * t1272,
-                garm_vx_leg4 * t1316 - minus_gcross_vx_leg4 * t1272,
-                garm_vx_leg4 * t1329,
+                -(garm_vx_leg4 * t1364 + minus_gcross_vx_leg4 * t1373
+                    + grod_vx_leg4 * t1379),
+                garm_vx_leg4 * t1399 + minus_gcross_vx_leg4 * t1401
+                    - 1.7241379310344827 * t1378,
+                garm_vx_leg4 * t1422 - minus_gcross_vx_leg4 * t1378,
+                garm_vx_leg4 * t1435,
                 0.0,
-                -t1337,
-                -t1340,
-                t587,
+                -t1443,
+                -t1446,
+                t693,
             ],
             [
-                -t22, minus_garm_vy_leg1 * t37, -(minus_garm_vy_leg1 * t42), -t22, -t48,
-                -::overact::math::signed(minus_garm_vy_leg1, actuator_velocities[0]),
-                -minus_garm_vy_leg1, gcross_vy_leg1 * t610 - t613,
-                gcross_vy_leg1 * t630 + grod_vy_leg1 * t636,
-                gcross_vy_leg1 * t649 + grod_vy_leg1 * t602, gcross_vy_leg1 * t659 + t613,
-                gcross_vy_leg1 * t666 + 1.7241379310344827 * rate_dot_cross_leg1,
+                t38, -(garm_vy_leg1 * t51), -(garm_vy_leg1 * t56), t38, t62,
+                ::overact::math::signed(garm_vy_leg1, actuator_velocities[0]), garm_vy_leg1,
+                minus_gcross_vy_leg1 * t716 - t719,
+                grod_vy_leg1 * t741 - minus_gcross_vy_leg1 * t736,
+                -(minus_gcross_vy_leg1 * t755 + grod_vy_leg1 * t708),
+                t719 - minus_gcross_vy_leg1 * t765,
+                -(minus_gcross_vy_leg1 * t772
+                    + 1.7241379310344827 * minus_rate_dot_cross_leg1),
                 grod_vy_leg1 * rate_dot_rod_leg1,
-                gcross_vy_leg1 * t684 - minus_garm_vy_leg1 * t695 - grod_vy_leg1 * t704,
-                -(minus_garm_vy_leg1 * t721 + gcross_vy_leg1 * t723
-                    + 1.7241379310344827 * t703),
-                gcross_vy_leg1 * t703 - minus_garm_vy_leg1 * t745,
-                -(minus_garm_vy_leg1 * t757),
-                -t763,
-                minus_garm_vy_leg2 * t766,
-                -(minus_garm_vy_leg2 * t771),
-                -t763,
-                -t248,
-                -::overact::math::signed(minus_garm_vy_leg2, actuator_velocities[1]),
-                -minus_garm_vy_leg2,
-                gcross_vy_leg2 * t803,
-                gcross_vy_leg2 * t822,
-                gcross_vy_leg2 * t841,
-                gcross_vy_leg2 * t851,
-                -(gcross_vy_leg2 * t858),
+                garm_vy_leg1 * t792 - minus_gcross_vy_leg1 * t801 - grod_vy_leg1 * t810,
+                garm_vy_leg1 * t827 + minus_gcross_vy_leg1 * t829
+                    - 1.7241379310344827 * t809,
+                garm_vy_leg1 * t850 - minus_gcross_vy_leg1 * t809,
+                garm_vy_leg1 * t863,
+                t869,
+                -(garm_vy_leg2 * t872),
+                -(garm_vy_leg2 * t877),
+                t869,
+                t200,
+                ::overact::math::signed(garm_vy_leg2, actuator_velocities[1]),
+                garm_vy_leg2,
+                minus_gcross_vy_leg2 * t908,
+                -(minus_gcross_vy_leg2 * t928),
+                -(minus_gcross_vy_leg2 * t947),
+                -(minus_gcross_vy_leg2 * t957),
+                minus_gcross_vy_leg2 * t964,
                 0.0,
-                gcross_vy_leg2 * t887 - minus_garm_vy_leg2 * t878,
-                -(minus_garm_vy_leg2 * t913 + gcross_vy_leg2 * t915),
-                gcross_vy_leg2 * t892 - minus_garm_vy_leg2 * t936,
-                -(minus_garm_vy_leg2 * t949),
-                -t955,
-                minus_garm_vy_leg3 * t958,
-                -(minus_garm_vy_leg3 * t963),
-                -t955,
-                -t250,
-                -::overact::math::signed(minus_garm_vy_leg3, actuator_velocities[2]),
-                -minus_garm_vy_leg3,
-                gcross_vy_leg3 * t992 + t995,
-                gcross_vy_leg3 * t1012 - minus_grod_vy_leg3 * t1018,
-                gcross_vy_leg3 * t1031 - minus_grod_vy_leg3 * t984,
-                gcross_vy_leg3 * t1041 - t995,
-                -(gcross_vy_leg3 * t1048 + 1.7241379310344827 * rate_dot_cross_leg3),
+                garm_vy_leg2 * t984 - minus_gcross_vy_leg2 * t993,
+                garm_vy_leg2 * t1019 - minus_gcross_vy_leg2 * t1021,
+                garm_vy_leg2 * t1042 - minus_gcross_vy_leg2 * t998,
+                garm_vy_leg2 * t1055,
+                t1061,
+                garm_vy_leg3 * t1064,
+                garm_vy_leg3 * t1069,
+                t1061,
+                t202,
+                ::overact::math::signed(garm_vy_leg3, actuator_velocities[2]),
+                garm_vy_leg3,
+                -(minus_gcross_vy_leg3 * t1098 + t1101),
+                -(minus_gcross_vy_leg3 * t1118 + minus_grod_vy_leg3 * t1124),
+                minus_grod_vy_leg3 * t1090 - minus_gcross_vy_leg3 * t1137,
+                t1101 - minus_gcross_vy_leg3 * t1147,
+                minus_gcross_vy_leg3 * t1154 - 1.7241379310344827 * rate_dot_cross_leg3,
                 minus_grod_vy_leg3 * minus_rate_dot_rod_leg3,
-                minus_garm_vy_leg3 * t1068 + gcross_vy_leg3 * t1077
-                    + minus_grod_vy_leg3 * t1086,
-                1.7241379310344827 * t1085
-                    - (minus_garm_vy_leg3 * t1103 + gcross_vy_leg3 * t1105),
-                gcross_vy_leg3 * t1085 - minus_garm_vy_leg3 * t1127,
-                -(minus_garm_vy_leg3 * t1139),
-                -t1145,
-                minus_garm_vy_leg4 * t1148,
-                -(minus_garm_vy_leg4 * t1153),
-                -t1145,
-                -t252,
-                -::overact::math::signed(minus_garm_vy_leg4, actuator_velocities[3]),
-                -minus_garm_vy_leg4,
-                gcross_vy_leg4 * t1182,
-                gcross_vy_leg4 * t1207,
-                gcross_vy_leg4 * t1222,
-                gcross_vy_leg4 * t1231,
-                gcross_vy_leg4 * t1239,
+                -(garm_vy_leg3 * t1174 + minus_gcross_vy_leg3 * t1183
+                    + minus_grod_vy_leg3 * t1192),
+                garm_vy_leg3 * t1209 - minus_gcross_vy_leg3 * t1211
+                    + 1.7241379310344827 * t1191,
+                garm_vy_leg3 * t1232 - minus_gcross_vy_leg3 * t1191,
+                garm_vy_leg3 * t1245,
+                t1251,
+                garm_vy_leg4 * t1254,
+                garm_vy_leg4 * t1259,
+                t1251,
+                t204,
+                ::overact::math::signed(garm_vy_leg4, actuator_velocities[3]),
+                garm_vy_leg4,
+                -(minus_gcross_vy_leg4 * t1288),
+                -(minus_gcross_vy_leg4 * t1313),
+                -(minus_gcross_vy_leg4 * t1328),
+                -(minus_gcross_vy_leg4 * t1337),
+                -(minus_gcross_vy_leg4 * t1345),
                 0.0,
-                minus_garm_vy_leg4 * t1258 + gcross_vy_leg4 * t1267,
-                -(minus_garm_vy_leg4 * t1293 + gcross_vy_leg4 * t1295),
-                gcross_vy_leg4 * t1272 - minus_garm_vy_leg4 * t1316,
-                -(minus_garm_vy_leg4 * t1329),
+                -(garm_vy_leg4 * t1364 + minus_gcross_vy_leg4 * t1373),
+                garm_vy_leg4 * t1399 + minus_gcross_vy_leg4 * t1401,
+                garm_vy_leg4 * t1422 - minus_gcross_vy_leg4 * t1378,
+                garm_vy_leg4 * t1435,
                 0.0,
-                t1340,
-                -t1337,
-                -t581,
+                t1446,
+                -t1443,
+                t687,
             ],
             [
-                t24, -(garm_vz_leg1 * t37), garm_vz_leg1 * t42, t24, t49,
+                t46, -(garm_vz_leg1 * t51), -(garm_vz_leg1 * t56), t46, t63,
                 ::overact::math::signed(garm_vz_leg1, actuator_velocities[0]), garm_vz_leg1,
-                -(minus_gcross_vz_leg1 * t610), -(minus_gcross_vz_leg1 * t630),
-                -(minus_gcross_vz_leg1 * t649), -(minus_gcross_vz_leg1 * t659),
-                -(minus_gcross_vz_leg1 * t666), 0.0,
-                garm_vz_leg1 * t695 - minus_gcross_vz_leg1 * t684,
-                garm_vz_leg1 * t721 + minus_gcross_vz_leg1 * t723,
-                garm_vz_leg1 * t745 - minus_gcross_vz_leg1 * t703, garm_vz_leg1 * t757, t764,
-                -(garm_vz_leg2 * t766), garm_vz_leg2 * t771, t764, t258,
+                minus_gcross_vz_leg1 * t716, -(minus_gcross_vz_leg1 * t736),
+                -(minus_gcross_vz_leg1 * t755), -(minus_gcross_vz_leg1 * t765),
+                -(minus_gcross_vz_leg1 * t772), 0.0,
+                garm_vz_leg1 * t792 - minus_gcross_vz_leg1 * t801,
+                garm_vz_leg1 * t827 + minus_gcross_vz_leg1 * t829,
+                garm_vz_leg1 * t850 - minus_gcross_vz_leg1 * t809, garm_vz_leg1 * t863, t870,
+                -(garm_vz_leg2 * t872), -(garm_vz_leg2 * t877), t870, t266,
                 ::overact::math::signed(garm_vz_leg2, actuator_velocities[1]), garm_vz_leg2,
-                -(minus_gcross_vz_leg2 * t803), -(minus_gcross_vz_leg2 * t822),
-                -(minus_gcross_vz_leg2 * t841), -(minus_gcross_vz_leg2 * t851),
-                minus_gcross_vz_leg2 * t858, 0.0, garm_vz_leg2 * t878 - minus_gcross_vz_leg2 * t887,
-                garm_vz_leg2 * t913 + minus_gcross_vz_leg2 * t915,
-                garm_vz_leg2 * t936 - minus_gcross_vz_leg2 * t892, garm_vz_leg2 * t949, -t956,
-                minus_garm_vz_leg3 * t958, -(minus_garm_vz_leg3 * t963), -t956, -t260,
-                -::overact::math::signed(minus_garm_vz_leg3, actuator_velocities[2]),
-                -minus_garm_vz_leg3, gcross_vz_leg3 * t992, gcross_vz_leg3 * t1012,
-                gcross_vz_leg3 * t1031, gcross_vz_leg3 * t1041, -(gcross_vz_leg3 * t1048), 0.0,
-                minus_garm_vz_leg3 * t1068 + gcross_vz_leg3 * t1077,
-                -(minus_garm_vz_leg3 * t1103 + gcross_vz_leg3 * t1105),
-                gcross_vz_leg3 * t1085 - minus_garm_vz_leg3 * t1127, -(minus_garm_vz_leg3 * t1139),
-                -t1146, minus_garm_vz_leg4 * t1148, -(minus_garm_vz_leg4 * t1153), -t1146, -t262,
-                -::overact::math::signed(minus_garm_vz_leg4, actuator_velocities[3]),
-                -minus_garm_vz_leg4, gcross_vz_leg4 * t1182, gcross_vz_leg4 * t1207,
-                gcross_vz_leg4 * t1222, gcross_vz_leg4 * t1231, gcross_vz_leg4 * t1239, 0.0,
-                minus_garm_vz_leg4 * t1258 + gcross_vz_leg4 * t1267,
-                -(minus_garm_vz_leg4 * t1293 + gcross_vz_leg4 * t1295),
-                gcross_vz_leg4 * t1272 - minus_garm_vz_leg4 * t1316, -(minus_garm_vz_leg4 * t1329),
-                0.0, 0.0, 0.0, t577 + 9.81,
+                minus_gcross_vz_leg2 * t908, -(minus_gcross_vz_leg2 * t928),
+                -(minus_gcross_vz_leg2 * t947), -(minus_gcross_vz_leg2 * t957),
+                minus_gcross_vz_leg2 * t964, 0.0, garm_vz_leg2 * t984 - minus_gcross_vz_leg2 * t993,
+                garm_vz_leg2 * t1019 - minus_gcross_vz_leg2 * t1021,
+                garm_vz_leg2 * t1042 - minus_gcross_vz_leg2 * t998, garm_vz_leg2 * t1055, t1062,
+                garm_vz_leg3 * t1064, garm_vz_leg3 * t1069, t1062, t268,
+                ::overact::math::signed(garm_vz_leg3, actuator_velocities[2]), garm_vz_leg3,
+                gcross_vz_leg3 * t1098, gcross_vz_leg3 * t1118, gcross_vz_leg3 * t1137,
+                gcross_vz_leg3 * t1147, -(gcross_vz_leg3 * t1154), 0.0,
+                gcross_vz_leg3 * t1183 - garm_vz_leg3 * t1174,
+                garm_vz_leg3 * t1209 + gcross_vz_leg3 * t1211,
+                garm_vz_leg3 * t1232 + gcross_vz_leg3 * t1191, garm_vz_leg3 * t1245, t1252,
+                garm_vz_leg4 * t1254, garm_vz_leg4 * t1259, t1252, t270,
+                ::overact::math::signed(garm_vz_leg4, actuator_velocities[3]), garm_vz_leg4,
+                gcross_vz_leg4 * t1288, gcross_vz_leg4 * t1313, gcross_vz_leg4 * t1328,
+                gcross_vz_leg4 * t1337, gcross_vz_leg4 * t1345, 0.0,
+                gcross_vz_leg4 * t1373 - garm_vz_leg4 * t1364,
+                garm_vz_leg4 * t1399 - gcross_vz_leg4 * t1401,
+                garm_vz_leg4 * t1422 + gcross_vz_leg4 * t1378, garm_vz_leg4 * t1435, 0.0, 0.0, 0.0,
+                t683 + 9.81,
             ],
             [
-                t36, -(garm_wz_leg1 * t37), garm_wz_leg1 * t42, t36, t50,
+                t50, -(garm_wz_leg1 * t51), -(garm_wz_leg1 * t56), t50, t64,
                 ::overact::math::signed(garm_wz_leg1, actuator_velocities[0]), garm_wz_leg1,
-                gcross_wz_leg1 * t610 - t622, gcross_wz_leg1 * t630 + grod_wz_leg1 * t636,
-                gcross_wz_leg1 * t649 + grod_wz_leg1 * t602, gcross_wz_leg1 * t659 + t622,
-                gcross_wz_leg1 * t666 + grod_wz_leg1 * t626, grod_wz_leg1 * rate_dot_rod_leg1,
-                garm_wz_leg1 * t695 + gcross_wz_leg1 * t684 - grod_wz_leg1 * t704,
-                garm_wz_leg1 * t721 - gcross_wz_leg1 * t723
-                    - grod_wz_leg1 * (c_rod_leg1 * t703),
-                garm_wz_leg1 * t745 + gcross_wz_leg1 * t703,
-                garm_wz_leg1 * t757,
-                -t765,
-                minus_garm_wz_leg2 * t766,
-                -(minus_garm_wz_leg2 * t771),
-                -t765,
-                -t234,
-                -::overact::math::signed(minus_garm_wz_leg2, actuator_velocities[1]),
-                -minus_garm_wz_leg2,
-                gcross_wz_leg2 * t803 - t814,
-                gcross_wz_leg2 * t822 + grod_wz_leg2 * t827,
-                gcross_wz_leg2 * t841 + grod_wz_leg2 * t795,
-                gcross_wz_leg2 * t851 + t814,
-                grod_wz_leg2 * t816 - gcross_wz_leg2 * t858,
+                -(gcross_wz_leg1 * t716 + t728), gcross_wz_leg1 * t736 + grod_wz_leg1 * t741,
+                gcross_wz_leg1 * t755 - grod_wz_leg1 * t708, gcross_wz_leg1 * t765 + t728,
+                gcross_wz_leg1 * t772 - grod_wz_leg1 * t730, grod_wz_leg1 * rate_dot_rod_leg1,
+                garm_wz_leg1 * t792 + gcross_wz_leg1 * t801 - grod_wz_leg1 * t810,
+                garm_wz_leg1 * t827 - gcross_wz_leg1 * t829
+                    - grod_wz_leg1 * (c_rod_leg1 * t809),
+                garm_wz_leg1 * t850 + gcross_wz_leg1 * t809,
+                garm_wz_leg1 * t863,
+                t871,
+                -(garm_wz_leg2 * t872),
+                -(garm_wz_leg2 * t877),
+                t871,
+                t330,
+                ::overact::math::signed(garm_wz_leg2, actuator_velocities[1]),
+                garm_wz_leg2,
+                t916 - gcross_wz_leg2 * t908,
+                gcross_wz_leg2 * t928 + grod_wz_leg2 * t933,
+                gcross_wz_leg2 * t947 + grod_wz_leg2 * t900,
+                gcross_wz_leg2 * t957 - t916,
+                -(gcross_wz_leg2 * t964 + grod_wz_leg2 * t924),
                 -(grod_wz_leg2 * minus_rate_dot_rod_leg2),
-                gcross_wz_leg2 * t887 - minus_garm_wz_leg2 * t878 - grod_wz_leg2 * t893,
-                -(minus_garm_wz_leg2 * t913 + gcross_wz_leg2 * t915
-                    + grod_wz_leg2 * (c_rod_leg2 * t892)),
-                gcross_wz_leg2 * t892 - minus_garm_wz_leg2 * t936,
-                -(minus_garm_wz_leg2 * t949),
-                t957,
-                -(garm_wz_leg3 * t958),
-                garm_wz_leg3 * t963,
-                t957,
-                t236,
+                garm_wz_leg2 * t984 + gcross_wz_leg2 * t993 + grod_wz_leg2 * t999,
+                garm_wz_leg2 * t1019 + gcross_wz_leg2 * t1021
+                    - grod_wz_leg2 * (c_rod_leg2 * t998),
+                garm_wz_leg2 * t1042 + gcross_wz_leg2 * t998,
+                garm_wz_leg2 * t1055,
+                t1063,
+                garm_wz_leg3 * t1064,
+                garm_wz_leg3 * t1069,
+                t1063,
+                t332,
                 ::overact::math::signed(garm_wz_leg3, actuator_velocities[2]),
                 garm_wz_leg3,
-                gcross_wz_leg3 * t992 - t1004,
-                gcross_wz_leg3 * t1012 + grod_wz_leg3 * t1018,
-                gcross_wz_leg3 * t1031 + grod_wz_leg3 * t984,
-                gcross_wz_leg3 * t1041 + t1004,
-                grod_wz_leg3 * t1008 - gcross_wz_leg3 * t1048,
+                gcross_wz_leg3 * t1098 + t1110,
+                gcross_wz_leg3 * t1118 + grod_wz_leg3 * t1124,
+                gcross_wz_leg3 * t1137 - grod_wz_leg3 * t1090,
+                gcross_wz_leg3 * t1147 - t1110,
+                grod_wz_leg3 * t1112 - gcross_wz_leg3 * t1154,
                 -(grod_wz_leg3 * minus_rate_dot_rod_leg3),
-                gcross_wz_leg3 * t1077 - garm_wz_leg3 * t1068 - grod_wz_leg3 * t1086,
-                garm_wz_leg3 * t1103 - gcross_wz_leg3 * t1105
-                    - grod_wz_leg3 * (c_rod_leg3 * t1085),
-                garm_wz_leg3 * t1127 + gcross_wz_leg3 * t1085,
-                garm_wz_leg3 * t1139,
-                t1147,
-                -(garm_wz_leg4 * t1148),
-                garm_wz_leg4 * t1153,
-                t1147,
-                t238,
+                gcross_wz_leg3 * t1183 - garm_wz_leg3 * t1174 + grod_wz_leg3 * t1192,
+                garm_wz_leg3 * t1209 + gcross_wz_leg3 * t1211
+                    - grod_wz_leg3 * (c_rod_leg3 * t1191),
+                garm_wz_leg3 * t1232 + gcross_wz_leg3 * t1191,
+                garm_wz_leg3 * t1245,
+                t1253,
+                garm_wz_leg4 * t1254,
+                garm_wz_leg4 * t1259,
+                t1253,
+                t334,
                 ::overact::math::signed(garm_wz_leg4, actuator_velocities[3]),
                 garm_wz_leg4,
-                -(minus_gcross_wz_leg4 * t1182 + t1194),
-                grod_wz_leg4 * t1199 - minus_gcross_wz_leg4 * t1207,
-                grod_wz_leg4 * t1174 - minus_gcross_wz_leg4 * t1222,
-                t1194 - minus_gcross_wz_leg4 * t1231,
-                grod_wz_leg4 * t1203 - minus_gcross_wz_leg4 * t1239,
+                gcross_wz_leg4 * t1288 - t1300,
+                gcross_wz_leg4 * t1313 + grod_wz_leg4 * t1305,
+                gcross_wz_leg4 * t1328 + grod_wz_leg4 * t1280,
+                gcross_wz_leg4 * t1337 + t1300,
+                gcross_wz_leg4 * t1345 + grod_wz_leg4 * t1309,
                 grod_wz_leg4 * rate_dot_rod_leg4,
-                -(garm_wz_leg4 * t1258 + minus_gcross_wz_leg4 * t1267
-                    + grod_wz_leg4 * t1273),
-                garm_wz_leg4 * t1293 + minus_gcross_wz_leg4 * t1295
-                    - grod_wz_leg4 * (c_rod_leg4 * t1272),
-                garm_wz_leg4 * t1316 - minus_gcross_wz_leg4 * t1272,
-                garm_wz_leg4 * t1329,
-                t575,
-                -(s_phi * t587 + c_phi * t581),
-                -(c_phi * t587 - s_phi * t581),
+                gcross_wz_leg4 * t1373 - garm_wz_leg4 * t1364 - grod_wz_leg4 * t1379,
+                garm_wz_leg4 * t1399 - gcross_wz_leg4 * t1401
+                    - grod_wz_leg4 * (c_rod_leg4 * t1378),
+                garm_wz_leg4 * t1422 + gcross_wz_leg4 * t1378,
+                garm_wz_leg4 * t1435,
+                t681,
+                c_phi * t687 - s_phi * t693,
+                -(c_phi * t693 + s_phi * t687),
                 0.0,
             ],
         ])
@@ -3212,7 +4542,7 @@ impl Schoenflies4 {
     /// Output: 4 x 72.
     /// Columns: `PARAMETERS`.
     ///
-    /// 1390 operations (481 additions, 897 multiplications, 12 divisions), 0 square roots, 13 trigonometric pairs, 4 signs, 1236 intermediates.
+    /// 1512 operations (549 additions, 939 multiplications, 24 divisions), 8 square roots, 1 trigonometric pairs, 4 signs, 1342 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3221,8 +4551,675 @@ impl Schoenflies4 {
         twist: &[f64; 4],
         acceleration: &[f64; 4],
     ) -> Result<[[f64; 72]; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_actuators_from_joints(pose, joints, twist, acceleration)
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
+        let t2 = 0.05 * c_phi;
+        let t3 = 0.08660254037844387 * s_phi;
+        let t4 = t2 - t3;
+        let t5 = pose[0] + t4;
+        let t6 = t5 - 0.24;
+        let t7 = t6 * t6;
+        let t8 = pose[2] * pose[2];
+        let t10 = 0.2704 * (t7 + t8);
+        let t11 = 1.0 / t10;
+        let t12 = 0.52 * t6;
+        let t13 = 0.05 * s_phi;
+        let t14 = 0.08660254037844387 * c_phi;
+        let t15 = t13 + t14;
+        let t16 = pose[1] + t15;
+        let t17 = t16 * t16;
+        let t19 = t7 + t17 + t8;
+        let t21 = t19 - 0.3364 + 0.0676;
+        let t23 = 0.52 * pose[2];
+        let t25 = t10 - t21 * t21;
+        ::overact::guard::reach(t25, "leg1")?;
+        let t26 = ::overact::math::sqrt(t25);
+        ::overact::guard::leg(t26, 0.27703140616182853, "leg1")?;
+        let c_arm_leg1 = t11 * (t12 * t21 - t23 * t26);
+        let t30 = 0.26 * c_arm_leg1;
+        let t32 = t5 - (0.24 + t30);
+        let t33 = 1.0 / t26;
+        let t34 = 2.0 * t33;
+        let garm_vx_leg1 = t32 * t34;
+        ::overact::guard::platform(garm_vx_leg1, 3.059875421275039, "kept actuators")?;
+        let t36 = t15 * acceleration[3];
+        let t38 = t4 * twist[3];
+        let t39 = twist[3] * t38;
+        let t41 = t15 * twist[3];
+        let t42 = twist[0] - t41;
+        let garm_vy_leg1 = t16 * t34;
+        let t45 = twist[1] + t38;
+        let minus_s_arm_leg1 = t11 * (t23 * t21 + t12 * t26);
+        let t52 = 0.26 * minus_s_arm_leg1;
+        let t53 = pose[2] - t52;
+        let garm_vz_leg1 = t53 * t34;
+        let rate_arm_leg1 = garm_vx_leg1 * t42 + garm_vy_leg1 * t45
+            + garm_vz_leg1 * twist[2];
+        let t57 = rate_arm_leg1 * rate_arm_leg1;
+        let t61 = 1.0 - 2.972651605231867 * t17;
+        ::overact::guard::reach(t61, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t61);
+        ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
+        let s_cross_leg1 = 1.9230769230769231 * t26 / (0.58 * c_rod_leg1);
+        let c_cross_leg1 = (t19 - (0.0676 + t17) - 0.3364 * t61) / (0.3016 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t74 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7241379310344827 * t74;
+        let rate_rod_leg1 = grod_vy_leg1 * t45;
+        let t77 = s_armcross_leg1 * rate_rod_leg1;
+        let t79 = 0.52 * t33;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t79;
+        let s_rod_leg1 = 1.7241379310344827 * t16;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let minus_gcross_vy_leg1 = t79
+            * (c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t74)
+                - minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t74));
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t79;
+        let minus_rate_cross_leg1 = minus_gcross_vx_leg1 * t42
+            + minus_gcross_vy_leg1 * t45 + minus_gcross_vz_leg1 * twist[2];
+        let t99 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t101 = c_armcross_leg1 * rate_rod_leg1;
+        let t103 = t77 * t77 + t99 + t101 * t101;
+        let t107 = t16 * (minus_rate_cross_leg1 * t77);
+        let t110 = acceleration[0] - t36 - t39 + t30 * t57 + t32 * t103 + t107 + t107;
+        let t112 = t4 * acceleration[3];
+        let t114 = twist[3] * t41;
+        let t115 = acceleration[1] + t112 - t114;
+        let t116 = t16 * minus_rate_cross_leg1;
+        let t120 = t115 - (minus_rate_cross_leg1 * t116 - t16 * t103);
+        let t127 = t16 * (minus_rate_cross_leg1 * t101);
+        let t130 = acceleration[2] + t52 * t57 + t53 * t103 + t127 + t127;
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t110 + garm_vy_leg1 * t120
+            + garm_vz_leg1 * t130;
+        let t133 = 9.81 * c_arm_leg1;
+        let t134 = 9.81 * minus_s_arm_leg1;
+        let t136 = pose[0] - t4;
+        let t137 = t136 + 0.24;
+        let t138 = t137 * t137;
+        let t140 = 0.2704 * (t138 + t8);
+        let t141 = 1.0 / t140;
+        let t142 = 0.52 * t137;
+        let t143 = pose[1] - t15;
+        let t144 = t143 * t143;
+        let t146 = t138 + t144 + t8;
+        let t148 = t146 - 0.3364 + 0.0676;
+        let t151 = t140 - t148 * t148;
+        ::overact::guard::reach(t151, "leg3")?;
+        let t152 = ::overact::math::sqrt(t151);
+        ::overact::guard::leg(t152, 0.27703140616182853, "leg3")?;
+        let minus_c_arm_leg3 = t141 * (t142 * t148 + t23 * t152);
+        let t156 = 0.26 * minus_c_arm_leg3;
+        let t158 = t136 - (t156 - 0.24);
+        let t159 = 1.0 / t152;
+        let t160 = 2.0 * t159;
+        let garm_vx_leg3 = t158 * t160;
+        let t162 = 1.0 / garm_vx_leg1;
+        let s_arm_leg3 = t141 * (t142 * t152 - t23 * t148);
+        let t168 = 0.26 * s_arm_leg3;
+        let t169 = pose[2] + t168;
+        let garm_vz_leg3 = t169 * t160;
+        let t171 = garm_vz_leg1 * t162;
+        let t173 = garm_vz_leg3 - garm_vx_leg3 * t171;
+        ::overact::guard::platform(t173, 5.578291690921259, "kept actuators")?;
+        let t174 = 1.0 / t173;
+        let t175 = garm_vx_leg3 * t162 * t174;
+        let garm_vy_leg3 = t143 * t160;
+        let t177 = garm_vy_leg1 * t162;
+        let t180 = (garm_vy_leg3 - garm_vx_leg3 * t177) * t174;
+        let t181 = t3 + t2;
+        let t182 = pose[1] + t181;
+        let t183 = t182 - 0.24;
+        let t184 = t183 * t183;
+        let t186 = 0.2704 * (t184 + t8);
+        let t187 = 1.0 / t186;
+        let t188 = t14 - t13;
+        let t189 = pose[0] + t188;
+        let t190 = t189 * t189;
+        let t192 = t190 + t184 + t8;
+        let t194 = t192 - 0.3364 + 0.0676;
+        let t196 = 0.52 * t183;
+        let t198 = t186 - t194 * t194;
+        ::overact::guard::reach(t198, "leg2")?;
+        let t199 = ::overact::math::sqrt(t198);
+        ::overact::guard::leg(t199, 0.27703140616182853, "leg2")?;
+        let minus_s_arm_leg2 = t187 * (t23 * t194 + t196 * t199);
+        let t203 = 0.26 * minus_s_arm_leg2;
+        let t204 = pose[2] - t203;
+        let t205 = 1.0 / t199;
+        let t206 = 2.0 * t205;
+        let garm_vz_leg2 = t204 * t206;
+        let garm_vx_leg2 = t189 * t206;
+        let t210 = garm_vz_leg2 - garm_vx_leg2 * t171;
+        let c_arm_leg2 = t187 * (t196 * t194 - t23 * t199);
+        let t218 = 0.26 * c_arm_leg2;
+        let t220 = t182 - (0.24 + t218);
+        let garm_vy_leg2 = t220 * t206;
+        let t225 = garm_vy_leg2 - garm_vx_leg2 * t177 - t210 * t180;
+        ::overact::guard::platform(t225, 2.9321258366411205, "kept actuators")?;
+        let t226 = 1.0 / t225;
+        let t227 = (t210 * t175 - garm_vx_leg2 * t162) * t226;
+        let garm_wz_leg3 = t15 * garm_vx_leg3 - t4 * garm_vy_leg3;
+        let garm_wz_leg1 = t4 * garm_vy_leg1 - t15 * garm_vx_leg1;
+        let t236 = garm_wz_leg1 * t162;
+        let t239 = (garm_wz_leg3 - garm_vx_leg3 * t236) * t174;
+        let garm_wz_leg2 = t188 * garm_vy_leg2 - t181 * garm_vx_leg2;
+        let t247 = (garm_wz_leg2 - garm_vx_leg2 * t236 - t210 * t239) * t226;
+        let t249 = t239 - t180 * t247;
+        let t250 = pose[1] - t181;
+        let t251 = t250 + 0.24;
+        let t252 = t251 * t251;
+        let t254 = 0.2704 * (t252 + t8);
+        let t255 = 1.0 / t254;
+        let t256 = 0.52 * t251;
+        let t257 = pose[0] - t188;
+        let t258 = t257 * t257;
+        let t260 = t258 + t252 + t8;
+        let t262 = t260 - 0.3364 + 0.0676;
+        let t264 = t254 - t262 * t262;
+        ::overact::guard::reach(t264, "leg4")?;
+        let t265 = ::overact::math::sqrt(t264);
+        ::overact::guard::leg(t265, 0.27703140616182853, "leg4")?;
+        let s_arm_leg4 = t255 * (t256 * t265 - t23 * t262);
+        let t270 = 0.26 * s_arm_leg4;
+        let t271 = pose[2] + t270;
+        let t272 = 1.0 / t265;
+        let t273 = 2.0 * t272;
+        let garm_vz_leg4 = t271 * t273;
+        let garm_vx_leg4 = t257 * t273;
+        let t277 = garm_vz_leg4 - garm_vx_leg4 * t171;
+        let minus_c_arm_leg4 = t255 * (t256 * t262 + t23 * t265);
+        let t285 = 0.26 * minus_c_arm_leg4;
+        let t287 = t250 - (t285 - 0.24);
+        let garm_vy_leg4 = t287 * t273;
+        let t292 = garm_vy_leg4 - garm_vx_leg4 * t177 - t277 * t180;
+        let garm_wz_leg4 = t181 * garm_vx_leg4 - t188 * garm_vy_leg4;
+        let t303 = garm_wz_leg4 - garm_vx_leg4 * t236 - t277 * t239 - t292 * t247;
+        ::overact::guard::platform(t303, 1.1850155815331067, "kept actuators")?;
+        let t304 = 1.0 / t303;
+        let t305 = (t277 * t175 - garm_vx_leg4 * t162 - t292 * t227) * t304;
+        let t307 = t175 + t180 * t227 + t249 * t305;
+        let t312 = t177 - t171 * t180;
+        let t318 = t236 - t171 * t239 - t312 * t247;
+        let t320 = t162 + t171 * t175 - t312 * t227 - t318 * t305;
+        let t323 = t227 - t247 * t305;
+        let gcross_wz_leg1 = t15 * minus_gcross_vx_leg1 - t4 * minus_gcross_vy_leg1;
+        let t331 = minus_gcross_vz_leg1 * t307
+            - (minus_gcross_vx_leg1 * t320 + minus_gcross_vy_leg1 * t323)
+            + gcross_wz_leg1 * t305;
+        let minus_rate_dot_cross_leg1 = minus_gcross_vx_leg1 * t110
+            + minus_gcross_vy_leg1 * t120 + minus_gcross_vz_leg1 * t130;
+        let t337 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t338 = c_rod_leg1 * minus_rate_cross_leg1;
+        let t339 = rate_rod_leg1 * t338;
+        let t340 = t337 + t339;
+        let t342 = 1.7241379310344827 * t116;
+        let t343 = rate_rod_leg1 * t342;
+        let t344 = c_rod_leg1 * t343;
+        let t345 = s_rod_leg1 * t340 + t344;
+        let grod_wz_leg1 = t4 * grod_vy_leg1;
+        let t350 = grod_vy_leg1 * t323 + grod_wz_leg1 * t305;
+        let t351 = t342 * t338;
+        let t352 = t350 * t351;
+        let t355 = t292 * t226 * t304;
+        let t358 = t318 * t355 - t312 * t226;
+        let t361 = t226 + t247 * t355;
+        let t366 = t249 * t355 - t180 * t226;
+        let t370 = minus_gcross_vx_leg1 * t358 + minus_gcross_vy_leg1 * t361
+            + minus_gcross_vz_leg1 * t366 + gcross_wz_leg1 * t355;
+        let t374 = grod_vy_leg1 * t361 - grod_wz_leg1 * t355;
+        let t375 = t374 * t351;
+        let t378 = t210 * t174 * t226;
+        let t382 = (t292 * t378 - t277 * t174) * t304;
+        let t384 = t378 + t247 * t382;
+        let t390 = t312 * t378 - t171 * t174 - t318 * t382;
+        let t396 = t174 + t180 * t378 - t249 * t382;
+        let t400 = minus_gcross_vy_leg1 * t384 - minus_gcross_vx_leg1 * t390
+            - minus_gcross_vz_leg1 * t396 + gcross_wz_leg1 * t382;
+        let t404 = grod_wz_leg1 * t382 - grod_vy_leg1 * t384;
+        let t405 = t404 * t351;
+        let t407 = t318 * t304;
+        let t409 = t247 * t304;
+        let t412 = t249 * t304;
+        let t416 = minus_gcross_vx_leg1 * t407 + minus_gcross_vy_leg1 * t409
+            + minus_gcross_vz_leg1 * t412 + gcross_wz_leg1 * t304;
+        let t420 = grod_wz_leg1 * t304 - grod_vy_leg1 * t409;
+        let t421 = t420 * t351;
+        let t423 = c_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t424 = t343 - t423;
+        let t425 = t343 + t424;
+        let t427 = t339 + t340;
+        let t429 = s_rod_leg1 * t425 - c_rod_leg1 * t427;
+        let t432 = 2.972651605231867 * (t116 * t116);
+        let t433 = t338 * t338;
+        let t434 = t432 - t433;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t120;
+        let t447 = t351 + rate_dot_rod_leg1;
+        let t449 = rate_rod_leg1 * rate_rod_leg1;
+        let t452 = s_rod_leg1 * t447 + c_rod_leg1 * (t449 - t432);
+        let t466 = t344 + c_rod_leg1 * t424;
+        let t475 = 1.7241379310344827 * t115;
+        let t492 = 0.26 * c_cross_leg1;
+        let t494 = 0.8620689655172413 * t26;
+        let t498 = 0.4482758620689655 * (t16 * s_cross_leg1);
+        let t503 = 0.26 * rate_dot_arm_leg1 - t133;
+        let t506 = t134 - 0.26 * t57;
+        let t508 = c_cross_leg1 * t503 - s_cross_leg1 * t506;
+        let t509 = c_rod_leg1 * t508;
+        let t514 = c_cross_leg1 * t506 + s_cross_leg1 * t503;
+        let t515 = s_rod_leg1 * t514;
+        let t517 = t492 * t425 - (t494 * (t433 + t449) + t498 * t447) + t331 * t509
+            - t350 * t515;
+        let t534 = s_rod_leg1 * t508;
+        let t537 = c_rod_leg1 * t514;
+        let t539 = t494 * (t351 - rate_dot_rod_leg1) + t498 * (t432 + t449) + t492 * t427
+            - t331 * t534 - t350 * t537;
+        let t560 = t181 * acceleration[3];
+        let t562 = t188 * twist[3];
+        let t563 = twist[3] * t562;
+        let t564 = acceleration[0] - t560 - t563;
+        let t565 = 0.52 * t205;
+        let minus_s_rod_leg2 = 1.7241379310344827 * t189;
+        let t570 = 1.0 - 2.972651605231867 * t190;
+        ::overact::guard::reach(t570, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t570);
+        ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
+        let c_cross_leg2 = (t192 - (0.0676 + t190) - 0.3364 * t570)
+            / (0.3016 * c_rod_leg2);
+        let s_cross_leg2 = 1.9230769230769231 * t199 / (0.58 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t583 = 1.0 / c_rod_leg2;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let minus_gcross_vx_leg2 = t565
+            * (c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t583)
+                - minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t583));
+        let t594 = t181 * twist[3];
+        let t595 = twist[0] - t594;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t565;
+        let t598 = twist[1] + t562;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t565;
+        let minus_rate_cross_leg2 = minus_gcross_vx_leg2 * t595
+            + minus_gcross_vy_leg2 * t598 + minus_gcross_vz_leg2 * twist[2];
+        let t604 = t189 * minus_rate_cross_leg2;
+        let t606 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let minus_grod_vx_leg2 = 1.7241379310344827 * t583;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t595;
+        let t609 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t612 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t614 = t606 + t609 * t609 + t612 * t612;
+        let t617 = t564 - (minus_rate_cross_leg2 * t604 - t189 * t614);
+        let t619 = t188 * acceleration[3];
+        let t621 = twist[3] * t594;
+        let rate_arm_leg2 = garm_vx_leg2 * t595 + garm_vy_leg2 * t598
+            + garm_vz_leg2 * twist[2];
+        let t628 = rate_arm_leg2 * rate_arm_leg2;
+        let t633 = t189 * (minus_rate_cross_leg2 * t609);
+        let t636 = acceleration[1] + t619 - t621 + t218 * t628 + t220 * t614 + t633
+            + t633;
+        let t643 = t189 * (minus_rate_cross_leg2 * t612);
+        let t646 = acceleration[2] + t203 * t628 + t204 * t614 + t643 + t643;
+        let rate_dot_arm_leg2 = garm_vx_leg2 * t617 + garm_vy_leg2 * t636
+            + garm_vz_leg2 * t646;
+        let t649 = 9.81 * c_arm_leg2;
+        let t650 = 9.81 * minus_s_arm_leg2;
+        let grod_wz_leg2 = t181 * minus_grod_vx_leg2;
+        let t655 = grod_wz_leg2 * t305 - minus_grod_vx_leg2 * t320;
+        let t656 = 1.7241379310344827 * t604;
+        let t657 = c_rod_leg2 * minus_rate_cross_leg2;
+        let t658 = t656 * t657;
+        let t659 = t655 * t658;
+        let gcross_wz_leg2 = t181 * minus_gcross_vx_leg2 - t188 * minus_gcross_vy_leg2;
+        let t669 = minus_gcross_vz_leg2 * t307
+            - (minus_gcross_vx_leg2 * t320 + minus_gcross_vy_leg2 * t323)
+            + gcross_wz_leg2 * t305;
+        let minus_rate_dot_cross_leg2 = minus_gcross_vx_leg2 * t617
+            + minus_gcross_vy_leg2 * t636 + minus_gcross_vz_leg2 * t646;
+        let t675 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t676 = minus_rate_rod_leg2 * t657;
+        let t677 = t675 + t676;
+        let t679 = minus_rate_rod_leg2 * t656;
+        let t680 = c_rod_leg2 * t679;
+        let t681 = minus_s_rod_leg2 * t677 + t680;
+        let t690 = minus_gcross_vx_leg2 * t358 + minus_gcross_vy_leg2 * t361
+            + minus_gcross_vz_leg2 * t366 + gcross_wz_leg2 * t355;
+        let t694 = minus_grod_vx_leg2 * t358 + grod_wz_leg2 * t355;
+        let t695 = t694 * t658;
+        let t699 = grod_wz_leg2 * t382 - minus_grod_vx_leg2 * t390;
+        let t700 = t699 * t658;
+        let t707 = minus_gcross_vy_leg2 * t384 - minus_gcross_vx_leg2 * t390
+            - minus_gcross_vz_leg2 * t396 + gcross_wz_leg2 * t382;
+        let t712 = minus_grod_vx_leg2 * t407 + grod_wz_leg2 * t304;
+        let t713 = t712 * t658;
+        let t720 = minus_gcross_vx_leg2 * t407 + minus_gcross_vy_leg2 * t409
+            + minus_gcross_vz_leg2 * t412 + gcross_wz_leg2 * t304;
+        let t723 = t676 + t677;
+        let t725 = c_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t726 = t679 - t725;
+        let t727 = t679 + t726;
+        let t729 = c_rod_leg2 * t723 - minus_s_rod_leg2 * t727;
+        let t732 = 2.972651605231867 * (t604 * t604);
+        let t733 = t657 * t657;
+        let t734 = t732 - t733;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t617;
+        let t747 = t658 + minus_rate_dot_rod_leg2;
+        let t749 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t752 = minus_s_rod_leg2 * t747 + c_rod_leg2 * (t749 - t732);
+        let t766 = t680 + c_rod_leg2 * t726;
+        let t775 = 1.7241379310344827 * t564;
+        let t793 = 0.26 * rate_dot_arm_leg2 - t649;
+        let t796 = t650 - 0.26 * t628;
+        let t798 = c_cross_leg2 * t793 - s_cross_leg2 * t796;
+        let t799 = c_rod_leg2 * t798;
+        let t803 = c_cross_leg2 * t796 + s_cross_leg2 * t793;
+        let t804 = minus_s_rod_leg2 * t803;
+        let t807 = 0.26 * c_cross_leg2;
+        let t809 = 0.8620689655172413 * t199;
+        let t813 = 0.4482758620689655 * (t189 * s_cross_leg2);
+        let t820 = t807 * t727 - (t809 * (t733 + t749) + t813 * t747) - t690 * t799
+            - t694 * t804;
+        let t827 = minus_s_rod_leg2 * t798;
+        let t829 = c_rod_leg2 * t803;
+        let t842 = t809 * (minus_rate_dot_rod_leg2 - t658) - t813 * (t732 + t749)
+            - t807 * t723 - t690 * t827 + t694 * t829;
+        let t862 = twist[0] + t41;
+        let t864 = twist[1] - t38;
+        let rate_arm_leg3 = garm_vx_leg3 * t862 + garm_vy_leg3 * t864
+            + garm_vz_leg3 * twist[2];
+        let t869 = rate_arm_leg3 * rate_arm_leg3;
+        let t874 = 1.0 - 2.972651605231867 * t144;
+        ::overact::guard::reach(t874, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t874);
+        ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
+        let c_cross_leg3 = (t146 - (0.0676 + t144) - 0.3364 * t874)
+            / (0.3016 * c_rod_leg3);
+        let s_cross_leg3 = 1.9230769230769231 * t152 / (0.58 * c_rod_leg3);
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t886 = 1.0 / c_rod_leg3;
+        let minus_grod_vy_leg3 = 1.7241379310344827 * t886;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t864;
+        let t889 = s_armcross_leg3 * minus_rate_rod_leg3;
+        let t891 = 0.52 * t159;
+        let gcross_vz_leg3 = s_arm_leg3 * t891;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t891;
+        let minus_s_rod_leg3 = 1.7241379310344827 * t143;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t891
+            * (minus_c_arm_leg3 * (minus_s_rod_leg3 * minus_c_armcross_leg3 * t886)
+                + s_arm_leg3 * (minus_s_rod_leg3 * s_armcross_leg3 * t886));
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * t862 + minus_gcross_vy_leg3 * t864);
+        let t911 = rate_cross_leg3 * rate_cross_leg3;
+        let t913 = minus_c_armcross_leg3 * minus_rate_rod_leg3;
+        let t915 = t889 * t889 + t911 + t913 * t913;
+        let t919 = t143 * (rate_cross_leg3 * t889);
+        let t922 = acceleration[0] + t36 + t39 + t156 * t869 + t158 * t915 + t919 + t919;
+        let t925 = acceleration[1] - t112 + t114;
+        let t926 = t143 * rate_cross_leg3;
+        let t930 = t925 - (rate_cross_leg3 * t926 - t143 * t915);
+        let t937 = t143 * (rate_cross_leg3 * t913);
+        let t940 = acceleration[2] - (t168 * t869 - t169 * t915 - t937 - t937);
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t922 + garm_vy_leg3 * t930
+            + garm_vz_leg3 * t940;
+        let t943 = 9.81 * minus_c_arm_leg3;
+        let t944 = 9.81 * s_arm_leg3;
+        let gcross_wz_leg3 = t4 * minus_gcross_vy_leg3 - t15 * minus_gcross_vx_leg3;
+        let t955 = gcross_wz_leg3 * t305
+            - (minus_gcross_vx_leg3 * t320 + minus_gcross_vy_leg3 * t323
+                + gcross_vz_leg3 * t307);
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * t940
+            - (minus_gcross_vx_leg3 * t922 + minus_gcross_vy_leg3 * t930);
+        let t961 = minus_s_rod_leg3 * rate_dot_cross_leg3;
+        let t962 = c_rod_leg3 * rate_cross_leg3;
+        let t963 = minus_rate_rod_leg3 * t962;
+        let t964 = t961 + t963;
+        let t966 = 1.7241379310344827 * t926;
+        let t967 = minus_rate_rod_leg3 * t966;
+        let t968 = c_rod_leg3 * t967;
+        let t969 = minus_s_rod_leg3 * t964 + t968;
+        let grod_wz_leg3 = t4 * minus_grod_vy_leg3;
+        let t974 = grod_wz_leg3 * t305 - minus_grod_vy_leg3 * t323;
+        let t975 = t966 * t962;
+        let t976 = t974 * t975;
+        let t984 = gcross_vz_leg3 * t366
+            - (minus_gcross_vx_leg3 * t358 + minus_gcross_vy_leg3 * t361)
+            - gcross_wz_leg3 * t355;
+        let t988 = minus_grod_vy_leg3 * t361 + grod_wz_leg3 * t355;
+        let t989 = t988 * t975;
+        let t997 = minus_gcross_vy_leg3 * t384 - minus_gcross_vx_leg3 * t390
+            + gcross_vz_leg3 * t396 + gcross_wz_leg3 * t382;
+        let t1001 = minus_grod_vy_leg3 * t384 + grod_wz_leg3 * t382;
+        let t1002 = t1001 * t975;
+        let t1010 = minus_gcross_vx_leg3 * t407 + minus_gcross_vy_leg3 * t409
+            - gcross_vz_leg3 * t412 + gcross_wz_leg3 * t304;
+        let t1014 = minus_grod_vy_leg3 * t409 + grod_wz_leg3 * t304;
+        let t1015 = t1014 * t975;
+        let t1017 = c_rod_leg3 * rate_dot_cross_leg3;
+        let t1018 = t1017 - t967;
+        let t1019 = t967 - t1018;
+        let t1021 = t963 + t964;
+        let t1023 = minus_s_rod_leg3 * t1019 - c_rod_leg3 * t1021;
+        let t1026 = 2.972651605231867 * (t926 * t926);
+        let t1027 = t962 * t962;
+        let t1028 = t1026 - t1027;
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t930;
+        let t1041 = t975 + minus_rate_dot_rod_leg3;
+        let t1043 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t1046 = minus_s_rod_leg3 * t1041 + c_rod_leg3 * (t1043 - t1026);
+        let t1060 = c_rod_leg3 * t1018 - t968;
+        let t1070 = 1.7241379310344827 * t925;
+        let t1087 = t944 + 0.26 * t869;
+        let t1090 = t943 + 0.26 * rate_dot_arm_leg3;
+        let t1092 = s_cross_leg3 * t1087 + c_cross_leg3 * t1090;
+        let t1093 = c_rod_leg3 * t1092;
+        let t1097 = s_cross_leg3 * t1090 - c_cross_leg3 * t1087;
+        let t1098 = minus_s_rod_leg3 * t1097;
+        let t1105 = 0.8620689655172413 * t152;
+        let t1109 = 0.4482758620689655 * (t143 * s_cross_leg3);
+        let t1112 = 0.26 * c_cross_leg3;
+        let t1117 = t997 * t1093
+            - (t1105 * (t1027 + t1043) + t1109 * t1041 + t1112 * t1019) + t1001 * t1098;
+        let t1121 = minus_s_rod_leg3 * t1092;
+        let t1123 = c_rod_leg3 * t1097;
+        let t1139 = t1105 * (minus_rate_dot_rod_leg3 - t975) - t1109 * (t1026 + t1043)
+            + t1112 * t1021 + t997 * t1121 - t1001 * t1123;
+        let t1155 = acceleration[0] + t560 + t563;
+        let t1156 = 0.52 * t272;
+        let gcross_vz_leg4 = s_arm_leg4 * t1156;
+        let s_rod_leg4 = 1.7241379310344827 * t257;
+        let t1163 = 1.0 - 2.972651605231867 * t258;
+        ::overact::guard::reach(t1163, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t1163);
+        ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
+        let c_cross_leg4 = (t260 - (0.0676 + t258) - 0.3364 * t1163)
+            / (0.3016 * c_rod_leg4);
+        let s_cross_leg4 = 1.9230769230769231 * t265 / (0.58 * c_rod_leg4);
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let t1176 = 1.0 / c_rod_leg4;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t1156
+            * (minus_c_arm_leg4 * (s_rod_leg4 * minus_c_armcross_leg4 * t1176)
+                + s_arm_leg4 * (s_rod_leg4 * s_armcross_leg4 * t1176));
+        let t1187 = twist[0] + t594;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t1156;
+        let t1190 = twist[1] - t562;
+        let rate_cross_leg4 = gcross_vz_leg4 * twist[2]
+            - (minus_gcross_vx_leg4 * t1187 + minus_gcross_vy_leg4 * t1190);
+        let t1194 = t257 * rate_cross_leg4;
+        let t1196 = rate_cross_leg4 * rate_cross_leg4;
+        let grod_vx_leg4 = 1.7241379310344827 * t1176;
+        let rate_rod_leg4 = grod_vx_leg4 * t1187;
+        let t1199 = s_armcross_leg4 * rate_rod_leg4;
+        let t1202 = minus_c_armcross_leg4 * rate_rod_leg4;
+        let t1204 = t1196 + t1199 * t1199 + t1202 * t1202;
+        let t1207 = t1155 - (rate_cross_leg4 * t1194 - t257 * t1204);
+        let rate_arm_leg4 = garm_vx_leg4 * t1187 + garm_vy_leg4 * t1190
+            + garm_vz_leg4 * twist[2];
+        let t1216 = rate_arm_leg4 * rate_arm_leg4;
+        let t1221 = t257 * (rate_cross_leg4 * t1199);
+        let t1224 = acceleration[1] - t619 + t621 + t285 * t1216 + t287 * t1204 + t1221
+            + t1221;
+        let t1231 = t257 * (rate_cross_leg4 * t1202);
+        let t1234 = acceleration[2] - (t270 * t1216 - t271 * t1204 - t1231 - t1231);
+        let rate_dot_arm_leg4 = garm_vx_leg4 * t1207 + garm_vy_leg4 * t1224
+            + garm_vz_leg4 * t1234;
+        let t1237 = 9.81 * minus_c_arm_leg4;
+        let t1238 = 9.81 * s_arm_leg4;
+        let gcross_wz_leg4 = t188 * minus_gcross_vy_leg4 - t181 * minus_gcross_vx_leg4;
+        let t1249 = gcross_wz_leg4 * t305
+            - (minus_gcross_vx_leg4 * t320 + minus_gcross_vy_leg4 * t323
+                + gcross_vz_leg4 * t307);
+        let rate_dot_cross_leg4 = gcross_vz_leg4 * t1234
+            - (minus_gcross_vx_leg4 * t1207 + minus_gcross_vy_leg4 * t1224);
+        let t1255 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t1256 = c_rod_leg4 * rate_cross_leg4;
+        let t1257 = rate_rod_leg4 * t1256;
+        let t1258 = t1255 + t1257;
+        let t1260 = 1.7241379310344827 * t1194;
+        let t1261 = rate_rod_leg4 * t1260;
+        let t1262 = c_rod_leg4 * t1261;
+        let t1263 = s_rod_leg4 * t1258 + t1262;
+        let grod_wz_leg4 = t181 * grod_vx_leg4;
+        let t1268 = grod_vx_leg4 * t320 + grod_wz_leg4 * t305;
+        let t1269 = t1260 * t1256;
+        let t1270 = t1268 * t1269;
+        let t1278 = gcross_vz_leg4 * t366
+            - (minus_gcross_vx_leg4 * t358 + minus_gcross_vy_leg4 * t361)
+            - gcross_wz_leg4 * t355;
+        let t1282 = grod_vx_leg4 * t358 - grod_wz_leg4 * t355;
+        let t1283 = t1282 * t1269;
+        let t1291 = minus_gcross_vy_leg4 * t384 - minus_gcross_vx_leg4 * t390
+            + gcross_vz_leg4 * t396 + gcross_wz_leg4 * t382;
+        let t1295 = grod_vx_leg4 * t390 + grod_wz_leg4 * t382;
+        let t1296 = t1295 * t1269;
+        let t1304 = minus_gcross_vx_leg4 * t407 + minus_gcross_vy_leg4 * t409
+            - gcross_vz_leg4 * t412 + gcross_wz_leg4 * t304;
+        let t1308 = grod_wz_leg4 * t304 - grod_vx_leg4 * t407;
+        let t1309 = t1308 * t1269;
+        let t1311 = t1257 + t1258;
+        let t1313 = c_rod_leg4 * rate_dot_cross_leg4;
+        let t1314 = t1313 - t1261;
+        let t1315 = t1261 - t1314;
+        let t1317 = c_rod_leg4 * t1311 - s_rod_leg4 * t1315;
+        let t1320 = 2.972651605231867 * (t1194 * t1194);
+        let t1321 = t1256 * t1256;
+        let t1322 = t1320 - t1321;
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t1207;
+        let t1335 = t1269 + rate_dot_rod_leg4;
+        let t1337 = rate_rod_leg4 * rate_rod_leg4;
+        let t1340 = s_rod_leg4 * t1335 + c_rod_leg4 * (t1337 - t1320);
+        let t1354 = c_rod_leg4 * t1314 - t1262;
+        let t1363 = 1.7241379310344827 * t1155;
+        let t1381 = t1238 + 0.26 * t1216;
+        let t1384 = t1237 + 0.26 * rate_dot_arm_leg4;
+        let t1386 = s_cross_leg4 * t1381 + c_cross_leg4 * t1384;
+        let t1387 = c_rod_leg4 * t1386;
+        let t1391 = s_cross_leg4 * t1384 - c_cross_leg4 * t1381;
+        let t1392 = s_rod_leg4 * t1391;
+        let t1402 = 0.8620689655172413 * t265;
+        let t1406 = 0.4482758620689655 * (t257 * s_cross_leg4);
+        let t1409 = 0.26 * c_cross_leg4;
+        let t1414 = t1304 * t1387
+            - (t1402 * (t1321 + t1337) + t1406 * t1335 + t1409 * t1315) - t1308 * t1392;
+        let t1415 = s_rod_leg4 * t1386;
+        let t1417 = c_rod_leg4 * t1391;
+        let t1436 = t1402 * (t1269 - rate_dot_rod_leg4) + t1406 * (t1320 + t1337)
+            - t1409 * t1311 - t1304 * t1415 - t1308 * t1417;
+        let t1453 = twist[3] * twist[3];
+        let t1455 = c_phi * acceleration[3] - s_phi * t1453;
+        let t1459 = c_phi * t1453 + s_phi * acceleration[3];
+        let t1464 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t1487 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t1508 = acceleration[2] + 9.81;
+        Ok([
+            [
+                rate_dot_arm_leg1, -t133, -t134, rate_dot_arm_leg1, rate_arm_leg1,
+                ::overact::math::sign(rate_arm_leg1), 1.0, -(t331 * t345 + t352),
+                t331 * t429 + t350 * t434, t331 * t452 - t350 * t337, t331 * t466 + t352,
+                t331 * t475 - t350 * t423, t350 * rate_dot_rod_leg1, t517, t539,
+                t99 * t492 - (t423 * t494 + t337 * t498) + t331 * t514, 0.26 * t503, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, t659 - t669 * t681, t669 * t729 + t655 * t734,
+                t669 * t752 + t655 * t675, t669 * t766 - t659, -(t669 * t775 + t655 * t725),
+                -(t655 * minus_rate_dot_rod_leg2), t669 * t799 + t655 * t804,
+                t669 * t827 - t655 * t829, t669 * t803, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                t955 * t969 + t976, t955 * t1023 + t974 * t1028, t955 * t1046 - t974 * t961,
+                t955 * t1060 - t976, t974 * t1017 - t955 * t1070, -(t974 * minus_rate_dot_rod_leg3),
+                t955 * t1093 + t974 * t1098, t955 * t1121 - t974 * t1123, t955 * t1097, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1249 * t1263 - t1270, t1249 * t1317 + t1268 * t1322,
+                t1249 * t1340 + t1268 * t1255, t1249 * t1354 + t1270, t1249 * t1363 + t1268 * t1313,
+                t1268 * rate_dot_rod_leg4, t1249 * t1387 - t1268 * t1392,
+                -(t1249 * t1415 + t1268 * t1417), t1249 * t1391, 0.0, t305 * acceleration[3],
+                t323 * t1455 - t320 * t1459 + t305 * t1464,
+                -(t320 * t1455 + t323 * t1459 + t305 * t1487),
+                t320 * acceleration[0] + t323 * acceleration[1] - t307 * t1508,
+            ],
+            [
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t370 * t345 - t375, t374 * t434 - t370 * t429,
+                -(t370 * t452 + t374 * t337), t375 - t370 * t466, -(t370 * t475 + t374 * t423),
+                t374 * rate_dot_rod_leg1, -(t370 * t509 + t374 * t515), t370 * t534 - t374 * t537,
+                -(t370 * t514), 0.0, rate_dot_arm_leg2, -t649, -t650, rate_dot_arm_leg2,
+                rate_arm_leg2, ::overact::math::sign(rate_arm_leg2), 1.0, t690 * t681 - t695,
+                -(t690 * t729 + t694 * t734), -(t690 * t752 + t694 * t675), t695 - t690 * t766,
+                t690 * t775 + t694 * t725, t694 * minus_rate_dot_rod_leg2, t820, t842,
+                t606 * t807 - (t725 * t809 + t675 * t813) - t690 * t803, 0.26 * t793, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, t984 * t969 - t989, t984 * t1023 - t988 * t1028,
+                t984 * t1046 + t988 * t961, t984 * t1060 + t989, -(t984 * t1070 + t988 * t1017),
+                t988 * minus_rate_dot_rod_leg3, t984 * t1093 - t988 * t1098,
+                t984 * t1121 + t988 * t1123, t984 * t1097, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                t1278 * t1263 - t1283, t1278 * t1317 + t1282 * t1322, t1278 * t1340 + t1282 * t1255,
+                t1278 * t1354 + t1283, t1278 * t1363 + t1282 * t1313, t1282 * rate_dot_rod_leg4,
+                t1278 * t1387 - t1282 * t1392, -(t1278 * t1415 + t1282 * t1417), t1278 * t1391, 0.0,
+                -(t355 * acceleration[3]), t361 * t1455 - t358 * t1459 - t355 * t1464,
+                t355 * t1487 - (t358 * t1455 + t361 * t1459),
+                t358 * acceleration[0] + t361 * acceleration[1] + t366 * t1508,
+            ],
+            [
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t400 * t345 + t405), t400 * t429 + t404 * t434,
+                t400 * t452 - t404 * t337, t400 * t466 + t405, t400 * t475 - t404 * t423,
+                t404 * rate_dot_rod_leg1, t400 * t509 - t404 * t515, -(t400 * t534 + t404 * t537),
+                t400 * t514, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t700 - t707 * t681,
+                t707 * t729 + t699 * t734, t707 * t752 + t699 * t675, t707 * t766 - t700,
+                -(t707 * t775 + t699 * t725), -(t699 * minus_rate_dot_rod_leg2),
+                t707 * t799 + t699 * t804, t707 * t827 - t699 * t829, t707 * t803, 0.0,
+                rate_dot_arm_leg3, t943, t944, rate_dot_arm_leg3, rate_arm_leg3,
+                ::overact::math::sign(rate_arm_leg3), 1.0, t997 * t969 + t1002,
+                t997 * t1023 + t1001 * t1028, t997 * t1046 - t1001 * t961, t997 * t1060 - t1002,
+                t1001 * t1017 - t997 * t1070, -(t1001 * minus_rate_dot_rod_leg3), t1117, t1139,
+                t1017 * t1105 + t961 * t1109 + t911 * t1112 + t997 * t1097, 0.26 * t1090, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, t1291 * t1263 - t1296, t1291 * t1317 + t1295 * t1322,
+                t1291 * t1340 + t1295 * t1255, t1291 * t1354 + t1296, t1291 * t1363 + t1295 * t1313,
+                t1295 * rate_dot_rod_leg4, t1291 * t1387 - t1295 * t1392,
+                -(t1291 * t1415 + t1295 * t1417), t1291 * t1391, 0.0, t382 * acceleration[3],
+                t382 * t1464 - (t390 * t1459 + t384 * t1455),
+                t384 * t1459 - t390 * t1455 - t382 * t1487,
+                t390 * acceleration[0] - t384 * acceleration[1] + t396 * t1508,
+            ],
+            [
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t416 * t345 + t421), t416 * t429 + t420 * t434,
+                t416 * t452 - t420 * t337, t416 * t466 + t421, t416 * t475 - t420 * t423,
+                t420 * rate_dot_rod_leg1, t416 * t509 - t420 * t515, -(t416 * t534 + t420 * t537),
+                t416 * t514, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t713 - t720 * t681,
+                t720 * t729 + t712 * t734, t720 * t752 + t712 * t675, t720 * t766 - t713,
+                -(t720 * t775 + t712 * t725), -(t712 * minus_rate_dot_rod_leg2),
+                t720 * t799 + t712 * t804, t720 * t827 - t712 * t829, t720 * t803, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, t1010 * t969 + t1015, t1010 * t1023 + t1014 * t1028,
+                t1010 * t1046 - t1014 * t961, t1010 * t1060 - t1015, t1014 * t1017 - t1010 * t1070,
+                -(t1014 * minus_rate_dot_rod_leg3), t1010 * t1093 + t1014 * t1098,
+                t1010 * t1121 - t1014 * t1123, t1010 * t1097, 0.0, rate_dot_arm_leg4, t1237, t1238,
+                rate_dot_arm_leg4, rate_arm_leg4, ::overact::math::sign(rate_arm_leg4), 1.0,
+                t1304 * t1263 - t1309, t1304 * t1317 + t1308 * t1322, t1304 * t1340 + t1308 * t1255,
+                t1304 * t1354 + t1309, t1304 * t1363 + t1308 * t1313, t1308 * rate_dot_rod_leg4,
+                t1414, t1436, t1313 * t1402 + t1255 * t1406 + t1196 * t1409 + t1304 * t1391,
+                0.26 * t1384, t304 * acceleration[3], t407 * t1459 - t409 * t1455 + t304 * t1464,
+                t407 * t1455 + t409 * t1459 - t304 * t1487,
+                -(t407 * acceleration[0] + t409 * acceleration[1] + t412 * t1508),
+            ],
+        ])
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -3847,7 +5844,7 @@ impl Schoenflies4 {
     /// Output: 4 x 72.
     /// Columns: `PARAMETERS`.
     ///
-    /// 1594 operations (573 additions, 1005 multiplications, 16 divisions), 0 square roots, 13 trigonometric pairs, 4 signs, 1448 intermediates.
+    /// 1716 operations (641 additions, 1047 multiplications, 28 divisions), 8 square roots, 1 trigonometric pairs, 4 signs, 1554 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3858,667 +5855,752 @@ impl Schoenflies4 {
         start: &[f64; 4],
     ) -> Result<[[f64; 72]; 4], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t2 = 9.81 * c_arm_leg1;
-        let t3 = 9.81 * s_arm_leg1;
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
-        let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        ::overact::guard::leg(c_rod_leg1, 0.9887897213061891, "leg1")?;
-        let t15 = c_armcross_leg1 * c_rod_leg1;
-        let t17 = s_armcross_leg1 * c_rod_leg1;
-        let t19 = s_arm_leg1 * t15 - c_arm_leg1 * t17;
-        ::overact::guard::leg(t19, 0.9185391450939739, "leg1")?;
-        let t20 = 1.0 / t19;
-        let t21 = 1.7241379310344827 * t20;
-        let gcross_vx_leg1 = c_arm_leg1 * t21;
-        let t23 = 3.8461538461538463 * t20;
-        let garm_vz_leg1 = t17 * t23;
-        let minus_garm_vx_leg1 = t15 * t23;
-        ::overact::guard::platform(
-            minus_garm_vx_leg1,
-            3.0598754214874657,
-            "kept actuators",
-        )?;
-        let t26 = 1.0 / minus_garm_vx_leg1;
-        let t27 = garm_vz_leg1 * t26;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
-        let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        ::overact::guard::leg(c_rod_leg3, 0.9887897213061891, "leg3")?;
-        let t40 = c_armcross_leg3 * c_rod_leg3;
-        let t41 = s_armcross_leg3 * c_rod_leg3;
-        let t44 = c_arm_leg3 * t41 - s_arm_leg3 * t40;
-        ::overact::guard::leg(t44, 0.9185391450939737, "leg3")?;
-        let t45 = 1.0 / t44;
-        let t46 = 3.8461538461538463 * t45;
-        let minus_garm_vx_leg3 = t40 * t46;
-        let minus_garm_vz_leg3 = t41 * t46;
-        let t51 = minus_garm_vz_leg3 + minus_garm_vx_leg3 * t27;
-        ::overact::guard::platform(t51, 5.5782916905211675, "kept actuators")?;
-        let t52 = 1.0 / t51;
-        let t53 = minus_garm_vx_leg3 * t26 * t52;
-        let minus_garm_vy_leg1 = s_rod_leg1 * t23;
-        let t57 = minus_garm_vy_leg1 * t26;
-        let minus_garm_vy_leg3 = s_rod_leg3 * t46;
-        let t61 = (minus_garm_vx_leg3 * t57 - minus_garm_vy_leg3) * t52;
-        let t63 = t57 - t27 * t61;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        ::overact::guard::leg(c_rod_leg4, 0.9887897213061891, "leg4")?;
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let (s_cross_leg4, c_cross_leg4) = ::overact::math::sin_cos(joints[10]);
-        let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
-        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let t76 = s_armcross_leg4 * c_rod_leg4;
-        let t78 = c_armcross_leg4 * c_rod_leg4;
-        let t80 = c_arm_leg4 * t76 - s_arm_leg4 * t78;
-        ::overact::guard::leg(t80, 0.9185391450939737, "leg4")?;
-        let t81 = 1.0 / t80;
-        let t82 = 3.8461538461538463 * t81;
-        let garm_vx_leg4 = s_rod_leg4 * t82;
-        let minus_garm_vz_leg4 = t76 * t82;
-        let t87 = garm_vx_leg4 * t27 - minus_garm_vz_leg4;
-        let minus_garm_vy_leg4 = t78 * t82;
-        let t94 = t87 * t61 - (minus_garm_vy_leg4 + garm_vx_leg4 * t57);
-        ::overact::guard::platform(t94, 2.932125836861103, "kept actuators")?;
-        let t95 = 1.0 / t94;
-        let t96 = (garm_vx_leg4 * t26 - t87 * t53) * t95;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
-        let t101 = 0.05 * s_phi;
-        let t102 = 0.08660254037844387 * c_phi;
-        let t103 = t101 + t102;
-        let t105 = 0.05 * c_phi;
-        let t106 = 0.08660254037844387 * s_phi;
-        let t107 = t105 - t106;
-        let garm_wz_leg1 = minus_garm_vx_leg1 * t103 - minus_garm_vy_leg1 * t107;
-        let t110 = garm_wz_leg1 * t26;
-        let garm_wz_leg3 = t107 * minus_garm_vy_leg3 - t103 * minus_garm_vx_leg3;
-        let t116 = (garm_wz_leg3 - minus_garm_vx_leg3 * t110) * t52;
-        let t119 = t102 - t101;
-        let t121 = t106 + t105;
-        let garm_wz_leg4 = t119 * minus_garm_vy_leg4 + t121 * garm_vx_leg4;
-        let t128 = (garm_wz_leg4 + garm_vx_leg4 * t110 + t87 * t116) * t95;
-        let t130 = t110 + t27 * t116 + t63 * t128;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        ::overact::guard::leg(c_rod_leg2, 0.988789721306189, "leg2")?;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
-        let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t143 = c_armcross_leg2 * c_rod_leg2;
-        let t145 = s_armcross_leg2 * c_rod_leg2;
-        let t147 = s_arm_leg2 * t143 - c_arm_leg2 * t145;
-        ::overact::guard::leg(t147, 0.9185391450939737, "leg2")?;
-        let t148 = 1.0 / t147;
-        let t149 = 3.8461538461538463 * t148;
-        let garm_vx_leg2 = s_rod_leg2 * t149;
-        let garm_vz_leg2 = t145 * t149;
-        let t154 = garm_vz_leg2 + garm_vx_leg2 * t27;
-        let minus_garm_vy_leg2 = t143 * t149;
-        let t161 = t154 * t61 - (minus_garm_vy_leg2 + garm_vx_leg2 * t57);
-        let minus_garm_wz_leg2 = minus_garm_vy_leg2 * t119 + garm_vx_leg2 * t121;
-        let t172 = garm_vx_leg2 * t110 - minus_garm_wz_leg2 + t154 * t116 - t161 * t128;
-        ::overact::guard::platform(t172, 1.1850155816073358, "kept actuators")?;
-        let t173 = 1.0 / t172;
-        let t174 = (garm_vx_leg2 * t26 - t154 * t53 - t161 * t96) * t173;
-        let t176 = t27 * t53 - t26 - t63 * t96 + t130 * t174;
-        let t179 = 1.0 / c_rod_leg1;
-        let gcross_vy_leg1 = t21
-            * (c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t179)
-                + s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t179));
-        let t188 = t96 - t128 * t174;
-        let minus_gcross_vz_leg1 = s_arm_leg1 * t21;
-        let t195 = t61 * t128 - t116;
-        let t197 = t53 + t61 * t96 - t195 * t174;
-        let gcross_wz_leg1 = gcross_vy_leg1 * t107 - gcross_vx_leg1 * t103;
-        let t204 = gcross_vx_leg1 * t176 + gcross_vy_leg1 * t188
-            - minus_gcross_vz_leg1 * t197 + gcross_wz_leg1 * t174;
-        let t211 = minus_garm_vx_leg1 * minus_garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
-            + minus_garm_vx_leg3 * minus_garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
-        ::overact::guard::platform(t211, 19.50747081825307, "actuators")?;
-        ::overact::guard::platform(t211, 19.50747081825307, "actuators")?;
-        let t212 = 1.0 / t211;
-        let t226 = garm_vx_leg4 * garm_wz_leg4
-            - (minus_garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * minus_garm_wz_leg2
-                + minus_garm_vx_leg3 * garm_wz_leg3);
-        let t227 = t226 * t212;
-        let t243 = minus_garm_vx_leg1 * minus_garm_vy_leg1
-            - garm_vx_leg2 * minus_garm_vy_leg2 + minus_garm_vx_leg3 * minus_garm_vy_leg3
-            - garm_vx_leg4 * minus_garm_vy_leg4;
-        let t245 = minus_garm_vy_leg2 * minus_garm_wz_leg2
-            - minus_garm_vy_leg1 * garm_wz_leg1 - minus_garm_vy_leg3 * garm_wz_leg3
-            - minus_garm_vy_leg4 * garm_wz_leg4 - t243 * t227;
-        let t253 = t243 * t212;
-        let t255 = minus_garm_vy_leg1 * minus_garm_vy_leg1
-            + minus_garm_vy_leg2 * minus_garm_vy_leg2
-            + minus_garm_vy_leg3 * minus_garm_vy_leg3
-            + minus_garm_vy_leg4 * minus_garm_vy_leg4 - t243 * t253;
-        ::overact::guard::platform(t255, 16.505615552607473, "actuators")?;
-        ::overact::guard::platform(t255, 16.505615552607473, "actuators")?;
-        let t256 = 1.0 / t255;
-        let t257 = t245 * t256;
-        let t259 = garm_wz_leg1 * garm_wz_leg1 + minus_garm_wz_leg2 * minus_garm_wz_leg2
-            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t226 * t227
-            - t245 * t257;
-        let t273 = garm_vx_leg2 * garm_vz_leg2 - minus_garm_vx_leg1 * garm_vz_leg1
-            + minus_garm_vx_leg3 * minus_garm_vz_leg3
-            - garm_vx_leg4 * minus_garm_vz_leg4;
-        let t283 = t273 * t212;
-        let t285 = minus_garm_vy_leg3 * minus_garm_vz_leg3
-            - (minus_garm_vy_leg1 * garm_vz_leg1 + minus_garm_vy_leg2 * garm_vz_leg2)
-            + minus_garm_vy_leg4 * minus_garm_vz_leg4 - t243 * t283;
-        let t287 = garm_vz_leg1 * garm_wz_leg1 - garm_vz_leg2 * minus_garm_wz_leg2
-            - minus_garm_vz_leg3 * garm_wz_leg3 - minus_garm_vz_leg4 * garm_wz_leg4
-            - t273 * t227 - t285 * t257;
-        let t297 = t285 * t256;
-        let t299 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3
-            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t273 * t283 - t285 * t297;
-        ::overact::guard::platform(t299, 31.117338184537527, "actuators")?;
-        ::overact::guard::platform(t299, 31.117338184537527, "actuators")?;
-        let t300 = 1.0 / t299;
-        let t301 = t287 * t300;
-        let t303 = t259 - t287 * t301;
-        ::overact::guard::platform(t303, 0.351065482163043, "actuators")?;
-        ::overact::guard::platform(t303, 0.351065482163043, "actuators")?;
-        let t304 = 1.0 / t303;
-        let t318 = garm_vx_leg2 * actuator_velocities[1]
-            - minus_garm_vx_leg1 * actuator_velocities[0]
-            - minus_garm_vx_leg3 * actuator_velocities[2]
+        let t2 = 0.05 * c_phi;
+        let t3 = 0.08660254037844387 * s_phi;
+        let t4 = t2 - t3;
+        let t5 = pose[0] + t4;
+        let t6 = t5 - 0.24;
+        let t7 = t6 * t6;
+        let t8 = pose[2] * pose[2];
+        let t10 = 0.2704 * (t7 + t8);
+        let t11 = 1.0 / t10;
+        let t12 = 0.52 * t6;
+        let t13 = 0.05 * s_phi;
+        let t14 = 0.08660254037844387 * c_phi;
+        let t15 = t13 + t14;
+        let t16 = pose[1] + t15;
+        let t17 = t16 * t16;
+        let t19 = t7 + t17 + t8;
+        let t21 = t19 - 0.3364 + 0.0676;
+        let t23 = 0.52 * pose[2];
+        let t25 = t10 - t21 * t21;
+        ::overact::guard::reach(t25, "leg1")?;
+        let t26 = ::overact::math::sqrt(t25);
+        ::overact::guard::leg(t26, 0.27703140616182853, "leg1")?;
+        let c_arm_leg1 = t11 * (t12 * t21 - t23 * t26);
+        let t30 = 9.81 * c_arm_leg1;
+        let minus_s_arm_leg1 = t11 * (t23 * t21 + t12 * t26);
+        let t35 = 9.81 * minus_s_arm_leg1;
+        let t37 = 1.0 / t26;
+        let t38 = 0.52 * t37;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t38;
+        let t40 = pose[0] - t4;
+        let t41 = t40 + 0.24;
+        let t42 = t41 * t41;
+        let t44 = 0.2704 * (t42 + t8);
+        let t45 = 1.0 / t44;
+        let t46 = 0.52 * t41;
+        let t47 = pose[1] - t15;
+        let t48 = t47 * t47;
+        let t50 = t42 + t48 + t8;
+        let t52 = t50 - 0.3364 + 0.0676;
+        let t55 = t44 - t52 * t52;
+        ::overact::guard::reach(t55, "leg3")?;
+        let t56 = ::overact::math::sqrt(t55);
+        ::overact::guard::leg(t56, 0.27703140616182853, "leg3")?;
+        let minus_c_arm_leg3 = t45 * (t46 * t52 + t23 * t56);
+        let t60 = 0.26 * minus_c_arm_leg3;
+        let t62 = t40 - (t60 - 0.24);
+        let t63 = 1.0 / t56;
+        let t64 = 2.0 * t63;
+        let garm_vx_leg3 = t62 * t64;
+        let t66 = 0.26 * c_arm_leg1;
+        let t68 = t5 - (0.24 + t66);
+        let t69 = 2.0 * t37;
+        let garm_vx_leg1 = t68 * t69;
+        ::overact::guard::platform(garm_vx_leg1, 3.059875421275039, "kept actuators")?;
+        let t71 = 1.0 / garm_vx_leg1;
+        let s_arm_leg3 = t45 * (t46 * t56 - t23 * t52);
+        let t77 = 0.26 * s_arm_leg3;
+        let t78 = pose[2] + t77;
+        let garm_vz_leg3 = t78 * t64;
+        let t80 = 0.26 * minus_s_arm_leg1;
+        let t81 = pose[2] - t80;
+        let garm_vz_leg1 = t81 * t69;
+        let t83 = garm_vz_leg1 * t71;
+        let t85 = garm_vz_leg3 - garm_vx_leg3 * t83;
+        ::overact::guard::platform(t85, 5.578291690921259, "kept actuators")?;
+        let t86 = 1.0 / t85;
+        let t87 = garm_vx_leg3 * t71 * t86;
+        let garm_vy_leg3 = t47 * t64;
+        let garm_vy_leg1 = t16 * t69;
+        let t90 = garm_vy_leg1 * t71;
+        let t93 = (garm_vy_leg3 - garm_vx_leg3 * t90) * t86;
+        let t94 = t3 + t2;
+        let t95 = pose[1] + t94;
+        let t96 = t95 - 0.24;
+        let t97 = t96 * t96;
+        let t99 = 0.2704 * (t97 + t8);
+        let t100 = 1.0 / t99;
+        let t101 = t14 - t13;
+        let t102 = pose[0] + t101;
+        let t103 = t102 * t102;
+        let t105 = t103 + t97 + t8;
+        let t107 = t105 - 0.3364 + 0.0676;
+        let t109 = 0.52 * t96;
+        let t111 = t99 - t107 * t107;
+        ::overact::guard::reach(t111, "leg2")?;
+        let t112 = ::overact::math::sqrt(t111);
+        ::overact::guard::leg(t112, 0.27703140616182853, "leg2")?;
+        let minus_s_arm_leg2 = t100 * (t23 * t107 + t109 * t112);
+        let t116 = 0.26 * minus_s_arm_leg2;
+        let t117 = pose[2] - t116;
+        let t118 = 1.0 / t112;
+        let t119 = 2.0 * t118;
+        let garm_vz_leg2 = t117 * t119;
+        let garm_vx_leg2 = t102 * t119;
+        let t123 = garm_vz_leg2 - garm_vx_leg2 * t83;
+        let c_arm_leg2 = t100 * (t109 * t107 - t23 * t112);
+        let t131 = 0.26 * c_arm_leg2;
+        let t133 = t95 - (0.24 + t131);
+        let garm_vy_leg2 = t133 * t119;
+        let t138 = garm_vy_leg2 - garm_vx_leg2 * t90 - t123 * t93;
+        ::overact::guard::platform(t138, 2.9321258366411205, "kept actuators")?;
+        let t139 = 1.0 / t138;
+        let t140 = (t123 * t87 - garm_vx_leg2 * t71) * t139;
+        let garm_wz_leg3 = t15 * garm_vx_leg3 - t4 * garm_vy_leg3;
+        let garm_wz_leg1 = t4 * garm_vy_leg1 - t15 * garm_vx_leg1;
+        let t149 = garm_wz_leg1 * t71;
+        let t152 = (garm_wz_leg3 - garm_vx_leg3 * t149) * t86;
+        let garm_wz_leg2 = t101 * garm_vy_leg2 - t94 * garm_vx_leg2;
+        let t160 = (garm_wz_leg2 - garm_vx_leg2 * t149 - t123 * t152) * t139;
+        let t162 = t152 - t93 * t160;
+        let t163 = pose[1] - t94;
+        let t164 = t163 + 0.24;
+        let t165 = t164 * t164;
+        let t167 = 0.2704 * (t165 + t8);
+        let t168 = 1.0 / t167;
+        let t169 = 0.52 * t164;
+        let t170 = pose[0] - t101;
+        let t171 = t170 * t170;
+        let t173 = t171 + t165 + t8;
+        let t175 = t173 - 0.3364 + 0.0676;
+        let t177 = t167 - t175 * t175;
+        ::overact::guard::reach(t177, "leg4")?;
+        let t178 = ::overact::math::sqrt(t177);
+        ::overact::guard::leg(t178, 0.27703140616182853, "leg4")?;
+        let s_arm_leg4 = t168 * (t169 * t178 - t23 * t175);
+        let t183 = 0.26 * s_arm_leg4;
+        let t184 = pose[2] + t183;
+        let t185 = 1.0 / t178;
+        let t186 = 2.0 * t185;
+        let garm_vz_leg4 = t184 * t186;
+        let garm_vx_leg4 = t170 * t186;
+        let t190 = garm_vz_leg4 - garm_vx_leg4 * t83;
+        let minus_c_arm_leg4 = t168 * (t169 * t175 + t23 * t178);
+        let t198 = 0.26 * minus_c_arm_leg4;
+        let t200 = t163 - (t198 - 0.24);
+        let garm_vy_leg4 = t200 * t186;
+        let t205 = garm_vy_leg4 - garm_vx_leg4 * t90 - t190 * t93;
+        let garm_wz_leg4 = t94 * garm_vx_leg4 - t101 * garm_vy_leg4;
+        let t216 = garm_wz_leg4 - garm_vx_leg4 * t149 - t190 * t152 - t205 * t160;
+        ::overact::guard::platform(t216, 1.1850155815331067, "kept actuators")?;
+        let t217 = 1.0 / t216;
+        let t218 = (t190 * t87 - garm_vx_leg4 * t71 - t205 * t140) * t217;
+        let t220 = t87 + t93 * t140 + t162 * t218;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t38;
+        let t226 = t90 - t83 * t93;
+        let t232 = t149 - t83 * t152 - t226 * t160;
+        let t234 = t71 + t83 * t87 - t226 * t140 - t232 * t218;
+        let s_rod_leg1 = 1.7241379310344827 * t16;
+        let t240 = 1.0 - 2.972651605231867 * t17;
+        ::overact::guard::reach(t240, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t240);
+        ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
+        let c_cross_leg1 = (t19 - (0.0676 + t17) - 0.3364 * t240)
+            / (0.3016 * c_rod_leg1);
+        let s_cross_leg1 = 1.9230769230769231 * t26 / (0.58 * c_rod_leg1);
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let t253 = 1.0 / c_rod_leg1;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let minus_gcross_vy_leg1 = t38
+            * (c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t253)
+                - minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t253));
+        let t265 = t140 - t160 * t218;
+        let gcross_wz_leg1 = t15 * minus_gcross_vx_leg1 - t4 * minus_gcross_vy_leg1;
+        let t273 = minus_gcross_vz_leg1 * t220
+            - (minus_gcross_vx_leg1 * t234 + minus_gcross_vy_leg1 * t265)
+            + gcross_wz_leg1 * t218;
+        let t280 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t280, 19.507470815645043, "actuators")?;
+        ::overact::guard::platform(t280, 19.507470815645043, "actuators")?;
+        let t281 = 1.0 / t280;
+        let t282 = actuator_velocities[0] * actuator_velocities[0];
+        let grod_vy_leg1 = 1.7241379310344827 * t253;
+        let t298 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3 + garm_vx_leg4 * garm_vy_leg4;
+        let t299 = t298 * t281;
+        let t301 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t298 * t299;
+        ::overact::guard::platform(t301, 16.505615550045768, "actuators")?;
+        ::overact::guard::platform(t301, 16.505615550045768, "actuators")?;
+        let t302 = 1.0 / t301;
+        let t316 = garm_vx_leg1 * actuator_velocities[0]
+            + garm_vx_leg2 * actuator_velocities[1]
+            + garm_vx_leg3 * actuator_velocities[2]
             + garm_vx_leg4 * actuator_velocities[3];
-        let t329 = minus_garm_vy_leg1 * actuator_velocities[0]
-            + minus_garm_vy_leg2 * actuator_velocities[1]
-            + minus_garm_vy_leg3 * actuator_velocities[2]
-            + minus_garm_vy_leg4 * actuator_velocities[3] + t318 * t253;
-        let t331 = garm_wz_leg1 * actuator_velocities[0]
-            - minus_garm_wz_leg2 * actuator_velocities[1]
-            + garm_wz_leg3 * actuator_velocities[2]
-            + garm_wz_leg4 * actuator_velocities[3] - t318 * t227 + t257 * t329;
-        let t342 = garm_vz_leg1 * actuator_velocities[0]
+        let t318 = garm_vy_leg1 * actuator_velocities[0]
+            + garm_vy_leg2 * actuator_velocities[1]
+            + garm_vy_leg3 * actuator_velocities[2]
+            + garm_vy_leg4 * actuator_velocities[3] - t316 * t299;
+        let t333 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3 + garm_vx_leg4 * garm_vz_leg4;
+        let t334 = t333 * t281;
+        let t336 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 + garm_vy_leg4 * garm_vz_leg4 - t298 * t334;
+        let t337 = t336 * t302;
+        let t348 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 + garm_vz_leg4 * garm_vz_leg4 - t333 * t334
+            - t336 * t337;
+        ::overact::guard::platform(t348, 31.11733818900116, "actuators")?;
+        ::overact::guard::platform(t348, 31.11733818900116, "actuators")?;
+        let t349 = 1.0 / t348;
+        let t360 = garm_vz_leg1 * actuator_velocities[0]
             + garm_vz_leg2 * actuator_velocities[1]
-            - minus_garm_vz_leg3 * actuator_velocities[2]
-            - minus_garm_vz_leg4 * actuator_velocities[3] - t318 * t283 + t297 * t329;
-        let t345 = t304 * (t331 - t301 * t342);
-        let t346 = t119 * t345;
-        let t347 = t345 * t346;
-        let t348 = 0.58 * s_rod_leg2;
-        let t349 = 1.7241379310344827 * t148;
-        let gcross_vy_leg2 = c_arm_leg2 * t349;
-        let t354 = t300 * t342 - t301 * t345;
-        let t358 = t256 * t329 + t297 * t354 + t257 * t345;
-        let t362 = 1.0 / c_rod_leg2;
-        let minus_gcross_vx_leg2 = t349
-            * (c_arm_leg2 * (c_armcross_leg2 * s_rod_leg2 * t362)
-                + s_arm_leg2 * (s_armcross_leg2 * s_rod_leg2 * t362));
-        let t376 = t318 * t212 + t253 * t358 - t283 * t354 - t227 * t345;
-        let t377 = t121 * t345;
-        let t378 = t376 - t377;
-        let minus_gcross_vz_leg2 = s_arm_leg2 * t349;
-        let rate_cross_leg2 = gcross_vy_leg2 * (t346 - t358)
-            - minus_gcross_vx_leg2 * t378 - minus_gcross_vz_leg2 * t354;
-        let t384 = rate_cross_leg2 * rate_cross_leg2;
-        let minus_grod_vx_leg2 = 1.7241379310344827 * t362;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t378;
-        let t387 = s_armcross_leg2 * minus_rate_rod_leg2;
-        let t390 = c_armcross_leg2 * minus_rate_rod_leg2;
-        let t392 = t384 + t387 * t387 + t390 * t390;
-        let t394 = t348 * rate_cross_leg2;
-        let t396 = t348 * t392 - rate_cross_leg2 * t394;
-        let t400 = actuator_velocities[1] * actuator_velocities[1];
-        let t406 = t348 * (rate_cross_leg2 * t387);
-        let t408 = 0.26 * c_arm_leg2 * t400 + 0.58 * t143 * t392 + t406 + t406;
-        let t409 = t345 * t377;
-        let t419 = t348 * (rate_cross_leg2 * t390);
-        let t421 = 0.26 * s_arm_leg2 * t400 + 0.58 * t145 * t392 - t419 - t419;
-        let minus_rate_dot_arm_leg2 = garm_vx_leg2 * (t347 + t396)
-            + minus_garm_vy_leg2 * (t408 - t409) + garm_vz_leg2 * t421;
-        let t424 = actuator_accelerations[1] + minus_rate_dot_arm_leg2;
-        let t426 = t107 * t345;
-        let t427 = t345 * t426;
-        let t428 = 0.58 * s_rod_leg1;
-        let t429 = t103 * t345;
-        let t432 = t426 - t358;
-        let rate_cross_leg1 = gcross_vx_leg1 * (t376 - t429) + gcross_vy_leg1 * t432
-            - minus_gcross_vz_leg1 * t354;
-        let grod_vy_leg1 = 1.7241379310344827 * t179;
-        let rate_rod_leg1 = grod_vy_leg1 * t432;
-        let t439 = s_armcross_leg1 * rate_rod_leg1;
-        let t441 = t428 * (rate_cross_leg1 * t439);
-        let t443 = actuator_velocities[0] * actuator_velocities[0];
-        let t447 = rate_cross_leg1 * rate_cross_leg1;
-        let t449 = c_armcross_leg1 * rate_rod_leg1;
-        let t451 = t439 * t439 + t447 + t449 * t449;
-        let t455 = t441 - (0.26 * c_arm_leg1 * t443 + 0.58 * t15 * t451) + t441;
-        let t458 = t345 * t429;
-        let t459 = t428 * rate_cross_leg1;
-        let t462 = rate_cross_leg1 * t459 - t428 * t451;
-        let t472 = t428 * (rate_cross_leg1 * t449);
-        let t474 = 0.26 * s_arm_leg1 * t443 + 0.58 * t17 * t451 + t472 + t472;
-        let rate_dot_arm_leg1 = minus_garm_vx_leg1 * (t427 + t455)
-            + minus_garm_vy_leg1 * (t458 + t462) - garm_vz_leg1 * t474;
-        let t477 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t481 = actuator_velocities[2] * actuator_velocities[2];
-        let t484 = 1.0 / c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.7241379310344827 * t484;
-        let t486 = t358 + t426;
-        let rate_rod_leg3 = minus_grod_vy_leg3 * t486;
-        let t488 = s_armcross_leg3 * rate_rod_leg3;
-        let t490 = 1.7241379310344827 * t45;
-        let gcross_vx_leg3 = c_arm_leg3 * t490;
-        let gcross_vy_leg3 = t490
-            * (c_arm_leg3 * (c_armcross_leg3 * s_rod_leg3 * t484)
-                + s_arm_leg3 * (s_armcross_leg3 * s_rod_leg3 * t484));
-        let gcross_vz_leg3 = s_arm_leg3 * t490;
-        let rate_cross_leg3 = gcross_vx_leg3 * (t376 + t429) - gcross_vy_leg3 * t486
-            + gcross_vz_leg3 * t354;
-        let t507 = rate_cross_leg3 * rate_cross_leg3;
-        let t509 = c_armcross_leg3 * rate_rod_leg3;
-        let t511 = t488 * t488 + t507 + t509 * t509;
-        let t514 = 0.58 * s_rod_leg3;
-        let t516 = t514 * (rate_cross_leg3 * t509);
-        let t518 = 0.26 * s_arm_leg3 * t481 + 0.58 * t41 * t511 + t516 + t516;
-        let t526 = t514 * (rate_cross_leg3 * t488);
-        let t528 = 0.26 * c_arm_leg3 * t481 + 0.58 * t40 * t511 - t526 - t526;
-        let t532 = t514 * rate_cross_leg3;
-        let t534 = t514 * t511 - rate_cross_leg3 * t532;
-        let rate_dot_arm_leg3 = minus_garm_vz_leg3 * t518
-            - (minus_garm_vx_leg3 * (t427 - t528) + minus_garm_vy_leg3 * (t458 - t534));
-        let t539 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t542 = 1.7241379310344827 * t81;
-        let gcross_vz_leg4 = s_arm_leg4 * t542;
-        let t546 = 1.0 / c_rod_leg4;
-        let minus_gcross_vx_leg4 = t542
-            * (c_arm_leg4 * (c_armcross_leg4 * s_rod_leg4 * t546)
-                + s_arm_leg4 * (s_armcross_leg4 * s_rod_leg4 * t546));
-        let t554 = t376 + t377;
-        let gcross_vy_leg4 = c_arm_leg4 * t542;
-        let rate_cross_leg4 = gcross_vz_leg4 * t354
-            - (minus_gcross_vx_leg4 * t554 + gcross_vy_leg4 * (t358 + t346));
-        let t561 = 0.58 * s_rod_leg4;
-        let t562 = t561 * rate_cross_leg4;
-        let t564 = rate_cross_leg4 * rate_cross_leg4;
-        let grod_vx_leg4 = 1.7241379310344827 * t546;
-        let rate_rod_leg4 = grod_vx_leg4 * t554;
-        let t567 = s_armcross_leg4 * rate_rod_leg4;
-        let t570 = c_armcross_leg4 * rate_rod_leg4;
-        let t572 = t564 + t567 * t567 + t570 * t570;
-        let t574 = rate_cross_leg4 * t562 - t561 * t572;
-        let t578 = actuator_velocities[3] * actuator_velocities[3];
-        let t584 = t561 * (rate_cross_leg4 * t567);
-        let t586 = 0.26 * c_arm_leg4 * t578 + 0.58 * t78 * t572 - t584 - t584;
-        let t596 = t561 * (rate_cross_leg4 * t570);
-        let t598 = 0.26 * s_arm_leg4 * t578 + 0.58 * t76 * t572 + t596 + t596;
-        let rate_dot_arm_leg4 = garm_vx_leg4 * (t347 - t574)
-            - minus_garm_vy_leg4 * (t409 - t586) + minus_garm_vz_leg4 * t598;
-        let t601 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t603 = garm_vx_leg2 * t424 - minus_garm_vx_leg1 * t477
-            - minus_garm_vx_leg3 * t539 + garm_vx_leg4 * t601;
-        let t613 = minus_garm_vy_leg1 * t477 + minus_garm_vy_leg2 * t424
-            + minus_garm_vy_leg3 * t539 + minus_garm_vy_leg4 * t601 + t253 * t603;
-        let t625 = garm_vz_leg1 * t477 + garm_vz_leg2 * t424 - minus_garm_vz_leg3 * t539
-            - minus_garm_vz_leg4 * t601 - t283 * t603 + t297 * t613;
-        let t637 = garm_wz_leg1 * t477 - minus_garm_wz_leg2 * t424 + garm_wz_leg3 * t539
-            + garm_wz_leg4 * t601 - t227 * t603 + t257 * t613;
-        let t640 = t304 * (t637 - t301 * t625);
-        let t642 = t300 * t625 - t301 * t640;
-        let t646 = t256 * t613 + t297 * t642 + t257 * t640;
-        let t652 = t212 * t603 + t253 * t646 - t283 * t642 - t227 * t640;
-        let t653 = t103 * t640;
-        let t658 = t107 * t640;
-        let t660 = t658 - t646 - t458;
-        let t661 = t660 - t462;
-        let rate_dot_cross_leg1 = gcross_vx_leg1 * (t652 - t653 - t427 - t455)
-            + gcross_vy_leg1 * t661 - minus_gcross_vz_leg1 * (t642 - t474);
-        let t667 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t668 = c_rod_leg1 * rate_cross_leg1;
-        let t669 = rate_rod_leg1 * t668;
-        let t670 = t667 + t669;
-        let t672 = 1.7241379310344827 * t459;
-        let t673 = rate_rod_leg1 * t672;
-        let t674 = c_rod_leg1 * t673;
-        let t675 = s_rod_leg1 * t670 + t674;
-        let grod_wz_leg1 = grod_vy_leg1 * t107;
-        let t680 = grod_vy_leg1 * t188 + grod_wz_leg1 * t174;
-        let t681 = t672 * t668;
-        let t682 = t680 * t681;
-        let t684 = t130 * t173;
-        let t686 = t128 * t173;
-        let t689 = t195 * t173;
-        let t693 = gcross_vx_leg1 * t684 - gcross_vy_leg1 * t686
-            + minus_gcross_vz_leg1 * t689 + gcross_wz_leg1 * t173;
-        let t697 = grod_wz_leg1 * t173 - grod_vy_leg1 * t686;
-        let t698 = t697 * t681;
-        let t702 = t87 * t52 * t95;
-        let t705 = (t154 * t52 - t161 * t702) * t173;
-        let t710 = t130 * t705 - (t27 * t52 + t63 * t702);
-        let t713 = t702 - t128 * t705;
-        let t719 = t61 * t702 - t52 - t195 * t705;
-        let t723 = gcross_vx_leg1 * t710 + gcross_vy_leg1 * t713
-            - minus_gcross_vz_leg1 * t719 + gcross_wz_leg1 * t705;
-        let t727 = grod_vy_leg1 * t713 + grod_wz_leg1 * t705;
-        let t728 = t727 * t681;
-        let t731 = t161 * t95 * t173;
-        let t733 = t95 + t128 * t731;
-        let t737 = t63 * t95 + t130 * t731;
-        let t742 = t61 * t95 + t195 * t731;
-        let t746 = gcross_vy_leg1 * t733 - gcross_vx_leg1 * t737
-            - minus_gcross_vz_leg1 * t742 - gcross_wz_leg1 * t731;
-        let t750 = grod_vy_leg1 * t733 - grod_wz_leg1 * t731;
-        let t751 = t750 * t681;
-        let t753 = t669 + t670;
-        let t755 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t756 = t755 - t673;
-        let t757 = t673 - t756;
-        let t759 = c_rod_leg1 * t753 - s_rod_leg1 * t757;
-        let t762 = 2.972651605231867 * (t459 * t459);
-        let t763 = t668 * t668;
-        let t764 = t762 - t763;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t661;
-        let t777 = t681 + rate_dot_rod_leg1;
-        let t779 = rate_rod_leg1 * rate_rod_leg1;
-        let t782 = s_rod_leg1 * t777 + c_rod_leg1 * (t779 - t762);
-        let t796 = c_rod_leg1 * t756 - t674;
-        let t805 = 1.7241379310344827 * t660;
-        let t822 = 0.26 * t19;
-        let t826 = s_rod_leg1 * (0.26 * s_cross_leg1);
-        let t829 = 0.26 * c_cross_leg1;
-        let t833 = t3 + 0.26 * t443;
-        let t836 = 0.26 * actuator_accelerations[0] - t2;
-        let t838 = s_cross_leg1 * t833 + c_cross_leg1 * t836;
-        let t839 = c_rod_leg1 * t838;
-        let t844 = s_cross_leg1 * t836 - c_cross_leg1 * t833;
-        let t845 = s_rod_leg1 * t844;
-        let t847 = t822 * (t763 + t779) - t826 * t777 - t829 * t757 + t204 * t839
-            - t680 * t845;
-        let t864 = s_rod_leg1 * t838;
-        let t867 = c_rod_leg1 * t844;
-        let t869 = t826 * (t762 + t779) - t822 * (t681 - rate_dot_rod_leg1) - t829 * t753
-            - t204 * t864 - t680 * t867;
-        let t890 = 9.81 * c_arm_leg2;
-        let t891 = 9.81 * s_arm_leg2;
-        let gcross_wz_leg2 = gcross_vy_leg2 * t119 + minus_gcross_vx_leg2 * t121;
-        let t902 = gcross_vy_leg2 * t188 - minus_gcross_vx_leg2 * t176
-            - minus_gcross_vz_leg2 * t197 + gcross_wz_leg2 * t174;
-        let t903 = t119 * t640;
-        let t908 = t121 * t640;
-        let t910 = t652 - t908 - t347;
-        let t911 = t910 - t396;
-        let rate_dot_cross_leg2 = gcross_vy_leg2 * (t903 - t646 - t409 + t408)
-            - minus_gcross_vx_leg2 * t911 - minus_gcross_vz_leg2 * (t642 - t421);
-        let t917 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t918 = c_rod_leg2 * rate_cross_leg2;
-        let t919 = minus_rate_rod_leg2 * t918;
-        let t920 = t917 - t919;
-        let t922 = 1.7241379310344827 * t394;
-        let t923 = minus_rate_rod_leg2 * t922;
-        let t924 = c_rod_leg2 * t923;
-        let t925 = s_rod_leg2 * t920 - t924;
-        let grod_wz_leg2 = minus_grod_vx_leg2 * t121;
-        let t930 = grod_wz_leg2 * t174 - minus_grod_vx_leg2 * t176;
-        let t931 = t922 * t918;
-        let t932 = t930 * t931;
-        let t940 = minus_gcross_vz_leg2 * t689
-            - (minus_gcross_vx_leg2 * t684 + gcross_vy_leg2 * t686)
-            + gcross_wz_leg2 * t173;
-        let t944 = grod_wz_leg2 * t173 - minus_grod_vx_leg2 * t684;
-        let t945 = t944 * t931;
-        let t953 = gcross_vy_leg2 * t713 - minus_gcross_vx_leg2 * t710
-            - minus_gcross_vz_leg2 * t719 + gcross_wz_leg2 * t705;
-        let t957 = grod_wz_leg2 * t705 - minus_grod_vx_leg2 * t710;
-        let t958 = t957 * t931;
-        let t966 = minus_gcross_vx_leg2 * t737 + gcross_vy_leg2 * t733
-            - minus_gcross_vz_leg2 * t742 - gcross_wz_leg2 * t731;
-        let t970 = minus_grod_vx_leg2 * t737 - grod_wz_leg2 * t731;
-        let t971 = t970 * t931;
-        let t973 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t974 = t973 + t923;
-        let t975 = t923 + t974;
-        let t977 = t920 - t919;
-        let t979 = s_rod_leg2 * t975 + c_rod_leg2 * t977;
-        let t982 = 2.972651605231867 * (t394 * t394);
-        let t983 = t918 * t918;
-        let t984 = t982 - t983;
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t911;
-        let t997 = t931 - minus_rate_dot_rod_leg2;
-        let t999 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t1002 = s_rod_leg2 * t997 + c_rod_leg2 * (t999 - t982);
-        let t1016 = t924 + c_rod_leg2 * t974;
-        let t1026 = 1.7241379310344827 * t910;
-        let t1043 = t891 + 0.26 * t400;
-        let t1046 = 0.26 * actuator_accelerations[1] - t890;
-        let t1048 = s_cross_leg2 * t1043 + c_cross_leg2 * t1046;
-        let t1049 = c_rod_leg2 * t1048;
-        let t1053 = s_cross_leg2 * t1046 - c_cross_leg2 * t1043;
-        let t1054 = s_rod_leg2 * t1053;
-        let t1057 = 0.26 * t147;
-        let t1061 = s_rod_leg2 * (0.26 * s_cross_leg2);
-        let t1064 = 0.26 * c_cross_leg2;
-        let t1070 = t1057 * (t983 + t999) - t1061 * t997 + t1064 * t975 + t940 * t1049
-            - t944 * t1054;
-        let t1077 = s_rod_leg2 * t1048;
-        let t1079 = c_rod_leg2 * t1053;
-        let t1092 = t1061 * (t982 + t999) - t1057 * (t931 + minus_rate_dot_rod_leg2)
-            - t1064 * t977 - t940 * t1077 - t944 * t1079;
-        let t1110 = 9.81 * c_arm_leg3;
-        let t1111 = 9.81 * s_arm_leg3;
-        let gcross_wz_leg3 = t103 * gcross_vx_leg3 - t107 * gcross_vy_leg3;
-        let t1122 = gcross_vx_leg3 * t176 + gcross_vy_leg3 * t188 + gcross_vz_leg3 * t197
-            + gcross_wz_leg3 * t174;
-        let t1128 = t458 - (t646 + t658);
-        let t1129 = t1128 - t534;
-        let rate_dot_cross_leg3 = gcross_vx_leg3 * (t652 + t653 + t427 - t528)
-            + gcross_vy_leg3 * t1129 + gcross_vz_leg3 * (t642 - t518);
-        let t1135 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t1136 = c_rod_leg3 * rate_cross_leg3;
-        let t1137 = rate_rod_leg3 * t1136;
-        let t1138 = t1135 + t1137;
-        let t1140 = 1.7241379310344827 * t532;
-        let t1141 = rate_rod_leg3 * t1140;
-        let t1142 = c_rod_leg3 * t1141;
-        let t1143 = s_rod_leg3 * t1138 + t1142;
-        let grod_wz_leg3 = t107 * minus_grod_vy_leg3;
-        let t1148 = grod_wz_leg3 * t174 - minus_grod_vy_leg3 * t188;
-        let t1149 = t1140 * t1136;
-        let t1150 = t1148 * t1149;
-        let t1158 = gcross_vx_leg3 * t684 - gcross_vy_leg3 * t686 - gcross_vz_leg3 * t689
-            + gcross_wz_leg3 * t173;
-        let t1162 = minus_grod_vy_leg3 * t686 + grod_wz_leg3 * t173;
-        let t1163 = t1162 * t1149;
-        let t1171 = gcross_vx_leg3 * t710 + gcross_vy_leg3 * t713 + gcross_vz_leg3 * t719
-            + gcross_wz_leg3 * t705;
-        let t1175 = grod_wz_leg3 * t705 - minus_grod_vy_leg3 * t713;
-        let t1176 = t1175 * t1149;
-        let t1184 = gcross_vy_leg3 * t733 - gcross_vx_leg3 * t737 + gcross_vz_leg3 * t742
-            - gcross_wz_leg3 * t731;
-        let t1188 = minus_grod_vy_leg3 * t733 + grod_wz_leg3 * t731;
-        let t1189 = t1188 * t1149;
-        let t1191 = t1137 + t1138;
-        let t1193 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t1194 = t1193 - t1141;
-        let t1195 = t1141 - t1194;
-        let t1197 = c_rod_leg3 * t1191 - s_rod_leg3 * t1195;
-        let t1200 = 2.972651605231867 * (t532 * t532);
-        let t1201 = t1136 * t1136;
-        let t1202 = t1200 - t1201;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t1129;
-        let t1215 = t1149 - minus_rate_dot_rod_leg3;
-        let t1217 = rate_rod_leg3 * rate_rod_leg3;
-        let t1220 = s_rod_leg3 * t1215 + c_rod_leg3 * (t1217 - t1200);
-        let t1234 = c_rod_leg3 * t1194 - t1142;
-        let t1244 = 1.7241379310344827 * t1128;
-        let t1261 = t1111 + 0.26 * t481;
-        let t1264 = 0.26 * actuator_accelerations[2] - t1110;
-        let t1266 = s_cross_leg3 * t1261 + c_cross_leg3 * t1264;
-        let t1267 = c_rod_leg3 * t1266;
-        let t1271 = s_cross_leg3 * t1264 - c_cross_leg3 * t1261;
-        let t1272 = s_rod_leg3 * t1271;
-        let t1279 = 0.26 * t44;
-        let t1283 = s_rod_leg3 * (0.26 * s_cross_leg3);
-        let t1286 = 0.26 * c_cross_leg3;
-        let t1291 = t1171 * t1267
-            - (t1279 * (t1201 + t1217) + t1283 * t1215 + t1286 * t1195) - t1175 * t1272;
-        let t1295 = s_rod_leg3 * t1266;
-        let t1297 = c_rod_leg3 * t1271;
-        let t1313 = t1279 * (t1149 + minus_rate_dot_rod_leg3) + t1283 * (t1200 + t1217)
-            - t1286 * t1191 - t1171 * t1295 - t1175 * t1297;
-        let t1328 = 9.81 * c_arm_leg4;
-        let t1329 = 9.81 * s_arm_leg4;
-        let minus_gcross_wz_leg4 = t119 * gcross_vy_leg4 + t121 * minus_gcross_vx_leg4;
-        let t1340 = gcross_vy_leg4 * t188 - minus_gcross_vx_leg4 * t176
-            + gcross_vz_leg4 * t197 - minus_gcross_wz_leg4 * t174;
-        let t1346 = t652 + t908 + t347;
-        let t1347 = t1346 - t574;
-        let rate_dot_cross_leg4 = gcross_vy_leg4 * (t409 - (t646 + t903) - t586)
-            - minus_gcross_vx_leg4 * t1347 + gcross_vz_leg4 * (t642 - t598);
-        let t1353 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t1354 = c_rod_leg4 * rate_cross_leg4;
-        let t1355 = rate_rod_leg4 * t1354;
-        let t1356 = t1353 + t1355;
-        let t1358 = 1.7241379310344827 * t562;
-        let t1359 = rate_rod_leg4 * t1358;
-        let t1360 = c_rod_leg4 * t1359;
-        let t1361 = s_rod_leg4 * t1356 + t1360;
-        let grod_wz_leg4 = t121 * grod_vx_leg4;
-        let t1366 = grod_vx_leg4 * t176 + grod_wz_leg4 * t174;
-        let t1367 = t1358 * t1354;
-        let t1368 = t1366 * t1367;
-        let t1376 = minus_gcross_vx_leg4 * t684 + gcross_vy_leg4 * t686
-            + gcross_vz_leg4 * t689 + minus_gcross_wz_leg4 * t173;
-        let t1380 = grod_vx_leg4 * t684 + grod_wz_leg4 * t173;
-        let t1381 = t1380 * t1367;
-        let t1389 = gcross_vy_leg4 * t713 - minus_gcross_vx_leg4 * t710
-            + gcross_vz_leg4 * t719 - minus_gcross_wz_leg4 * t705;
-        let t1393 = grod_vx_leg4 * t710 + grod_wz_leg4 * t705;
-        let t1394 = t1393 * t1367;
-        let t1402 = minus_gcross_vx_leg4 * t737 + gcross_vy_leg4 * t733
-            + gcross_vz_leg4 * t742 + minus_gcross_wz_leg4 * t731;
-        let t1406 = grod_vx_leg4 * t737 + grod_wz_leg4 * t731;
-        let t1407 = t1406 * t1367;
-        let t1409 = t1355 + t1356;
-        let t1411 = c_rod_leg4 * rate_dot_cross_leg4;
-        let t1412 = t1411 - t1359;
-        let t1413 = t1359 - t1412;
-        let t1415 = c_rod_leg4 * t1409 - s_rod_leg4 * t1413;
-        let t1418 = 2.972651605231867 * (t562 * t562);
-        let t1419 = t1354 * t1354;
-        let t1420 = t1418 - t1419;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t1347;
-        let t1433 = t1367 + rate_dot_rod_leg4;
-        let t1435 = rate_rod_leg4 * rate_rod_leg4;
-        let t1438 = s_rod_leg4 * t1433 + c_rod_leg4 * (t1435 - t1418);
-        let t1452 = c_rod_leg4 * t1412 - t1360;
-        let t1461 = 1.7241379310344827 * t1346;
-        let t1479 = t1329 + 0.26 * t578;
-        let t1482 = 0.26 * actuator_accelerations[3] - t1328;
-        let t1484 = s_cross_leg4 * t1479 + c_cross_leg4 * t1482;
-        let t1485 = c_rod_leg4 * t1484;
-        let t1489 = s_cross_leg4 * t1482 - c_cross_leg4 * t1479;
-        let t1490 = s_rod_leg4 * t1489;
-        let t1500 = 0.26 * t80;
-        let t1504 = s_rod_leg4 * (0.26 * s_cross_leg4);
-        let t1507 = 0.26 * c_cross_leg4;
-        let t1512 = t1402 * t1485
-            - (t1500 * (t1419 + t1435) + t1504 * t1433 + t1507 * t1413) + t1406 * t1490;
-        let t1513 = s_rod_leg4 * t1484;
-        let t1515 = c_rod_leg4 * t1489;
-        let t1534 = t1500 * (t1367 - rate_dot_rod_leg4) + t1504 * (t1418 + t1435)
-            - t1507 * t1409 - t1402 * t1513 + t1406 * t1515;
-        let t1551 = t345 * t345;
-        let t1553 = c_phi * t640 - s_phi * t1551;
-        let t1557 = c_phi * t1551 + s_phi * t640;
-        let t1562 = s_phi * t652 + c_phi * t646;
-        let t1585 = c_phi * t652 - s_phi * t646;
-        let t1606 = t642 + 9.81;
+            + garm_vz_leg3 * actuator_velocities[2]
+            + garm_vz_leg4 * actuator_velocities[3] - t316 * t334 - t337 * t318;
+        let t375 = garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * garm_wz_leg2
+            + garm_vx_leg3 * garm_wz_leg3 + garm_vx_leg4 * garm_wz_leg4;
+        let t376 = t375 * t281;
+        let t387 = garm_vy_leg1 * garm_wz_leg1 + garm_vy_leg2 * garm_wz_leg2
+            + garm_vy_leg3 * garm_wz_leg3 + garm_vy_leg4 * garm_wz_leg4 - t298 * t376;
+        let t388 = t387 * t302;
+        let t390 = garm_vz_leg1 * garm_wz_leg1 + garm_vz_leg2 * garm_wz_leg2
+            + garm_vz_leg3 * garm_wz_leg3 + garm_vz_leg4 * garm_wz_leg4 - t333 * t376
+            - t336 * t388;
+        let t391 = t390 * t349;
+        let t402 = garm_wz_leg1 * garm_wz_leg1 + garm_wz_leg2 * garm_wz_leg2
+            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t375 * t376
+            - t387 * t388;
+        let t404 = t402 - t390 * t391;
+        ::overact::guard::platform(t404, 0.35106548211906174, "actuators")?;
+        ::overact::guard::platform(t404, 0.35106548211906174, "actuators")?;
+        let t405 = 1.0 / t404;
+        let t416 = garm_wz_leg1 * actuator_velocities[0]
+            + garm_wz_leg2 * actuator_velocities[1]
+            + garm_wz_leg3 * actuator_velocities[2]
+            + garm_wz_leg4 * actuator_velocities[3] - t316 * t376 - t388 * t318;
+        let t419 = t405 * (t416 - t391 * t360);
+        let t421 = t349 * t360 - t391 * t419;
+        let t425 = t302 * t318 - t337 * t421 - t388 * t419;
+        let t426 = t4 * t419;
+        let t427 = t425 + t426;
+        let rate_rod_leg1 = grod_vy_leg1 * t427;
+        let t429 = s_armcross_leg1 * rate_rod_leg1;
+        let t437 = t316 * t281 - t299 * t425 - t334 * t421 - t376 * t419;
+        let t438 = t15 * t419;
+        let minus_rate_cross_leg1 = minus_gcross_vx_leg1 * (t437 - t438)
+            + minus_gcross_vy_leg1 * t427 + minus_gcross_vz_leg1 * t421;
+        let t445 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t447 = c_armcross_leg1 * rate_rod_leg1;
+        let t449 = t429 * t429 + t445 + t447 * t447;
+        let t453 = t16 * (minus_rate_cross_leg1 * t429);
+        let t455 = t66 * t282 + t68 * t449 + t453 + t453;
+        let t456 = t419 * t426;
+        let t459 = t419 * t438;
+        let t460 = t16 * minus_rate_cross_leg1;
+        let t463 = minus_rate_cross_leg1 * t460 - t16 * t449;
+        let t471 = t16 * (minus_rate_cross_leg1 * t447);
+        let t473 = t80 * t282 + t81 * t449 + t471 + t471;
+        let rate_dot_arm_leg1 = garm_vx_leg1 * (t455 - t456)
+            - garm_vy_leg1 * (t459 + t463) + garm_vz_leg1 * t473;
+        let t476 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t478 = actuator_velocities[1] * actuator_velocities[1];
+        let t480 = 0.52 * t118;
+        let minus_s_rod_leg2 = 1.7241379310344827 * t102;
+        let t485 = 1.0 - 2.972651605231867 * t103;
+        ::overact::guard::reach(t485, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t485);
+        ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
+        let c_cross_leg2 = (t105 - (0.0676 + t103) - 0.3364 * t485)
+            / (0.3016 * c_rod_leg2);
+        let s_cross_leg2 = 1.9230769230769231 * t112 / (0.58 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t498 = 1.0 / c_rod_leg2;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let minus_gcross_vx_leg2 = t480
+            * (c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t498)
+                - minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t498));
+        let t509 = t94 * t419;
+        let t510 = t437 - t509;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t480;
+        let t513 = t101 * t419;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t480;
+        let minus_rate_cross_leg2 = minus_gcross_vx_leg2 * t510
+            + minus_gcross_vy_leg2 * (t425 + t513) + minus_gcross_vz_leg2 * t421;
+        let t520 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let minus_grod_vx_leg2 = 1.7241379310344827 * t498;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t510;
+        let t523 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t526 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t528 = t520 + t523 * t523 + t526 * t526;
+        let t532 = t102 * (minus_rate_cross_leg2 * t523);
+        let t534 = t131 * t478 + t133 * t528 + t532 + t532;
+        let t535 = t419 * t509;
+        let t538 = t419 * t513;
+        let t539 = t102 * minus_rate_cross_leg2;
+        let t542 = minus_rate_cross_leg2 * t539 - t102 * t528;
+        let t550 = t102 * (minus_rate_cross_leg2 * t526);
+        let t552 = t116 * t478 + t117 * t528 + t550 + t550;
+        let rate_dot_arm_leg2 = garm_vy_leg2 * (t534 - t535)
+            - garm_vx_leg2 * (t538 + t542) + garm_vz_leg2 * t552;
+        let t555 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t558 = actuator_velocities[2] * actuator_velocities[2];
+        let t563 = 1.0 - 2.972651605231867 * t48;
+        ::overact::guard::reach(t563, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t563);
+        ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
+        let c_cross_leg3 = (t50 - (0.0676 + t48) - 0.3364 * t563)
+            / (0.3016 * c_rod_leg3);
+        let s_cross_leg3 = 1.9230769230769231 * t56 / (0.58 * c_rod_leg3);
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t575 = 1.0 / c_rod_leg3;
+        let minus_grod_vy_leg3 = 1.7241379310344827 * t575;
+        let t577 = t425 - t426;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t577;
+        let t579 = s_armcross_leg3 * minus_rate_rod_leg3;
+        let t581 = 0.52 * t63;
+        let gcross_vz_leg3 = s_arm_leg3 * t581;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t581;
+        let minus_s_rod_leg3 = 1.7241379310344827 * t47;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t581
+            * (minus_c_arm_leg3 * (minus_s_rod_leg3 * minus_c_armcross_leg3 * t575)
+                + s_arm_leg3 * (minus_s_rod_leg3 * s_armcross_leg3 * t575));
+        let rate_cross_leg3 = gcross_vz_leg3 * t421
+            - (minus_gcross_vx_leg3 * (t437 + t438) + minus_gcross_vy_leg3 * t577);
+        let t602 = rate_cross_leg3 * rate_cross_leg3;
+        let t604 = minus_c_armcross_leg3 * minus_rate_rod_leg3;
+        let t606 = t579 * t579 + t602 + t604 * t604;
+        let t610 = t47 * (rate_cross_leg3 * t579);
+        let t612 = t60 * t558 + t62 * t606 + t610 + t610;
+        let t615 = t47 * rate_cross_leg3;
+        let t618 = rate_cross_leg3 * t615 - t47 * t606;
+        let t626 = t47 * (rate_cross_leg3 * t604);
+        let t628 = t77 * t558 - t78 * t606 - t626 - t626;
+        let rate_dot_arm_leg3 = garm_vx_leg3 * (t456 + t612)
+            + garm_vy_leg3 * (t459 - t618) - garm_vz_leg3 * t628;
+        let t631 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t634 = 0.52 * t185;
+        let gcross_vz_leg4 = s_arm_leg4 * t634;
+        let s_rod_leg4 = 1.7241379310344827 * t170;
+        let t641 = 1.0 - 2.972651605231867 * t171;
+        ::overact::guard::reach(t641, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t641);
+        ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
+        let c_cross_leg4 = (t173 - (0.0676 + t171) - 0.3364 * t641)
+            / (0.3016 * c_rod_leg4);
+        let s_cross_leg4 = 1.9230769230769231 * t178 / (0.58 * c_rod_leg4);
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let t654 = 1.0 / c_rod_leg4;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t634
+            * (minus_c_arm_leg4 * (s_rod_leg4 * minus_c_armcross_leg4 * t654)
+                + s_arm_leg4 * (s_rod_leg4 * s_armcross_leg4 * t654));
+        let t665 = t437 + t509;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t634;
+        let rate_cross_leg4 = gcross_vz_leg4 * t421
+            - (minus_gcross_vx_leg4 * t665 + minus_gcross_vy_leg4 * (t425 - t513));
+        let t672 = t170 * rate_cross_leg4;
+        let t674 = rate_cross_leg4 * rate_cross_leg4;
+        let grod_vx_leg4 = 1.7241379310344827 * t654;
+        let rate_rod_leg4 = grod_vx_leg4 * t665;
+        let t677 = s_armcross_leg4 * rate_rod_leg4;
+        let t680 = minus_c_armcross_leg4 * rate_rod_leg4;
+        let t682 = t674 + t677 * t677 + t680 * t680;
+        let t684 = rate_cross_leg4 * t672 - t170 * t682;
+        let t687 = actuator_velocities[3] * actuator_velocities[3];
+        let t692 = t170 * (rate_cross_leg4 * t677);
+        let t694 = t198 * t687 + t200 * t682 + t692 + t692;
+        let t702 = t170 * (rate_cross_leg4 * t680);
+        let t704 = t183 * t687 - t184 * t682 - t702 - t702;
+        let rate_dot_arm_leg4 = garm_vx_leg4 * (t538 - t684)
+            + garm_vy_leg4 * (t535 + t694) - garm_vz_leg4 * t704;
+        let t707 = actuator_accelerations[3] - rate_dot_arm_leg4;
+        let t709 = garm_vx_leg1 * t476 + garm_vx_leg2 * t555 + garm_vx_leg3 * t631
+            + garm_vx_leg4 * t707;
+        let t719 = garm_vy_leg1 * t476 + garm_vy_leg2 * t555 + garm_vy_leg3 * t631
+            + garm_vy_leg4 * t707 - t299 * t709;
+        let t731 = garm_vz_leg1 * t476 + garm_vz_leg2 * t555 + garm_vz_leg3 * t631
+            + garm_vz_leg4 * t707 - t334 * t709 - t337 * t719;
+        let t743 = garm_wz_leg1 * t476 + garm_wz_leg2 * t555 + garm_wz_leg3 * t631
+            + garm_wz_leg4 * t707 - t376 * t709 - t388 * t719;
+        let t746 = t405 * (t743 - t391 * t731);
+        let t748 = t349 * t731 - t391 * t746;
+        let t752 = t302 * t719 - t337 * t748 - t388 * t746;
+        let t758 = t281 * t709 - t299 * t752 - t334 * t748 - t376 * t746;
+        let t759 = t15 * t746;
+        let t764 = t4 * t746;
+        let t766 = t752 + t764 - t459;
+        let t767 = t766 - t463;
+        let minus_rate_dot_cross_leg1 = minus_gcross_vx_leg1
+            * (t758 - t759 - t456 + t455) + minus_gcross_vy_leg1 * t767
+            + minus_gcross_vz_leg1 * (t748 + t473);
+        let t773 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t774 = c_rod_leg1 * minus_rate_cross_leg1;
+        let t775 = rate_rod_leg1 * t774;
+        let t776 = t773 + t775;
+        let t778 = 1.7241379310344827 * t460;
+        let t779 = rate_rod_leg1 * t778;
+        let t780 = c_rod_leg1 * t779;
+        let t781 = s_rod_leg1 * t776 + t780;
+        let grod_wz_leg1 = t4 * grod_vy_leg1;
+        let t786 = grod_vy_leg1 * t265 + grod_wz_leg1 * t218;
+        let t787 = t778 * t774;
+        let t788 = t786 * t787;
+        let t791 = t205 * t139 * t217;
+        let t794 = t232 * t791 - t226 * t139;
+        let t797 = t139 + t160 * t791;
+        let t802 = t162 * t791 - t93 * t139;
+        let t806 = minus_gcross_vx_leg1 * t794 + minus_gcross_vy_leg1 * t797
+            + minus_gcross_vz_leg1 * t802 + gcross_wz_leg1 * t791;
+        let t810 = grod_vy_leg1 * t797 - grod_wz_leg1 * t791;
+        let t811 = t810 * t787;
+        let t814 = t123 * t86 * t139;
+        let t818 = (t205 * t814 - t190 * t86) * t217;
+        let t820 = t814 + t160 * t818;
+        let t826 = t226 * t814 - t83 * t86 - t232 * t818;
+        let t832 = t86 + t93 * t814 - t162 * t818;
+        let t836 = minus_gcross_vy_leg1 * t820 - minus_gcross_vx_leg1 * t826
+            - minus_gcross_vz_leg1 * t832 + gcross_wz_leg1 * t818;
+        let t840 = grod_wz_leg1 * t818 - grod_vy_leg1 * t820;
+        let t841 = t840 * t787;
+        let t843 = t232 * t217;
+        let t845 = t160 * t217;
+        let t848 = t162 * t217;
+        let t852 = minus_gcross_vx_leg1 * t843 + minus_gcross_vy_leg1 * t845
+            + minus_gcross_vz_leg1 * t848 + gcross_wz_leg1 * t217;
+        let t856 = grod_wz_leg1 * t217 - grod_vy_leg1 * t845;
+        let t857 = t856 * t787;
+        let t859 = c_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t860 = t779 - t859;
+        let t861 = t779 + t860;
+        let t863 = t775 + t776;
+        let t865 = s_rod_leg1 * t861 - c_rod_leg1 * t863;
+        let t868 = 2.972651605231867 * (t460 * t460);
+        let t869 = t774 * t774;
+        let t870 = t868 - t869;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t767;
+        let t883 = t787 + rate_dot_rod_leg1;
+        let t885 = rate_rod_leg1 * rate_rod_leg1;
+        let t888 = s_rod_leg1 * t883 + c_rod_leg1 * (t885 - t868);
+        let t902 = t780 + c_rod_leg1 * t860;
+        let t911 = 1.7241379310344827 * t766;
+        let t928 = 0.26 * c_cross_leg1;
+        let t930 = 0.8620689655172413 * t26;
+        let t934 = 0.4482758620689655 * (t16 * s_cross_leg1);
+        let t939 = 0.26 * actuator_accelerations[0] - t30;
+        let t942 = t35 - 0.26 * t282;
+        let t944 = c_cross_leg1 * t939 - s_cross_leg1 * t942;
+        let t945 = c_rod_leg1 * t944;
+        let t950 = c_cross_leg1 * t942 + s_cross_leg1 * t939;
+        let t951 = s_rod_leg1 * t950;
+        let t953 = t928 * t861 - (t930 * (t869 + t885) + t934 * t883) + t273 * t945
+            - t786 * t951;
+        let t970 = s_rod_leg1 * t944;
+        let t973 = c_rod_leg1 * t950;
+        let t975 = t930 * (t787 - rate_dot_rod_leg1) + t934 * (t868 + t885) + t928 * t863
+            - t273 * t970 - t786 * t973;
+        let t996 = 9.81 * c_arm_leg2;
+        let t997 = 9.81 * minus_s_arm_leg2;
+        let grod_wz_leg2 = t94 * minus_grod_vx_leg2;
+        let t1002 = grod_wz_leg2 * t218 - minus_grod_vx_leg2 * t234;
+        let t1003 = 1.7241379310344827 * t539;
+        let t1004 = c_rod_leg2 * minus_rate_cross_leg2;
+        let t1005 = t1003 * t1004;
+        let t1006 = t1002 * t1005;
+        let gcross_wz_leg2 = t94 * minus_gcross_vx_leg2 - t101 * minus_gcross_vy_leg2;
+        let t1016 = minus_gcross_vz_leg2 * t220
+            - (minus_gcross_vx_leg2 * t234 + minus_gcross_vy_leg2 * t265)
+            + gcross_wz_leg2 * t218;
+        let t1017 = t94 * t746;
+        let t1019 = t758 - t1017 - t538;
+        let t1020 = t1019 - t542;
+        let t1022 = t101 * t746;
+        let minus_rate_dot_cross_leg2 = minus_gcross_vx_leg2 * t1020
+            + minus_gcross_vy_leg2 * (t752 + t1022 - t535 + t534)
+            + minus_gcross_vz_leg2 * (t748 + t552);
+        let t1031 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t1032 = minus_rate_rod_leg2 * t1004;
+        let t1033 = t1031 + t1032;
+        let t1035 = minus_rate_rod_leg2 * t1003;
+        let t1036 = c_rod_leg2 * t1035;
+        let t1037 = minus_s_rod_leg2 * t1033 + t1036;
+        let t1046 = minus_gcross_vx_leg2 * t794 + minus_gcross_vy_leg2 * t797
+            + minus_gcross_vz_leg2 * t802 + gcross_wz_leg2 * t791;
+        let t1050 = minus_grod_vx_leg2 * t794 + grod_wz_leg2 * t791;
+        let t1051 = t1050 * t1005;
+        let t1055 = grod_wz_leg2 * t818 - minus_grod_vx_leg2 * t826;
+        let t1056 = t1055 * t1005;
+        let t1063 = minus_gcross_vy_leg2 * t820 - minus_gcross_vx_leg2 * t826
+            - minus_gcross_vz_leg2 * t832 + gcross_wz_leg2 * t818;
+        let t1068 = minus_grod_vx_leg2 * t843 + grod_wz_leg2 * t217;
+        let t1069 = t1068 * t1005;
+        let t1076 = minus_gcross_vx_leg2 * t843 + minus_gcross_vy_leg2 * t845
+            + minus_gcross_vz_leg2 * t848 + gcross_wz_leg2 * t217;
+        let t1079 = t1032 + t1033;
+        let t1081 = c_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t1082 = t1035 - t1081;
+        let t1083 = t1035 + t1082;
+        let t1085 = c_rod_leg2 * t1079 - minus_s_rod_leg2 * t1083;
+        let t1088 = 2.972651605231867 * (t539 * t539);
+        let t1089 = t1004 * t1004;
+        let t1090 = t1088 - t1089;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t1020;
+        let t1103 = t1005 + minus_rate_dot_rod_leg2;
+        let t1105 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t1108 = minus_s_rod_leg2 * t1103 + c_rod_leg2 * (t1105 - t1088);
+        let t1122 = t1036 + c_rod_leg2 * t1082;
+        let t1131 = 1.7241379310344827 * t1019;
+        let t1149 = 0.26 * actuator_accelerations[1] - t996;
+        let t1152 = t997 - 0.26 * t478;
+        let t1154 = c_cross_leg2 * t1149 - s_cross_leg2 * t1152;
+        let t1155 = c_rod_leg2 * t1154;
+        let t1159 = c_cross_leg2 * t1152 + s_cross_leg2 * t1149;
+        let t1160 = minus_s_rod_leg2 * t1159;
+        let t1163 = 0.26 * c_cross_leg2;
+        let t1165 = 0.8620689655172413 * t112;
+        let t1169 = 0.4482758620689655 * (t102 * s_cross_leg2);
+        let t1176 = t1163 * t1083 - (t1165 * (t1089 + t1105) + t1169 * t1103)
+            - t1046 * t1155 - t1050 * t1160;
+        let t1183 = minus_s_rod_leg2 * t1154;
+        let t1185 = c_rod_leg2 * t1159;
+        let t1198 = t1165 * (minus_rate_dot_rod_leg2 - t1005) - t1169 * (t1088 + t1105)
+            - t1163 * t1079 - t1046 * t1183 + t1050 * t1185;
+        let t1216 = 9.81 * minus_c_arm_leg3;
+        let t1217 = 9.81 * s_arm_leg3;
+        let gcross_wz_leg3 = t4 * minus_gcross_vy_leg3 - t15 * minus_gcross_vx_leg3;
+        let t1228 = gcross_wz_leg3 * t218
+            - (minus_gcross_vx_leg3 * t234 + minus_gcross_vy_leg3 * t265
+                + gcross_vz_leg3 * t220);
+        let t1236 = t752 - t764 + t459;
+        let t1237 = t1236 - t618;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * (t748 - t628)
+            - (minus_gcross_vx_leg3 * (t758 + t759 + t456 + t612)
+                + minus_gcross_vy_leg3 * t1237);
+        let t1241 = minus_s_rod_leg3 * rate_dot_cross_leg3;
+        let t1242 = c_rod_leg3 * rate_cross_leg3;
+        let t1243 = minus_rate_rod_leg3 * t1242;
+        let t1244 = t1241 + t1243;
+        let t1246 = 1.7241379310344827 * t615;
+        let t1247 = minus_rate_rod_leg3 * t1246;
+        let t1248 = c_rod_leg3 * t1247;
+        let t1249 = minus_s_rod_leg3 * t1244 + t1248;
+        let grod_wz_leg3 = t4 * minus_grod_vy_leg3;
+        let t1254 = grod_wz_leg3 * t218 - minus_grod_vy_leg3 * t265;
+        let t1255 = t1246 * t1242;
+        let t1256 = t1254 * t1255;
+        let t1264 = gcross_vz_leg3 * t802
+            - (minus_gcross_vx_leg3 * t794 + minus_gcross_vy_leg3 * t797)
+            - gcross_wz_leg3 * t791;
+        let t1268 = minus_grod_vy_leg3 * t797 + grod_wz_leg3 * t791;
+        let t1269 = t1268 * t1255;
+        let t1277 = minus_gcross_vy_leg3 * t820 - minus_gcross_vx_leg3 * t826
+            + gcross_vz_leg3 * t832 + gcross_wz_leg3 * t818;
+        let t1281 = minus_grod_vy_leg3 * t820 + grod_wz_leg3 * t818;
+        let t1282 = t1281 * t1255;
+        let t1290 = minus_gcross_vx_leg3 * t843 + minus_gcross_vy_leg3 * t845
+            - gcross_vz_leg3 * t848 + gcross_wz_leg3 * t217;
+        let t1294 = minus_grod_vy_leg3 * t845 + grod_wz_leg3 * t217;
+        let t1295 = t1294 * t1255;
+        let t1297 = c_rod_leg3 * rate_dot_cross_leg3;
+        let t1298 = t1297 - t1247;
+        let t1299 = t1247 - t1298;
+        let t1301 = t1243 + t1244;
+        let t1303 = minus_s_rod_leg3 * t1299 - c_rod_leg3 * t1301;
+        let t1306 = 2.972651605231867 * (t615 * t615);
+        let t1307 = t1242 * t1242;
+        let t1308 = t1306 - t1307;
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t1237;
+        let t1321 = t1255 + minus_rate_dot_rod_leg3;
+        let t1323 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t1326 = minus_s_rod_leg3 * t1321 + c_rod_leg3 * (t1323 - t1306);
+        let t1340 = c_rod_leg3 * t1298 - t1248;
+        let t1350 = 1.7241379310344827 * t1236;
+        let t1367 = t1217 + 0.26 * t558;
+        let t1370 = t1216 + 0.26 * actuator_accelerations[2];
+        let t1372 = s_cross_leg3 * t1367 + c_cross_leg3 * t1370;
+        let t1373 = c_rod_leg3 * t1372;
+        let t1377 = s_cross_leg3 * t1370 - c_cross_leg3 * t1367;
+        let t1378 = minus_s_rod_leg3 * t1377;
+        let t1385 = 0.8620689655172413 * t56;
+        let t1389 = 0.4482758620689655 * (t47 * s_cross_leg3);
+        let t1392 = 0.26 * c_cross_leg3;
+        let t1397 = t1277 * t1373
+            - (t1385 * (t1307 + t1323) + t1389 * t1321 + t1392 * t1299) + t1281 * t1378;
+        let t1401 = minus_s_rod_leg3 * t1372;
+        let t1403 = c_rod_leg3 * t1377;
+        let t1419 = t1385 * (minus_rate_dot_rod_leg3 - t1255) - t1389 * (t1306 + t1323)
+            + t1392 * t1301 + t1277 * t1401 - t1281 * t1403;
+        let t1434 = 9.81 * minus_c_arm_leg4;
+        let t1435 = 9.81 * s_arm_leg4;
+        let gcross_wz_leg4 = t101 * minus_gcross_vy_leg4 - t94 * minus_gcross_vx_leg4;
+        let t1446 = gcross_wz_leg4 * t218
+            - (minus_gcross_vx_leg4 * t234 + minus_gcross_vy_leg4 * t265
+                + gcross_vz_leg4 * t220);
+        let t1450 = t758 + t1017 + t538;
+        let t1451 = t1450 - t684;
+        let rate_dot_cross_leg4 = gcross_vz_leg4 * (t748 - t704)
+            - (minus_gcross_vx_leg4 * t1451
+                + minus_gcross_vy_leg4 * (t752 - t1022 + t535 + t694));
+        let t1459 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t1460 = c_rod_leg4 * rate_cross_leg4;
+        let t1461 = rate_rod_leg4 * t1460;
+        let t1462 = t1459 + t1461;
+        let t1464 = 1.7241379310344827 * t672;
+        let t1465 = rate_rod_leg4 * t1464;
+        let t1466 = c_rod_leg4 * t1465;
+        let t1467 = s_rod_leg4 * t1462 + t1466;
+        let grod_wz_leg4 = t94 * grod_vx_leg4;
+        let t1472 = grod_vx_leg4 * t234 + grod_wz_leg4 * t218;
+        let t1473 = t1464 * t1460;
+        let t1474 = t1472 * t1473;
+        let t1482 = gcross_vz_leg4 * t802
+            - (minus_gcross_vx_leg4 * t794 + minus_gcross_vy_leg4 * t797)
+            - gcross_wz_leg4 * t791;
+        let t1486 = grod_vx_leg4 * t794 - grod_wz_leg4 * t791;
+        let t1487 = t1486 * t1473;
+        let t1495 = minus_gcross_vy_leg4 * t820 - minus_gcross_vx_leg4 * t826
+            + gcross_vz_leg4 * t832 + gcross_wz_leg4 * t818;
+        let t1499 = grod_vx_leg4 * t826 + grod_wz_leg4 * t818;
+        let t1500 = t1499 * t1473;
+        let t1508 = minus_gcross_vx_leg4 * t843 + minus_gcross_vy_leg4 * t845
+            - gcross_vz_leg4 * t848 + gcross_wz_leg4 * t217;
+        let t1512 = grod_wz_leg4 * t217 - grod_vx_leg4 * t843;
+        let t1513 = t1512 * t1473;
+        let t1515 = t1461 + t1462;
+        let t1517 = c_rod_leg4 * rate_dot_cross_leg4;
+        let t1518 = t1517 - t1465;
+        let t1519 = t1465 - t1518;
+        let t1521 = c_rod_leg4 * t1515 - s_rod_leg4 * t1519;
+        let t1524 = 2.972651605231867 * (t672 * t672);
+        let t1525 = t1460 * t1460;
+        let t1526 = t1524 - t1525;
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t1451;
+        let t1539 = t1473 + rate_dot_rod_leg4;
+        let t1541 = rate_rod_leg4 * rate_rod_leg4;
+        let t1544 = s_rod_leg4 * t1539 + c_rod_leg4 * (t1541 - t1524);
+        let t1558 = c_rod_leg4 * t1518 - t1466;
+        let t1567 = 1.7241379310344827 * t1450;
+        let t1585 = t1435 + 0.26 * t687;
+        let t1588 = t1434 + 0.26 * actuator_accelerations[3];
+        let t1590 = s_cross_leg4 * t1585 + c_cross_leg4 * t1588;
+        let t1591 = c_rod_leg4 * t1590;
+        let t1595 = s_cross_leg4 * t1588 - c_cross_leg4 * t1585;
+        let t1596 = s_rod_leg4 * t1595;
+        let t1606 = 0.8620689655172413 * t178;
+        let t1610 = 0.4482758620689655 * (t170 * s_cross_leg4);
+        let t1613 = 0.26 * c_cross_leg4;
+        let t1618 = t1508 * t1591
+            - (t1606 * (t1525 + t1541) + t1610 * t1539 + t1613 * t1519) - t1512 * t1596;
+        let t1619 = s_rod_leg4 * t1590;
+        let t1621 = c_rod_leg4 * t1595;
+        let t1640 = t1606 * (t1473 - rate_dot_rod_leg4) + t1610 * (t1524 + t1541)
+            - t1613 * t1515 - t1508 * t1619 - t1512 * t1621;
+        let t1657 = t419 * t419;
+        let t1659 = c_phi * t746 - s_phi * t1657;
+        let t1663 = c_phi * t1657 + s_phi * t746;
+        let t1668 = c_phi * t752 - s_phi * t758;
+        let t1691 = c_phi * t758 + s_phi * t752;
+        let t1712 = t748 + 9.81;
         Ok([
             [
-                actuator_accelerations[0], -t2, t3, actuator_accelerations[0],
+                actuator_accelerations[0], -t30, -t35, actuator_accelerations[0],
                 actuator_velocities[0], ::overact::math::sign(actuator_velocities[0]), 1.0,
-                t204 * t675 - t682, t204 * t759 + t680 * t764, t204 * t782 + t680 * t667,
-                t204 * t796 + t682, t204 * t805 + t680 * t755, t680 * rate_dot_rod_leg1, t847, t869,
-                t826 * t667 - t822 * t755 + t447 * t829 + t204 * t844, 0.26 * t836, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, t902 * t925 - t932, t902 * t979 + t930 * t984,
-                t902 * t1002 + t930 * t917, t902 * t1016 + t932, t930 * t973 - t902 * t1026,
-                -(t930 * minus_rate_dot_rod_leg2), t902 * t1049 - t930 * t1054,
-                -(t902 * t1077 + t930 * t1079), t902 * t1053, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, t1122 * t1143 - t1150, t1122 * t1197 + t1148 * t1202,
-                t1122 * t1220 + t1148 * t1135, t1122 * t1234 + t1150, t1148 * t1193 - t1122 * t1244,
-                -(t1148 * minus_rate_dot_rod_leg3), t1122 * t1267 - t1148 * t1272,
-                -(t1122 * t1295 + t1148 * t1297), t1122 * t1271, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, t1340 * t1361 - t1368, t1340 * t1415 + t1366 * t1420,
-                t1340 * t1438 + t1366 * t1353, t1340 * t1452 + t1368, t1340 * t1461 + t1366 * t1411,
-                t1366 * rate_dot_rod_leg4, t1340 * t1485 - t1366 * t1490,
-                -(t1340 * t1513 + t1366 * t1515), t1340 * t1489, 0.0, t174 * t640,
-                t188 * t1553 - t176 * t1557 - t174 * t1562,
-                -(t176 * t1553 + t188 * t1557 + t174 * t1585),
-                t176 * t652 - t188 * t646 + t197 * t1606,
+                -(t273 * t781 + t788), t273 * t865 + t786 * t870, t273 * t888 - t786 * t773,
+                t273 * t902 + t788, t273 * t911 - t786 * t859, t786 * rate_dot_rod_leg1, t953, t975,
+                t445 * t928 - (t930 * t859 + t934 * t773) + t273 * t950, 0.26 * t939, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, t1006 - t1016 * t1037, t1016 * t1085 + t1002 * t1090,
+                t1016 * t1108 + t1002 * t1031, t1016 * t1122 - t1006,
+                -(t1016 * t1131 + t1002 * t1081), -(t1002 * minus_rate_dot_rod_leg2),
+                t1016 * t1155 + t1002 * t1160, t1016 * t1183 - t1002 * t1185, t1016 * t1159, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1228 * t1249 + t1256,
+                t1228 * t1303 + t1254 * t1308, t1228 * t1326 - t1254 * t1241, t1228 * t1340 - t1256,
+                t1254 * t1297 - t1228 * t1350, -(t1254 * minus_rate_dot_rod_leg3),
+                t1228 * t1373 + t1254 * t1378, t1228 * t1401 - t1254 * t1403, t1228 * t1377, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1446 * t1467 - t1474,
+                t1446 * t1521 + t1472 * t1526, t1446 * t1544 + t1472 * t1459, t1446 * t1558 + t1474,
+                t1446 * t1567 + t1472 * t1517, t1472 * rate_dot_rod_leg4,
+                t1446 * t1591 - t1472 * t1596, -(t1446 * t1619 + t1472 * t1621), t1446 * t1595, 0.0,
+                t218 * t746, t265 * t1659 - t234 * t1663 + t218 * t1668,
+                -(t234 * t1659 + t265 * t1663 + t218 * t1691),
+                t234 * t758 + t265 * t752 - t220 * t1712,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t693 * t675 - t698, t693 * t759 + t697 * t764,
-                t693 * t782 + t697 * t667, t693 * t796 + t698, t693 * t805 + t697 * t755,
-                t697 * rate_dot_rod_leg1, t693 * t839 - t697 * t845, -(t693 * t864 + t697 * t867),
-                t693 * t844, 0.0, actuator_accelerations[1], -t890, t891, actuator_accelerations[1],
-                actuator_velocities[1], ::overact::math::sign(actuator_velocities[1]), 1.0,
-                t940 * t925 - t945, t940 * t979 + t944 * t984, t940 * t1002 + t944 * t917,
-                t940 * t1016 + t945, t944 * t973 - t940 * t1026, -(t944 * minus_rate_dot_rod_leg2),
-                t1070, t1092, t1061 * t917 - t1057 * t973 + t384 * t1064 + t940 * t1053,
-                0.26 * t1046, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1158 * t1143 - t1163,
-                t1158 * t1197 + t1162 * t1202, t1158 * t1220 + t1162 * t1135, t1158 * t1234 + t1163,
-                t1162 * t1193 - t1158 * t1244, -(t1162 * minus_rate_dot_rod_leg3),
-                t1158 * t1267 - t1162 * t1272, -(t1158 * t1295 + t1162 * t1297), t1158 * t1271, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t1376 * t1361 + t1381),
-                t1380 * t1420 - t1376 * t1415, t1380 * t1353 - t1376 * t1438, t1381 - t1376 * t1452,
-                t1380 * t1411 - t1376 * t1461, t1380 * rate_dot_rod_leg4,
-                -(t1376 * t1485 + t1380 * t1490), t1376 * t1513 - t1380 * t1515, -(t1376 * t1489),
-                0.0, t173 * t640, -(t684 * t1557 + t686 * t1553 + t173 * t1562),
-                t686 * t1557 - t684 * t1553 - t173 * t1585,
-                t684 * t652 + t686 * t646 - t689 * t1606,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t806 * t781 - t811, t810 * t870 - t806 * t865,
+                -(t806 * t888 + t810 * t773), t811 - t806 * t902, -(t806 * t911 + t810 * t859),
+                t810 * rate_dot_rod_leg1, -(t806 * t945 + t810 * t951), t806 * t970 - t810 * t973,
+                -(t806 * t950), 0.0, actuator_accelerations[1], -t996, -t997,
+                actuator_accelerations[1], actuator_velocities[1],
+                ::overact::math::sign(actuator_velocities[1]), 1.0, t1046 * t1037 - t1051,
+                -(t1046 * t1085 + t1050 * t1090), -(t1046 * t1108 + t1050 * t1031),
+                t1051 - t1046 * t1122, t1046 * t1131 + t1050 * t1081,
+                t1050 * minus_rate_dot_rod_leg2, t1176, t1198,
+                t520 * t1163 - (t1165 * t1081 + t1169 * t1031) - t1046 * t1159, 0.26 * t1149, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1264 * t1249 - t1269, t1264 * t1303 - t1268 * t1308,
+                t1264 * t1326 + t1268 * t1241, t1264 * t1340 + t1269,
+                -(t1264 * t1350 + t1268 * t1297), t1268 * minus_rate_dot_rod_leg3,
+                t1264 * t1373 - t1268 * t1378, t1264 * t1401 + t1268 * t1403, t1264 * t1377, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1482 * t1467 - t1487,
+                t1482 * t1521 + t1486 * t1526, t1482 * t1544 + t1486 * t1459, t1482 * t1558 + t1487,
+                t1482 * t1567 + t1486 * t1517, t1486 * rate_dot_rod_leg4,
+                t1482 * t1591 - t1486 * t1596, -(t1482 * t1619 + t1486 * t1621), t1482 * t1595, 0.0,
+                -(t791 * t746), t797 * t1659 - t794 * t1663 - t791 * t1668,
+                t791 * t1691 - (t794 * t1659 + t797 * t1663),
+                t794 * t758 + t797 * t752 + t802 * t1712,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t723 * t675 - t728, t723 * t759 + t727 * t764,
-                t723 * t782 + t727 * t667, t723 * t796 + t728, t723 * t805 + t727 * t755,
-                t727 * rate_dot_rod_leg1, t723 * t839 - t727 * t845, -(t723 * t864 + t727 * t867),
-                t723 * t844, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t953 * t925 - t958,
-                t953 * t979 + t957 * t984, t953 * t1002 + t957 * t917, t953 * t1016 + t958,
-                t957 * t973 - t953 * t1026, -(t957 * minus_rate_dot_rod_leg2),
-                t953 * t1049 - t957 * t1054, -(t953 * t1077 + t957 * t1079), t953 * t1053, 0.0,
-                actuator_accelerations[2], -t1110, t1111, actuator_accelerations[2],
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t836 * t781 + t841), t836 * t865 + t840 * t870,
+                t836 * t888 - t840 * t773, t836 * t902 + t841, t836 * t911 - t840 * t859,
+                t840 * rate_dot_rod_leg1, t836 * t945 - t840 * t951, -(t836 * t970 + t840 * t973),
+                t836 * t950, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1056 - t1063 * t1037,
+                t1063 * t1085 + t1055 * t1090, t1063 * t1108 + t1055 * t1031, t1063 * t1122 - t1056,
+                -(t1063 * t1131 + t1055 * t1081), -(t1055 * minus_rate_dot_rod_leg2),
+                t1063 * t1155 + t1055 * t1160, t1063 * t1183 - t1055 * t1185, t1063 * t1159, 0.0,
+                actuator_accelerations[2], t1216, t1217, actuator_accelerations[2],
                 actuator_velocities[2], ::overact::math::sign(actuator_velocities[2]), 1.0,
-                t1171 * t1143 - t1176, t1171 * t1197 + t1175 * t1202, t1171 * t1220 + t1175 * t1135,
-                t1171 * t1234 + t1176, t1175 * t1193 - t1171 * t1244,
-                -(t1175 * minus_rate_dot_rod_leg3), t1291, t1313,
-                t1279 * t1193 + t1283 * t1135 + t507 * t1286 + t1171 * t1271, 0.26 * t1264, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1389 * t1361 - t1394, t1389 * t1415 + t1393 * t1420,
-                t1389 * t1438 + t1393 * t1353, t1389 * t1452 + t1394, t1389 * t1461 + t1393 * t1411,
-                t1393 * rate_dot_rod_leg4, t1389 * t1485 - t1393 * t1490,
-                -(t1389 * t1513 + t1393 * t1515), t1389 * t1489, 0.0, t705 * t640,
-                t713 * t1553 - t710 * t1557 - t705 * t1562,
-                -(t710 * t1553 + t713 * t1557 + t705 * t1585),
-                t710 * t652 - t713 * t646 + t719 * t1606,
+                t1277 * t1249 + t1282, t1277 * t1303 + t1281 * t1308, t1277 * t1326 - t1281 * t1241,
+                t1277 * t1340 - t1282, t1281 * t1297 - t1277 * t1350,
+                -(t1281 * minus_rate_dot_rod_leg3), t1397, t1419,
+                t1385 * t1297 + t1389 * t1241 + t602 * t1392 + t1277 * t1377, 0.26 * t1370, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1495 * t1467 - t1500, t1495 * t1521 + t1499 * t1526,
+                t1495 * t1544 + t1499 * t1459, t1495 * t1558 + t1500, t1495 * t1567 + t1499 * t1517,
+                t1499 * rate_dot_rod_leg4, t1495 * t1591 - t1499 * t1596,
+                -(t1495 * t1619 + t1499 * t1621), t1495 * t1595, 0.0, t818 * t746,
+                t818 * t1668 - (t826 * t1663 + t820 * t1659),
+                t820 * t1663 - t826 * t1659 - t818 * t1691,
+                t826 * t758 - t820 * t752 + t832 * t1712,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t746 * t675 - t751, t746 * t759 + t750 * t764,
-                t746 * t782 + t750 * t667, t746 * t796 + t751, t746 * t805 + t750 * t755,
-                t750 * rate_dot_rod_leg1, t746 * t839 - t750 * t845, -(t746 * t864 + t750 * t867),
-                t746 * t844, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t966 * t925 - t971,
-                t966 * t979 + t970 * t984, t966 * t1002 + t970 * t917, t966 * t1016 + t971,
-                t970 * t973 - t966 * t1026, -(t970 * minus_rate_dot_rod_leg2),
-                t966 * t1049 - t970 * t1054, -(t966 * t1077 + t970 * t1079), t966 * t1053, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1184 * t1143 + t1189, t1184 * t1197 - t1188 * t1202,
-                t1184 * t1220 - t1188 * t1135, t1184 * t1234 - t1189,
-                -(t1184 * t1244 + t1188 * t1193), t1188 * minus_rate_dot_rod_leg3,
-                t1184 * t1267 + t1188 * t1272, t1188 * t1297 - t1184 * t1295, t1184 * t1271, 0.0,
-                actuator_accelerations[3], -t1328, t1329, actuator_accelerations[3],
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t852 * t781 + t857), t852 * t865 + t856 * t870,
+                t852 * t888 - t856 * t773, t852 * t902 + t857, t852 * t911 - t856 * t859,
+                t856 * rate_dot_rod_leg1, t852 * t945 - t856 * t951, -(t852 * t970 + t856 * t973),
+                t852 * t950, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1069 - t1076 * t1037,
+                t1076 * t1085 + t1068 * t1090, t1076 * t1108 + t1068 * t1031, t1076 * t1122 - t1069,
+                -(t1076 * t1131 + t1068 * t1081), -(t1068 * minus_rate_dot_rod_leg2),
+                t1076 * t1155 + t1068 * t1160, t1076 * t1183 - t1068 * t1185, t1076 * t1159, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1290 * t1249 + t1295,
+                t1290 * t1303 + t1294 * t1308, t1290 * t1326 - t1294 * t1241, t1290 * t1340 - t1295,
+                t1294 * t1297 - t1290 * t1350, -(t1294 * minus_rate_dot_rod_leg3),
+                t1290 * t1373 + t1294 * t1378, t1290 * t1401 - t1294 * t1403, t1290 * t1377, 0.0,
+                actuator_accelerations[3], t1434, t1435, actuator_accelerations[3],
                 actuator_velocities[3], ::overact::math::sign(actuator_velocities[3]), 1.0,
-                t1402 * t1361 + t1407, t1402 * t1415 - t1406 * t1420, t1402 * t1438 - t1406 * t1353,
-                t1402 * t1452 - t1407, t1402 * t1461 - t1406 * t1411, -(t1406 * rate_dot_rod_leg4),
-                t1512, t1534, t1500 * t1411 + t1504 * t1353 + t564 * t1507 + t1402 * t1489,
-                0.26 * t1482, -(t731 * t640), t737 * t1557 + t733 * t1553 + t731 * t1562,
-                t737 * t1553 - t733 * t1557 + t731 * t1585,
-                t742 * t1606 - (t737 * t652 + t733 * t646),
+                t1508 * t1467 - t1513, t1508 * t1521 + t1512 * t1526, t1508 * t1544 + t1512 * t1459,
+                t1508 * t1558 + t1513, t1508 * t1567 + t1512 * t1517, t1512 * rate_dot_rod_leg4,
+                t1618, t1640, t1606 * t1517 + t1610 * t1459 + t674 * t1613 + t1508 * t1595,
+                0.26 * t1588, t217 * t746, t843 * t1663 - t845 * t1659 + t217 * t1668,
+                t843 * t1659 + t845 * t1663 - t217 * t1691,
+                -(t843 * t758 + t845 * t752 + t848 * t1712),
             ],
         ])
     }
@@ -4532,7 +6614,7 @@ impl Schoenflies4 {
     /// Output: 4 x 60.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 1002 operations (301 additions, 693 multiplications, 8 divisions), 0 square roots, 13 trigonometric pairs, 16 signs, 823 intermediates.
+    /// 1124 operations (369 additions, 735 multiplications, 20 divisions), 8 square roots, 1 trigonometric pairs, 16 signs, 929 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4541,8 +6623,619 @@ impl Schoenflies4 {
         twist: &[f64; 4],
         acceleration: &[f64; 4],
     ) -> Result<[[f64; 60]; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_platform_base_from_joints(pose, joints, twist, acceleration)
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
+        let t2 = twist[3] * twist[3];
+        let t5 = c_phi * t2 + s_phi * acceleration[3];
+        let t8 = c_phi * acceleration[3] - s_phi * t2;
+        let t16 = 0.05 * c_phi;
+        let t17 = 0.08660254037844387 * s_phi;
+        let t18 = t16 - t17;
+        let t19 = pose[0] + t18;
+        let t20 = t19 - 0.24;
+        let t21 = t20 * t20;
+        let t22 = pose[2] * pose[2];
+        let t24 = 0.2704 * (t21 + t22);
+        let t25 = 1.0 / t24;
+        let t26 = 0.52 * t20;
+        let t27 = 0.05 * s_phi;
+        let t28 = 0.08660254037844387 * c_phi;
+        let t29 = t27 + t28;
+        let t30 = pose[1] + t29;
+        let t31 = t30 * t30;
+        let t33 = t21 + t31 + t22;
+        let t35 = t33 - 0.3364 + 0.0676;
+        let t37 = 0.52 * pose[2];
+        let t39 = t24 - t35 * t35;
+        ::overact::guard::reach(t39, "leg1")?;
+        let t40 = ::overact::math::sqrt(t39);
+        ::overact::guard::leg(t40, 0.27703140616182853, "leg1")?;
+        let c_arm_leg1 = t25 * (t26 * t35 - t37 * t40);
+        let t44 = 0.26 * c_arm_leg1;
+        let t46 = t19 - (0.24 + t44);
+        let t47 = 1.0 / t40;
+        let t48 = 2.0 * t47;
+        let garm_vx_leg1 = t46 * t48;
+        let t50 = t29 * acceleration[3];
+        let t52 = t18 * twist[3];
+        let t53 = twist[3] * t52;
+        let t55 = t29 * twist[3];
+        let t56 = twist[0] - t55;
+        let garm_vy_leg1 = t30 * t48;
+        let t59 = twist[1] + t52;
+        let minus_s_arm_leg1 = t25 * (t37 * t35 + t26 * t40);
+        let t66 = 0.26 * minus_s_arm_leg1;
+        let t67 = pose[2] - t66;
+        let garm_vz_leg1 = t67 * t48;
+        let rate_arm_leg1 = garm_vx_leg1 * t56 + garm_vy_leg1 * t59
+            + garm_vz_leg1 * twist[2];
+        let t71 = rate_arm_leg1 * rate_arm_leg1;
+        let t75 = 1.0 - 2.972651605231867 * t31;
+        ::overact::guard::reach(t75, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t75);
+        ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
+        let s_cross_leg1 = 1.9230769230769231 * t40 / (0.58 * c_rod_leg1);
+        let c_cross_leg1 = (t33 - (0.0676 + t31) - 0.3364 * t75) / (0.3016 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t88 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7241379310344827 * t88;
+        let rate_rod_leg1 = grod_vy_leg1 * t59;
+        let t91 = s_armcross_leg1 * rate_rod_leg1;
+        let t93 = 0.52 * t47;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t93;
+        let s_rod_leg1 = 1.7241379310344827 * t30;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let minus_gcross_vy_leg1 = t93
+            * (c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t88)
+                - minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t88));
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t93;
+        let minus_rate_cross_leg1 = minus_gcross_vx_leg1 * t56
+            + minus_gcross_vy_leg1 * t59 + minus_gcross_vz_leg1 * twist[2];
+        let t113 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t115 = c_armcross_leg1 * rate_rod_leg1;
+        let t117 = t91 * t91 + t113 + t115 * t115;
+        let t121 = t30 * (minus_rate_cross_leg1 * t91);
+        let t124 = acceleration[0] - t50 - t53 + t44 * t71 + t46 * t117 + t121 + t121;
+        let t126 = t18 * acceleration[3];
+        let t128 = twist[3] * t55;
+        let t129 = acceleration[1] + t126 - t128;
+        let t130 = t30 * minus_rate_cross_leg1;
+        let t131 = minus_rate_cross_leg1 * t130;
+        let t134 = t129 - (t131 - t30 * t117);
+        let t141 = t30 * (minus_rate_cross_leg1 * t115);
+        let t144 = acceleration[2] + t66 * t71 + t67 * t117 + t141 + t141;
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t124 + garm_vy_leg1 * t134
+            + garm_vz_leg1 * t144;
+        let garm_wz_leg1 = t18 * garm_vy_leg1 - t29 * garm_vx_leg1;
+        let t154 = t28 - t27;
+        let t155 = pose[0] + t154;
+        let t156 = t17 + t16;
+        let t157 = pose[1] + t156;
+        let t158 = t157 - 0.24;
+        let t159 = t158 * t158;
+        let t161 = 0.2704 * (t159 + t22);
+        let t162 = t155 * t155;
+        let t164 = t162 + t159 + t22;
+        let t166 = t164 - 0.3364 + 0.0676;
+        let t168 = t161 - t166 * t166;
+        ::overact::guard::reach(t168, "leg2")?;
+        let t169 = ::overact::math::sqrt(t168);
+        ::overact::guard::leg(t169, 0.27703140616182853, "leg2")?;
+        let t170 = 1.0 / t169;
+        let t171 = 2.0 * t170;
+        let garm_vx_leg2 = t155 * t171;
+        let t173 = t156 * acceleration[3];
+        let t175 = t154 * twist[3];
+        let t176 = twist[3] * t175;
+        let t177 = acceleration[0] - t173 - t176;
+        let t178 = 0.52 * t170;
+        let t179 = 1.0 / t161;
+        let t180 = 0.52 * t158;
+        let c_arm_leg2 = t179 * (t180 * t166 - t37 * t169);
+        let minus_s_rod_leg2 = 1.7241379310344827 * t155;
+        let t189 = 1.0 - 2.972651605231867 * t162;
+        ::overact::guard::reach(t189, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t189);
+        ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
+        let c_cross_leg2 = (t164 - (0.0676 + t162) - 0.3364 * t189)
+            / (0.3016 * c_rod_leg2);
+        let minus_s_arm_leg2 = t179 * (t37 * t166 + t180 * t169);
+        let s_cross_leg2 = 1.9230769230769231 * t169 / (0.58 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t206 = 1.0 / c_rod_leg2;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let minus_gcross_vx_leg2 = t178
+            * (c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t206)
+                - minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t206));
+        let t217 = t156 * twist[3];
+        let t218 = twist[0] - t217;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t178;
+        let t221 = twist[1] + t175;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t178;
+        let minus_rate_cross_leg2 = minus_gcross_vx_leg2 * t218
+            + minus_gcross_vy_leg2 * t221 + minus_gcross_vz_leg2 * twist[2];
+        let t227 = t155 * minus_rate_cross_leg2;
+        let t228 = minus_rate_cross_leg2 * t227;
+        let t229 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let minus_grod_vx_leg2 = 1.7241379310344827 * t206;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t218;
+        let t232 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t235 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t237 = t229 + t232 * t232 + t235 * t235;
+        let t240 = t177 - (t228 - t155 * t237);
+        let t242 = 0.26 * c_arm_leg2;
+        let t244 = t157 - (0.24 + t242);
+        let garm_vy_leg2 = t244 * t171;
+        let t246 = t154 * acceleration[3];
+        let t248 = twist[3] * t217;
+        let t253 = 0.26 * minus_s_arm_leg2;
+        let t254 = pose[2] - t253;
+        let garm_vz_leg2 = t254 * t171;
+        let rate_arm_leg2 = garm_vx_leg2 * t218 + garm_vy_leg2 * t221
+            + garm_vz_leg2 * twist[2];
+        let t258 = rate_arm_leg2 * rate_arm_leg2;
+        let t263 = t155 * (minus_rate_cross_leg2 * t232);
+        let t266 = acceleration[1] + t246 - t248 + t242 * t258 + t244 * t237 + t263
+            + t263;
+        let t273 = t155 * (minus_rate_cross_leg2 * t235);
+        let t276 = acceleration[2] + t253 * t258 + t254 * t237 + t273 + t273;
+        let rate_dot_arm_leg2 = garm_vx_leg2 * t240 + garm_vy_leg2 * t266
+            + garm_vz_leg2 * t276;
+        let garm_wz_leg2 = t154 * garm_vy_leg2 - t156 * garm_vx_leg2;
+        let t286 = pose[0] - t18;
+        let t287 = t286 + 0.24;
+        let t288 = t287 * t287;
+        let t290 = 0.2704 * (t288 + t22);
+        let t291 = 1.0 / t290;
+        let t292 = 0.52 * t287;
+        let t293 = pose[1] - t29;
+        let t294 = t293 * t293;
+        let t296 = t288 + t294 + t22;
+        let t298 = t296 - 0.3364 + 0.0676;
+        let t301 = t290 - t298 * t298;
+        ::overact::guard::reach(t301, "leg3")?;
+        let t302 = ::overact::math::sqrt(t301);
+        ::overact::guard::leg(t302, 0.27703140616182853, "leg3")?;
+        let minus_c_arm_leg3 = t291 * (t292 * t298 + t37 * t302);
+        let t306 = 0.26 * minus_c_arm_leg3;
+        let t308 = t286 - (t306 - 0.24);
+        let t309 = 1.0 / t302;
+        let t310 = 2.0 * t309;
+        let garm_vx_leg3 = t308 * t310;
+        let t314 = twist[0] + t55;
+        let garm_vy_leg3 = t293 * t310;
+        let t317 = twist[1] - t52;
+        let s_arm_leg3 = t291 * (t292 * t302 - t37 * t298);
+        let t324 = 0.26 * s_arm_leg3;
+        let t325 = pose[2] + t324;
+        let garm_vz_leg3 = t325 * t310;
+        let rate_arm_leg3 = garm_vx_leg3 * t314 + garm_vy_leg3 * t317
+            + garm_vz_leg3 * twist[2];
+        let t329 = rate_arm_leg3 * rate_arm_leg3;
+        let t334 = 1.0 - 2.972651605231867 * t294;
+        ::overact::guard::reach(t334, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t334);
+        ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
+        let c_cross_leg3 = (t296 - (0.0676 + t294) - 0.3364 * t334)
+            / (0.3016 * c_rod_leg3);
+        let s_cross_leg3 = 1.9230769230769231 * t302 / (0.58 * c_rod_leg3);
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t346 = 1.0 / c_rod_leg3;
+        let minus_grod_vy_leg3 = 1.7241379310344827 * t346;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t317;
+        let t349 = s_armcross_leg3 * minus_rate_rod_leg3;
+        let t351 = 0.52 * t309;
+        let gcross_vz_leg3 = s_arm_leg3 * t351;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t351;
+        let minus_s_rod_leg3 = 1.7241379310344827 * t293;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t351
+            * (minus_c_arm_leg3 * (minus_s_rod_leg3 * minus_c_armcross_leg3 * t346)
+                + s_arm_leg3 * (minus_s_rod_leg3 * s_armcross_leg3 * t346));
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * t314 + minus_gcross_vy_leg3 * t317);
+        let t371 = rate_cross_leg3 * rate_cross_leg3;
+        let t373 = minus_c_armcross_leg3 * minus_rate_rod_leg3;
+        let t375 = t349 * t349 + t371 + t373 * t373;
+        let t379 = t293 * (rate_cross_leg3 * t349);
+        let t382 = acceleration[0] + t50 + t53 + t306 * t329 + t308 * t375 + t379 + t379;
+        let t385 = acceleration[1] - t126 + t128;
+        let t386 = t293 * rate_cross_leg3;
+        let t387 = rate_cross_leg3 * t386;
+        let t390 = t385 - (t387 - t293 * t375);
+        let t397 = t293 * (rate_cross_leg3 * t373);
+        let t400 = acceleration[2] - (t324 * t329 - t325 * t375 - t397 - t397);
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t382 + garm_vy_leg3 * t390
+            + garm_vz_leg3 * t400;
+        let garm_wz_leg3 = t29 * garm_vx_leg3 - t18 * garm_vy_leg3;
+        let t410 = pose[0] - t154;
+        let t411 = pose[1] - t156;
+        let t412 = t411 + 0.24;
+        let t413 = t412 * t412;
+        let t415 = 0.2704 * (t413 + t22);
+        let t416 = t410 * t410;
+        let t418 = t416 + t413 + t22;
+        let t420 = t418 - 0.3364 + 0.0676;
+        let t422 = t415 - t420 * t420;
+        ::overact::guard::reach(t422, "leg4")?;
+        let t423 = ::overact::math::sqrt(t422);
+        ::overact::guard::leg(t423, 0.27703140616182853, "leg4")?;
+        let t424 = 1.0 / t423;
+        let t425 = 2.0 * t424;
+        let garm_vx_leg4 = t410 * t425;
+        let t428 = acceleration[0] + t173 + t176;
+        let t429 = 1.0 / t415;
+        let t430 = 0.52 * t412;
+        let s_arm_leg4 = t429 * (t430 * t423 - t37 * t420);
+        let t435 = 0.52 * t424;
+        let gcross_vz_leg4 = s_arm_leg4 * t435;
+        let minus_c_arm_leg4 = t429 * (t430 * t420 + t37 * t423);
+        let s_rod_leg4 = 1.7241379310344827 * t410;
+        let t446 = 1.0 - 2.972651605231867 * t416;
+        ::overact::guard::reach(t446, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t446);
+        ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
+        let c_cross_leg4 = (t418 - (0.0676 + t416) - 0.3364 * t446)
+            / (0.3016 * c_rod_leg4);
+        let s_cross_leg4 = 1.9230769230769231 * t423 / (0.58 * c_rod_leg4);
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let t459 = 1.0 / c_rod_leg4;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t435
+            * (minus_c_arm_leg4 * (s_rod_leg4 * minus_c_armcross_leg4 * t459)
+                + s_arm_leg4 * (s_rod_leg4 * s_armcross_leg4 * t459));
+        let t470 = twist[0] + t217;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t435;
+        let t473 = twist[1] - t175;
+        let rate_cross_leg4 = gcross_vz_leg4 * twist[2]
+            - (minus_gcross_vx_leg4 * t470 + minus_gcross_vy_leg4 * t473);
+        let t477 = t410 * rate_cross_leg4;
+        let t478 = rate_cross_leg4 * t477;
+        let t479 = rate_cross_leg4 * rate_cross_leg4;
+        let grod_vx_leg4 = 1.7241379310344827 * t459;
+        let rate_rod_leg4 = grod_vx_leg4 * t470;
+        let t482 = s_armcross_leg4 * rate_rod_leg4;
+        let t485 = minus_c_armcross_leg4 * rate_rod_leg4;
+        let t487 = t479 + t482 * t482 + t485 * t485;
+        let t490 = t428 - (t478 - t410 * t487);
+        let t492 = 0.26 * minus_c_arm_leg4;
+        let t494 = t411 - (t492 - 0.24);
+        let garm_vy_leg4 = t494 * t425;
+        let t501 = 0.26 * s_arm_leg4;
+        let t502 = pose[2] + t501;
+        let garm_vz_leg4 = t502 * t425;
+        let rate_arm_leg4 = garm_vx_leg4 * t470 + garm_vy_leg4 * t473
+            + garm_vz_leg4 * twist[2];
+        let t506 = rate_arm_leg4 * rate_arm_leg4;
+        let t511 = t410 * (rate_cross_leg4 * t482);
+        let t514 = acceleration[1] - t246 + t248 + t492 * t506 + t494 * t487 + t511
+            + t511;
+        let t521 = t410 * (rate_cross_leg4 * t485);
+        let t524 = acceleration[2] - (t501 * t506 - t502 * t487 - t521 - t521);
+        let rate_dot_arm_leg4 = garm_vx_leg4 * t490 + garm_vy_leg4 * t514
+            + garm_vz_leg4 * t524;
+        let garm_wz_leg4 = t156 * garm_vx_leg4 - t154 * garm_vy_leg4;
+        let t534 = 9.81 * c_arm_leg1;
+        let t539 = 9.81 * c_arm_leg2;
+        let t544 = 9.81 * minus_c_arm_leg3;
+        let t549 = 9.81 * minus_c_arm_leg4;
+        let t554 = 9.81 * minus_s_arm_leg1;
+        let t559 = 9.81 * minus_s_arm_leg2;
+        let t564 = 9.81 * s_arm_leg3;
+        let t569 = 9.81 * s_arm_leg4;
+        let minus_rate_dot_cross_leg1 = minus_gcross_vx_leg1 * t124
+            + minus_gcross_vy_leg1 * t134 + minus_gcross_vz_leg1 * t144;
+        let t611 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t612 = c_rod_leg1 * minus_rate_cross_leg1;
+        let t613 = rate_rod_leg1 * t612;
+        let t614 = t611 + t613;
+        let t616 = 1.7241379310344827 * t130;
+        let t617 = rate_rod_leg1 * t616;
+        let t618 = c_rod_leg1 * t617;
+        let t619 = s_rod_leg1 * t614 + t618;
+        let t622 = 2.972651605231867 * t131;
+        let gcross_wz_leg1 = t29 * minus_gcross_vx_leg1 - t18 * minus_gcross_vy_leg1;
+        let grod_wz_leg1 = t18 * grod_vy_leg1;
+        let t630 = t616 * t612;
+        let t631 = grod_wz_leg1 * t630;
+        let minus_rate_dot_cross_leg2 = minus_gcross_vx_leg2 * t240
+            + minus_gcross_vy_leg2 * t266 + minus_gcross_vz_leg2 * t276;
+        let t638 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t639 = c_rod_leg2 * minus_rate_cross_leg2;
+        let t640 = minus_rate_rod_leg2 * t639;
+        let t641 = t638 + t640;
+        let t643 = 1.7241379310344827 * t227;
+        let t644 = minus_rate_rod_leg2 * t643;
+        let t645 = c_rod_leg2 * t644;
+        let t646 = minus_s_rod_leg2 * t641 + t645;
+        let t648 = 2.972651605231867 * t228;
+        let grod_wz_leg2 = t156 * minus_grod_vx_leg2;
+        let t653 = t643 * t639;
+        let t654 = grod_wz_leg2 * t653;
+        let gcross_wz_leg2 = t156 * minus_gcross_vx_leg2 - t154 * minus_gcross_vy_leg2;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * t400
+            - (minus_gcross_vx_leg3 * t382 + minus_gcross_vy_leg3 * t390);
+        let t665 = minus_s_rod_leg3 * rate_dot_cross_leg3;
+        let t666 = c_rod_leg3 * rate_cross_leg3;
+        let t667 = minus_rate_rod_leg3 * t666;
+        let t668 = t665 + t667;
+        let t670 = 1.7241379310344827 * t386;
+        let t671 = minus_rate_rod_leg3 * t670;
+        let t672 = c_rod_leg3 * t671;
+        let t673 = minus_s_rod_leg3 * t668 + t672;
+        let t676 = 2.972651605231867 * t387;
+        let gcross_wz_leg3 = t18 * minus_gcross_vy_leg3 - t29 * minus_gcross_vx_leg3;
+        let grod_wz_leg3 = t18 * minus_grod_vy_leg3;
+        let t684 = t670 * t666;
+        let t685 = grod_wz_leg3 * t684;
+        let rate_dot_cross_leg4 = gcross_vz_leg4 * t524
+            - (minus_gcross_vx_leg4 * t490 + minus_gcross_vy_leg4 * t514);
+        let t692 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t693 = c_rod_leg4 * rate_cross_leg4;
+        let t694 = rate_rod_leg4 * t693;
+        let t695 = t692 + t694;
+        let t697 = 1.7241379310344827 * t477;
+        let t698 = rate_rod_leg4 * t697;
+        let t699 = c_rod_leg4 * t698;
+        let t700 = s_rod_leg4 * t695 + t699;
+        let t702 = 2.972651605231867 * t478;
+        let gcross_wz_leg4 = t154 * minus_gcross_vy_leg4 - t156 * minus_gcross_vx_leg4;
+        let grod_wz_leg4 = t156 * grod_vx_leg4;
+        let t711 = t697 * t693;
+        let t712 = grod_wz_leg4 * t711;
+        let t714 = c_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t715 = t617 - t714;
+        let t718 = t613 + t614;
+        let t720 = s_rod_leg1 * (t617 + t715) - c_rod_leg1 * t718;
+        let t723 = 2.972651605231867 * (t130 * t130);
+        let t725 = t723 - t612 * t612;
+        let t733 = t640 + t641;
+        let t735 = c_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t736 = t644 - t735;
+        let t739 = c_rod_leg2 * t733 - minus_s_rod_leg2 * (t644 + t736);
+        let t742 = 2.972651605231867 * (t227 * t227);
+        let t744 = t742 - t639 * t639;
+        let t752 = c_rod_leg3 * rate_dot_cross_leg3;
+        let t753 = t752 - t671;
+        let t756 = t667 + t668;
+        let t758 = minus_s_rod_leg3 * (t671 - t753) - c_rod_leg3 * t756;
+        let t762 = 2.972651605231867 * (t386 * t386);
+        let t764 = t762 - t666 * t666;
+        let t772 = 2.972651605231867 * (t477 * t477);
+        let t774 = t772 - t693 * t693;
+        let t776 = t694 + t695;
+        let t778 = c_rod_leg4 * rate_dot_cross_leg4;
+        let t779 = t778 - t698;
+        let t782 = c_rod_leg4 * t776 - s_rod_leg4 * (t698 - t779);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t134;
+        let t793 = rate_rod_leg1 * rate_rod_leg1;
+        let t796 = s_rod_leg1 * (t630 + rate_dot_rod_leg1) + c_rod_leg1 * (t793 - t723);
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t240;
+        let t808 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t811 = minus_s_rod_leg2 * (t653 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t808 - t742);
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t390;
+        let t823 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t826 = minus_s_rod_leg3 * (t684 + minus_rate_dot_rod_leg3)
+            + c_rod_leg3 * (t823 - t762);
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t490;
+        let t839 = rate_rod_leg4 * rate_rod_leg4;
+        let t842 = s_rod_leg4 * (t711 + rate_dot_rod_leg4) + c_rod_leg4 * (t839 - t772);
+        let t851 = t618 + c_rod_leg1 * t715;
+        let t859 = t645 + c_rod_leg2 * t736;
+        let t867 = c_rod_leg3 * t753 - t672;
+        let t875 = c_rod_leg4 * t779 - t699;
+        let t882 = 1.7241379310344827 * t129;
+        let t891 = 1.7241379310344827 * t177;
+        let t900 = 1.7241379310344827 * t385;
+        let t910 = 1.7241379310344827 * t428;
+        let t926 = 0.8620689655172413 * t40;
+        let t930 = 0.4482758620689655 * (t30 * s_cross_leg1);
+        let t934 = 0.26 * c_cross_leg1;
+        let t936 = t926 * (t630 - rate_dot_rod_leg1) + t930 * (t723 + t793)
+            + t934 * t718;
+        let t939 = 0.26 * rate_dot_arm_leg1 - t534;
+        let t942 = t554 - 0.26 * t71;
+        let t945 = s_rod_leg1 * (c_cross_leg1 * t939 - s_cross_leg1 * t942);
+        let t953 = c_cross_leg1 * t942 + s_cross_leg1 * t939;
+        let t965 = 0.8620689655172413 * t169;
+        let t969 = 0.4482758620689655 * (t155 * s_cross_leg2);
+        let t973 = 0.26 * c_cross_leg2;
+        let t975 = t965 * (minus_rate_dot_rod_leg2 - t653) - t969 * (t742 + t808)
+            - t973 * t733;
+        let t978 = 0.26 * rate_dot_arm_leg2 - t539;
+        let t981 = t559 - 0.26 * t258;
+        let t984 = minus_s_rod_leg2 * (c_cross_leg2 * t978 - s_cross_leg2 * t981);
+        let t989 = c_cross_leg2 * t981 + s_cross_leg2 * t978;
+        let t1004 = 0.8620689655172413 * t302;
+        let t1008 = 0.4482758620689655 * (t293 * s_cross_leg3);
+        let t1012 = 0.26 * c_cross_leg3;
+        let t1014 = t1004 * (minus_rate_dot_rod_leg3 - t684) - t1008 * (t762 + t823)
+            + t1012 * t756;
+        let t1017 = t564 + 0.26 * t329;
+        let t1020 = t544 + 0.26 * rate_dot_arm_leg3;
+        let t1023 = minus_s_rod_leg3 * (s_cross_leg3 * t1017 + c_cross_leg3 * t1020);
+        let t1031 = s_cross_leg3 * t1020 - c_cross_leg3 * t1017;
+        let t1043 = 0.8620689655172413 * t423;
+        let t1047 = 0.4482758620689655 * (t410 * s_cross_leg4);
+        let t1051 = 0.26 * c_cross_leg4;
+        let t1053 = t1043 * (t711 - rate_dot_rod_leg4) + t1047 * (t772 + t839)
+            - t1051 * t776;
+        let t1056 = t569 + 0.26 * t506;
+        let t1059 = t549 + 0.26 * rate_dot_arm_leg4;
+        let t1062 = s_rod_leg4 * (s_cross_leg4 * t1056 + c_cross_leg4 * t1059);
+        let t1067 = s_cross_leg4 * t1059 - c_cross_leg4 * t1056;
+        let t1086 = t113 * t934 - (t714 * t926 + t611 * t930);
+        let t1103 = t229 * t973 - (t735 * t965 + t638 * t969);
+        let t1120 = t752 * t1004 + t665 * t1008 + t371 * t1012;
+        let t1137 = t778 * t1043 + t692 * t1047 + t479 * t1051;
+        Ok([
+            [
+                0.0, -t5, -t8, acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1,
+                garm_vx_leg2 * rate_dot_arm_leg2, garm_vx_leg3 * rate_dot_arm_leg3,
+                garm_vx_leg4 * rate_dot_arm_leg4, -(garm_vx_leg1 * t534), -(garm_vx_leg2 * t539),
+                garm_vx_leg3 * t544, garm_vx_leg4 * t549, -(garm_vx_leg1 * t554),
+                -(garm_vx_leg2 * t559), garm_vx_leg3 * t564, garm_vx_leg4 * t569,
+                garm_vx_leg1 * rate_arm_leg1, garm_vx_leg2 * rate_arm_leg2,
+                garm_vx_leg3 * rate_arm_leg3, garm_vx_leg4 * rate_arm_leg4,
+                ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
+                ::overact::math::signed(garm_vx_leg2, rate_arm_leg2),
+                ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
+                ::overact::math::signed(garm_vx_leg4, rate_arm_leg4), garm_vx_leg1, garm_vx_leg2,
+                garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t619,
+                minus_gcross_vx_leg2 * t646 - t648, -(minus_gcross_vx_leg3 * t673),
+                -(minus_gcross_vx_leg4 * t700 + t702), -(minus_gcross_vx_leg1 * t720),
+                -(minus_gcross_vx_leg2 * t739 + minus_grod_vx_leg2 * t744),
+                -(minus_gcross_vx_leg3 * t758), grod_vx_leg4 * t774 - minus_gcross_vx_leg4 * t782,
+                -(minus_gcross_vx_leg1 * t796),
+                -(minus_gcross_vx_leg2 * t811 + minus_grod_vx_leg2 * t638),
+                -(minus_gcross_vx_leg3 * t826), grod_vx_leg4 * t692 - minus_gcross_vx_leg4 * t842,
+                -(minus_gcross_vx_leg1 * t851), t648 - minus_gcross_vx_leg2 * t859,
+                -(minus_gcross_vx_leg3 * t867), t702 - minus_gcross_vx_leg4 * t875,
+                -(minus_gcross_vx_leg1 * t882),
+                minus_gcross_vx_leg2 * t891
+                    + 1.7241379310344827 * minus_rate_dot_cross_leg2,
+                minus_gcross_vx_leg3 * t900,
+                1.7241379310344827 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t910,
+                0.0,
+                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
+                0.0,
+                grod_vx_leg4 * rate_dot_rod_leg4,
+                garm_vx_leg1 * t936 + minus_gcross_vx_leg1 * t945,
+                garm_vx_leg2 * t975 - minus_gcross_vx_leg2 * t984
+                    + 1.7241379310344827 * t989,
+                garm_vx_leg3 * t1014 - minus_gcross_vx_leg3 * t1023,
+                garm_vx_leg4 * t1053 + minus_gcross_vx_leg4 * t1062
+                    - 1.7241379310344827 * t1067,
+                garm_vx_leg1 * t1086 - minus_gcross_vx_leg1 * t953,
+                garm_vx_leg2 * t1103 - minus_gcross_vx_leg2 * t989,
+                garm_vx_leg3 * t1120 - minus_gcross_vx_leg3 * t1031,
+                garm_vx_leg4 * t1137 - minus_gcross_vx_leg4 * t1067,
+            ],
+            [
+                0.0, t8, -t5, acceleration[1], garm_vy_leg1 * rate_dot_arm_leg1,
+                garm_vy_leg2 * rate_dot_arm_leg2, garm_vy_leg3 * rate_dot_arm_leg3,
+                garm_vy_leg4 * rate_dot_arm_leg4, -(garm_vy_leg1 * t534), -(garm_vy_leg2 * t539),
+                garm_vy_leg3 * t544, garm_vy_leg4 * t549, -(garm_vy_leg1 * t554),
+                -(garm_vy_leg2 * t559), garm_vy_leg3 * t564, garm_vy_leg4 * t569,
+                garm_vy_leg1 * rate_arm_leg1, garm_vy_leg2 * rate_arm_leg2,
+                garm_vy_leg3 * rate_arm_leg3, garm_vy_leg4 * rate_arm_leg4,
+                ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
+                ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
+                ::overact::math::signed(garm_vy_leg3, rate_arm_leg3),
+                ::overact::math::signed(garm_vy_leg4, rate_arm_leg4), garm_vy_leg1, garm_vy_leg2,
+                garm_vy_leg3, garm_vy_leg4, minus_gcross_vy_leg1 * t619 - t622,
+                minus_gcross_vy_leg2 * t646, -(minus_gcross_vy_leg3 * t673 + t676),
+                -(minus_gcross_vy_leg4 * t700), grod_vy_leg1 * t725 - minus_gcross_vy_leg1 * t720,
+                -(minus_gcross_vy_leg2 * t739),
+                -(minus_gcross_vy_leg3 * t758 + minus_grod_vy_leg3 * t764),
+                -(minus_gcross_vy_leg4 * t782),
+                -(minus_gcross_vy_leg1 * t796 + grod_vy_leg1 * t611),
+                -(minus_gcross_vy_leg2 * t811),
+                minus_grod_vy_leg3 * t665 - minus_gcross_vy_leg3 * t826,
+                -(minus_gcross_vy_leg4 * t842), t622 - minus_gcross_vy_leg1 * t851,
+                -(minus_gcross_vy_leg2 * t859), t676 - minus_gcross_vy_leg3 * t867,
+                -(minus_gcross_vy_leg4 * t875),
+                -(minus_gcross_vy_leg1 * t882
+                    + 1.7241379310344827 * minus_rate_dot_cross_leg1),
+                minus_gcross_vy_leg2 * t891,
+                minus_gcross_vy_leg3 * t900 - 1.7241379310344827 * rate_dot_cross_leg3,
+                -(minus_gcross_vy_leg4 * t910),
+                grod_vy_leg1 * rate_dot_rod_leg1,
+                0.0,
+                minus_grod_vy_leg3 * minus_rate_dot_rod_leg3,
+                0.0,
+                garm_vy_leg1 * t936 + minus_gcross_vy_leg1 * t945
+                    - 1.7241379310344827 * t953,
+                garm_vy_leg2 * t975 - minus_gcross_vy_leg2 * t984,
+                garm_vy_leg3 * t1014 - minus_gcross_vy_leg3 * t1023
+                    + 1.7241379310344827 * t1031,
+                garm_vy_leg4 * t1053 + minus_gcross_vy_leg4 * t1062,
+                garm_vy_leg1 * t1086 - minus_gcross_vy_leg1 * t953,
+                garm_vy_leg2 * t1103 - minus_gcross_vy_leg2 * t989,
+                garm_vy_leg3 * t1120 - minus_gcross_vy_leg3 * t1031,
+                garm_vy_leg4 * t1137 - minus_gcross_vy_leg4 * t1067,
+            ],
+            [
+                0.0, 0.0, 0.0, acceleration[2] + 9.81, garm_vz_leg1 * rate_dot_arm_leg1,
+                garm_vz_leg2 * rate_dot_arm_leg2, garm_vz_leg3 * rate_dot_arm_leg3,
+                garm_vz_leg4 * rate_dot_arm_leg4, -(garm_vz_leg1 * t534), -(garm_vz_leg2 * t539),
+                garm_vz_leg3 * t544, garm_vz_leg4 * t549, -(garm_vz_leg1 * t554),
+                -(garm_vz_leg2 * t559), garm_vz_leg3 * t564, garm_vz_leg4 * t569,
+                garm_vz_leg1 * rate_arm_leg1, garm_vz_leg2 * rate_arm_leg2,
+                garm_vz_leg3 * rate_arm_leg3, garm_vz_leg4 * rate_arm_leg4,
+                ::overact::math::signed(garm_vz_leg1, rate_arm_leg1),
+                ::overact::math::signed(garm_vz_leg2, rate_arm_leg2),
+                ::overact::math::signed(garm_vz_leg3, rate_arm_leg3),
+                ::overact::math::signed(garm_vz_leg4, rate_arm_leg4), garm_vz_leg1, garm_vz_leg2,
+                garm_vz_leg3, garm_vz_leg4, minus_gcross_vz_leg1 * t619,
+                minus_gcross_vz_leg2 * t646, gcross_vz_leg3 * t673, gcross_vz_leg4 * t700,
+                -(minus_gcross_vz_leg1 * t720), -(minus_gcross_vz_leg2 * t739),
+                gcross_vz_leg3 * t758, gcross_vz_leg4 * t782, -(minus_gcross_vz_leg1 * t796),
+                -(minus_gcross_vz_leg2 * t811), gcross_vz_leg3 * t826, gcross_vz_leg4 * t842,
+                -(minus_gcross_vz_leg1 * t851), -(minus_gcross_vz_leg2 * t859),
+                gcross_vz_leg3 * t867, gcross_vz_leg4 * t875, -(minus_gcross_vz_leg1 * t882),
+                minus_gcross_vz_leg2 * t891, -(gcross_vz_leg3 * t900), gcross_vz_leg4 * t910, 0.0,
+                0.0, 0.0, 0.0, garm_vz_leg1 * t936 + minus_gcross_vz_leg1 * t945,
+                garm_vz_leg2 * t975 - minus_gcross_vz_leg2 * t984,
+                garm_vz_leg3 * t1014 + gcross_vz_leg3 * t1023,
+                garm_vz_leg4 * t1053 - gcross_vz_leg4 * t1062,
+                garm_vz_leg1 * t1086 - minus_gcross_vz_leg1 * t953,
+                garm_vz_leg2 * t1103 - minus_gcross_vz_leg2 * t989,
+                garm_vz_leg3 * t1120 + gcross_vz_leg3 * t1031,
+                garm_vz_leg4 * t1137 + gcross_vz_leg4 * t1067,
+            ],
+            [
+                acceleration[3], c_phi * acceleration[1] - s_phi * acceleration[0],
+                -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
+                garm_wz_leg1 * rate_dot_arm_leg1, garm_wz_leg2 * rate_dot_arm_leg2,
+                garm_wz_leg3 * rate_dot_arm_leg3, garm_wz_leg4 * rate_dot_arm_leg4,
+                -(garm_wz_leg1 * t534), -(garm_wz_leg2 * t539), garm_wz_leg3 * t544,
+                garm_wz_leg4 * t549, -(garm_wz_leg1 * t554), -(garm_wz_leg2 * t559),
+                garm_wz_leg3 * t564, garm_wz_leg4 * t569, garm_wz_leg1 * rate_arm_leg1,
+                garm_wz_leg2 * rate_arm_leg2, garm_wz_leg3 * rate_arm_leg3,
+                garm_wz_leg4 * rate_arm_leg4, ::overact::math::signed(garm_wz_leg1, rate_arm_leg1),
+                ::overact::math::signed(garm_wz_leg2, rate_arm_leg2),
+                ::overact::math::signed(garm_wz_leg3, rate_arm_leg3),
+                ::overact::math::signed(garm_wz_leg4, rate_arm_leg4), garm_wz_leg1, garm_wz_leg2,
+                garm_wz_leg3, garm_wz_leg4, -(gcross_wz_leg1 * t619 + t631),
+                t654 - gcross_wz_leg2 * t646, gcross_wz_leg3 * t673 + t685,
+                gcross_wz_leg4 * t700 - t712, gcross_wz_leg1 * t720 + grod_wz_leg1 * t725,
+                gcross_wz_leg2 * t739 + grod_wz_leg2 * t744,
+                gcross_wz_leg3 * t758 + grod_wz_leg3 * t764,
+                gcross_wz_leg4 * t782 + grod_wz_leg4 * t774,
+                gcross_wz_leg1 * t796 - grod_wz_leg1 * t611,
+                gcross_wz_leg2 * t811 + grod_wz_leg2 * t638,
+                gcross_wz_leg3 * t826 - grod_wz_leg3 * t665,
+                gcross_wz_leg4 * t842 + grod_wz_leg4 * t692, gcross_wz_leg1 * t851 + t631,
+                gcross_wz_leg2 * t859 - t654, gcross_wz_leg3 * t867 - t685,
+                gcross_wz_leg4 * t875 + t712, gcross_wz_leg1 * t882 - grod_wz_leg1 * t714,
+                -(gcross_wz_leg2 * t891 + grod_wz_leg2 * t735),
+                grod_wz_leg3 * t752 - gcross_wz_leg3 * t900,
+                gcross_wz_leg4 * t910 + grod_wz_leg4 * t778, grod_wz_leg1 * rate_dot_rod_leg1,
+                -(grod_wz_leg2 * minus_rate_dot_rod_leg2),
+                -(grod_wz_leg3 * minus_rate_dot_rod_leg3), grod_wz_leg4 * rate_dot_rod_leg4,
+                garm_wz_leg1 * t936 - gcross_wz_leg1 * t945
+                    - grod_wz_leg1 * (c_rod_leg1 * t953),
+                garm_wz_leg2 * t975 + gcross_wz_leg2 * t984
+                    - grod_wz_leg2 * (c_rod_leg2 * t989),
+                garm_wz_leg3 * t1014 + gcross_wz_leg3 * t1023
+                    - grod_wz_leg3 * (c_rod_leg3 * t1031),
+                garm_wz_leg4 * t1053 - gcross_wz_leg4 * t1062
+                    - grod_wz_leg4 * (c_rod_leg4 * t1067),
+                garm_wz_leg1 * t1086 + gcross_wz_leg1 * t953,
+                garm_wz_leg2 * t1103 + gcross_wz_leg2 * t989,
+                garm_wz_leg3 * t1120 + gcross_wz_leg3 * t1031,
+                garm_wz_leg4 * t1137 + gcross_wz_leg4 * t1067,
+            ],
+        ])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -5101,7 +7794,7 @@ impl Schoenflies4 {
     /// Output: 4 x 60.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 1190 operations (393 additions, 785 multiplications, 12 divisions), 0 square roots, 13 trigonometric pairs, 16 signs, 1008 intermediates.
+    /// 1312 operations (461 additions, 827 multiplications, 24 divisions), 8 square roots, 1 trigonometric pairs, 16 signs, 1114 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5112,598 +7805,690 @@ impl Schoenflies4 {
         start: &[f64; 4],
     ) -> Result<[[f64; 60]; 4], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
-        let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        ::overact::guard::leg(c_rod_leg1, 0.9887897213061891, "leg1")?;
-        let t12 = c_armcross_leg1 * c_rod_leg1;
-        let t14 = s_armcross_leg1 * c_rod_leg1;
-        let t16 = s_arm_leg1 * t12 - c_arm_leg1 * t14;
-        ::overact::guard::leg(t16, 0.9185391450939739, "leg1")?;
-        let t17 = 1.0 / t16;
-        let t18 = 3.8461538461538463 * t17;
-        let minus_garm_vx_leg1 = t12 * t18;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
-        let t22 = 0.05 * s_phi;
-        let t23 = 0.08660254037844387 * c_phi;
-        let t24 = t22 + t23;
-        let minus_garm_vy_leg1 = s_rod_leg1 * t18;
-        let t27 = 0.05 * c_phi;
-        let t28 = 0.08660254037844387 * s_phi;
-        let t29 = t27 - t28;
-        let garm_wz_leg1 = minus_garm_vx_leg1 * t24 - minus_garm_vy_leg1 * t29;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
-        let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        ::overact::guard::leg(c_rod_leg2, 0.988789721306189, "leg2")?;
-        let t45 = c_armcross_leg2 * c_rod_leg2;
-        let t47 = s_armcross_leg2 * c_rod_leg2;
-        let t49 = s_arm_leg2 * t45 - c_arm_leg2 * t47;
-        ::overact::guard::leg(t49, 0.9185391450939737, "leg2")?;
-        let t50 = 1.0 / t49;
-        let t51 = 3.8461538461538463 * t50;
-        let minus_garm_vy_leg2 = t45 * t51;
-        let t53 = t23 - t22;
-        let garm_vx_leg2 = s_rod_leg2 * t51;
-        let t56 = t28 + t27;
-        let minus_garm_wz_leg2 = minus_garm_vy_leg2 * t53 + garm_vx_leg2 * t56;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        ::overact::guard::leg(c_rod_leg3, 0.9887897213061891, "leg3")?;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
-        let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let t73 = s_armcross_leg3 * c_rod_leg3;
-        let t75 = c_armcross_leg3 * c_rod_leg3;
-        let t77 = c_arm_leg3 * t73 - s_arm_leg3 * t75;
-        ::overact::guard::leg(t77, 0.9185391450939737, "leg3")?;
-        let t78 = 1.0 / t77;
-        let t79 = 3.8461538461538463 * t78;
-        let minus_garm_vy_leg3 = s_rod_leg3 * t79;
-        let minus_garm_vx_leg3 = t75 * t79;
-        let garm_wz_leg3 = t29 * minus_garm_vy_leg3 - t24 * minus_garm_vx_leg3;
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let (s_cross_leg4, c_cross_leg4) = ::overact::math::sin_cos(joints[10]);
-        let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
-        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        ::overact::guard::leg(c_rod_leg4, 0.9887897213061891, "leg4")?;
-        let t99 = c_armcross_leg4 * c_rod_leg4;
-        let t100 = s_armcross_leg4 * c_rod_leg4;
-        let t103 = c_arm_leg4 * t100 - s_arm_leg4 * t99;
-        ::overact::guard::leg(t103, 0.9185391450939737, "leg4")?;
-        let t104 = 1.0 / t103;
-        let t105 = 3.8461538461538463 * t104;
-        let minus_garm_vy_leg4 = t99 * t105;
-        let garm_vx_leg4 = s_rod_leg4 * t105;
-        let garm_wz_leg4 = t53 * minus_garm_vy_leg4 + t56 * garm_vx_leg4;
-        let t119 = garm_vx_leg4 * garm_wz_leg4
-            - (minus_garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * minus_garm_wz_leg2
-                + minus_garm_vx_leg3 * garm_wz_leg3);
-        let t126 = minus_garm_vx_leg1 * minus_garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
-            + minus_garm_vx_leg3 * minus_garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
-        ::overact::guard::platform(t126, 19.50747081825307, "actuators")?;
-        ::overact::guard::platform(t126, 19.50747081825307, "actuators")?;
-        let t127 = 1.0 / t126;
-        let t128 = t119 * t127;
-        let t144 = minus_garm_vx_leg1 * minus_garm_vy_leg1
-            - garm_vx_leg2 * minus_garm_vy_leg2 + minus_garm_vx_leg3 * minus_garm_vy_leg3
-            - garm_vx_leg4 * minus_garm_vy_leg4;
-        let t146 = minus_garm_vy_leg2 * minus_garm_wz_leg2
-            - minus_garm_vy_leg1 * garm_wz_leg1 - minus_garm_vy_leg3 * garm_wz_leg3
-            - minus_garm_vy_leg4 * garm_wz_leg4 - t144 * t128;
-        let t154 = t144 * t127;
-        let t156 = minus_garm_vy_leg1 * minus_garm_vy_leg1
-            + minus_garm_vy_leg2 * minus_garm_vy_leg2
-            + minus_garm_vy_leg3 * minus_garm_vy_leg3
-            + minus_garm_vy_leg4 * minus_garm_vy_leg4 - t144 * t154;
-        ::overact::guard::platform(t156, 16.505615552607473, "actuators")?;
-        ::overact::guard::platform(t156, 16.505615552607473, "actuators")?;
-        let t157 = 1.0 / t156;
-        let t158 = t146 * t157;
-        let t160 = garm_wz_leg1 * garm_wz_leg1 + minus_garm_wz_leg2 * minus_garm_wz_leg2
-            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t119 * t128
-            - t146 * t158;
-        let garm_vz_leg1 = t14 * t18;
-        let garm_vz_leg2 = t47 * t51;
-        let minus_garm_vz_leg3 = t73 * t79;
-        let minus_garm_vz_leg4 = t100 * t105;
-        let t178 = garm_vx_leg2 * garm_vz_leg2 - minus_garm_vx_leg1 * garm_vz_leg1
-            + minus_garm_vx_leg3 * minus_garm_vz_leg3
-            - garm_vx_leg4 * minus_garm_vz_leg4;
-        let t188 = t178 * t127;
-        let t190 = minus_garm_vy_leg3 * minus_garm_vz_leg3
-            - (minus_garm_vy_leg1 * garm_vz_leg1 + minus_garm_vy_leg2 * garm_vz_leg2)
-            + minus_garm_vy_leg4 * minus_garm_vz_leg4 - t144 * t188;
-        let t192 = garm_vz_leg1 * garm_wz_leg1 - garm_vz_leg2 * minus_garm_wz_leg2
-            - minus_garm_vz_leg3 * garm_wz_leg3 - minus_garm_vz_leg4 * garm_wz_leg4
-            - t178 * t128 - t190 * t158;
-        let t202 = t190 * t157;
-        let t204 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3
-            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t178 * t188 - t190 * t202;
-        ::overact::guard::platform(t204, 31.117338184537527, "actuators")?;
-        ::overact::guard::platform(t204, 31.117338184537527, "actuators")?;
-        let t205 = 1.0 / t204;
-        let t206 = t192 * t205;
-        let t208 = t160 - t192 * t206;
-        ::overact::guard::platform(t208, 0.351065482163043, "actuators")?;
-        ::overact::guard::platform(t208, 0.351065482163043, "actuators")?;
-        let t209 = 1.0 / t208;
-        let t210 = garm_wz_leg1 * actuator_velocities[0];
-        let t211 = minus_garm_wz_leg2 * actuator_velocities[1];
-        let t213 = garm_wz_leg3 * actuator_velocities[2];
-        let t215 = garm_wz_leg4 * actuator_velocities[3];
-        let t217 = garm_vx_leg2 * actuator_velocities[1];
-        let t218 = minus_garm_vx_leg1 * actuator_velocities[0];
-        let t220 = minus_garm_vx_leg3 * actuator_velocities[2];
-        let t222 = garm_vx_leg4 * actuator_velocities[3];
-        let t223 = t217 - t218 - t220 + t222;
-        let t226 = minus_garm_vy_leg1 * actuator_velocities[0];
-        let t227 = minus_garm_vy_leg2 * actuator_velocities[1];
-        let t229 = minus_garm_vy_leg3 * actuator_velocities[2];
-        let t231 = minus_garm_vy_leg4 * actuator_velocities[3];
-        let t234 = t226 + t227 + t229 + t231 + t223 * t154;
-        let t237 = garm_vz_leg1 * actuator_velocities[0];
-        let t238 = garm_vz_leg2 * actuator_velocities[1];
-        let t240 = minus_garm_vz_leg3 * actuator_velocities[2];
-        let t242 = minus_garm_vz_leg4 * actuator_velocities[3];
-        let t247 = t237 + t238 - t240 - t242 - t223 * t188 + t202 * t234;
-        let t250 = t209
-            * (t210 - t211 + t213 + t215 - t223 * t128 + t158 * t234 - t206 * t247);
-        let t251 = t29 * t250;
-        let t252 = t250 * t251;
-        let t253 = 0.58 * s_rod_leg1;
-        let t254 = 1.7241379310344827 * t17;
-        let gcross_vx_leg1 = c_arm_leg1 * t254;
-        let t260 = t205 * t247 - t206 * t250;
-        let t264 = t157 * t234 + t202 * t260 + t158 * t250;
-        let t270 = t223 * t127 + t154 * t264 - t188 * t260 - t128 * t250;
-        let t271 = t24 * t250;
-        let t275 = 1.0 / c_rod_leg1;
-        let gcross_vy_leg1 = t254
-            * (c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t275)
-                + s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t275));
-        let t283 = t251 - t264;
-        let minus_gcross_vz_leg1 = s_arm_leg1 * t254;
-        let rate_cross_leg1 = gcross_vx_leg1 * (t270 - t271) + gcross_vy_leg1 * t283
-            - minus_gcross_vz_leg1 * t260;
-        let grod_vy_leg1 = 1.7241379310344827 * t275;
-        let rate_rod_leg1 = grod_vy_leg1 * t283;
-        let t291 = s_armcross_leg1 * rate_rod_leg1;
-        let t293 = t253 * (rate_cross_leg1 * t291);
-        let t295 = actuator_velocities[0] * actuator_velocities[0];
-        let t299 = rate_cross_leg1 * rate_cross_leg1;
-        let t301 = c_armcross_leg1 * rate_rod_leg1;
-        let t303 = t291 * t291 + t299 + t301 * t301;
-        let t307 = t293 - (0.26 * c_arm_leg1 * t295 + 0.58 * t12 * t303) + t293;
-        let t310 = t250 * t271;
-        let t311 = t253 * rate_cross_leg1;
-        let t312 = rate_cross_leg1 * t311;
-        let t314 = t312 - t253 * t303;
-        let t324 = t253 * (rate_cross_leg1 * t301);
-        let t326 = 0.26 * s_arm_leg1 * t295 + 0.58 * t14 * t303 + t324 + t324;
-        let rate_dot_arm_leg1 = minus_garm_vx_leg1 * (t252 + t307)
-            + minus_garm_vy_leg1 * (t310 + t314) - garm_vz_leg1 * t326;
-        let t329 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t331 = t53 * t250;
-        let t332 = t250 * t331;
-        let t333 = 0.58 * s_rod_leg2;
-        let t334 = 1.7241379310344827 * t50;
-        let gcross_vy_leg2 = c_arm_leg2 * t334;
-        let t339 = 1.0 / c_rod_leg2;
-        let minus_gcross_vx_leg2 = t334
-            * (c_arm_leg2 * (c_armcross_leg2 * s_rod_leg2 * t339)
-                + s_arm_leg2 * (s_armcross_leg2 * s_rod_leg2 * t339));
-        let t347 = t56 * t250;
-        let t348 = t270 - t347;
-        let minus_gcross_vz_leg2 = s_arm_leg2 * t334;
-        let rate_cross_leg2 = gcross_vy_leg2 * (t331 - t264)
-            - minus_gcross_vx_leg2 * t348 - minus_gcross_vz_leg2 * t260;
-        let t354 = rate_cross_leg2 * rate_cross_leg2;
-        let minus_grod_vx_leg2 = 1.7241379310344827 * t339;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t348;
-        let t357 = s_armcross_leg2 * minus_rate_rod_leg2;
-        let t360 = c_armcross_leg2 * minus_rate_rod_leg2;
-        let t362 = t354 + t357 * t357 + t360 * t360;
-        let t364 = t333 * rate_cross_leg2;
-        let t365 = rate_cross_leg2 * t364;
-        let t366 = t333 * t362 - t365;
-        let t370 = actuator_velocities[1] * actuator_velocities[1];
-        let t376 = t333 * (rate_cross_leg2 * t357);
-        let t378 = 0.26 * c_arm_leg2 * t370 + 0.58 * t45 * t362 + t376 + t376;
-        let t379 = t250 * t347;
-        let t389 = t333 * (rate_cross_leg2 * t360);
-        let t391 = 0.26 * s_arm_leg2 * t370 + 0.58 * t47 * t362 - t389 - t389;
-        let minus_rate_dot_arm_leg2 = garm_vx_leg2 * (t332 + t366)
-            + minus_garm_vy_leg2 * (t378 - t379) + garm_vz_leg2 * t391;
-        let t394 = actuator_accelerations[1] + minus_rate_dot_arm_leg2;
-        let t398 = actuator_velocities[2] * actuator_velocities[2];
-        let t401 = 1.0 / c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.7241379310344827 * t401;
-        let t403 = t264 + t251;
-        let rate_rod_leg3 = minus_grod_vy_leg3 * t403;
-        let t405 = s_armcross_leg3 * rate_rod_leg3;
-        let t407 = 1.7241379310344827 * t78;
-        let gcross_vx_leg3 = c_arm_leg3 * t407;
-        let gcross_vy_leg3 = t407
-            * (c_arm_leg3 * (c_armcross_leg3 * s_rod_leg3 * t401)
-                + s_arm_leg3 * (s_armcross_leg3 * s_rod_leg3 * t401));
-        let gcross_vz_leg3 = s_arm_leg3 * t407;
-        let rate_cross_leg3 = gcross_vx_leg3 * (t270 + t271) - gcross_vy_leg3 * t403
-            + gcross_vz_leg3 * t260;
-        let t424 = rate_cross_leg3 * rate_cross_leg3;
-        let t426 = c_armcross_leg3 * rate_rod_leg3;
-        let t428 = t405 * t405 + t424 + t426 * t426;
-        let t431 = 0.58 * s_rod_leg3;
-        let t433 = t431 * (rate_cross_leg3 * t426);
-        let t435 = 0.26 * s_arm_leg3 * t398 + 0.58 * t73 * t428 + t433 + t433;
-        let t443 = t431 * (rate_cross_leg3 * t405);
-        let t445 = 0.26 * c_arm_leg3 * t398 + 0.58 * t75 * t428 - t443 - t443;
-        let t449 = t431 * rate_cross_leg3;
-        let t450 = rate_cross_leg3 * t449;
-        let t451 = t431 * t428 - t450;
-        let rate_dot_arm_leg3 = minus_garm_vz_leg3 * t435
-            - (minus_garm_vx_leg3 * (t252 - t445) + minus_garm_vy_leg3 * (t310 - t451));
-        let t456 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t459 = 1.7241379310344827 * t104;
-        let gcross_vz_leg4 = s_arm_leg4 * t459;
-        let t463 = 1.0 / c_rod_leg4;
-        let minus_gcross_vx_leg4 = t459
-            * (c_arm_leg4 * (c_armcross_leg4 * s_rod_leg4 * t463)
-                + s_arm_leg4 * (s_armcross_leg4 * s_rod_leg4 * t463));
-        let t471 = t270 + t347;
-        let gcross_vy_leg4 = c_arm_leg4 * t459;
-        let rate_cross_leg4 = gcross_vz_leg4 * t260
-            - (minus_gcross_vx_leg4 * t471 + gcross_vy_leg4 * (t264 + t331));
-        let t478 = 0.58 * s_rod_leg4;
-        let t479 = t478 * rate_cross_leg4;
-        let t480 = rate_cross_leg4 * t479;
-        let t481 = rate_cross_leg4 * rate_cross_leg4;
-        let grod_vx_leg4 = 1.7241379310344827 * t463;
-        let rate_rod_leg4 = grod_vx_leg4 * t471;
-        let t484 = s_armcross_leg4 * rate_rod_leg4;
-        let t487 = c_armcross_leg4 * rate_rod_leg4;
-        let t489 = t481 + t484 * t484 + t487 * t487;
-        let t491 = t480 - t478 * t489;
-        let t495 = actuator_velocities[3] * actuator_velocities[3];
-        let t501 = t478 * (rate_cross_leg4 * t484);
-        let t503 = 0.26 * c_arm_leg4 * t495 + 0.58 * t99 * t489 - t501 - t501;
-        let t513 = t478 * (rate_cross_leg4 * t487);
-        let t515 = 0.26 * s_arm_leg4 * t495 + 0.58 * t100 * t489 + t513 + t513;
-        let rate_dot_arm_leg4 = garm_vx_leg4 * (t332 - t491)
-            - minus_garm_vy_leg4 * (t379 - t503) + minus_garm_vz_leg4 * t515;
-        let t518 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t527 = garm_vx_leg2 * t394 - minus_garm_vx_leg1 * t329
-            - minus_garm_vx_leg3 * t456 + garm_vx_leg4 * t518;
-        let t538 = minus_garm_vy_leg1 * t329 + minus_garm_vy_leg2 * t394
-            + minus_garm_vy_leg3 * t456 + minus_garm_vy_leg4 * t518 + t154 * t527;
-        let t540 = garm_wz_leg1 * t329 - minus_garm_wz_leg2 * t394 + garm_wz_leg3 * t456
-            + garm_wz_leg4 * t518 - t128 * t527 + t158 * t538;
-        let t551 = garm_vz_leg1 * t329 + garm_vz_leg2 * t394 - minus_garm_vz_leg3 * t456
-            - minus_garm_vz_leg4 * t518 - t188 * t527 + t202 * t538;
-        let t554 = t209 * (t540 - t206 * t551);
-        let t555 = t250 * t250;
-        let t558 = c_phi * t555 + s_phi * t554;
-        let t561 = c_phi * t554 - s_phi * t555;
-        let t566 = t205 * t551 - t206 * t554;
-        let t570 = t157 * t538 + t202 * t566 + t158 * t554;
-        let t576 = t127 * t527 + t154 * t570 - t188 * t566 - t128 * t554;
-        let t600 = 9.81 * c_arm_leg1;
-        let t605 = 9.81 * c_arm_leg2;
-        let t610 = 9.81 * c_arm_leg3;
-        let t615 = 9.81 * c_arm_leg4;
-        let t620 = 9.81 * s_arm_leg1;
-        let t625 = 9.81 * s_arm_leg2;
-        let t630 = 9.81 * s_arm_leg3;
-        let t635 = 9.81 * s_arm_leg4;
-        let t656 = t24 * t554;
-        let t661 = t29 * t554;
-        let t663 = t661 - t570 - t310;
-        let t664 = t663 - t314;
-        let rate_dot_cross_leg1 = gcross_vx_leg1 * (t576 - t656 - t252 - t307)
-            + gcross_vy_leg1 * t664 - minus_gcross_vz_leg1 * (t566 - t326);
-        let t670 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t671 = c_rod_leg1 * rate_cross_leg1;
-        let t672 = rate_rod_leg1 * t671;
-        let t673 = t670 + t672;
-        let t675 = 1.7241379310344827 * t311;
-        let t676 = rate_rod_leg1 * t675;
-        let t677 = c_rod_leg1 * t676;
-        let t678 = s_rod_leg1 * t673 + t677;
-        let t681 = 2.972651605231867 * t312;
-        let gcross_wz_leg1 = gcross_vy_leg1 * t29 - gcross_vx_leg1 * t24;
-        let grod_wz_leg1 = grod_vy_leg1 * t29;
-        let t689 = t675 * t671;
-        let t690 = grod_wz_leg1 * t689;
-        let t692 = 2.972651605231867 * t365;
-        let t693 = t53 * t554;
-        let t698 = t56 * t554;
-        let t700 = t576 - t698 - t332;
-        let t701 = t700 - t366;
-        let rate_dot_cross_leg2 = gcross_vy_leg2 * (t693 - t570 - t379 + t378)
-            - minus_gcross_vx_leg2 * t701 - minus_gcross_vz_leg2 * (t566 - t391);
-        let t707 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t708 = c_rod_leg2 * rate_cross_leg2;
-        let t709 = minus_rate_rod_leg2 * t708;
-        let t710 = t707 - t709;
-        let t712 = 1.7241379310344827 * t364;
-        let t713 = minus_rate_rod_leg2 * t712;
-        let t714 = c_rod_leg2 * t713;
-        let t715 = s_rod_leg2 * t710 - t714;
-        let gcross_wz_leg2 = gcross_vy_leg2 * t53 + minus_gcross_vx_leg2 * t56;
-        let grod_wz_leg2 = minus_grod_vx_leg2 * t56;
-        let t725 = t712 * t708;
-        let t726 = grod_wz_leg2 * t725;
-        let t733 = t310 - (t570 + t661);
-        let t734 = t733 - t451;
-        let rate_dot_cross_leg3 = gcross_vx_leg3 * (t576 + t656 + t252 - t445)
-            + gcross_vy_leg3 * t734 + gcross_vz_leg3 * (t566 - t435);
-        let t740 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t741 = c_rod_leg3 * rate_cross_leg3;
-        let t742 = rate_rod_leg3 * t741;
-        let t743 = t740 + t742;
-        let t745 = 1.7241379310344827 * t449;
-        let t746 = rate_rod_leg3 * t745;
-        let t747 = c_rod_leg3 * t746;
-        let t748 = s_rod_leg3 * t743 + t747;
-        let t751 = 2.972651605231867 * t450;
-        let gcross_wz_leg3 = t24 * gcross_vx_leg3 - t29 * gcross_vy_leg3;
-        let grod_wz_leg3 = t29 * minus_grod_vy_leg3;
-        let t759 = t745 * t741;
-        let t760 = grod_wz_leg3 * t759;
-        let t767 = t576 + t698 + t332;
-        let t768 = t767 - t491;
-        let rate_dot_cross_leg4 = gcross_vy_leg4 * (t379 - (t570 + t693) - t503)
-            - minus_gcross_vx_leg4 * t768 + gcross_vz_leg4 * (t566 - t515);
-        let t774 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t775 = c_rod_leg4 * rate_cross_leg4;
-        let t776 = rate_rod_leg4 * t775;
-        let t777 = t774 + t776;
-        let t779 = 1.7241379310344827 * t479;
-        let t780 = rate_rod_leg4 * t779;
-        let t781 = c_rod_leg4 * t780;
-        let t782 = s_rod_leg4 * t777 + t781;
-        let t784 = 2.972651605231867 * t480;
-        let minus_gcross_wz_leg4 = t53 * gcross_vy_leg4 + t56 * minus_gcross_vx_leg4;
-        let grod_wz_leg4 = t56 * grod_vx_leg4;
-        let t793 = t779 * t775;
-        let t794 = grod_wz_leg4 * t793;
-        let t796 = t672 + t673;
-        let t798 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t799 = t798 - t676;
-        let t802 = c_rod_leg1 * t796 - s_rod_leg1 * (t676 - t799);
-        let t806 = 2.972651605231867 * (t311 * t311);
-        let t808 = t806 - t671 * t671;
-        let t815 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t816 = t815 + t713;
-        let t819 = t710 - t709;
-        let t821 = s_rod_leg2 * (t713 + t816) + c_rod_leg2 * t819;
-        let t824 = 2.972651605231867 * (t364 * t364);
-        let t826 = t824 - t708 * t708;
-        let t834 = t742 + t743;
-        let t836 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t837 = t836 - t746;
-        let t840 = c_rod_leg3 * t834 - s_rod_leg3 * (t746 - t837);
-        let t844 = 2.972651605231867 * (t449 * t449);
-        let t846 = t844 - t741 * t741;
-        let t854 = 2.972651605231867 * (t479 * t479);
-        let t856 = t854 - t775 * t775;
-        let t858 = t776 + t777;
-        let t860 = c_rod_leg4 * rate_dot_cross_leg4;
-        let t861 = t860 - t780;
-        let t864 = c_rod_leg4 * t858 - s_rod_leg4 * (t780 - t861);
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t664;
-        let t875 = rate_rod_leg1 * rate_rod_leg1;
-        let t878 = s_rod_leg1 * (t689 + rate_dot_rod_leg1) + c_rod_leg1 * (t875 - t806);
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t701;
-        let t890 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t893 = s_rod_leg2 * (t725 - minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t890 - t824);
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t734;
-        let t905 = rate_rod_leg3 * rate_rod_leg3;
-        let t908 = s_rod_leg3 * (t759 - minus_rate_dot_rod_leg3)
-            + c_rod_leg3 * (t905 - t844);
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t768;
-        let t921 = rate_rod_leg4 * rate_rod_leg4;
-        let t924 = s_rod_leg4 * (t793 + rate_dot_rod_leg4) + c_rod_leg4 * (t921 - t854);
-        let t933 = c_rod_leg1 * t799 - t677;
-        let t941 = t714 + c_rod_leg2 * t816;
-        let t949 = c_rod_leg3 * t837 - t747;
-        let t957 = c_rod_leg4 * t861 - t781;
-        let t964 = 1.7241379310344827 * t663;
-        let t973 = 1.7241379310344827 * t700;
-        let t982 = 1.7241379310344827 * t733;
-        let t992 = 1.7241379310344827 * t767;
-        let t1009 = s_rod_leg1 * (0.26 * s_cross_leg1);
-        let t1012 = 0.26 * t16;
-        let t1016 = 0.26 * c_cross_leg1;
-        let t1018 = t1009 * (t806 + t875) - t1012 * (t689 - rate_dot_rod_leg1)
-            - t1016 * t796;
-        let t1021 = t620 + 0.26 * t295;
-        let t1024 = 0.26 * actuator_accelerations[0] - t600;
-        let t1027 = s_rod_leg1 * (s_cross_leg1 * t1021 + c_cross_leg1 * t1024);
-        let t1035 = s_cross_leg1 * t1024 - c_cross_leg1 * t1021;
-        let t1048 = s_rod_leg2 * (0.26 * s_cross_leg2);
-        let t1051 = 0.26 * t49;
-        let t1055 = 0.26 * c_cross_leg2;
-        let t1057 = t1048 * (t824 + t890) - t1051 * (t725 + minus_rate_dot_rod_leg2)
-            - t1055 * t819;
-        let t1060 = t625 + 0.26 * t370;
-        let t1063 = 0.26 * actuator_accelerations[1] - t605;
-        let t1066 = s_rod_leg2 * (s_cross_leg2 * t1060 + c_cross_leg2 * t1063);
-        let t1071 = s_cross_leg2 * t1063 - c_cross_leg2 * t1060;
-        let t1086 = 0.26 * t77;
-        let t1090 = s_rod_leg3 * (0.26 * s_cross_leg3);
-        let t1094 = 0.26 * c_cross_leg3;
-        let t1096 = t1086 * (t759 + minus_rate_dot_rod_leg3) + t1090 * (t844 + t905)
-            - t1094 * t834;
-        let t1099 = t630 + 0.26 * t398;
-        let t1102 = 0.26 * actuator_accelerations[2] - t610;
-        let t1105 = s_rod_leg3 * (s_cross_leg3 * t1099 + c_cross_leg3 * t1102);
-        let t1110 = s_cross_leg3 * t1102 - c_cross_leg3 * t1099;
-        let t1125 = 0.26 * t103;
-        let t1129 = s_rod_leg4 * (0.26 * s_cross_leg4);
-        let t1133 = 0.26 * c_cross_leg4;
-        let t1135 = t1125 * (t793 - rate_dot_rod_leg4) + t1129 * (t854 + t921)
-            - t1133 * t858;
-        let t1138 = t635 + 0.26 * t495;
-        let t1141 = 0.26 * actuator_accelerations[3] - t615;
-        let t1144 = s_rod_leg4 * (s_cross_leg4 * t1138 + c_cross_leg4 * t1141);
-        let t1149 = s_cross_leg4 * t1141 - c_cross_leg4 * t1138;
-        let t1169 = t1009 * t670 - t1012 * t798 + t299 * t1016;
-        let t1185 = t1048 * t707 - t1051 * t815 + t354 * t1055;
-        let t1203 = t1086 * t836 + t1090 * t740 + t424 * t1094;
-        let t1219 = t1125 * t860 + t1129 * t774 + t481 * t1133;
+        let t2 = 0.05 * c_phi;
+        let t3 = 0.08660254037844387 * s_phi;
+        let t4 = t2 - t3;
+        let t5 = 0.05 * s_phi;
+        let t6 = 0.08660254037844387 * c_phi;
+        let t7 = t5 + t6;
+        let t8 = pose[1] + t7;
+        let t9 = pose[0] + t4;
+        let t10 = t9 - 0.24;
+        let t11 = t10 * t10;
+        let t12 = pose[2] * pose[2];
+        let t14 = 0.2704 * (t11 + t12);
+        let t15 = t8 * t8;
+        let t17 = t11 + t15 + t12;
+        let t19 = t17 - 0.3364 + 0.0676;
+        let t21 = t14 - t19 * t19;
+        ::overact::guard::reach(t21, "leg1")?;
+        let t22 = ::overact::math::sqrt(t21);
+        ::overact::guard::leg(t22, 0.27703140616182853, "leg1")?;
+        let t23 = 1.0 / t22;
+        let t24 = 2.0 * t23;
+        let garm_vy_leg1 = t8 * t24;
+        let t27 = 1.0 / t14;
+        let t28 = 0.52 * t10;
+        let t30 = 0.52 * pose[2];
+        let c_arm_leg1 = t27 * (t28 * t19 - t30 * t22);
+        let t34 = 0.26 * c_arm_leg1;
+        let t36 = t9 - (0.24 + t34);
+        let garm_vx_leg1 = t36 * t24;
+        let garm_wz_leg1 = t4 * garm_vy_leg1 - t7 * garm_vx_leg1;
+        let t41 = t6 - t5;
+        let t42 = t3 + t2;
+        let t43 = pose[1] + t42;
+        let t44 = t43 - 0.24;
+        let t45 = t44 * t44;
+        let t47 = 0.2704 * (t45 + t12);
+        let t48 = 1.0 / t47;
+        let t49 = 0.52 * t44;
+        let t50 = pose[0] + t41;
+        let t51 = t50 * t50;
+        let t53 = t51 + t45 + t12;
+        let t55 = t53 - 0.3364 + 0.0676;
+        let t58 = t47 - t55 * t55;
+        ::overact::guard::reach(t58, "leg2")?;
+        let t59 = ::overact::math::sqrt(t58);
+        ::overact::guard::leg(t59, 0.27703140616182853, "leg2")?;
+        let c_arm_leg2 = t48 * (t49 * t55 - t30 * t59);
+        let t63 = 0.26 * c_arm_leg2;
+        let t65 = t43 - (0.24 + t63);
+        let t66 = 1.0 / t59;
+        let t67 = 2.0 * t66;
+        let garm_vy_leg2 = t65 * t67;
+        let garm_vx_leg2 = t50 * t67;
+        let garm_wz_leg2 = t41 * garm_vy_leg2 - t42 * garm_vx_leg2;
+        let t75 = pose[0] - t4;
+        let t76 = t75 + 0.24;
+        let t77 = t76 * t76;
+        let t79 = 0.2704 * (t77 + t12);
+        let t80 = 1.0 / t79;
+        let t81 = 0.52 * t76;
+        let t82 = pose[1] - t7;
+        let t83 = t82 * t82;
+        let t85 = t77 + t83 + t12;
+        let t87 = t85 - 0.3364 + 0.0676;
+        let t90 = t79 - t87 * t87;
+        ::overact::guard::reach(t90, "leg3")?;
+        let t91 = ::overact::math::sqrt(t90);
+        ::overact::guard::leg(t91, 0.27703140616182853, "leg3")?;
+        let minus_c_arm_leg3 = t80 * (t81 * t87 + t30 * t91);
+        let t95 = 0.26 * minus_c_arm_leg3;
+        let t97 = t75 - (t95 - 0.24);
+        let t98 = 1.0 / t91;
+        let t99 = 2.0 * t98;
+        let garm_vx_leg3 = t97 * t99;
+        let garm_vy_leg3 = t82 * t99;
+        let garm_wz_leg3 = t7 * garm_vx_leg3 - t4 * garm_vy_leg3;
+        let t107 = pose[0] - t41;
+        let t108 = pose[1] - t42;
+        let t109 = t108 + 0.24;
+        let t110 = t109 * t109;
+        let t112 = 0.2704 * (t110 + t12);
+        let t113 = t107 * t107;
+        let t115 = t113 + t110 + t12;
+        let t117 = t115 - 0.3364 + 0.0676;
+        let t119 = t112 - t117 * t117;
+        ::overact::guard::reach(t119, "leg4")?;
+        let t120 = ::overact::math::sqrt(t119);
+        ::overact::guard::leg(t120, 0.27703140616182853, "leg4")?;
+        let t121 = 1.0 / t120;
+        let t122 = 2.0 * t121;
+        let garm_vx_leg4 = t107 * t122;
+        let t125 = 1.0 / t112;
+        let t126 = 0.52 * t109;
+        let minus_c_arm_leg4 = t125 * (t126 * t117 + t30 * t120);
+        let t131 = 0.26 * minus_c_arm_leg4;
+        let t133 = t108 - (t131 - 0.24);
+        let garm_vy_leg4 = t133 * t122;
+        let garm_wz_leg4 = t42 * garm_vx_leg4 - t41 * garm_vy_leg4;
+        let t145 = garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * garm_wz_leg2
+            + garm_vx_leg3 * garm_wz_leg3 + garm_vx_leg4 * garm_wz_leg4;
+        let t152 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t152, 19.507470815645043, "actuators")?;
+        ::overact::guard::platform(t152, 19.507470815645043, "actuators")?;
+        let t153 = 1.0 / t152;
+        let t154 = t145 * t153;
+        let t170 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3 + garm_vx_leg4 * garm_vy_leg4;
+        let t172 = garm_vy_leg1 * garm_wz_leg1 + garm_vy_leg2 * garm_wz_leg2
+            + garm_vy_leg3 * garm_wz_leg3 + garm_vy_leg4 * garm_wz_leg4 - t170 * t154;
+        let t180 = t170 * t153;
+        let t182 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t170 * t180;
+        ::overact::guard::platform(t182, 16.505615550045768, "actuators")?;
+        ::overact::guard::platform(t182, 16.505615550045768, "actuators")?;
+        let t183 = 1.0 / t182;
+        let t184 = t172 * t183;
+        let t186 = garm_wz_leg1 * garm_wz_leg1 + garm_wz_leg2 * garm_wz_leg2
+            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t145 * t154
+            - t172 * t184;
+        let minus_s_arm_leg1 = t27 * (t30 * t19 + t28 * t22);
+        let t191 = 0.26 * minus_s_arm_leg1;
+        let t192 = pose[2] - t191;
+        let garm_vz_leg1 = t192 * t24;
+        let minus_s_arm_leg2 = t48 * (t30 * t55 + t49 * t59);
+        let t199 = 0.26 * minus_s_arm_leg2;
+        let t200 = pose[2] - t199;
+        let garm_vz_leg2 = t200 * t67;
+        let s_arm_leg3 = t80 * (t81 * t91 - t30 * t87);
+        let t208 = 0.26 * s_arm_leg3;
+        let t209 = pose[2] + t208;
+        let garm_vz_leg3 = t209 * t99;
+        let s_arm_leg4 = t125 * (t126 * t120 - t30 * t117);
+        let t217 = 0.26 * s_arm_leg4;
+        let t218 = pose[2] + t217;
+        let garm_vz_leg4 = t218 * t122;
+        let t228 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3 + garm_vx_leg4 * garm_vz_leg4;
+        let t238 = t228 * t153;
+        let t240 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 + garm_vy_leg4 * garm_vz_leg4 - t170 * t238;
+        let t242 = garm_vz_leg1 * garm_wz_leg1 + garm_vz_leg2 * garm_wz_leg2
+            + garm_vz_leg3 * garm_wz_leg3 + garm_vz_leg4 * garm_wz_leg4 - t228 * t154
+            - t240 * t184;
+        let t252 = t240 * t183;
+        let t254 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 + garm_vz_leg4 * garm_vz_leg4 - t228 * t238
+            - t240 * t252;
+        ::overact::guard::platform(t254, 31.11733818900116, "actuators")?;
+        ::overact::guard::platform(t254, 31.11733818900116, "actuators")?;
+        let t255 = 1.0 / t254;
+        let t256 = t242 * t255;
+        let t258 = t186 - t242 * t256;
+        ::overact::guard::platform(t258, 0.35106548211906174, "actuators")?;
+        ::overact::guard::platform(t258, 0.35106548211906174, "actuators")?;
+        let t259 = 1.0 / t258;
+        let t260 = actuator_velocities[0] * actuator_velocities[0];
+        let t264 = 1.0 - 2.972651605231867 * t15;
+        ::overact::guard::reach(t264, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t264);
+        ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
+        let s_cross_leg1 = 1.9230769230769231 * t22 / (0.58 * c_rod_leg1);
+        let c_cross_leg1 = (t17 - (0.0676 + t15) - 0.3364 * t264)
+            / (0.3016 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t277 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7241379310344827 * t277;
+        let t279 = garm_vy_leg1 * actuator_velocities[0];
+        let t280 = garm_vy_leg2 * actuator_velocities[1];
+        let t282 = garm_vy_leg3 * actuator_velocities[2];
+        let t284 = garm_vy_leg4 * actuator_velocities[3];
+        let t286 = garm_vx_leg1 * actuator_velocities[0];
+        let t287 = garm_vx_leg2 * actuator_velocities[1];
+        let t289 = garm_vx_leg3 * actuator_velocities[2];
+        let t291 = garm_vx_leg4 * actuator_velocities[3];
+        let t292 = t286 + t287 + t289 + t291;
+        let t294 = t279 + t280 + t282 + t284 - t292 * t180;
+        let t296 = garm_vz_leg1 * actuator_velocities[0];
+        let t297 = garm_vz_leg2 * actuator_velocities[1];
+        let t299 = garm_vz_leg3 * actuator_velocities[2];
+        let t301 = garm_vz_leg4 * actuator_velocities[3];
+        let t306 = t296 + t297 + t299 + t301 - t292 * t238 - t252 * t294;
+        let t308 = garm_wz_leg1 * actuator_velocities[0];
+        let t309 = garm_wz_leg2 * actuator_velocities[1];
+        let t311 = garm_wz_leg3 * actuator_velocities[2];
+        let t313 = garm_wz_leg4 * actuator_velocities[3];
+        let t321 = t259
+            * (t308 + t309 + t311 + t313 - t292 * t154 - t184 * t294 - t256 * t306);
+        let t323 = t255 * t306 - t256 * t321;
+        let t327 = t183 * t294 - t252 * t323 - t184 * t321;
+        let t328 = t4 * t321;
+        let t329 = t327 + t328;
+        let rate_rod_leg1 = grod_vy_leg1 * t329;
+        let t331 = s_armcross_leg1 * rate_rod_leg1;
+        let t333 = 0.52 * t23;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t333;
+        let t341 = t292 * t153 - t180 * t327 - t238 * t323 - t154 * t321;
+        let t342 = t7 * t321;
+        let s_rod_leg1 = 1.7241379310344827 * t8;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let minus_gcross_vy_leg1 = t333
+            * (c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t277)
+                - minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t277));
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t333;
+        let minus_rate_cross_leg1 = minus_gcross_vx_leg1 * (t341 - t342)
+            + minus_gcross_vy_leg1 * t329 + minus_gcross_vz_leg1 * t323;
+        let t362 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t364 = c_armcross_leg1 * rate_rod_leg1;
+        let t366 = t331 * t331 + t362 + t364 * t364;
+        let t370 = t8 * (minus_rate_cross_leg1 * t331);
+        let t372 = t34 * t260 + t36 * t366 + t370 + t370;
+        let t373 = t321 * t328;
+        let t376 = t321 * t342;
+        let t377 = t8 * minus_rate_cross_leg1;
+        let t378 = minus_rate_cross_leg1 * t377;
+        let t380 = t378 - t8 * t366;
+        let t388 = t8 * (minus_rate_cross_leg1 * t364);
+        let t390 = t191 * t260 + t192 * t366 + t388 + t388;
+        let rate_dot_arm_leg1 = garm_vx_leg1 * (t372 - t373)
+            - garm_vy_leg1 * (t376 + t380) + garm_vz_leg1 * t390;
+        let t393 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t395 = actuator_velocities[1] * actuator_velocities[1];
+        let t397 = 0.52 * t66;
+        let minus_s_rod_leg2 = 1.7241379310344827 * t50;
+        let t402 = 1.0 - 2.972651605231867 * t51;
+        ::overact::guard::reach(t402, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t402);
+        ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
+        let c_cross_leg2 = (t53 - (0.0676 + t51) - 0.3364 * t402)
+            / (0.3016 * c_rod_leg2);
+        let s_cross_leg2 = 1.9230769230769231 * t59 / (0.58 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t415 = 1.0 / c_rod_leg2;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let minus_gcross_vx_leg2 = t397
+            * (c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t415)
+                - minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t415));
+        let t426 = t42 * t321;
+        let t427 = t341 - t426;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t397;
+        let t430 = t41 * t321;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t397;
+        let minus_rate_cross_leg2 = minus_gcross_vx_leg2 * t427
+            + minus_gcross_vy_leg2 * (t327 + t430) + minus_gcross_vz_leg2 * t323;
+        let t437 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let minus_grod_vx_leg2 = 1.7241379310344827 * t415;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t427;
+        let t440 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t443 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t445 = t437 + t440 * t440 + t443 * t443;
+        let t449 = t50 * (minus_rate_cross_leg2 * t440);
+        let t451 = t63 * t395 + t65 * t445 + t449 + t449;
+        let t452 = t321 * t426;
+        let t455 = t321 * t430;
+        let t456 = t50 * minus_rate_cross_leg2;
+        let t457 = minus_rate_cross_leg2 * t456;
+        let t459 = t457 - t50 * t445;
+        let t467 = t50 * (minus_rate_cross_leg2 * t443);
+        let t469 = t199 * t395 + t200 * t445 + t467 + t467;
+        let rate_dot_arm_leg2 = garm_vy_leg2 * (t451 - t452)
+            - garm_vx_leg2 * (t455 + t459) + garm_vz_leg2 * t469;
+        let t472 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t475 = actuator_velocities[2] * actuator_velocities[2];
+        let t480 = 1.0 - 2.972651605231867 * t83;
+        ::overact::guard::reach(t480, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t480);
+        ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
+        let c_cross_leg3 = (t85 - (0.0676 + t83) - 0.3364 * t480)
+            / (0.3016 * c_rod_leg3);
+        let s_cross_leg3 = 1.9230769230769231 * t91 / (0.58 * c_rod_leg3);
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t492 = 1.0 / c_rod_leg3;
+        let minus_grod_vy_leg3 = 1.7241379310344827 * t492;
+        let t494 = t327 - t328;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t494;
+        let t496 = s_armcross_leg3 * minus_rate_rod_leg3;
+        let t498 = 0.52 * t98;
+        let gcross_vz_leg3 = s_arm_leg3 * t498;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t498;
+        let minus_s_rod_leg3 = 1.7241379310344827 * t82;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t498
+            * (minus_c_arm_leg3 * (minus_s_rod_leg3 * minus_c_armcross_leg3 * t492)
+                + s_arm_leg3 * (minus_s_rod_leg3 * s_armcross_leg3 * t492));
+        let rate_cross_leg3 = gcross_vz_leg3 * t323
+            - (minus_gcross_vx_leg3 * (t341 + t342) + minus_gcross_vy_leg3 * t494);
+        let t519 = rate_cross_leg3 * rate_cross_leg3;
+        let t521 = minus_c_armcross_leg3 * minus_rate_rod_leg3;
+        let t523 = t496 * t496 + t519 + t521 * t521;
+        let t527 = t82 * (rate_cross_leg3 * t496);
+        let t529 = t95 * t475 + t97 * t523 + t527 + t527;
+        let t532 = t82 * rate_cross_leg3;
+        let t533 = rate_cross_leg3 * t532;
+        let t535 = t533 - t82 * t523;
+        let t543 = t82 * (rate_cross_leg3 * t521);
+        let t545 = t208 * t475 - t209 * t523 - t543 - t543;
+        let rate_dot_arm_leg3 = garm_vx_leg3 * (t373 + t529)
+            + garm_vy_leg3 * (t376 - t535) - garm_vz_leg3 * t545;
+        let t548 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t551 = 0.52 * t121;
+        let gcross_vz_leg4 = s_arm_leg4 * t551;
+        let s_rod_leg4 = 1.7241379310344827 * t107;
+        let t558 = 1.0 - 2.972651605231867 * t113;
+        ::overact::guard::reach(t558, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t558);
+        ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
+        let c_cross_leg4 = (t115 - (0.0676 + t113) - 0.3364 * t558)
+            / (0.3016 * c_rod_leg4);
+        let s_cross_leg4 = 1.9230769230769231 * t120 / (0.58 * c_rod_leg4);
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let t571 = 1.0 / c_rod_leg4;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t551
+            * (minus_c_arm_leg4 * (s_rod_leg4 * minus_c_armcross_leg4 * t571)
+                + s_arm_leg4 * (s_rod_leg4 * s_armcross_leg4 * t571));
+        let t582 = t341 + t426;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t551;
+        let rate_cross_leg4 = gcross_vz_leg4 * t323
+            - (minus_gcross_vx_leg4 * t582 + minus_gcross_vy_leg4 * (t327 - t430));
+        let t589 = t107 * rate_cross_leg4;
+        let t590 = rate_cross_leg4 * t589;
+        let t591 = rate_cross_leg4 * rate_cross_leg4;
+        let grod_vx_leg4 = 1.7241379310344827 * t571;
+        let rate_rod_leg4 = grod_vx_leg4 * t582;
+        let t594 = s_armcross_leg4 * rate_rod_leg4;
+        let t597 = minus_c_armcross_leg4 * rate_rod_leg4;
+        let t599 = t591 + t594 * t594 + t597 * t597;
+        let t601 = t590 - t107 * t599;
+        let t604 = actuator_velocities[3] * actuator_velocities[3];
+        let t609 = t107 * (rate_cross_leg4 * t594);
+        let t611 = t131 * t604 + t133 * t599 + t609 + t609;
+        let t619 = t107 * (rate_cross_leg4 * t597);
+        let t621 = t217 * t604 - t218 * t599 - t619 - t619;
+        let rate_dot_arm_leg4 = garm_vx_leg4 * (t455 - t601)
+            + garm_vy_leg4 * (t452 + t611) - garm_vz_leg4 * t621;
+        let t624 = actuator_accelerations[3] - rate_dot_arm_leg4;
+        let t633 = garm_vx_leg1 * t393 + garm_vx_leg2 * t472 + garm_vx_leg3 * t548
+            + garm_vx_leg4 * t624;
+        let t644 = garm_vy_leg1 * t393 + garm_vy_leg2 * t472 + garm_vy_leg3 * t548
+            + garm_vy_leg4 * t624 - t180 * t633;
+        let t646 = garm_wz_leg1 * t393 + garm_wz_leg2 * t472 + garm_wz_leg3 * t548
+            + garm_wz_leg4 * t624 - t154 * t633 - t184 * t644;
+        let t657 = garm_vz_leg1 * t393 + garm_vz_leg2 * t472 + garm_vz_leg3 * t548
+            + garm_vz_leg4 * t624 - t238 * t633 - t252 * t644;
+        let t660 = t259 * (t646 - t256 * t657);
+        let t661 = t321 * t321;
+        let t664 = c_phi * t661 + s_phi * t660;
+        let t667 = c_phi * t660 - s_phi * t661;
+        let t671 = t255 * t657 - t256 * t660;
+        let t675 = t183 * t644 - t252 * t671 - t184 * t660;
+        let t683 = t153 * t633 - t180 * t675 - t238 * t671 - t154 * t660;
+        let t706 = 9.81 * c_arm_leg1;
+        let t711 = 9.81 * c_arm_leg2;
+        let t716 = 9.81 * minus_c_arm_leg3;
+        let t721 = 9.81 * minus_c_arm_leg4;
+        let t726 = 9.81 * minus_s_arm_leg1;
+        let t731 = 9.81 * minus_s_arm_leg2;
+        let t736 = 9.81 * s_arm_leg3;
+        let t741 = 9.81 * s_arm_leg4;
+        let t762 = t7 * t660;
+        let t767 = t4 * t660;
+        let t769 = t675 + t767 - t376;
+        let t770 = t769 - t380;
+        let minus_rate_dot_cross_leg1 = minus_gcross_vx_leg1
+            * (t683 - t762 - t373 + t372) + minus_gcross_vy_leg1 * t770
+            + minus_gcross_vz_leg1 * (t671 + t390);
+        let t776 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t777 = c_rod_leg1 * minus_rate_cross_leg1;
+        let t778 = rate_rod_leg1 * t777;
+        let t779 = t776 + t778;
+        let t781 = 1.7241379310344827 * t377;
+        let t782 = rate_rod_leg1 * t781;
+        let t783 = c_rod_leg1 * t782;
+        let t784 = s_rod_leg1 * t779 + t783;
+        let t787 = 2.972651605231867 * t378;
+        let gcross_wz_leg1 = t7 * minus_gcross_vx_leg1 - t4 * minus_gcross_vy_leg1;
+        let grod_wz_leg1 = t4 * grod_vy_leg1;
+        let t795 = t781 * t777;
+        let t796 = grod_wz_leg1 * t795;
+        let t798 = t42 * t660;
+        let t800 = t683 - t798 - t455;
+        let t801 = t800 - t459;
+        let t803 = t41 * t660;
+        let minus_rate_dot_cross_leg2 = minus_gcross_vx_leg2 * t801
+            + minus_gcross_vy_leg2 * (t675 + t803 - t452 + t451)
+            + minus_gcross_vz_leg2 * (t671 + t469);
+        let t812 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t813 = c_rod_leg2 * minus_rate_cross_leg2;
+        let t814 = minus_rate_rod_leg2 * t813;
+        let t815 = t812 + t814;
+        let t817 = 1.7241379310344827 * t456;
+        let t818 = minus_rate_rod_leg2 * t817;
+        let t819 = c_rod_leg2 * t818;
+        let t820 = minus_s_rod_leg2 * t815 + t819;
+        let t822 = 2.972651605231867 * t457;
+        let grod_wz_leg2 = t42 * minus_grod_vx_leg2;
+        let t827 = t817 * t813;
+        let t828 = grod_wz_leg2 * t827;
+        let gcross_wz_leg2 = t42 * minus_gcross_vx_leg2 - t41 * minus_gcross_vy_leg2;
+        let t841 = t675 - t767 + t376;
+        let t842 = t841 - t535;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * (t671 - t545)
+            - (minus_gcross_vx_leg3 * (t683 + t762 + t373 + t529)
+                + minus_gcross_vy_leg3 * t842);
+        let t846 = minus_s_rod_leg3 * rate_dot_cross_leg3;
+        let t847 = c_rod_leg3 * rate_cross_leg3;
+        let t848 = minus_rate_rod_leg3 * t847;
+        let t849 = t846 + t848;
+        let t851 = 1.7241379310344827 * t532;
+        let t852 = minus_rate_rod_leg3 * t851;
+        let t853 = c_rod_leg3 * t852;
+        let t854 = minus_s_rod_leg3 * t849 + t853;
+        let t857 = 2.972651605231867 * t533;
+        let gcross_wz_leg3 = t4 * minus_gcross_vy_leg3 - t7 * minus_gcross_vx_leg3;
+        let grod_wz_leg3 = t4 * minus_grod_vy_leg3;
+        let t865 = t851 * t847;
+        let t866 = grod_wz_leg3 * t865;
+        let t871 = t683 + t798 + t455;
+        let t872 = t871 - t601;
+        let rate_dot_cross_leg4 = gcross_vz_leg4 * (t671 - t621)
+            - (minus_gcross_vx_leg4 * t872
+                + minus_gcross_vy_leg4 * (t675 - t803 + t452 + t611));
+        let t880 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t881 = c_rod_leg4 * rate_cross_leg4;
+        let t882 = rate_rod_leg4 * t881;
+        let t883 = t880 + t882;
+        let t885 = 1.7241379310344827 * t589;
+        let t886 = rate_rod_leg4 * t885;
+        let t887 = c_rod_leg4 * t886;
+        let t888 = s_rod_leg4 * t883 + t887;
+        let t890 = 2.972651605231867 * t590;
+        let gcross_wz_leg4 = t41 * minus_gcross_vy_leg4 - t42 * minus_gcross_vx_leg4;
+        let grod_wz_leg4 = t42 * grod_vx_leg4;
+        let t899 = t885 * t881;
+        let t900 = grod_wz_leg4 * t899;
+        let t902 = c_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t903 = t782 - t902;
+        let t906 = t778 + t779;
+        let t908 = s_rod_leg1 * (t782 + t903) - c_rod_leg1 * t906;
+        let t911 = 2.972651605231867 * (t377 * t377);
+        let t913 = t911 - t777 * t777;
+        let t921 = t814 + t815;
+        let t923 = c_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t924 = t818 - t923;
+        let t927 = c_rod_leg2 * t921 - minus_s_rod_leg2 * (t818 + t924);
+        let t930 = 2.972651605231867 * (t456 * t456);
+        let t932 = t930 - t813 * t813;
+        let t940 = c_rod_leg3 * rate_dot_cross_leg3;
+        let t941 = t940 - t852;
+        let t944 = t848 + t849;
+        let t946 = minus_s_rod_leg3 * (t852 - t941) - c_rod_leg3 * t944;
+        let t950 = 2.972651605231867 * (t532 * t532);
+        let t952 = t950 - t847 * t847;
+        let t960 = 2.972651605231867 * (t589 * t589);
+        let t962 = t960 - t881 * t881;
+        let t964 = t882 + t883;
+        let t966 = c_rod_leg4 * rate_dot_cross_leg4;
+        let t967 = t966 - t886;
+        let t970 = c_rod_leg4 * t964 - s_rod_leg4 * (t886 - t967);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t770;
+        let t981 = rate_rod_leg1 * rate_rod_leg1;
+        let t984 = s_rod_leg1 * (t795 + rate_dot_rod_leg1) + c_rod_leg1 * (t981 - t911);
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t801;
+        let t996 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t999 = minus_s_rod_leg2 * (t827 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t996 - t930);
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t842;
+        let t1011 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t1014 = minus_s_rod_leg3 * (t865 + minus_rate_dot_rod_leg3)
+            + c_rod_leg3 * (t1011 - t950);
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t872;
+        let t1027 = rate_rod_leg4 * rate_rod_leg4;
+        let t1030 = s_rod_leg4 * (t899 + rate_dot_rod_leg4)
+            + c_rod_leg4 * (t1027 - t960);
+        let t1039 = t783 + c_rod_leg1 * t903;
+        let t1047 = t819 + c_rod_leg2 * t924;
+        let t1055 = c_rod_leg3 * t941 - t853;
+        let t1063 = c_rod_leg4 * t967 - t887;
+        let t1070 = 1.7241379310344827 * t769;
+        let t1079 = 1.7241379310344827 * t800;
+        let t1088 = 1.7241379310344827 * t841;
+        let t1098 = 1.7241379310344827 * t871;
+        let t1114 = 0.8620689655172413 * t22;
+        let t1118 = 0.4482758620689655 * (t8 * s_cross_leg1);
+        let t1122 = 0.26 * c_cross_leg1;
+        let t1124 = t1114 * (t795 - rate_dot_rod_leg1) + t1118 * (t911 + t981)
+            + t1122 * t906;
+        let t1127 = 0.26 * actuator_accelerations[0] - t706;
+        let t1130 = t726 - 0.26 * t260;
+        let t1133 = s_rod_leg1 * (c_cross_leg1 * t1127 - s_cross_leg1 * t1130);
+        let t1141 = c_cross_leg1 * t1130 + s_cross_leg1 * t1127;
+        let t1153 = 0.8620689655172413 * t59;
+        let t1157 = 0.4482758620689655 * (t50 * s_cross_leg2);
+        let t1161 = 0.26 * c_cross_leg2;
+        let t1163 = t1153 * (minus_rate_dot_rod_leg2 - t827) - t1157 * (t930 + t996)
+            - t1161 * t921;
+        let t1166 = 0.26 * actuator_accelerations[1] - t711;
+        let t1169 = t731 - 0.26 * t395;
+        let t1172 = minus_s_rod_leg2 * (c_cross_leg2 * t1166 - s_cross_leg2 * t1169);
+        let t1177 = c_cross_leg2 * t1169 + s_cross_leg2 * t1166;
+        let t1192 = 0.8620689655172413 * t91;
+        let t1196 = 0.4482758620689655 * (t82 * s_cross_leg3);
+        let t1200 = 0.26 * c_cross_leg3;
+        let t1202 = t1192 * (minus_rate_dot_rod_leg3 - t865) - t1196 * (t950 + t1011)
+            + t1200 * t944;
+        let t1205 = t736 + 0.26 * t475;
+        let t1208 = t716 + 0.26 * actuator_accelerations[2];
+        let t1211 = minus_s_rod_leg3 * (s_cross_leg3 * t1205 + c_cross_leg3 * t1208);
+        let t1219 = s_cross_leg3 * t1208 - c_cross_leg3 * t1205;
+        let t1231 = 0.8620689655172413 * t120;
+        let t1235 = 0.4482758620689655 * (t107 * s_cross_leg4);
+        let t1239 = 0.26 * c_cross_leg4;
+        let t1241 = t1231 * (t899 - rate_dot_rod_leg4) + t1235 * (t960 + t1027)
+            - t1239 * t964;
+        let t1244 = t741 + 0.26 * t604;
+        let t1247 = t721 + 0.26 * actuator_accelerations[3];
+        let t1250 = s_rod_leg4 * (s_cross_leg4 * t1244 + c_cross_leg4 * t1247);
+        let t1255 = s_cross_leg4 * t1247 - c_cross_leg4 * t1244;
+        let t1274 = t362 * t1122 - (t1114 * t902 + t1118 * t776);
+        let t1291 = t437 * t1161 - (t1153 * t923 + t1157 * t812);
+        let t1308 = t1192 * t940 + t1196 * t846 + t519 * t1200;
+        let t1325 = t1231 * t966 + t1235 * t880 + t591 * t1239;
         Ok([
             [
-                0.0, -t558, -t561, t576, -(minus_garm_vx_leg1 * actuator_accelerations[0]),
-                garm_vx_leg2 * actuator_accelerations[1],
-                -(minus_garm_vx_leg3 * actuator_accelerations[2]),
-                garm_vx_leg4 * actuator_accelerations[3], minus_garm_vx_leg1 * t600,
-                -(garm_vx_leg2 * t605), minus_garm_vx_leg3 * t610, -(garm_vx_leg4 * t615),
-                -(minus_garm_vx_leg1 * t620), garm_vx_leg2 * t625, -(minus_garm_vx_leg3 * t630),
-                garm_vx_leg4 * t635, -t218, t217, -t220, t222,
-                -::overact::math::signed(minus_garm_vx_leg1, actuator_velocities[0]),
+                0.0, -t664, -t667, t683, garm_vx_leg1 * actuator_accelerations[0],
+                garm_vx_leg2 * actuator_accelerations[1], garm_vx_leg3 * actuator_accelerations[2],
+                garm_vx_leg4 * actuator_accelerations[3], -(garm_vx_leg1 * t706),
+                -(garm_vx_leg2 * t711), garm_vx_leg3 * t716, garm_vx_leg4 * t721,
+                -(garm_vx_leg1 * t726), -(garm_vx_leg2 * t731), garm_vx_leg3 * t736,
+                garm_vx_leg4 * t741, t286, t287, t289, t291,
+                ::overact::math::signed(garm_vx_leg1, actuator_velocities[0]),
                 ::overact::math::signed(garm_vx_leg2, actuator_velocities[1]),
-                -::overact::math::signed(minus_garm_vx_leg3, actuator_velocities[2]),
-                ::overact::math::signed(garm_vx_leg4, actuator_velocities[3]), -minus_garm_vx_leg1,
-                garm_vx_leg2, -minus_garm_vx_leg3, garm_vx_leg4, gcross_vx_leg1 * t678,
-                t692 - minus_gcross_vx_leg2 * t715, gcross_vx_leg3 * t748,
-                -(minus_gcross_vx_leg4 * t782 + t784), gcross_vx_leg1 * t802,
-                -(minus_gcross_vx_leg2 * t821 + minus_grod_vx_leg2 * t826), gcross_vx_leg3 * t840,
-                grod_vx_leg4 * t856 - minus_gcross_vx_leg4 * t864, gcross_vx_leg1 * t878,
-                -(minus_gcross_vx_leg2 * t893 + minus_grod_vx_leg2 * t707), gcross_vx_leg3 * t908,
-                grod_vx_leg4 * t774 - minus_gcross_vx_leg4 * t924, gcross_vx_leg1 * t933,
-                -(minus_gcross_vx_leg2 * t941 + t692), gcross_vx_leg3 * t949,
-                t784 - minus_gcross_vx_leg4 * t957, gcross_vx_leg1 * t964,
-                minus_gcross_vx_leg2 * t973 - 1.7241379310344827 * rate_dot_cross_leg2,
-                -(gcross_vx_leg3 * t982),
-                1.7241379310344827 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t992, 0.0,
-                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2, 0.0, grod_vx_leg4 * rate_dot_rod_leg4,
-                -(minus_garm_vx_leg1 * t1018 + gcross_vx_leg1 * t1027),
-                garm_vx_leg2 * t1057 + minus_gcross_vx_leg2 * t1066
-                    + 1.7241379310344827 * t1071,
-                -(minus_garm_vx_leg3 * t1096 + gcross_vx_leg3 * t1105),
-                garm_vx_leg4 * t1135 + minus_gcross_vx_leg4 * t1144
-                    - 1.7241379310344827 * t1149,
-                gcross_vx_leg1 * t1035 - minus_garm_vx_leg1 * t1169,
-                garm_vx_leg2 * t1185 - minus_gcross_vx_leg2 * t1071,
-                gcross_vx_leg3 * t1110 - minus_garm_vx_leg3 * t1203,
-                garm_vx_leg4 * t1219 - minus_gcross_vx_leg4 * t1149,
+                ::overact::math::signed(garm_vx_leg3, actuator_velocities[2]),
+                ::overact::math::signed(garm_vx_leg4, actuator_velocities[3]), garm_vx_leg1,
+                garm_vx_leg2, garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t784,
+                minus_gcross_vx_leg2 * t820 - t822, -(minus_gcross_vx_leg3 * t854),
+                -(minus_gcross_vx_leg4 * t888 + t890), -(minus_gcross_vx_leg1 * t908),
+                -(minus_gcross_vx_leg2 * t927 + minus_grod_vx_leg2 * t932),
+                -(minus_gcross_vx_leg3 * t946), grod_vx_leg4 * t962 - minus_gcross_vx_leg4 * t970,
+                -(minus_gcross_vx_leg1 * t984),
+                -(minus_gcross_vx_leg2 * t999 + minus_grod_vx_leg2 * t812),
+                -(minus_gcross_vx_leg3 * t1014), grod_vx_leg4 * t880 - minus_gcross_vx_leg4 * t1030,
+                -(minus_gcross_vx_leg1 * t1039), t822 - minus_gcross_vx_leg2 * t1047,
+                -(minus_gcross_vx_leg3 * t1055), t890 - minus_gcross_vx_leg4 * t1063,
+                -(minus_gcross_vx_leg1 * t1070),
+                minus_gcross_vx_leg2 * t1079
+                    + 1.7241379310344827 * minus_rate_dot_cross_leg2,
+                minus_gcross_vx_leg3 * t1088,
+                1.7241379310344827 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t1098,
+                0.0,
+                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
+                0.0,
+                grod_vx_leg4 * rate_dot_rod_leg4,
+                garm_vx_leg1 * t1124 + minus_gcross_vx_leg1 * t1133,
+                garm_vx_leg2 * t1163 - minus_gcross_vx_leg2 * t1172
+                    + 1.7241379310344827 * t1177,
+                garm_vx_leg3 * t1202 - minus_gcross_vx_leg3 * t1211,
+                garm_vx_leg4 * t1241 + minus_gcross_vx_leg4 * t1250
+                    - 1.7241379310344827 * t1255,
+                garm_vx_leg1 * t1274 - minus_gcross_vx_leg1 * t1141,
+                garm_vx_leg2 * t1291 - minus_gcross_vx_leg2 * t1177,
+                garm_vx_leg3 * t1308 - minus_gcross_vx_leg3 * t1219,
+                garm_vx_leg4 * t1325 - minus_gcross_vx_leg4 * t1255,
             ],
             [
-                0.0, t561, -t558, -t570, -(minus_garm_vy_leg1 * actuator_accelerations[0]),
-                -(minus_garm_vy_leg2 * actuator_accelerations[1]),
-                -(minus_garm_vy_leg3 * actuator_accelerations[2]),
-                -(minus_garm_vy_leg4 * actuator_accelerations[3]), minus_garm_vy_leg1 * t600,
-                minus_garm_vy_leg2 * t605, minus_garm_vy_leg3 * t610, minus_garm_vy_leg4 * t615,
-                -(minus_garm_vy_leg1 * t620), -(minus_garm_vy_leg2 * t625),
-                -(minus_garm_vy_leg3 * t630), -(minus_garm_vy_leg4 * t635), -t226, -t227, -t229,
-                -t231, -::overact::math::signed(minus_garm_vy_leg1, actuator_velocities[0]),
-                -::overact::math::signed(minus_garm_vy_leg2, actuator_velocities[1]),
-                -::overact::math::signed(minus_garm_vy_leg3, actuator_velocities[2]),
-                -::overact::math::signed(minus_garm_vy_leg4, actuator_velocities[3]),
-                -minus_garm_vy_leg1, -minus_garm_vy_leg2, -minus_garm_vy_leg3, -minus_garm_vy_leg4,
-                gcross_vy_leg1 * t678 - t681, gcross_vy_leg2 * t715, gcross_vy_leg3 * t748 + t751,
-                gcross_vy_leg4 * t782, gcross_vy_leg1 * t802 + grod_vy_leg1 * t808,
-                gcross_vy_leg2 * t821, gcross_vy_leg3 * t840 - minus_grod_vy_leg3 * t846,
-                gcross_vy_leg4 * t864, gcross_vy_leg1 * t878 + grod_vy_leg1 * t670,
-                gcross_vy_leg2 * t893, gcross_vy_leg3 * t908 - minus_grod_vy_leg3 * t740,
-                gcross_vy_leg4 * t924, gcross_vy_leg1 * t933 + t681, gcross_vy_leg2 * t941,
-                gcross_vy_leg3 * t949 - t751, gcross_vy_leg4 * t957,
-                gcross_vy_leg1 * t964 + 1.7241379310344827 * rate_dot_cross_leg1,
-                -(gcross_vy_leg2 * t973),
-                -(gcross_vy_leg3 * t982 + 1.7241379310344827 * rate_dot_cross_leg3),
-                gcross_vy_leg4 * t992, grod_vy_leg1 * rate_dot_rod_leg1, 0.0,
-                minus_grod_vy_leg3 * minus_rate_dot_rod_leg3, 0.0,
-                -(minus_garm_vy_leg1 * t1018 + gcross_vy_leg1 * t1027
-                    + 1.7241379310344827 * t1035),
-                -(minus_garm_vy_leg2 * t1057 + gcross_vy_leg2 * t1066),
-                1.7241379310344827 * t1110
-                    - (minus_garm_vy_leg3 * t1096 + gcross_vy_leg3 * t1105),
-                -(minus_garm_vy_leg4 * t1135 + gcross_vy_leg4 * t1144),
-                gcross_vy_leg1 * t1035 - minus_garm_vy_leg1 * t1169,
-                gcross_vy_leg2 * t1071 - minus_garm_vy_leg2 * t1185,
-                gcross_vy_leg3 * t1110 - minus_garm_vy_leg3 * t1203,
-                gcross_vy_leg4 * t1149 - minus_garm_vy_leg4 * t1219,
+                0.0, t667, -t664, t675, garm_vy_leg1 * actuator_accelerations[0],
+                garm_vy_leg2 * actuator_accelerations[1], garm_vy_leg3 * actuator_accelerations[2],
+                garm_vy_leg4 * actuator_accelerations[3], -(garm_vy_leg1 * t706),
+                -(garm_vy_leg2 * t711), garm_vy_leg3 * t716, garm_vy_leg4 * t721,
+                -(garm_vy_leg1 * t726), -(garm_vy_leg2 * t731), garm_vy_leg3 * t736,
+                garm_vy_leg4 * t741, t279, t280, t282, t284,
+                ::overact::math::signed(garm_vy_leg1, actuator_velocities[0]),
+                ::overact::math::signed(garm_vy_leg2, actuator_velocities[1]),
+                ::overact::math::signed(garm_vy_leg3, actuator_velocities[2]),
+                ::overact::math::signed(garm_vy_leg4, actuator_velocities[3]), garm_vy_leg1,
+                garm_vy_leg2, garm_vy_leg3, garm_vy_leg4, minus_gcross_vy_leg1 * t784 - t787,
+                minus_gcross_vy_leg2 * t820, -(minus_gcross_vy_leg3 * t854 + t857),
+                -(minus_gcross_vy_leg4 * t888), grod_vy_leg1 * t913 - minus_gcross_vy_leg1 * t908,
+                -(minus_gcross_vy_leg2 * t927),
+                -(minus_gcross_vy_leg3 * t946 + minus_grod_vy_leg3 * t952),
+                -(minus_gcross_vy_leg4 * t970),
+                -(minus_gcross_vy_leg1 * t984 + grod_vy_leg1 * t776),
+                -(minus_gcross_vy_leg2 * t999),
+                minus_grod_vy_leg3 * t846 - minus_gcross_vy_leg3 * t1014,
+                -(minus_gcross_vy_leg4 * t1030), t787 - minus_gcross_vy_leg1 * t1039,
+                -(minus_gcross_vy_leg2 * t1047), t857 - minus_gcross_vy_leg3 * t1055,
+                -(minus_gcross_vy_leg4 * t1063),
+                -(minus_gcross_vy_leg1 * t1070
+                    + 1.7241379310344827 * minus_rate_dot_cross_leg1),
+                minus_gcross_vy_leg2 * t1079,
+                minus_gcross_vy_leg3 * t1088 - 1.7241379310344827 * rate_dot_cross_leg3,
+                -(minus_gcross_vy_leg4 * t1098),
+                grod_vy_leg1 * rate_dot_rod_leg1,
+                0.0,
+                minus_grod_vy_leg3 * minus_rate_dot_rod_leg3,
+                0.0,
+                garm_vy_leg1 * t1124 + minus_gcross_vy_leg1 * t1133
+                    - 1.7241379310344827 * t1141,
+                garm_vy_leg2 * t1163 - minus_gcross_vy_leg2 * t1172,
+                garm_vy_leg3 * t1202 - minus_gcross_vy_leg3 * t1211
+                    + 1.7241379310344827 * t1219,
+                garm_vy_leg4 * t1241 + minus_gcross_vy_leg4 * t1250,
+                garm_vy_leg1 * t1274 - minus_gcross_vy_leg1 * t1141,
+                garm_vy_leg2 * t1291 - minus_gcross_vy_leg2 * t1177,
+                garm_vy_leg3 * t1308 - minus_gcross_vy_leg3 * t1219,
+                garm_vy_leg4 * t1325 - minus_gcross_vy_leg4 * t1255,
             ],
             [
-                0.0, 0.0, 0.0, t566 + 9.81, garm_vz_leg1 * actuator_accelerations[0],
-                garm_vz_leg2 * actuator_accelerations[1],
-                -(minus_garm_vz_leg3 * actuator_accelerations[2]),
-                -(minus_garm_vz_leg4 * actuator_accelerations[3]), -(garm_vz_leg1 * t600),
-                -(garm_vz_leg2 * t605), minus_garm_vz_leg3 * t610, minus_garm_vz_leg4 * t615,
-                garm_vz_leg1 * t620, garm_vz_leg2 * t625, -(minus_garm_vz_leg3 * t630),
-                -(minus_garm_vz_leg4 * t635), t237, t238, -t240, -t242,
+                0.0, 0.0, 0.0, t671 + 9.81, garm_vz_leg1 * actuator_accelerations[0],
+                garm_vz_leg2 * actuator_accelerations[1], garm_vz_leg3 * actuator_accelerations[2],
+                garm_vz_leg4 * actuator_accelerations[3], -(garm_vz_leg1 * t706),
+                -(garm_vz_leg2 * t711), garm_vz_leg3 * t716, garm_vz_leg4 * t721,
+                -(garm_vz_leg1 * t726), -(garm_vz_leg2 * t731), garm_vz_leg3 * t736,
+                garm_vz_leg4 * t741, t296, t297, t299, t301,
                 ::overact::math::signed(garm_vz_leg1, actuator_velocities[0]),
                 ::overact::math::signed(garm_vz_leg2, actuator_velocities[1]),
-                -::overact::math::signed(minus_garm_vz_leg3, actuator_velocities[2]),
-                -::overact::math::signed(minus_garm_vz_leg4, actuator_velocities[3]), garm_vz_leg1,
-                garm_vz_leg2, -minus_garm_vz_leg3, -minus_garm_vz_leg4,
-                -(minus_gcross_vz_leg1 * t678), -(minus_gcross_vz_leg2 * t715),
-                gcross_vz_leg3 * t748, gcross_vz_leg4 * t782, -(minus_gcross_vz_leg1 * t802),
-                -(minus_gcross_vz_leg2 * t821), gcross_vz_leg3 * t840, gcross_vz_leg4 * t864,
-                -(minus_gcross_vz_leg1 * t878), -(minus_gcross_vz_leg2 * t893),
-                gcross_vz_leg3 * t908, gcross_vz_leg4 * t924, -(minus_gcross_vz_leg1 * t933),
-                -(minus_gcross_vz_leg2 * t941), gcross_vz_leg3 * t949, gcross_vz_leg4 * t957,
-                -(minus_gcross_vz_leg1 * t964), minus_gcross_vz_leg2 * t973,
-                -(gcross_vz_leg3 * t982), gcross_vz_leg4 * t992, 0.0, 0.0, 0.0, 0.0,
-                garm_vz_leg1 * t1018 + minus_gcross_vz_leg1 * t1027,
-                garm_vz_leg2 * t1057 + minus_gcross_vz_leg2 * t1066,
-                -(minus_garm_vz_leg3 * t1096 + gcross_vz_leg3 * t1105),
-                -(minus_garm_vz_leg4 * t1135 + gcross_vz_leg4 * t1144),
-                garm_vz_leg1 * t1169 - minus_gcross_vz_leg1 * t1035,
-                garm_vz_leg2 * t1185 - minus_gcross_vz_leg2 * t1071,
-                gcross_vz_leg3 * t1110 - minus_garm_vz_leg3 * t1203,
-                gcross_vz_leg4 * t1149 - minus_garm_vz_leg4 * t1219,
+                ::overact::math::signed(garm_vz_leg3, actuator_velocities[2]),
+                ::overact::math::signed(garm_vz_leg4, actuator_velocities[3]), garm_vz_leg1,
+                garm_vz_leg2, garm_vz_leg3, garm_vz_leg4, minus_gcross_vz_leg1 * t784,
+                minus_gcross_vz_leg2 * t820, gcross_vz_leg3 * t854, gcross_vz_leg4 * t888,
+                -(minus_gcross_vz_leg1 * t908), -(minus_gcross_vz_leg2 * t927),
+                gcross_vz_leg3 * t946, gcross_vz_leg4 * t970, -(minus_gcross_vz_leg1 * t984),
+                -(minus_gcross_vz_leg2 * t999), gcross_vz_leg3 * t1014, gcross_vz_leg4 * t1030,
+                -(minus_gcross_vz_leg1 * t1039), -(minus_gcross_vz_leg2 * t1047),
+                gcross_vz_leg3 * t1055, gcross_vz_leg4 * t1063, -(minus_gcross_vz_leg1 * t1070),
+                minus_gcross_vz_leg2 * t1079, -(gcross_vz_leg3 * t1088), gcross_vz_leg4 * t1098,
+                0.0, 0.0, 0.0, 0.0, garm_vz_leg1 * t1124 + minus_gcross_vz_leg1 * t1133,
+                garm_vz_leg2 * t1163 - minus_gcross_vz_leg2 * t1172,
+                garm_vz_leg3 * t1202 + gcross_vz_leg3 * t1211,
+                garm_vz_leg4 * t1241 - gcross_vz_leg4 * t1250,
+                garm_vz_leg1 * t1274 - minus_gcross_vz_leg1 * t1141,
+                garm_vz_leg2 * t1291 - minus_gcross_vz_leg2 * t1177,
+                garm_vz_leg3 * t1308 + gcross_vz_leg3 * t1219,
+                garm_vz_leg4 * t1325 + gcross_vz_leg4 * t1255,
             ],
             [
-                t554, -(s_phi * t576 + c_phi * t570), -(c_phi * t576 - s_phi * t570), 0.0,
-                garm_wz_leg1 * actuator_accelerations[0],
-                -(minus_garm_wz_leg2 * actuator_accelerations[1]),
+                t660, c_phi * t675 - s_phi * t683, -(c_phi * t683 + s_phi * t675), 0.0,
+                garm_wz_leg1 * actuator_accelerations[0], garm_wz_leg2 * actuator_accelerations[1],
                 garm_wz_leg3 * actuator_accelerations[2], garm_wz_leg4 * actuator_accelerations[3],
-                -(garm_wz_leg1 * t600), minus_garm_wz_leg2 * t605, -(garm_wz_leg3 * t610),
-                -(garm_wz_leg4 * t615), garm_wz_leg1 * t620, -(minus_garm_wz_leg2 * t625),
-                garm_wz_leg3 * t630, garm_wz_leg4 * t635, t210, -t211, t213, t215,
+                -(garm_wz_leg1 * t706), -(garm_wz_leg2 * t711), garm_wz_leg3 * t716,
+                garm_wz_leg4 * t721, -(garm_wz_leg1 * t726), -(garm_wz_leg2 * t731),
+                garm_wz_leg3 * t736, garm_wz_leg4 * t741, t308, t309, t311, t313,
                 ::overact::math::signed(garm_wz_leg1, actuator_velocities[0]),
-                -::overact::math::signed(minus_garm_wz_leg2, actuator_velocities[1]),
+                ::overact::math::signed(garm_wz_leg2, actuator_velocities[1]),
                 ::overact::math::signed(garm_wz_leg3, actuator_velocities[2]),
                 ::overact::math::signed(garm_wz_leg4, actuator_velocities[3]), garm_wz_leg1,
-                -minus_garm_wz_leg2, garm_wz_leg3, garm_wz_leg4, gcross_wz_leg1 * t678 - t690,
-                gcross_wz_leg2 * t715 - t726, gcross_wz_leg3 * t748 - t760,
-                -(minus_gcross_wz_leg4 * t782 + t794), gcross_wz_leg1 * t802 + grod_wz_leg1 * t808,
-                gcross_wz_leg2 * t821 + grod_wz_leg2 * t826,
-                gcross_wz_leg3 * t840 + grod_wz_leg3 * t846,
-                grod_wz_leg4 * t856 - minus_gcross_wz_leg4 * t864,
-                gcross_wz_leg1 * t878 + grod_wz_leg1 * t670,
-                gcross_wz_leg2 * t893 + grod_wz_leg2 * t707,
-                gcross_wz_leg3 * t908 + grod_wz_leg3 * t740,
-                grod_wz_leg4 * t774 - minus_gcross_wz_leg4 * t924, gcross_wz_leg1 * t933 + t690,
-                gcross_wz_leg2 * t941 + t726, gcross_wz_leg3 * t949 + t760,
-                t794 - minus_gcross_wz_leg4 * t957, gcross_wz_leg1 * t964 + grod_wz_leg1 * t798,
-                grod_wz_leg2 * t815 - gcross_wz_leg2 * t973,
-                grod_wz_leg3 * t836 - gcross_wz_leg3 * t982,
-                grod_wz_leg4 * t860 - minus_gcross_wz_leg4 * t992, grod_wz_leg1 * rate_dot_rod_leg1,
+                garm_wz_leg2, garm_wz_leg3, garm_wz_leg4, -(gcross_wz_leg1 * t784 + t796),
+                t828 - gcross_wz_leg2 * t820, gcross_wz_leg3 * t854 + t866,
+                gcross_wz_leg4 * t888 - t900, gcross_wz_leg1 * t908 + grod_wz_leg1 * t913,
+                gcross_wz_leg2 * t927 + grod_wz_leg2 * t932,
+                gcross_wz_leg3 * t946 + grod_wz_leg3 * t952,
+                gcross_wz_leg4 * t970 + grod_wz_leg4 * t962,
+                gcross_wz_leg1 * t984 - grod_wz_leg1 * t776,
+                gcross_wz_leg2 * t999 + grod_wz_leg2 * t812,
+                gcross_wz_leg3 * t1014 - grod_wz_leg3 * t846,
+                gcross_wz_leg4 * t1030 + grod_wz_leg4 * t880, gcross_wz_leg1 * t1039 + t796,
+                gcross_wz_leg2 * t1047 - t828, gcross_wz_leg3 * t1055 - t866,
+                gcross_wz_leg4 * t1063 + t900, gcross_wz_leg1 * t1070 - grod_wz_leg1 * t902,
+                -(gcross_wz_leg2 * t1079 + grod_wz_leg2 * t923),
+                grod_wz_leg3 * t940 - gcross_wz_leg3 * t1088,
+                gcross_wz_leg4 * t1098 + grod_wz_leg4 * t966, grod_wz_leg1 * rate_dot_rod_leg1,
                 -(grod_wz_leg2 * minus_rate_dot_rod_leg2),
                 -(grod_wz_leg3 * minus_rate_dot_rod_leg3), grod_wz_leg4 * rate_dot_rod_leg4,
-                garm_wz_leg1 * t1018 - gcross_wz_leg1 * t1027
-                    - grod_wz_leg1 * (c_rod_leg1 * t1035),
-                -(minus_garm_wz_leg2 * t1057 + gcross_wz_leg2 * t1066
-                    + grod_wz_leg2 * (c_rod_leg2 * t1071)),
-                garm_wz_leg3 * t1096 - gcross_wz_leg3 * t1105
-                    - grod_wz_leg3 * (c_rod_leg3 * t1110),
-                garm_wz_leg4 * t1135 + minus_gcross_wz_leg4 * t1144
-                    - grod_wz_leg4 * (c_rod_leg4 * t1149),
-                garm_wz_leg1 * t1169 + gcross_wz_leg1 * t1035,
-                gcross_wz_leg2 * t1071 - minus_garm_wz_leg2 * t1185,
-                garm_wz_leg3 * t1203 + gcross_wz_leg3 * t1110,
-                garm_wz_leg4 * t1219 - minus_gcross_wz_leg4 * t1149,
+                garm_wz_leg1 * t1124 - gcross_wz_leg1 * t1133
+                    - grod_wz_leg1 * (c_rod_leg1 * t1141),
+                garm_wz_leg2 * t1163 + gcross_wz_leg2 * t1172
+                    - grod_wz_leg2 * (c_rod_leg2 * t1177),
+                garm_wz_leg3 * t1202 + gcross_wz_leg3 * t1211
+                    - grod_wz_leg3 * (c_rod_leg3 * t1219),
+                garm_wz_leg4 * t1241 - gcross_wz_leg4 * t1250
+                    - grod_wz_leg4 * (c_rod_leg4 * t1255),
+                garm_wz_leg1 * t1274 + gcross_wz_leg1 * t1141,
+                garm_wz_leg2 * t1291 + gcross_wz_leg2 * t1177,
+                garm_wz_leg3 * t1308 + gcross_wz_leg3 * t1219,
+                garm_wz_leg4 * t1325 + gcross_wz_leg4 * t1255,
             ],
         ])
     }
@@ -5717,7 +8502,7 @@ impl Schoenflies4 {
     /// Output: 4 x 60.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 1302 operations (449 additions, 841 multiplications, 12 divisions), 0 square roots, 13 trigonometric pairs, 4 signs, 1168 intermediates.
+    /// 1424 operations (517 additions, 883 multiplications, 24 divisions), 8 square roots, 1 trigonometric pairs, 4 signs, 1274 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5726,8 +8511,646 @@ impl Schoenflies4 {
         twist: &[f64; 4],
         acceleration: &[f64; 4],
     ) -> Result<[[f64; 60]; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_actuators_base_from_joints(pose, joints, twist, acceleration)
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
+        let t2 = 0.08660254037844387 * s_phi;
+        let t3 = 0.05 * c_phi;
+        let t4 = t2 + t3;
+        let t5 = pose[1] - t4;
+        let t6 = t5 + 0.24;
+        let t7 = t6 * t6;
+        let t8 = pose[2] * pose[2];
+        let t10 = 0.2704 * (t7 + t8);
+        let t11 = 1.0 / t10;
+        let t12 = 0.52 * t6;
+        let t13 = 0.08660254037844387 * c_phi;
+        let t14 = 0.05 * s_phi;
+        let t15 = t13 - t14;
+        let t16 = pose[0] - t15;
+        let t17 = t16 * t16;
+        let t19 = t17 + t7 + t8;
+        let t21 = t19 - 0.3364 + 0.0676;
+        let t23 = t10 - t21 * t21;
+        ::overact::guard::reach(t23, "leg4")?;
+        let t24 = ::overact::math::sqrt(t23);
+        ::overact::guard::leg(t24, 0.27703140616182853, "leg4")?;
+        let t26 = 0.52 * pose[2];
+        let s_arm_leg4 = t11 * (t12 * t24 - t26 * t21);
+        let t30 = 0.26 * s_arm_leg4;
+        let t31 = pose[2] + t30;
+        let t32 = 1.0 / t24;
+        let t33 = 2.0 * t32;
+        let garm_vz_leg4 = t31 * t33;
+        let garm_vx_leg4 = t16 * t33;
+        let t36 = t3 - t2;
+        let t37 = pose[0] + t36;
+        let t38 = t37 - 0.24;
+        let t39 = t38 * t38;
+        let t41 = 0.2704 * (t39 + t8);
+        let t42 = 1.0 / t41;
+        let t43 = t14 + t13;
+        let t44 = pose[1] + t43;
+        let t45 = t44 * t44;
+        let t47 = t39 + t45 + t8;
+        let t49 = t47 - 0.3364 + 0.0676;
+        let t51 = 0.52 * t38;
+        let t53 = t41 - t49 * t49;
+        ::overact::guard::reach(t53, "leg1")?;
+        let t54 = ::overact::math::sqrt(t53);
+        ::overact::guard::leg(t54, 0.27703140616182853, "leg1")?;
+        let minus_s_arm_leg1 = t42 * (t26 * t49 + t51 * t54);
+        let t58 = 0.26 * minus_s_arm_leg1;
+        let t59 = pose[2] - t58;
+        let t60 = 1.0 / t54;
+        let t61 = 2.0 * t60;
+        let garm_vz_leg1 = t59 * t61;
+        let c_arm_leg1 = t42 * (t51 * t49 - t26 * t54);
+        let t67 = 0.26 * c_arm_leg1;
+        let t69 = t37 - (0.24 + t67);
+        let garm_vx_leg1 = t69 * t61;
+        ::overact::guard::platform(garm_vx_leg1, 3.059875421275039, "kept actuators")?;
+        let t71 = 1.0 / garm_vx_leg1;
+        let t72 = garm_vz_leg1 * t71;
+        let t74 = garm_vz_leg4 - garm_vx_leg4 * t72;
+        let t75 = pose[0] - t36;
+        let t76 = t75 + 0.24;
+        let t77 = t76 * t76;
+        let t79 = 0.2704 * (t77 + t8);
+        let t80 = 1.0 / t79;
+        let t81 = 0.52 * t76;
+        let t82 = pose[1] - t43;
+        let t83 = t82 * t82;
+        let t85 = t77 + t83 + t8;
+        let t87 = t85 - 0.3364 + 0.0676;
+        let t90 = t79 - t87 * t87;
+        ::overact::guard::reach(t90, "leg3")?;
+        let t91 = ::overact::math::sqrt(t90);
+        ::overact::guard::leg(t91, 0.27703140616182853, "leg3")?;
+        let minus_c_arm_leg3 = t80 * (t81 * t87 + t26 * t91);
+        let t95 = 0.26 * minus_c_arm_leg3;
+        let t97 = t75 - (t95 - 0.24);
+        let t98 = 1.0 / t91;
+        let t99 = 2.0 * t98;
+        let garm_vx_leg3 = t97 * t99;
+        let s_arm_leg3 = t80 * (t81 * t91 - t26 * t87);
+        let t106 = 0.26 * s_arm_leg3;
+        let t107 = pose[2] + t106;
+        let garm_vz_leg3 = t107 * t99;
+        let t110 = garm_vz_leg3 - garm_vx_leg3 * t72;
+        ::overact::guard::platform(t110, 5.578291690921259, "kept actuators")?;
+        let t111 = 1.0 / t110;
+        let t112 = garm_vx_leg3 * t71 * t111;
+        let minus_c_arm_leg4 = t11 * (t12 * t21 + t26 * t24);
+        let t120 = 0.26 * minus_c_arm_leg4;
+        let t122 = t5 - (t120 - 0.24);
+        let garm_vy_leg4 = t122 * t33;
+        let garm_vy_leg1 = t44 * t61;
+        let t125 = garm_vy_leg1 * t71;
+        let garm_vy_leg3 = t82 * t99;
+        let t131 = (garm_vy_leg3 - garm_vx_leg3 * t125) * t111;
+        let t133 = garm_vy_leg4 - garm_vx_leg4 * t125 - t74 * t131;
+        let t134 = pose[1] + t4;
+        let t135 = t134 - 0.24;
+        let t136 = t135 * t135;
+        let t138 = 0.2704 * (t136 + t8);
+        let t139 = 1.0 / t138;
+        let t140 = pose[0] + t15;
+        let t141 = t140 * t140;
+        let t143 = t141 + t136 + t8;
+        let t145 = t143 - 0.3364 + 0.0676;
+        let t147 = 0.52 * t135;
+        let t149 = t138 - t145 * t145;
+        ::overact::guard::reach(t149, "leg2")?;
+        let t150 = ::overact::math::sqrt(t149);
+        ::overact::guard::leg(t150, 0.27703140616182853, "leg2")?;
+        let minus_s_arm_leg2 = t139 * (t26 * t145 + t147 * t150);
+        let t154 = 0.26 * minus_s_arm_leg2;
+        let t155 = pose[2] - t154;
+        let t156 = 1.0 / t150;
+        let t157 = 2.0 * t156;
+        let garm_vz_leg2 = t155 * t157;
+        let garm_vx_leg2 = t140 * t157;
+        let t161 = garm_vz_leg2 - garm_vx_leg2 * t72;
+        let c_arm_leg2 = t139 * (t147 * t145 - t26 * t150);
+        let t169 = 0.26 * c_arm_leg2;
+        let t171 = t134 - (0.24 + t169);
+        let garm_vy_leg2 = t171 * t157;
+        let t176 = garm_vy_leg2 - garm_vx_leg2 * t125 - t161 * t131;
+        ::overact::guard::platform(t176, 2.9321258366411205, "kept actuators")?;
+        let t177 = 1.0 / t176;
+        let t178 = (t161 * t112 - garm_vx_leg2 * t71) * t177;
+        let garm_wz_leg4 = t4 * garm_vx_leg4 - t15 * garm_vy_leg4;
+        let garm_wz_leg1 = t36 * garm_vy_leg1 - t43 * garm_vx_leg1;
+        let t187 = garm_wz_leg1 * t71;
+        let garm_wz_leg3 = t43 * garm_vx_leg3 - t36 * garm_vy_leg3;
+        let t195 = (garm_wz_leg3 - garm_vx_leg3 * t187) * t111;
+        let garm_wz_leg2 = t15 * garm_vy_leg2 - t4 * garm_vx_leg2;
+        let t205 = (garm_wz_leg2 - garm_vx_leg2 * t187 - t161 * t195) * t177;
+        let t207 = garm_wz_leg4 - garm_vx_leg4 * t187 - t74 * t195 - t133 * t205;
+        ::overact::guard::platform(t207, 1.1850155815331067, "kept actuators")?;
+        let t208 = 1.0 / t207;
+        let t209 = (t74 * t112 - garm_vx_leg4 * t71 - t133 * t178) * t208;
+        let t212 = t133 * t177 * t208;
+        let t215 = t161 * t111 * t177;
+        let t219 = (t133 * t215 - t74 * t111) * t208;
+        let t223 = t178 - t205 * t209;
+        let t225 = twist[3] * twist[3];
+        let t227 = c_phi * acceleration[3] - s_phi * t225;
+        let t232 = t125 - t72 * t131;
+        let t238 = t187 - t72 * t195 - t232 * t205;
+        let t240 = t71 + t72 * t112 - t232 * t178 - t238 * t209;
+        let t243 = c_phi * t225 + s_phi * acceleration[3];
+        let t248 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t252 = t177 + t205 * t212;
+        let t256 = t238 * t212 - t232 * t177;
+        let t266 = t232 * t215 - t72 * t111 - t238 * t219;
+        let t269 = t215 + t205 * t219;
+        let t273 = t238 * t208;
+        let t275 = t205 * t208;
+        let t285 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t309 = t195 - t131 * t205;
+        let t311 = t112 + t131 * t178 + t309 * t209;
+        let t312 = acceleration[2] + 9.81;
+        let t320 = t309 * t212 - t131 * t177;
+        let t329 = t111 + t131 * t215 - t309 * t219;
+        let t335 = t309 * t208;
+        let t338 = t43 * acceleration[3];
+        let t340 = t36 * twist[3];
+        let t341 = twist[3] * t340;
+        let t343 = t43 * twist[3];
+        let t344 = twist[0] - t343;
+        let t346 = twist[1] + t340;
+        let rate_arm_leg1 = garm_vx_leg1 * t344 + garm_vy_leg1 * t346
+            + garm_vz_leg1 * twist[2];
+        let t351 = rate_arm_leg1 * rate_arm_leg1;
+        let t355 = 1.0 - 2.972651605231867 * t45;
+        ::overact::guard::reach(t355, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t355);
+        ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
+        let s_cross_leg1 = 1.9230769230769231 * t54 / (0.58 * c_rod_leg1);
+        let c_cross_leg1 = (t47 - (0.0676 + t45) - 0.3364 * t355)
+            / (0.3016 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t368 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7241379310344827 * t368;
+        let rate_rod_leg1 = grod_vy_leg1 * t346;
+        let t371 = s_armcross_leg1 * rate_rod_leg1;
+        let t373 = 0.52 * t60;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t373;
+        let s_rod_leg1 = 1.7241379310344827 * t44;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let minus_gcross_vy_leg1 = t373
+            * (c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t368)
+                - minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t368));
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t373;
+        let minus_rate_cross_leg1 = minus_gcross_vx_leg1 * t344
+            + minus_gcross_vy_leg1 * t346 + minus_gcross_vz_leg1 * twist[2];
+        let t393 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t395 = c_armcross_leg1 * rate_rod_leg1;
+        let t397 = t371 * t371 + t393 + t395 * t395;
+        let t401 = t44 * (minus_rate_cross_leg1 * t371);
+        let t404 = acceleration[0] - t338 - t341 + t67 * t351 + t69 * t397 + t401 + t401;
+        let t406 = t36 * acceleration[3];
+        let t408 = twist[3] * t343;
+        let t409 = acceleration[1] + t406 - t408;
+        let t410 = t44 * minus_rate_cross_leg1;
+        let t414 = t409 - (minus_rate_cross_leg1 * t410 - t44 * t397);
+        let t421 = t44 * (minus_rate_cross_leg1 * t395);
+        let t424 = acceleration[2] + t58 * t351 + t59 * t397 + t421 + t421;
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t404 + garm_vy_leg1 * t414
+            + garm_vz_leg1 * t424;
+        let t427 = t4 * acceleration[3];
+        let t429 = t15 * twist[3];
+        let t430 = twist[3] * t429;
+        let t431 = acceleration[0] - t427 - t430;
+        let t432 = 0.52 * t156;
+        let minus_s_rod_leg2 = 1.7241379310344827 * t140;
+        let t437 = 1.0 - 2.972651605231867 * t141;
+        ::overact::guard::reach(t437, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t437);
+        ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
+        let c_cross_leg2 = (t143 - (0.0676 + t141) - 0.3364 * t437)
+            / (0.3016 * c_rod_leg2);
+        let s_cross_leg2 = 1.9230769230769231 * t150 / (0.58 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t450 = 1.0 / c_rod_leg2;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let minus_gcross_vx_leg2 = t432
+            * (c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t450)
+                - minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t450));
+        let t461 = t4 * twist[3];
+        let t462 = twist[0] - t461;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t432;
+        let t465 = twist[1] + t429;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t432;
+        let minus_rate_cross_leg2 = minus_gcross_vx_leg2 * t462
+            + minus_gcross_vy_leg2 * t465 + minus_gcross_vz_leg2 * twist[2];
+        let t471 = t140 * minus_rate_cross_leg2;
+        let t473 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let minus_grod_vx_leg2 = 1.7241379310344827 * t450;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t462;
+        let t476 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t479 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t481 = t473 + t476 * t476 + t479 * t479;
+        let t484 = t431 - (minus_rate_cross_leg2 * t471 - t140 * t481);
+        let t486 = t15 * acceleration[3];
+        let t488 = twist[3] * t461;
+        let rate_arm_leg2 = garm_vx_leg2 * t462 + garm_vy_leg2 * t465
+            + garm_vz_leg2 * twist[2];
+        let t495 = rate_arm_leg2 * rate_arm_leg2;
+        let t500 = t140 * (minus_rate_cross_leg2 * t476);
+        let t503 = acceleration[1] + t486 - t488 + t169 * t495 + t171 * t481 + t500
+            + t500;
+        let t510 = t140 * (minus_rate_cross_leg2 * t479);
+        let t513 = acceleration[2] + t154 * t495 + t155 * t481 + t510 + t510;
+        let rate_dot_arm_leg2 = garm_vx_leg2 * t484 + garm_vy_leg2 * t503
+            + garm_vz_leg2 * t513;
+        let t518 = twist[0] + t343;
+        let t520 = twist[1] - t340;
+        let rate_arm_leg3 = garm_vx_leg3 * t518 + garm_vy_leg3 * t520
+            + garm_vz_leg3 * twist[2];
+        let t525 = rate_arm_leg3 * rate_arm_leg3;
+        let t530 = 1.0 - 2.972651605231867 * t83;
+        ::overact::guard::reach(t530, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t530);
+        ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
+        let c_cross_leg3 = (t85 - (0.0676 + t83) - 0.3364 * t530)
+            / (0.3016 * c_rod_leg3);
+        let s_cross_leg3 = 1.9230769230769231 * t91 / (0.58 * c_rod_leg3);
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t542 = 1.0 / c_rod_leg3;
+        let minus_grod_vy_leg3 = 1.7241379310344827 * t542;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t520;
+        let t545 = s_armcross_leg3 * minus_rate_rod_leg3;
+        let t547 = 0.52 * t98;
+        let gcross_vz_leg3 = s_arm_leg3 * t547;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t547;
+        let minus_s_rod_leg3 = 1.7241379310344827 * t82;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t547
+            * (minus_c_arm_leg3 * (minus_s_rod_leg3 * minus_c_armcross_leg3 * t542)
+                + s_arm_leg3 * (minus_s_rod_leg3 * s_armcross_leg3 * t542));
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * t518 + minus_gcross_vy_leg3 * t520);
+        let t567 = rate_cross_leg3 * rate_cross_leg3;
+        let t569 = minus_c_armcross_leg3 * minus_rate_rod_leg3;
+        let t571 = t545 * t545 + t567 + t569 * t569;
+        let t575 = t82 * (rate_cross_leg3 * t545);
+        let t578 = acceleration[0] + t338 + t341 + t95 * t525 + t97 * t571 + t575 + t575;
+        let t581 = acceleration[1] - t406 + t408;
+        let t582 = t82 * rate_cross_leg3;
+        let t586 = t581 - (rate_cross_leg3 * t582 - t82 * t571);
+        let t593 = t82 * (rate_cross_leg3 * t569);
+        let t596 = acceleration[2] - (t106 * t525 - t107 * t571 - t593 - t593);
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t578 + garm_vy_leg3 * t586
+            + garm_vz_leg3 * t596;
+        let t600 = acceleration[0] + t427 + t430;
+        let t601 = 0.52 * t32;
+        let gcross_vz_leg4 = s_arm_leg4 * t601;
+        let s_rod_leg4 = 1.7241379310344827 * t16;
+        let t608 = 1.0 - 2.972651605231867 * t17;
+        ::overact::guard::reach(t608, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t608);
+        ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
+        let c_cross_leg4 = (t19 - (0.0676 + t17) - 0.3364 * t608)
+            / (0.3016 * c_rod_leg4);
+        let s_cross_leg4 = 1.9230769230769231 * t24 / (0.58 * c_rod_leg4);
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let t621 = 1.0 / c_rod_leg4;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t601
+            * (minus_c_arm_leg4 * (s_rod_leg4 * minus_c_armcross_leg4 * t621)
+                + s_arm_leg4 * (s_rod_leg4 * s_armcross_leg4 * t621));
+        let t632 = twist[0] + t461;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t601;
+        let t635 = twist[1] - t429;
+        let rate_cross_leg4 = gcross_vz_leg4 * twist[2]
+            - (minus_gcross_vx_leg4 * t632 + minus_gcross_vy_leg4 * t635);
+        let t639 = t16 * rate_cross_leg4;
+        let t641 = rate_cross_leg4 * rate_cross_leg4;
+        let grod_vx_leg4 = 1.7241379310344827 * t621;
+        let rate_rod_leg4 = grod_vx_leg4 * t632;
+        let t644 = s_armcross_leg4 * rate_rod_leg4;
+        let t647 = minus_c_armcross_leg4 * rate_rod_leg4;
+        let t649 = t641 + t644 * t644 + t647 * t647;
+        let t652 = t600 - (rate_cross_leg4 * t639 - t16 * t649);
+        let rate_arm_leg4 = garm_vx_leg4 * t632 + garm_vy_leg4 * t635
+            + garm_vz_leg4 * twist[2];
+        let t661 = rate_arm_leg4 * rate_arm_leg4;
+        let t666 = t16 * (rate_cross_leg4 * t644);
+        let t669 = acceleration[1] - t486 + t488 + t120 * t661 + t122 * t649 + t666
+            + t666;
+        let t676 = t16 * (rate_cross_leg4 * t647);
+        let t679 = acceleration[2] - (t30 * t661 - t31 * t649 - t676 - t676);
+        let rate_dot_arm_leg4 = garm_vx_leg4 * t652 + garm_vy_leg4 * t669
+            + garm_vz_leg4 * t679;
+        let t682 = 9.81 * c_arm_leg1;
+        let t683 = 9.81 * c_arm_leg2;
+        let t684 = 9.81 * minus_c_arm_leg3;
+        let t685 = 9.81 * minus_c_arm_leg4;
+        let t686 = 9.81 * minus_s_arm_leg1;
+        let t687 = 9.81 * minus_s_arm_leg2;
+        let t688 = 9.81 * s_arm_leg3;
+        let t689 = 9.81 * s_arm_leg4;
+        let gcross_wz_leg1 = t43 * minus_gcross_vx_leg1 - t36 * minus_gcross_vy_leg1;
+        let t703 = minus_gcross_vz_leg1 * t311
+            - (minus_gcross_vx_leg1 * t240 + minus_gcross_vy_leg1 * t223)
+            + gcross_wz_leg1 * t209;
+        let minus_rate_dot_cross_leg1 = minus_gcross_vx_leg1 * t404
+            + minus_gcross_vy_leg1 * t414 + minus_gcross_vz_leg1 * t424;
+        let t709 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t710 = c_rod_leg1 * minus_rate_cross_leg1;
+        let t711 = rate_rod_leg1 * t710;
+        let t712 = t709 + t711;
+        let t714 = 1.7241379310344827 * t410;
+        let t715 = rate_rod_leg1 * t714;
+        let t716 = c_rod_leg1 * t715;
+        let t717 = s_rod_leg1 * t712 + t716;
+        let grod_wz_leg1 = t36 * grod_vy_leg1;
+        let t722 = grod_vy_leg1 * t223 + grod_wz_leg1 * t209;
+        let t723 = t714 * t710;
+        let t724 = t722 * t723;
+        let t732 = minus_gcross_vx_leg1 * t256 + minus_gcross_vy_leg1 * t252
+            + minus_gcross_vz_leg1 * t320 + gcross_wz_leg1 * t212;
+        let t736 = grod_vy_leg1 * t252 - grod_wz_leg1 * t212;
+        let t737 = t736 * t723;
+        let t745 = minus_gcross_vy_leg1 * t269 - minus_gcross_vx_leg1 * t266
+            - minus_gcross_vz_leg1 * t329 + gcross_wz_leg1 * t219;
+        let t749 = grod_wz_leg1 * t219 - grod_vy_leg1 * t269;
+        let t750 = t749 * t723;
+        let t758 = minus_gcross_vx_leg1 * t273 + minus_gcross_vy_leg1 * t275
+            + minus_gcross_vz_leg1 * t335 + gcross_wz_leg1 * t208;
+        let t762 = grod_wz_leg1 * t208 - grod_vy_leg1 * t275;
+        let t763 = t762 * t723;
+        let grod_wz_leg2 = t4 * minus_grod_vx_leg2;
+        let t768 = grod_wz_leg2 * t209 - minus_grod_vx_leg2 * t240;
+        let t769 = 1.7241379310344827 * t471;
+        let t770 = c_rod_leg2 * minus_rate_cross_leg2;
+        let t771 = t769 * t770;
+        let t772 = t768 * t771;
+        let gcross_wz_leg2 = t4 * minus_gcross_vx_leg2 - t15 * minus_gcross_vy_leg2;
+        let t782 = minus_gcross_vz_leg2 * t311
+            - (minus_gcross_vx_leg2 * t240 + minus_gcross_vy_leg2 * t223)
+            + gcross_wz_leg2 * t209;
+        let minus_rate_dot_cross_leg2 = minus_gcross_vx_leg2 * t484
+            + minus_gcross_vy_leg2 * t503 + minus_gcross_vz_leg2 * t513;
+        let t788 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t789 = minus_rate_rod_leg2 * t770;
+        let t790 = t788 + t789;
+        let t792 = minus_rate_rod_leg2 * t769;
+        let t793 = c_rod_leg2 * t792;
+        let t794 = minus_s_rod_leg2 * t790 + t793;
+        let t803 = minus_gcross_vx_leg2 * t256 + minus_gcross_vy_leg2 * t252
+            + minus_gcross_vz_leg2 * t320 + gcross_wz_leg2 * t212;
+        let t807 = minus_grod_vx_leg2 * t256 + grod_wz_leg2 * t212;
+        let t808 = t807 * t771;
+        let t812 = grod_wz_leg2 * t219 - minus_grod_vx_leg2 * t266;
+        let t813 = t812 * t771;
+        let t820 = minus_gcross_vy_leg2 * t269 - minus_gcross_vx_leg2 * t266
+            - minus_gcross_vz_leg2 * t329 + gcross_wz_leg2 * t219;
+        let t825 = minus_grod_vx_leg2 * t273 + grod_wz_leg2 * t208;
+        let t826 = t825 * t771;
+        let t833 = minus_gcross_vx_leg2 * t273 + minus_gcross_vy_leg2 * t275
+            + minus_gcross_vz_leg2 * t335 + gcross_wz_leg2 * t208;
+        let gcross_wz_leg3 = t36 * minus_gcross_vy_leg3 - t43 * minus_gcross_vx_leg3;
+        let t845 = gcross_wz_leg3 * t209
+            - (minus_gcross_vx_leg3 * t240 + minus_gcross_vy_leg3 * t223
+                + gcross_vz_leg3 * t311);
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * t596
+            - (minus_gcross_vx_leg3 * t578 + minus_gcross_vy_leg3 * t586);
+        let t851 = minus_s_rod_leg3 * rate_dot_cross_leg3;
+        let t852 = c_rod_leg3 * rate_cross_leg3;
+        let t853 = minus_rate_rod_leg3 * t852;
+        let t854 = t851 + t853;
+        let t856 = 1.7241379310344827 * t582;
+        let t857 = minus_rate_rod_leg3 * t856;
+        let t858 = c_rod_leg3 * t857;
+        let t859 = minus_s_rod_leg3 * t854 + t858;
+        let grod_wz_leg3 = t36 * minus_grod_vy_leg3;
+        let t864 = grod_wz_leg3 * t209 - minus_grod_vy_leg3 * t223;
+        let t865 = t856 * t852;
+        let t866 = t864 * t865;
+        let t874 = gcross_vz_leg3 * t320
+            - (minus_gcross_vx_leg3 * t256 + minus_gcross_vy_leg3 * t252)
+            - gcross_wz_leg3 * t212;
+        let t878 = minus_grod_vy_leg3 * t252 + grod_wz_leg3 * t212;
+        let t879 = t878 * t865;
+        let t887 = minus_gcross_vy_leg3 * t269 - minus_gcross_vx_leg3 * t266
+            + gcross_vz_leg3 * t329 + gcross_wz_leg3 * t219;
+        let t891 = minus_grod_vy_leg3 * t269 + grod_wz_leg3 * t219;
+        let t892 = t891 * t865;
+        let t900 = minus_gcross_vx_leg3 * t273 + minus_gcross_vy_leg3 * t275
+            - gcross_vz_leg3 * t335 + gcross_wz_leg3 * t208;
+        let t904 = minus_grod_vy_leg3 * t275 + grod_wz_leg3 * t208;
+        let t905 = t904 * t865;
+        let gcross_wz_leg4 = t15 * minus_gcross_vy_leg4 - t4 * minus_gcross_vx_leg4;
+        let t916 = gcross_wz_leg4 * t209
+            - (minus_gcross_vx_leg4 * t240 + minus_gcross_vy_leg4 * t223
+                + gcross_vz_leg4 * t311);
+        let rate_dot_cross_leg4 = gcross_vz_leg4 * t679
+            - (minus_gcross_vx_leg4 * t652 + minus_gcross_vy_leg4 * t669);
+        let t922 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t923 = c_rod_leg4 * rate_cross_leg4;
+        let t924 = rate_rod_leg4 * t923;
+        let t925 = t922 + t924;
+        let t927 = 1.7241379310344827 * t639;
+        let t928 = rate_rod_leg4 * t927;
+        let t929 = c_rod_leg4 * t928;
+        let t930 = s_rod_leg4 * t925 + t929;
+        let grod_wz_leg4 = t4 * grod_vx_leg4;
+        let t935 = grod_vx_leg4 * t240 + grod_wz_leg4 * t209;
+        let t936 = t927 * t923;
+        let t937 = t935 * t936;
+        let t945 = gcross_vz_leg4 * t320
+            - (minus_gcross_vx_leg4 * t256 + minus_gcross_vy_leg4 * t252)
+            - gcross_wz_leg4 * t212;
+        let t949 = grod_vx_leg4 * t256 - grod_wz_leg4 * t212;
+        let t950 = t949 * t936;
+        let t958 = minus_gcross_vy_leg4 * t269 - minus_gcross_vx_leg4 * t266
+            + gcross_vz_leg4 * t329 + gcross_wz_leg4 * t219;
+        let t962 = grod_vx_leg4 * t266 + grod_wz_leg4 * t219;
+        let t963 = t962 * t936;
+        let t971 = minus_gcross_vx_leg4 * t273 + minus_gcross_vy_leg4 * t275
+            - gcross_vz_leg4 * t335 + gcross_wz_leg4 * t208;
+        let t975 = grod_wz_leg4 * t208 - grod_vx_leg4 * t273;
+        let t976 = t975 * t936;
+        let t978 = c_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t979 = t715 - t978;
+        let t982 = t711 + t712;
+        let t984 = s_rod_leg1 * (t715 + t979) - c_rod_leg1 * t982;
+        let t987 = 2.972651605231867 * (t410 * t410);
+        let t989 = t987 - t710 * t710;
+        let t1001 = t789 + t790;
+        let t1003 = c_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t1004 = t792 - t1003;
+        let t1007 = c_rod_leg2 * t1001 - minus_s_rod_leg2 * (t792 + t1004);
+        let t1010 = 2.972651605231867 * (t471 * t471);
+        let t1012 = t1010 - t770 * t770;
+        let t1024 = c_rod_leg3 * rate_dot_cross_leg3;
+        let t1025 = t1024 - t857;
+        let t1028 = t853 + t854;
+        let t1030 = minus_s_rod_leg3 * (t857 - t1025) - c_rod_leg3 * t1028;
+        let t1033 = 2.972651605231867 * (t582 * t582);
+        let t1035 = t1033 - t852 * t852;
+        let t1047 = t924 + t925;
+        let t1049 = c_rod_leg4 * rate_dot_cross_leg4;
+        let t1050 = t1049 - t928;
+        let t1053 = c_rod_leg4 * t1047 - s_rod_leg4 * (t928 - t1050);
+        let t1056 = 2.972651605231867 * (t639 * t639);
+        let t1058 = t1056 - t923 * t923;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t414;
+        let t1073 = rate_rod_leg1 * rate_rod_leg1;
+        let t1076 = s_rod_leg1 * (t723 + rate_dot_rod_leg1)
+            + c_rod_leg1 * (t1073 - t987);
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t484;
+        let t1092 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t1095 = minus_s_rod_leg2 * (t771 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t1092 - t1010);
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t586;
+        let t1111 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t1114 = minus_s_rod_leg3 * (t865 + minus_rate_dot_rod_leg3)
+            + c_rod_leg3 * (t1111 - t1033);
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t652;
+        let t1130 = rate_rod_leg4 * rate_rod_leg4;
+        let t1133 = s_rod_leg4 * (t936 + rate_dot_rod_leg4)
+            + c_rod_leg4 * (t1130 - t1056);
+        let t1147 = t716 + c_rod_leg1 * t979;
+        let t1157 = t793 + c_rod_leg2 * t1004;
+        let t1167 = c_rod_leg3 * t1025 - t858;
+        let t1177 = c_rod_leg4 * t1050 - t929;
+        let t1186 = 1.7241379310344827 * t409;
+        let t1199 = 1.7241379310344827 * t431;
+        let t1213 = 1.7241379310344827 * t581;
+        let t1225 = 1.7241379310344827 * t600;
+        let t1254 = 0.8620689655172413 * t54;
+        let t1258 = 0.4482758620689655 * (t44 * s_cross_leg1);
+        let t1262 = 0.26 * c_cross_leg1;
+        let t1266 = 0.26 * rate_dot_arm_leg1 - t682;
+        let t1269 = t686 - 0.26 * t351;
+        let t1272 = s_rod_leg1 * (c_cross_leg1 * t1266 - s_cross_leg1 * t1269);
+        let t1277 = c_cross_leg1 * t1269 + s_cross_leg1 * t1266;
+        let t1278 = c_rod_leg1 * t1277;
+        let t1280 = t1254 * (t723 - rate_dot_rod_leg1) + t1258 * (t987 + t1073)
+            + t1262 * t982 - t703 * t1272 - t722 * t1278;
+        let t1291 = 0.26 * rate_dot_arm_leg2 - t683;
+        let t1294 = t687 - 0.26 * t495;
+        let t1297 = minus_s_rod_leg2 * (c_cross_leg2 * t1291 - s_cross_leg2 * t1294);
+        let t1301 = c_cross_leg2 * t1294 + s_cross_leg2 * t1291;
+        let t1302 = c_rod_leg2 * t1301;
+        let t1305 = 0.8620689655172413 * t150;
+        let t1309 = 0.4482758620689655 * (t140 * s_cross_leg2);
+        let t1313 = 0.26 * c_cross_leg2;
+        let t1319 = t1305 * (minus_rate_dot_rod_leg2 - t771) - t1309 * (t1010 + t1092)
+            - t1313 * t1001 - t803 * t1297 + t807 * t1302;
+        let t1327 = t688 + 0.26 * t525;
+        let t1330 = t684 + 0.26 * rate_dot_arm_leg3;
+        let t1333 = minus_s_rod_leg3 * (s_cross_leg3 * t1327 + c_cross_leg3 * t1330);
+        let t1337 = s_cross_leg3 * t1330 - c_cross_leg3 * t1327;
+        let t1338 = c_rod_leg3 * t1337;
+        let t1344 = 0.8620689655172413 * t91;
+        let t1348 = 0.4482758620689655 * (t82 * s_cross_leg3);
+        let t1352 = 0.26 * c_cross_leg3;
+        let t1358 = t1344 * (minus_rate_dot_rod_leg3 - t865) - t1348 * (t1033 + t1111)
+            + t1352 * t1028 + t887 * t1333 - t891 * t1338;
+        let t1363 = t689 + 0.26 * t661;
+        let t1366 = t685 + 0.26 * rate_dot_arm_leg4;
+        let t1369 = s_rod_leg4 * (s_cross_leg4 * t1363 + c_cross_leg4 * t1366);
+        let t1373 = s_cross_leg4 * t1366 - c_cross_leg4 * t1363;
+        let t1374 = c_rod_leg4 * t1373;
+        let t1383 = 0.8620689655172413 * t24;
+        let t1387 = 0.4482758620689655 * (t16 * s_cross_leg4);
+        let t1391 = 0.26 * c_cross_leg4;
+        let t1397 = t1383 * (t936 - rate_dot_rod_leg4) + t1387 * (t1056 + t1130)
+            - t1391 * t1047 - t971 * t1369 - t975 * t1374;
+        Ok([
+            [
+                t209 * acceleration[3], t223 * t227 - t240 * t243 + t209 * t248,
+                -(t240 * t227 + t223 * t243 + t209 * t285),
+                t240 * acceleration[0] + t223 * acceleration[1] - t311 * t312, rate_dot_arm_leg1,
+                0.0, 0.0, 0.0, -t682, 0.0, 0.0, 0.0, -t686, 0.0, 0.0, 0.0, rate_arm_leg1, 0.0, 0.0,
+                0.0, ::overact::math::sign(rate_arm_leg1), 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0,
+                -(t703 * t717 + t724), t772 - t782 * t794, t845 * t859 + t866, t916 * t930 - t937,
+                t703 * t984 + t722 * t989, t782 * t1007 + t768 * t1012, t845 * t1030 + t864 * t1035,
+                t916 * t1053 + t935 * t1058, t703 * t1076 - t722 * t709, t782 * t1095 + t768 * t788,
+                t845 * t1114 - t864 * t851, t916 * t1133 + t935 * t922, t703 * t1147 + t724,
+                t782 * t1157 - t772, t845 * t1167 - t866, t916 * t1177 + t937,
+                t703 * t1186 - t722 * t978, -(t782 * t1199 + t768 * t1003),
+                t864 * t1024 - t845 * t1213, t916 * t1225 + t935 * t1049, t722 * rate_dot_rod_leg1,
+                -(t768 * minus_rate_dot_rod_leg2), -(t864 * minus_rate_dot_rod_leg3),
+                t935 * rate_dot_rod_leg4, t1280, t782 * t1297 - t768 * t1302,
+                t845 * t1333 - t864 * t1338, -(t916 * t1369 + t935 * t1374),
+                t393 * t1262 - (t978 * t1254 + t709 * t1258) + t703 * t1277, t782 * t1301,
+                t845 * t1337, t916 * t1373,
+            ],
+            [
+                -(t212 * acceleration[3]), t252 * t227 - t256 * t243 - t212 * t248,
+                t212 * t285 - (t256 * t227 + t252 * t243),
+                t256 * acceleration[0] + t252 * acceleration[1] + t320 * t312, 0.0,
+                rate_dot_arm_leg2, 0.0, 0.0, 0.0, -t683, 0.0, 0.0, 0.0, -t687, 0.0, 0.0, 0.0,
+                rate_arm_leg2, 0.0, 0.0, 0.0, ::overact::math::sign(rate_arm_leg2), 0.0, 0.0, 0.0,
+                1.0, 0.0, 0.0, t732 * t717 - t737, t803 * t794 - t808, t874 * t859 - t879,
+                t945 * t930 - t950, t736 * t989 - t732 * t984, -(t803 * t1007 + t807 * t1012),
+                t874 * t1030 - t878 * t1035, t945 * t1053 + t949 * t1058,
+                -(t732 * t1076 + t736 * t709), -(t803 * t1095 + t807 * t788),
+                t874 * t1114 + t878 * t851, t945 * t1133 + t949 * t922, t737 - t732 * t1147,
+                t808 - t803 * t1157, t874 * t1167 + t879, t945 * t1177 + t950,
+                -(t732 * t1186 + t736 * t978), t803 * t1199 + t807 * t1003,
+                -(t874 * t1213 + t878 * t1024), t945 * t1225 + t949 * t1049,
+                t736 * rate_dot_rod_leg1, t807 * minus_rate_dot_rod_leg2,
+                t878 * minus_rate_dot_rod_leg3, t949 * rate_dot_rod_leg4,
+                t732 * t1272 - t736 * t1278, t1319, t874 * t1333 + t878 * t1338,
+                -(t945 * t1369 + t949 * t1374), -(t732 * t1277),
+                t473 * t1313 - (t1003 * t1305 + t788 * t1309) - t803 * t1301, t874 * t1337,
+                t945 * t1373,
+            ],
+            [
+                t219 * acceleration[3], t219 * t248 - (t266 * t243 + t269 * t227),
+                t269 * t243 - t266 * t227 - t219 * t285,
+                t266 * acceleration[0] - t269 * acceleration[1] + t329 * t312, 0.0, 0.0,
+                rate_dot_arm_leg3, 0.0, 0.0, 0.0, t684, 0.0, 0.0, 0.0, t688, 0.0, 0.0, 0.0,
+                rate_arm_leg3, 0.0, 0.0, 0.0, ::overact::math::sign(rate_arm_leg3), 0.0, 0.0, 0.0,
+                1.0, 0.0, -(t745 * t717 + t750), t813 - t820 * t794, t887 * t859 + t892,
+                t958 * t930 - t963, t745 * t984 + t749 * t989, t820 * t1007 + t812 * t1012,
+                t887 * t1030 + t891 * t1035, t958 * t1053 + t962 * t1058,
+                t745 * t1076 - t749 * t709, t820 * t1095 + t812 * t788, t887 * t1114 - t891 * t851,
+                t958 * t1133 + t962 * t922, t745 * t1147 + t750, t820 * t1157 - t813,
+                t887 * t1167 - t892, t958 * t1177 + t963, t745 * t1186 - t749 * t978,
+                -(t820 * t1199 + t812 * t1003), t891 * t1024 - t887 * t1213,
+                t958 * t1225 + t962 * t1049, t749 * rate_dot_rod_leg1,
+                -(t812 * minus_rate_dot_rod_leg2), -(t891 * minus_rate_dot_rod_leg3),
+                t962 * rate_dot_rod_leg4, -(t745 * t1272 + t749 * t1278),
+                t820 * t1297 - t812 * t1302, t1358, -(t958 * t1369 + t962 * t1374), t745 * t1277,
+                t820 * t1301, t1024 * t1344 + t851 * t1348 + t567 * t1352 + t887 * t1337,
+                t958 * t1373,
+            ],
+            [
+                t208 * acceleration[3], t273 * t243 - t275 * t227 + t208 * t248,
+                t273 * t227 + t275 * t243 - t208 * t285,
+                -(t273 * acceleration[0] + t275 * acceleration[1] + t335 * t312), 0.0, 0.0, 0.0,
+                rate_dot_arm_leg4, 0.0, 0.0, 0.0, t685, 0.0, 0.0, 0.0, t689, 0.0, 0.0, 0.0,
+                rate_arm_leg4, 0.0, 0.0, 0.0, ::overact::math::sign(rate_arm_leg4), 0.0, 0.0, 0.0,
+                1.0, -(t758 * t717 + t763), t826 - t833 * t794, t900 * t859 + t905,
+                t971 * t930 - t976, t758 * t984 + t762 * t989, t833 * t1007 + t825 * t1012,
+                t900 * t1030 + t904 * t1035, t971 * t1053 + t975 * t1058,
+                t758 * t1076 - t762 * t709, t833 * t1095 + t825 * t788, t900 * t1114 - t904 * t851,
+                t971 * t1133 + t975 * t922, t758 * t1147 + t763, t833 * t1157 - t826,
+                t900 * t1167 - t905, t971 * t1177 + t976, t758 * t1186 - t762 * t978,
+                -(t833 * t1199 + t825 * t1003), t904 * t1024 - t900 * t1213,
+                t971 * t1225 + t975 * t1049, t762 * rate_dot_rod_leg1,
+                -(t825 * minus_rate_dot_rod_leg2), -(t904 * minus_rate_dot_rod_leg3),
+                t975 * rate_dot_rod_leg4, -(t758 * t1272 + t762 * t1278),
+                t833 * t1297 - t825 * t1302, t900 * t1333 - t904 * t1338, t1397, t758 * t1277,
+                t833 * t1301, t900 * t1337,
+                t1049 * t1383 + t922 * t1387 + t641 * t1391 + t971 * t1373,
+            ],
+        ])
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -6316,7 +9739,7 @@ impl Schoenflies4 {
     /// Output: 4 x 60.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 1506 operations (541 additions, 949 multiplications, 16 divisions), 0 square roots, 13 trigonometric pairs, 4 signs, 1380 intermediates.
+    /// 1628 operations (609 additions, 991 multiplications, 28 divisions), 8 square roots, 1 trigonometric pairs, 4 signs, 1486 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6327,633 +9750,718 @@ impl Schoenflies4 {
         start: &[f64; 4],
     ) -> Result<[[f64; 60]; 4], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        ::overact::guard::leg(c_rod_leg2, 0.988789721306189, "leg2")?;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
-        let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t12 = c_armcross_leg2 * c_rod_leg2;
-        let t14 = s_armcross_leg2 * c_rod_leg2;
-        let t16 = s_arm_leg2 * t12 - c_arm_leg2 * t14;
-        ::overact::guard::leg(t16, 0.9185391450939737, "leg2")?;
-        let t17 = 1.0 / t16;
-        let t18 = 3.8461538461538463 * t17;
-        let garm_vx_leg2 = s_rod_leg2 * t18;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
-        let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        ::overact::guard::leg(c_rod_leg1, 0.9887897213061891, "leg1")?;
-        let t32 = c_armcross_leg1 * c_rod_leg1;
-        let t34 = s_armcross_leg1 * c_rod_leg1;
-        let t36 = s_arm_leg1 * t32 - c_arm_leg1 * t34;
-        ::overact::guard::leg(t36, 0.9185391450939739, "leg1")?;
-        let t37 = 1.0 / t36;
-        let t38 = 3.8461538461538463 * t37;
-        let minus_garm_vx_leg1 = t32 * t38;
-        ::overact::guard::platform(
-            minus_garm_vx_leg1,
-            3.0598754214874657,
-            "kept actuators",
-        )?;
-        let t40 = 1.0 / minus_garm_vx_leg1;
-        let garm_vz_leg2 = t14 * t18;
-        let garm_vz_leg1 = t34 * t38;
-        let t44 = garm_vz_leg1 * t40;
-        let t46 = garm_vz_leg2 + garm_vx_leg2 * t44;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
-        let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        ::overact::guard::leg(c_rod_leg3, 0.9887897213061891, "leg3")?;
-        let t59 = c_armcross_leg3 * c_rod_leg3;
-        let t60 = s_armcross_leg3 * c_rod_leg3;
-        let t63 = c_arm_leg3 * t60 - s_arm_leg3 * t59;
-        ::overact::guard::leg(t63, 0.9185391450939737, "leg3")?;
-        let t64 = 1.0 / t63;
-        let t65 = 3.8461538461538463 * t64;
-        let minus_garm_vx_leg3 = t59 * t65;
-        let minus_garm_vz_leg3 = t60 * t65;
-        let t70 = minus_garm_vz_leg3 + minus_garm_vx_leg3 * t44;
-        ::overact::guard::platform(t70, 5.5782916905211675, "kept actuators")?;
-        let t71 = 1.0 / t70;
-        let t72 = minus_garm_vx_leg3 * t40 * t71;
-        let minus_garm_vy_leg1 = s_rod_leg1 * t38;
-        let t76 = minus_garm_vy_leg1 * t40;
-        let minus_garm_vy_leg3 = s_rod_leg3 * t65;
-        let t80 = (minus_garm_vx_leg3 * t76 - minus_garm_vy_leg3) * t71;
-        let minus_garm_vy_leg2 = t12 * t18;
-        let t85 = t46 * t80 - (minus_garm_vy_leg2 + garm_vx_leg2 * t76);
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        ::overact::guard::leg(c_rod_leg4, 0.9887897213061891, "leg4")?;
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let (s_cross_leg4, c_cross_leg4) = ::overact::math::sin_cos(joints[10]);
-        let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
-        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let t98 = s_armcross_leg4 * c_rod_leg4;
-        let t100 = c_armcross_leg4 * c_rod_leg4;
-        let t102 = c_arm_leg4 * t98 - s_arm_leg4 * t100;
-        ::overact::guard::leg(t102, 0.9185391450939737, "leg4")?;
-        let t103 = 1.0 / t102;
-        let t104 = 3.8461538461538463 * t103;
-        let garm_vx_leg4 = s_rod_leg4 * t104;
-        let minus_garm_vz_leg4 = t98 * t104;
-        let t109 = garm_vx_leg4 * t44 - minus_garm_vz_leg4;
-        let minus_garm_vy_leg4 = t100 * t104;
-        let t116 = t109 * t80 - (minus_garm_vy_leg4 + garm_vx_leg4 * t76);
-        ::overact::guard::platform(t116, 2.932125836861103, "kept actuators")?;
-        let t117 = 1.0 / t116;
-        let t118 = (garm_vx_leg4 * t40 - t109 * t72) * t117;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
-        let t123 = 0.05 * s_phi;
-        let t124 = 0.08660254037844387 * c_phi;
-        let t125 = t123 + t124;
-        let t127 = 0.05 * c_phi;
-        let t128 = 0.08660254037844387 * s_phi;
-        let t129 = t127 - t128;
-        let garm_wz_leg1 = minus_garm_vx_leg1 * t125 - minus_garm_vy_leg1 * t129;
-        let t132 = garm_wz_leg1 * t40;
-        let t134 = t124 - t123;
-        let t136 = t128 + t127;
-        let minus_garm_wz_leg2 = minus_garm_vy_leg2 * t134 + garm_vx_leg2 * t136;
-        let garm_wz_leg3 = t129 * minus_garm_vy_leg3 - t125 * minus_garm_vx_leg3;
-        let t145 = (garm_wz_leg3 - minus_garm_vx_leg3 * t132) * t71;
-        let garm_wz_leg4 = t134 * minus_garm_vy_leg4 + t136 * garm_vx_leg4;
-        let t155 = (garm_wz_leg4 + garm_vx_leg4 * t132 + t109 * t145) * t117;
-        let t157 = garm_vx_leg2 * t132 - minus_garm_wz_leg2 + t46 * t145 - t85 * t155;
-        ::overact::guard::platform(t157, 1.1850155816073358, "kept actuators")?;
-        let t158 = 1.0 / t157;
-        let t159 = (garm_vx_leg2 * t40 - t46 * t72 - t85 * t118) * t158;
-        let t173 = garm_vx_leg4 * garm_wz_leg4
-            - (minus_garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * minus_garm_wz_leg2
-                + minus_garm_vx_leg3 * garm_wz_leg3);
-        let t180 = minus_garm_vx_leg1 * minus_garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
-            + minus_garm_vx_leg3 * minus_garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
-        ::overact::guard::platform(t180, 19.50747081825307, "actuators")?;
-        ::overact::guard::platform(t180, 19.50747081825307, "actuators")?;
-        let t181 = 1.0 / t180;
-        let t182 = t173 * t181;
-        let t198 = minus_garm_vx_leg1 * minus_garm_vy_leg1
-            - garm_vx_leg2 * minus_garm_vy_leg2 + minus_garm_vx_leg3 * minus_garm_vy_leg3
-            - garm_vx_leg4 * minus_garm_vy_leg4;
-        let t200 = minus_garm_vy_leg2 * minus_garm_wz_leg2
-            - minus_garm_vy_leg1 * garm_wz_leg1 - minus_garm_vy_leg3 * garm_wz_leg3
-            - minus_garm_vy_leg4 * garm_wz_leg4 - t198 * t182;
-        let t208 = t198 * t181;
-        let t210 = minus_garm_vy_leg1 * minus_garm_vy_leg1
-            + minus_garm_vy_leg2 * minus_garm_vy_leg2
-            + minus_garm_vy_leg3 * minus_garm_vy_leg3
-            + minus_garm_vy_leg4 * minus_garm_vy_leg4 - t198 * t208;
-        ::overact::guard::platform(t210, 16.505615552607473, "actuators")?;
-        ::overact::guard::platform(t210, 16.505615552607473, "actuators")?;
-        let t211 = 1.0 / t210;
-        let t212 = t200 * t211;
-        let t214 = garm_wz_leg1 * garm_wz_leg1 + minus_garm_wz_leg2 * minus_garm_wz_leg2
-            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t173 * t182
-            - t200 * t212;
-        let t228 = garm_vx_leg2 * garm_vz_leg2 - minus_garm_vx_leg1 * garm_vz_leg1
-            + minus_garm_vx_leg3 * minus_garm_vz_leg3
-            - garm_vx_leg4 * minus_garm_vz_leg4;
-        let t238 = t228 * t181;
-        let t240 = minus_garm_vy_leg3 * minus_garm_vz_leg3
-            - (minus_garm_vy_leg1 * garm_vz_leg1 + minus_garm_vy_leg2 * garm_vz_leg2)
-            + minus_garm_vy_leg4 * minus_garm_vz_leg4 - t198 * t238;
-        let t242 = garm_vz_leg1 * garm_wz_leg1 - garm_vz_leg2 * minus_garm_wz_leg2
-            - minus_garm_vz_leg3 * garm_wz_leg3 - minus_garm_vz_leg4 * garm_wz_leg4
-            - t228 * t182 - t240 * t212;
-        let t252 = t240 * t211;
-        let t254 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3
-            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t228 * t238 - t240 * t252;
-        ::overact::guard::platform(t254, 31.117338184537527, "actuators")?;
-        ::overact::guard::platform(t254, 31.117338184537527, "actuators")?;
-        let t255 = 1.0 / t254;
-        let t256 = t242 * t255;
-        let t258 = t214 - t242 * t256;
-        ::overact::guard::platform(t258, 0.351065482163043, "actuators")?;
-        ::overact::guard::platform(t258, 0.351065482163043, "actuators")?;
-        let t259 = 1.0 / t258;
-        let t273 = garm_vx_leg2 * actuator_velocities[1]
-            - minus_garm_vx_leg1 * actuator_velocities[0]
-            - minus_garm_vx_leg3 * actuator_velocities[2]
+        let t2 = 0.08660254037844387 * s_phi;
+        let t3 = 0.05 * c_phi;
+        let t4 = t2 + t3;
+        let t5 = pose[1] - t4;
+        let t6 = t5 + 0.24;
+        let t7 = t6 * t6;
+        let t8 = pose[2] * pose[2];
+        let t10 = 0.2704 * (t7 + t8);
+        let t11 = 1.0 / t10;
+        let t12 = 0.52 * t6;
+        let t13 = 0.08660254037844387 * c_phi;
+        let t14 = 0.05 * s_phi;
+        let t15 = t13 - t14;
+        let t16 = pose[0] - t15;
+        let t17 = t16 * t16;
+        let t19 = t17 + t7 + t8;
+        let t21 = t19 - 0.3364 + 0.0676;
+        let t23 = t10 - t21 * t21;
+        ::overact::guard::reach(t23, "leg4")?;
+        let t24 = ::overact::math::sqrt(t23);
+        ::overact::guard::leg(t24, 0.27703140616182853, "leg4")?;
+        let t26 = 0.52 * pose[2];
+        let s_arm_leg4 = t11 * (t12 * t24 - t26 * t21);
+        let t30 = 0.26 * s_arm_leg4;
+        let t31 = pose[2] + t30;
+        let t32 = 1.0 / t24;
+        let t33 = 2.0 * t32;
+        let garm_vz_leg4 = t31 * t33;
+        let garm_vx_leg4 = t16 * t33;
+        let t36 = t3 - t2;
+        let t37 = pose[0] + t36;
+        let t38 = t37 - 0.24;
+        let t39 = t38 * t38;
+        let t41 = 0.2704 * (t39 + t8);
+        let t42 = 1.0 / t41;
+        let t43 = t14 + t13;
+        let t44 = pose[1] + t43;
+        let t45 = t44 * t44;
+        let t47 = t39 + t45 + t8;
+        let t49 = t47 - 0.3364 + 0.0676;
+        let t51 = 0.52 * t38;
+        let t53 = t41 - t49 * t49;
+        ::overact::guard::reach(t53, "leg1")?;
+        let t54 = ::overact::math::sqrt(t53);
+        ::overact::guard::leg(t54, 0.27703140616182853, "leg1")?;
+        let minus_s_arm_leg1 = t42 * (t26 * t49 + t51 * t54);
+        let t58 = 0.26 * minus_s_arm_leg1;
+        let t59 = pose[2] - t58;
+        let t60 = 1.0 / t54;
+        let t61 = 2.0 * t60;
+        let garm_vz_leg1 = t59 * t61;
+        let c_arm_leg1 = t42 * (t51 * t49 - t26 * t54);
+        let t67 = 0.26 * c_arm_leg1;
+        let t69 = t37 - (0.24 + t67);
+        let garm_vx_leg1 = t69 * t61;
+        ::overact::guard::platform(garm_vx_leg1, 3.059875421275039, "kept actuators")?;
+        let t71 = 1.0 / garm_vx_leg1;
+        let t72 = garm_vz_leg1 * t71;
+        let t74 = garm_vz_leg4 - garm_vx_leg4 * t72;
+        let t75 = pose[0] - t36;
+        let t76 = t75 + 0.24;
+        let t77 = t76 * t76;
+        let t79 = 0.2704 * (t77 + t8);
+        let t80 = 1.0 / t79;
+        let t81 = 0.52 * t76;
+        let t82 = pose[1] - t43;
+        let t83 = t82 * t82;
+        let t85 = t77 + t83 + t8;
+        let t87 = t85 - 0.3364 + 0.0676;
+        let t90 = t79 - t87 * t87;
+        ::overact::guard::reach(t90, "leg3")?;
+        let t91 = ::overact::math::sqrt(t90);
+        ::overact::guard::leg(t91, 0.27703140616182853, "leg3")?;
+        let minus_c_arm_leg3 = t80 * (t81 * t87 + t26 * t91);
+        let t95 = 0.26 * minus_c_arm_leg3;
+        let t97 = t75 - (t95 - 0.24);
+        let t98 = 1.0 / t91;
+        let t99 = 2.0 * t98;
+        let garm_vx_leg3 = t97 * t99;
+        let s_arm_leg3 = t80 * (t81 * t91 - t26 * t87);
+        let t106 = 0.26 * s_arm_leg3;
+        let t107 = pose[2] + t106;
+        let garm_vz_leg3 = t107 * t99;
+        let t110 = garm_vz_leg3 - garm_vx_leg3 * t72;
+        ::overact::guard::platform(t110, 5.578291690921259, "kept actuators")?;
+        let t111 = 1.0 / t110;
+        let t112 = garm_vx_leg3 * t71 * t111;
+        let minus_c_arm_leg4 = t11 * (t12 * t21 + t26 * t24);
+        let t120 = 0.26 * minus_c_arm_leg4;
+        let t122 = t5 - (t120 - 0.24);
+        let garm_vy_leg4 = t122 * t33;
+        let garm_vy_leg1 = t44 * t61;
+        let t125 = garm_vy_leg1 * t71;
+        let garm_vy_leg3 = t82 * t99;
+        let t131 = (garm_vy_leg3 - garm_vx_leg3 * t125) * t111;
+        let t133 = garm_vy_leg4 - garm_vx_leg4 * t125 - t74 * t131;
+        let t134 = pose[1] + t4;
+        let t135 = t134 - 0.24;
+        let t136 = t135 * t135;
+        let t138 = 0.2704 * (t136 + t8);
+        let t139 = 1.0 / t138;
+        let t140 = pose[0] + t15;
+        let t141 = t140 * t140;
+        let t143 = t141 + t136 + t8;
+        let t145 = t143 - 0.3364 + 0.0676;
+        let t147 = 0.52 * t135;
+        let t149 = t138 - t145 * t145;
+        ::overact::guard::reach(t149, "leg2")?;
+        let t150 = ::overact::math::sqrt(t149);
+        ::overact::guard::leg(t150, 0.27703140616182853, "leg2")?;
+        let minus_s_arm_leg2 = t139 * (t26 * t145 + t147 * t150);
+        let t154 = 0.26 * minus_s_arm_leg2;
+        let t155 = pose[2] - t154;
+        let t156 = 1.0 / t150;
+        let t157 = 2.0 * t156;
+        let garm_vz_leg2 = t155 * t157;
+        let garm_vx_leg2 = t140 * t157;
+        let t161 = garm_vz_leg2 - garm_vx_leg2 * t72;
+        let c_arm_leg2 = t139 * (t147 * t145 - t26 * t150);
+        let t169 = 0.26 * c_arm_leg2;
+        let t171 = t134 - (0.24 + t169);
+        let garm_vy_leg2 = t171 * t157;
+        let t176 = garm_vy_leg2 - garm_vx_leg2 * t125 - t161 * t131;
+        ::overact::guard::platform(t176, 2.9321258366411205, "kept actuators")?;
+        let t177 = 1.0 / t176;
+        let t178 = (t161 * t112 - garm_vx_leg2 * t71) * t177;
+        let garm_wz_leg4 = t4 * garm_vx_leg4 - t15 * garm_vy_leg4;
+        let garm_wz_leg1 = t36 * garm_vy_leg1 - t43 * garm_vx_leg1;
+        let t187 = garm_wz_leg1 * t71;
+        let garm_wz_leg3 = t43 * garm_vx_leg3 - t36 * garm_vy_leg3;
+        let t195 = (garm_wz_leg3 - garm_vx_leg3 * t187) * t111;
+        let garm_wz_leg2 = t15 * garm_vy_leg2 - t4 * garm_vx_leg2;
+        let t205 = (garm_wz_leg2 - garm_vx_leg2 * t187 - t161 * t195) * t177;
+        let t207 = garm_wz_leg4 - garm_vx_leg4 * t187 - t74 * t195 - t133 * t205;
+        ::overact::guard::platform(t207, 1.1850155815331067, "kept actuators")?;
+        let t208 = 1.0 / t207;
+        let t209 = (t74 * t112 - garm_vx_leg4 * t71 - t133 * t178) * t208;
+        let t223 = garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * garm_wz_leg2
+            + garm_vx_leg3 * garm_wz_leg3 + garm_vx_leg4 * garm_wz_leg4;
+        let t230 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t230, 19.507470815645043, "actuators")?;
+        ::overact::guard::platform(t230, 19.507470815645043, "actuators")?;
+        let t231 = 1.0 / t230;
+        let t232 = t223 * t231;
+        let t248 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3 + garm_vx_leg4 * garm_vy_leg4;
+        let t250 = garm_vy_leg1 * garm_wz_leg1 + garm_vy_leg2 * garm_wz_leg2
+            + garm_vy_leg3 * garm_wz_leg3 + garm_vy_leg4 * garm_wz_leg4 - t248 * t232;
+        let t258 = t248 * t231;
+        let t260 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t248 * t258;
+        ::overact::guard::platform(t260, 16.505615550045768, "actuators")?;
+        ::overact::guard::platform(t260, 16.505615550045768, "actuators")?;
+        let t261 = 1.0 / t260;
+        let t262 = t250 * t261;
+        let t264 = garm_wz_leg1 * garm_wz_leg1 + garm_wz_leg2 * garm_wz_leg2
+            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t223 * t232
+            - t250 * t262;
+        let t278 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3 + garm_vx_leg4 * garm_vz_leg4;
+        let t288 = t278 * t231;
+        let t290 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 + garm_vy_leg4 * garm_vz_leg4 - t248 * t288;
+        let t292 = garm_vz_leg1 * garm_wz_leg1 + garm_vz_leg2 * garm_wz_leg2
+            + garm_vz_leg3 * garm_wz_leg3 + garm_vz_leg4 * garm_wz_leg4 - t278 * t232
+            - t290 * t262;
+        let t302 = t290 * t261;
+        let t304 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 + garm_vz_leg4 * garm_vz_leg4 - t278 * t288
+            - t290 * t302;
+        ::overact::guard::platform(t304, 31.11733818900116, "actuators")?;
+        ::overact::guard::platform(t304, 31.11733818900116, "actuators")?;
+        let t305 = 1.0 / t304;
+        let t306 = t292 * t305;
+        let t308 = t264 - t292 * t306;
+        ::overact::guard::platform(t308, 0.35106548211906174, "actuators")?;
+        ::overact::guard::platform(t308, 0.35106548211906174, "actuators")?;
+        let t309 = 1.0 / t308;
+        let t310 = actuator_velocities[0] * actuator_velocities[0];
+        let t314 = 1.0 - 2.972651605231867 * t45;
+        ::overact::guard::reach(t314, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t314);
+        ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
+        let s_cross_leg1 = 1.9230769230769231 * t54 / (0.58 * c_rod_leg1);
+        let c_cross_leg1 = (t47 - (0.0676 + t45) - 0.3364 * t314)
+            / (0.3016 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t327 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7241379310344827 * t327;
+        let t342 = garm_vx_leg1 * actuator_velocities[0]
+            + garm_vx_leg2 * actuator_velocities[1]
+            + garm_vx_leg3 * actuator_velocities[2]
             + garm_vx_leg4 * actuator_velocities[3];
-        let t284 = minus_garm_vy_leg1 * actuator_velocities[0]
-            + minus_garm_vy_leg2 * actuator_velocities[1]
-            + minus_garm_vy_leg3 * actuator_velocities[2]
-            + minus_garm_vy_leg4 * actuator_velocities[3] + t273 * t208;
-        let t286 = garm_wz_leg1 * actuator_velocities[0]
-            - minus_garm_wz_leg2 * actuator_velocities[1]
-            + garm_wz_leg3 * actuator_velocities[2]
-            + garm_wz_leg4 * actuator_velocities[3] - t273 * t182 + t212 * t284;
-        let t297 = garm_vz_leg1 * actuator_velocities[0]
+        let t344 = garm_vy_leg1 * actuator_velocities[0]
+            + garm_vy_leg2 * actuator_velocities[1]
+            + garm_vy_leg3 * actuator_velocities[2]
+            + garm_vy_leg4 * actuator_velocities[3] - t342 * t258;
+        let t356 = garm_vz_leg1 * actuator_velocities[0]
             + garm_vz_leg2 * actuator_velocities[1]
-            - minus_garm_vz_leg3 * actuator_velocities[2]
-            - minus_garm_vz_leg4 * actuator_velocities[3] - t273 * t238 + t252 * t284;
-        let t300 = t259 * (t286 - t256 * t297);
-        let t301 = t129 * t300;
-        let t302 = t300 * t301;
-        let t303 = 0.58 * s_rod_leg1;
-        let t304 = 1.7241379310344827 * t37;
-        let gcross_vx_leg1 = c_arm_leg1 * t304;
-        let t310 = t255 * t297 - t256 * t300;
-        let t314 = t211 * t284 + t252 * t310 + t212 * t300;
-        let t320 = t273 * t181 + t208 * t314 - t238 * t310 - t182 * t300;
-        let t321 = t125 * t300;
-        let t325 = 1.0 / c_rod_leg1;
-        let gcross_vy_leg1 = t304
-            * (c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t325)
-                + s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t325));
-        let t333 = t301 - t314;
-        let minus_gcross_vz_leg1 = s_arm_leg1 * t304;
-        let rate_cross_leg1 = gcross_vx_leg1 * (t320 - t321) + gcross_vy_leg1 * t333
-            - minus_gcross_vz_leg1 * t310;
-        let grod_vy_leg1 = 1.7241379310344827 * t325;
-        let rate_rod_leg1 = grod_vy_leg1 * t333;
-        let t341 = s_armcross_leg1 * rate_rod_leg1;
-        let t343 = t303 * (rate_cross_leg1 * t341);
-        let t345 = actuator_velocities[0] * actuator_velocities[0];
-        let t349 = rate_cross_leg1 * rate_cross_leg1;
-        let t351 = c_armcross_leg1 * rate_rod_leg1;
-        let t353 = t341 * t341 + t349 + t351 * t351;
-        let t357 = t343 - (0.26 * c_arm_leg1 * t345 + 0.58 * t32 * t353) + t343;
-        let t360 = t300 * t321;
-        let t361 = t303 * rate_cross_leg1;
-        let t364 = rate_cross_leg1 * t361 - t303 * t353;
-        let t374 = t303 * (rate_cross_leg1 * t351);
-        let t376 = 0.26 * s_arm_leg1 * t345 + 0.58 * t34 * t353 + t374 + t374;
-        let rate_dot_arm_leg1 = minus_garm_vx_leg1 * (t302 + t357)
-            + minus_garm_vy_leg1 * (t360 + t364) - garm_vz_leg1 * t376;
-        let t379 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t381 = t134 * t300;
-        let t382 = t300 * t381;
-        let t383 = 0.58 * s_rod_leg2;
-        let t384 = 1.7241379310344827 * t17;
-        let gcross_vy_leg2 = c_arm_leg2 * t384;
-        let t389 = 1.0 / c_rod_leg2;
-        let minus_gcross_vx_leg2 = t384
-            * (c_arm_leg2 * (c_armcross_leg2 * s_rod_leg2 * t389)
-                + s_arm_leg2 * (s_armcross_leg2 * s_rod_leg2 * t389));
-        let t397 = t136 * t300;
-        let t398 = t320 - t397;
-        let minus_gcross_vz_leg2 = s_arm_leg2 * t384;
-        let rate_cross_leg2 = gcross_vy_leg2 * (t381 - t314)
-            - minus_gcross_vx_leg2 * t398 - minus_gcross_vz_leg2 * t310;
-        let t404 = rate_cross_leg2 * rate_cross_leg2;
-        let minus_grod_vx_leg2 = 1.7241379310344827 * t389;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t398;
-        let t407 = s_armcross_leg2 * minus_rate_rod_leg2;
-        let t410 = c_armcross_leg2 * minus_rate_rod_leg2;
-        let t412 = t404 + t407 * t407 + t410 * t410;
-        let t414 = t383 * rate_cross_leg2;
-        let t416 = t383 * t412 - rate_cross_leg2 * t414;
-        let t420 = actuator_velocities[1] * actuator_velocities[1];
-        let t426 = t383 * (rate_cross_leg2 * t407);
-        let t428 = 0.26 * c_arm_leg2 * t420 + 0.58 * t12 * t412 + t426 + t426;
-        let t429 = t300 * t397;
-        let t439 = t383 * (rate_cross_leg2 * t410);
-        let t441 = 0.26 * s_arm_leg2 * t420 + 0.58 * t14 * t412 - t439 - t439;
-        let minus_rate_dot_arm_leg2 = garm_vx_leg2 * (t382 + t416)
-            + minus_garm_vy_leg2 * (t428 - t429) + garm_vz_leg2 * t441;
-        let t444 = actuator_accelerations[1] + minus_rate_dot_arm_leg2;
-        let t448 = actuator_velocities[2] * actuator_velocities[2];
-        let t451 = 1.0 / c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.7241379310344827 * t451;
-        let t453 = t314 + t301;
-        let rate_rod_leg3 = minus_grod_vy_leg3 * t453;
-        let t455 = s_armcross_leg3 * rate_rod_leg3;
-        let t457 = 1.7241379310344827 * t64;
-        let gcross_vx_leg3 = c_arm_leg3 * t457;
-        let gcross_vy_leg3 = t457
-            * (c_arm_leg3 * (c_armcross_leg3 * s_rod_leg3 * t451)
-                + s_arm_leg3 * (s_armcross_leg3 * s_rod_leg3 * t451));
-        let gcross_vz_leg3 = s_arm_leg3 * t457;
-        let rate_cross_leg3 = gcross_vx_leg3 * (t320 + t321) - gcross_vy_leg3 * t453
-            + gcross_vz_leg3 * t310;
-        let t474 = rate_cross_leg3 * rate_cross_leg3;
-        let t476 = c_armcross_leg3 * rate_rod_leg3;
-        let t478 = t455 * t455 + t474 + t476 * t476;
-        let t481 = 0.58 * s_rod_leg3;
-        let t483 = t481 * (rate_cross_leg3 * t476);
-        let t485 = 0.26 * s_arm_leg3 * t448 + 0.58 * t60 * t478 + t483 + t483;
-        let t493 = t481 * (rate_cross_leg3 * t455);
-        let t495 = 0.26 * c_arm_leg3 * t448 + 0.58 * t59 * t478 - t493 - t493;
-        let t499 = t481 * rate_cross_leg3;
-        let t501 = t481 * t478 - rate_cross_leg3 * t499;
-        let rate_dot_arm_leg3 = minus_garm_vz_leg3 * t485
-            - (minus_garm_vx_leg3 * (t302 - t495) + minus_garm_vy_leg3 * (t360 - t501));
-        let t506 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t509 = 1.7241379310344827 * t103;
-        let gcross_vz_leg4 = s_arm_leg4 * t509;
-        let t513 = 1.0 / c_rod_leg4;
-        let minus_gcross_vx_leg4 = t509
-            * (c_arm_leg4 * (c_armcross_leg4 * s_rod_leg4 * t513)
-                + s_arm_leg4 * (s_armcross_leg4 * s_rod_leg4 * t513));
-        let t521 = t320 + t397;
-        let gcross_vy_leg4 = c_arm_leg4 * t509;
-        let rate_cross_leg4 = gcross_vz_leg4 * t310
-            - (minus_gcross_vx_leg4 * t521 + gcross_vy_leg4 * (t314 + t381));
-        let t528 = 0.58 * s_rod_leg4;
-        let t529 = t528 * rate_cross_leg4;
-        let t531 = rate_cross_leg4 * rate_cross_leg4;
-        let grod_vx_leg4 = 1.7241379310344827 * t513;
-        let rate_rod_leg4 = grod_vx_leg4 * t521;
-        let t534 = s_armcross_leg4 * rate_rod_leg4;
-        let t537 = c_armcross_leg4 * rate_rod_leg4;
-        let t539 = t531 + t534 * t534 + t537 * t537;
-        let t541 = rate_cross_leg4 * t529 - t528 * t539;
-        let t545 = actuator_velocities[3] * actuator_velocities[3];
-        let t551 = t528 * (rate_cross_leg4 * t534);
-        let t553 = 0.26 * c_arm_leg4 * t545 + 0.58 * t100 * t539 - t551 - t551;
-        let t563 = t528 * (rate_cross_leg4 * t537);
-        let t565 = 0.26 * s_arm_leg4 * t545 + 0.58 * t98 * t539 + t563 + t563;
-        let rate_dot_arm_leg4 = garm_vx_leg4 * (t382 - t541)
-            - minus_garm_vy_leg4 * (t429 - t553) + minus_garm_vz_leg4 * t565;
-        let t568 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t577 = garm_vx_leg2 * t444 - minus_garm_vx_leg1 * t379
-            - minus_garm_vx_leg3 * t506 + garm_vx_leg4 * t568;
-        let t588 = minus_garm_vy_leg1 * t379 + minus_garm_vy_leg2 * t444
-            + minus_garm_vy_leg3 * t506 + minus_garm_vy_leg4 * t568 + t208 * t577;
-        let t590 = garm_wz_leg1 * t379 - minus_garm_wz_leg2 * t444 + garm_wz_leg3 * t506
-            + garm_wz_leg4 * t568 - t182 * t577 + t212 * t588;
-        let t601 = garm_vz_leg1 * t379 + garm_vz_leg2 * t444 - minus_garm_vz_leg3 * t506
-            - minus_garm_vz_leg4 * t568 - t238 * t577 + t252 * t588;
-        let t604 = t259 * (t590 - t256 * t601);
-        let t609 = t109 * t71 * t117;
-        let t612 = (t46 * t71 - t85 * t609) * t158;
-        let t615 = t85 * t117 * t158;
-        let t618 = t118 - t155 * t159;
-        let t620 = t300 * t300;
-        let t622 = c_phi * t604 - s_phi * t620;
-        let t627 = t76 - t44 * t80;
-        let t633 = t132 + t44 * t145 + t627 * t155;
-        let t635 = t44 * t72 - t40 - t627 * t118 + t633 * t159;
-        let t638 = c_phi * t620 + s_phi * t604;
-        let t645 = t255 * t601 - t256 * t604;
-        let t649 = t211 * t588 + t252 * t645 + t212 * t604;
-        let t655 = t181 * t577 + t208 * t649 - t238 * t645 - t182 * t604;
-        let t658 = s_phi * t655 + c_phi * t649;
-        let t661 = t633 * t158;
-        let t663 = t155 * t158;
-        let t669 = t609 - t155 * t612;
-        let t675 = t633 * t612 - (t44 * t71 + t627 * t609);
-        let t682 = t627 * t117 + t633 * t615;
-        let t685 = t117 + t155 * t615;
-        let t695 = c_phi * t655 - s_phi * t649;
-        let t719 = t80 * t155 - t145;
-        let t721 = t72 + t80 * t118 - t719 * t159;
-        let t722 = t645 + 9.81;
-        let t728 = t719 * t158;
-        let t737 = t80 * t609 - t71 - t719 * t612;
-        let t742 = t80 * t117 + t719 * t615;
-        let t748 = 9.81 * c_arm_leg1;
-        let t749 = 9.81 * c_arm_leg2;
-        let t750 = 9.81 * c_arm_leg3;
-        let t751 = 9.81 * c_arm_leg4;
-        let t752 = 9.81 * s_arm_leg1;
-        let t753 = 9.81 * s_arm_leg2;
-        let t754 = 9.81 * s_arm_leg3;
-        let t755 = 9.81 * s_arm_leg4;
-        let gcross_wz_leg1 = gcross_vy_leg1 * t129 - gcross_vx_leg1 * t125;
-        let t769 = gcross_vx_leg1 * t635 + gcross_vy_leg1 * t618
-            - minus_gcross_vz_leg1 * t721 + gcross_wz_leg1 * t159;
-        let t770 = t125 * t604;
-        let t775 = t129 * t604;
-        let t777 = t775 - t649 - t360;
-        let t778 = t777 - t364;
-        let rate_dot_cross_leg1 = gcross_vx_leg1 * (t655 - t770 - t302 - t357)
-            + gcross_vy_leg1 * t778 - minus_gcross_vz_leg1 * (t645 - t376);
-        let t784 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t785 = c_rod_leg1 * rate_cross_leg1;
-        let t786 = rate_rod_leg1 * t785;
-        let t787 = t784 + t786;
-        let t789 = 1.7241379310344827 * t361;
-        let t790 = rate_rod_leg1 * t789;
-        let t791 = c_rod_leg1 * t790;
-        let t792 = s_rod_leg1 * t787 + t791;
-        let grod_wz_leg1 = grod_vy_leg1 * t129;
-        let t797 = grod_vy_leg1 * t618 + grod_wz_leg1 * t159;
-        let t798 = t789 * t785;
-        let t799 = t797 * t798;
-        let t807 = gcross_vx_leg1 * t661 - gcross_vy_leg1 * t663
-            + minus_gcross_vz_leg1 * t728 + gcross_wz_leg1 * t158;
-        let t811 = grod_wz_leg1 * t158 - grod_vy_leg1 * t663;
-        let t812 = t811 * t798;
-        let t820 = gcross_vx_leg1 * t675 + gcross_vy_leg1 * t669
-            - minus_gcross_vz_leg1 * t737 + gcross_wz_leg1 * t612;
-        let t824 = grod_vy_leg1 * t669 + grod_wz_leg1 * t612;
-        let t825 = t824 * t798;
-        let t833 = gcross_vy_leg1 * t685 - gcross_vx_leg1 * t682
-            - minus_gcross_vz_leg1 * t742 - gcross_wz_leg1 * t615;
-        let t837 = grod_vy_leg1 * t685 - grod_wz_leg1 * t615;
-        let t838 = t837 * t798;
-        let gcross_wz_leg2 = gcross_vy_leg2 * t134 + minus_gcross_vx_leg2 * t136;
-        let t849 = gcross_vy_leg2 * t618 - minus_gcross_vx_leg2 * t635
-            - minus_gcross_vz_leg2 * t721 + gcross_wz_leg2 * t159;
-        let t850 = t134 * t604;
-        let t855 = t136 * t604;
-        let t857 = t655 - t855 - t382;
-        let t858 = t857 - t416;
-        let rate_dot_cross_leg2 = gcross_vy_leg2 * (t850 - t649 - t429 + t428)
-            - minus_gcross_vx_leg2 * t858 - minus_gcross_vz_leg2 * (t645 - t441);
-        let t864 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t865 = c_rod_leg2 * rate_cross_leg2;
-        let t866 = minus_rate_rod_leg2 * t865;
-        let t867 = t864 - t866;
-        let t869 = 1.7241379310344827 * t414;
-        let t870 = minus_rate_rod_leg2 * t869;
-        let t871 = c_rod_leg2 * t870;
-        let t872 = s_rod_leg2 * t867 - t871;
-        let grod_wz_leg2 = minus_grod_vx_leg2 * t136;
-        let t877 = grod_wz_leg2 * t159 - minus_grod_vx_leg2 * t635;
-        let t878 = t869 * t865;
-        let t879 = t877 * t878;
-        let t887 = minus_gcross_vz_leg2 * t728
-            - (minus_gcross_vx_leg2 * t661 + gcross_vy_leg2 * t663)
-            + gcross_wz_leg2 * t158;
-        let t891 = grod_wz_leg2 * t158 - minus_grod_vx_leg2 * t661;
-        let t892 = t891 * t878;
-        let t900 = gcross_vy_leg2 * t669 - minus_gcross_vx_leg2 * t675
-            - minus_gcross_vz_leg2 * t737 + gcross_wz_leg2 * t612;
-        let t904 = grod_wz_leg2 * t612 - minus_grod_vx_leg2 * t675;
-        let t905 = t904 * t878;
-        let t913 = minus_gcross_vx_leg2 * t682 + gcross_vy_leg2 * t685
-            - minus_gcross_vz_leg2 * t742 - gcross_wz_leg2 * t615;
-        let t917 = minus_grod_vx_leg2 * t682 - grod_wz_leg2 * t615;
-        let t918 = t917 * t878;
-        let gcross_wz_leg3 = t125 * gcross_vx_leg3 - t129 * gcross_vy_leg3;
-        let t929 = gcross_vx_leg3 * t635 + gcross_vy_leg3 * t618 + gcross_vz_leg3 * t721
-            + gcross_wz_leg3 * t159;
-        let t935 = t360 - (t649 + t775);
-        let t936 = t935 - t501;
-        let rate_dot_cross_leg3 = gcross_vx_leg3 * (t655 + t770 + t302 - t495)
-            + gcross_vy_leg3 * t936 + gcross_vz_leg3 * (t645 - t485);
-        let t942 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t943 = c_rod_leg3 * rate_cross_leg3;
-        let t944 = rate_rod_leg3 * t943;
-        let t945 = t942 + t944;
-        let t947 = 1.7241379310344827 * t499;
-        let t948 = rate_rod_leg3 * t947;
-        let t949 = c_rod_leg3 * t948;
-        let t950 = s_rod_leg3 * t945 + t949;
-        let grod_wz_leg3 = t129 * minus_grod_vy_leg3;
-        let t955 = grod_wz_leg3 * t159 - minus_grod_vy_leg3 * t618;
-        let t956 = t947 * t943;
-        let t957 = t955 * t956;
-        let t965 = gcross_vx_leg3 * t661 - gcross_vy_leg3 * t663 - gcross_vz_leg3 * t728
-            + gcross_wz_leg3 * t158;
-        let t969 = minus_grod_vy_leg3 * t663 + grod_wz_leg3 * t158;
-        let t970 = t969 * t956;
-        let t978 = gcross_vx_leg3 * t675 + gcross_vy_leg3 * t669 + gcross_vz_leg3 * t737
-            + gcross_wz_leg3 * t612;
-        let t982 = grod_wz_leg3 * t612 - minus_grod_vy_leg3 * t669;
-        let t983 = t982 * t956;
-        let t991 = gcross_vy_leg3 * t685 - gcross_vx_leg3 * t682 + gcross_vz_leg3 * t742
-            - gcross_wz_leg3 * t615;
-        let t995 = minus_grod_vy_leg3 * t685 + grod_wz_leg3 * t615;
-        let t996 = t995 * t956;
-        let minus_gcross_wz_leg4 = t134 * gcross_vy_leg4 + t136 * minus_gcross_vx_leg4;
-        let t1007 = gcross_vy_leg4 * t618 - minus_gcross_vx_leg4 * t635
-            + gcross_vz_leg4 * t721 - minus_gcross_wz_leg4 * t159;
-        let t1013 = t655 + t855 + t382;
-        let t1014 = t1013 - t541;
-        let rate_dot_cross_leg4 = gcross_vy_leg4 * (t429 - (t649 + t850) - t553)
-            - minus_gcross_vx_leg4 * t1014 + gcross_vz_leg4 * (t645 - t565);
-        let t1020 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t1021 = c_rod_leg4 * rate_cross_leg4;
-        let t1022 = rate_rod_leg4 * t1021;
-        let t1023 = t1020 + t1022;
-        let t1025 = 1.7241379310344827 * t529;
-        let t1026 = rate_rod_leg4 * t1025;
-        let t1027 = c_rod_leg4 * t1026;
-        let t1028 = s_rod_leg4 * t1023 + t1027;
-        let grod_wz_leg4 = t136 * grod_vx_leg4;
-        let t1033 = grod_vx_leg4 * t635 + grod_wz_leg4 * t159;
-        let t1034 = t1025 * t1021;
-        let t1035 = t1033 * t1034;
-        let t1043 = minus_gcross_vx_leg4 * t661 + gcross_vy_leg4 * t663
-            + gcross_vz_leg4 * t728 + minus_gcross_wz_leg4 * t158;
-        let t1047 = grod_vx_leg4 * t661 + grod_wz_leg4 * t158;
-        let t1048 = t1047 * t1034;
-        let t1056 = gcross_vy_leg4 * t669 - minus_gcross_vx_leg4 * t675
-            + gcross_vz_leg4 * t737 - minus_gcross_wz_leg4 * t612;
-        let t1060 = grod_vx_leg4 * t675 + grod_wz_leg4 * t612;
-        let t1061 = t1060 * t1034;
-        let t1069 = minus_gcross_vx_leg4 * t682 + gcross_vy_leg4 * t685
-            + gcross_vz_leg4 * t742 + minus_gcross_wz_leg4 * t615;
-        let t1073 = grod_vx_leg4 * t682 + grod_wz_leg4 * t615;
-        let t1074 = t1073 * t1034;
-        let t1076 = t786 + t787;
-        let t1078 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t1079 = t1078 - t790;
-        let t1082 = c_rod_leg1 * t1076 - s_rod_leg1 * (t790 - t1079);
-        let t1085 = 2.972651605231867 * (t361 * t361);
-        let t1087 = t1085 - t785 * t785;
-        let t1099 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t1100 = t1099 + t870;
-        let t1103 = t867 - t866;
-        let t1105 = s_rod_leg2 * (t870 + t1100) + c_rod_leg2 * t1103;
-        let t1108 = 2.972651605231867 * (t414 * t414);
-        let t1110 = t1108 - t865 * t865;
-        let t1122 = t944 + t945;
-        let t1124 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t1125 = t1124 - t948;
-        let t1128 = c_rod_leg3 * t1122 - s_rod_leg3 * (t948 - t1125);
-        let t1131 = 2.972651605231867 * (t499 * t499);
-        let t1133 = t1131 - t943 * t943;
-        let t1145 = t1022 + t1023;
-        let t1147 = c_rod_leg4 * rate_dot_cross_leg4;
-        let t1148 = t1147 - t1026;
-        let t1151 = c_rod_leg4 * t1145 - s_rod_leg4 * (t1026 - t1148);
-        let t1154 = 2.972651605231867 * (t529 * t529);
-        let t1156 = t1154 - t1021 * t1021;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t778;
-        let t1171 = rate_rod_leg1 * rate_rod_leg1;
-        let t1174 = s_rod_leg1 * (t798 + rate_dot_rod_leg1)
-            + c_rod_leg1 * (t1171 - t1085);
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t858;
-        let t1190 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t1193 = s_rod_leg2 * (t878 - minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t1190 - t1108);
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t936;
-        let t1209 = rate_rod_leg3 * rate_rod_leg3;
-        let t1212 = s_rod_leg3 * (t956 - minus_rate_dot_rod_leg3)
-            + c_rod_leg3 * (t1209 - t1131);
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t1014;
-        let t1228 = rate_rod_leg4 * rate_rod_leg4;
-        let t1231 = s_rod_leg4 * (t1034 + rate_dot_rod_leg4)
-            + c_rod_leg4 * (t1228 - t1154);
-        let t1245 = c_rod_leg1 * t1079 - t791;
-        let t1255 = t871 + c_rod_leg2 * t1100;
-        let t1265 = c_rod_leg3 * t1125 - t949;
-        let t1275 = c_rod_leg4 * t1148 - t1027;
-        let t1284 = 1.7241379310344827 * t777;
-        let t1298 = 1.7241379310344827 * t857;
-        let t1311 = 1.7241379310344827 * t935;
-        let t1323 = 1.7241379310344827 * t1013;
-        let t1353 = s_rod_leg1 * (0.26 * s_cross_leg1);
-        let t1356 = 0.26 * t36;
-        let t1360 = 0.26 * c_cross_leg1;
-        let t1364 = t752 + 0.26 * t345;
-        let t1367 = 0.26 * actuator_accelerations[0] - t748;
-        let t1370 = s_rod_leg1 * (s_cross_leg1 * t1364 + c_cross_leg1 * t1367);
-        let t1375 = s_cross_leg1 * t1367 - c_cross_leg1 * t1364;
-        let t1376 = c_rod_leg1 * t1375;
-        let t1378 = t1353 * (t1085 + t1171) - t1356 * (t798 - rate_dot_rod_leg1)
-            - t1360 * t1076 - t769 * t1370 - t797 * t1376;
-        let t1389 = t753 + 0.26 * t420;
-        let t1392 = 0.26 * actuator_accelerations[1] - t749;
-        let t1395 = s_rod_leg2 * (s_cross_leg2 * t1389 + c_cross_leg2 * t1392);
-        let t1399 = s_cross_leg2 * t1392 - c_cross_leg2 * t1389;
-        let t1400 = c_rod_leg2 * t1399;
-        let t1404 = s_rod_leg2 * (0.26 * s_cross_leg2);
-        let t1407 = 0.26 * t16;
-        let t1411 = 0.26 * c_cross_leg2;
-        let t1417 = t1404 * (t1108 + t1190) - t1407 * (t878 + minus_rate_dot_rod_leg2)
-            - t1411 * t1103 - t887 * t1395 - t891 * t1400;
-        let t1425 = t754 + 0.26 * t448;
-        let t1428 = 0.26 * actuator_accelerations[2] - t750;
-        let t1431 = s_rod_leg3 * (s_cross_leg3 * t1425 + c_cross_leg3 * t1428);
-        let t1435 = s_cross_leg3 * t1428 - c_cross_leg3 * t1425;
-        let t1436 = c_rod_leg3 * t1435;
-        let t1442 = 0.26 * t63;
-        let t1446 = s_rod_leg3 * (0.26 * s_cross_leg3);
-        let t1450 = 0.26 * c_cross_leg3;
-        let t1456 = t1442 * (t956 + minus_rate_dot_rod_leg3) + t1446 * (t1131 + t1209)
-            - t1450 * t1122 - t978 * t1431 - t982 * t1436;
-        let t1461 = t755 + 0.26 * t545;
-        let t1464 = 0.26 * actuator_accelerations[3] - t751;
-        let t1467 = s_rod_leg4 * (s_cross_leg4 * t1461 + c_cross_leg4 * t1464);
-        let t1471 = s_cross_leg4 * t1464 - c_cross_leg4 * t1461;
-        let t1472 = c_rod_leg4 * t1471;
-        let t1481 = 0.26 * t102;
-        let t1485 = s_rod_leg4 * (0.26 * s_cross_leg4);
-        let t1489 = 0.26 * c_cross_leg4;
-        let t1495 = t1481 * (t1034 - rate_dot_rod_leg4) + t1485 * (t1154 + t1228)
-            - t1489 * t1145 - t1069 * t1467 + t1073 * t1472;
+            + garm_vz_leg3 * actuator_velocities[2]
+            + garm_vz_leg4 * actuator_velocities[3] - t342 * t288 - t302 * t344;
+        let t368 = garm_wz_leg1 * actuator_velocities[0]
+            + garm_wz_leg2 * actuator_velocities[1]
+            + garm_wz_leg3 * actuator_velocities[2]
+            + garm_wz_leg4 * actuator_velocities[3] - t342 * t232 - t262 * t344;
+        let t371 = t309 * (t368 - t306 * t356);
+        let t373 = t305 * t356 - t306 * t371;
+        let t377 = t261 * t344 - t302 * t373 - t262 * t371;
+        let t378 = t36 * t371;
+        let t379 = t377 + t378;
+        let rate_rod_leg1 = grod_vy_leg1 * t379;
+        let t381 = s_armcross_leg1 * rate_rod_leg1;
+        let t383 = 0.52 * t60;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t383;
+        let t391 = t342 * t231 - t258 * t377 - t288 * t373 - t232 * t371;
+        let t392 = t43 * t371;
+        let s_rod_leg1 = 1.7241379310344827 * t44;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let minus_gcross_vy_leg1 = t383
+            * (c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t327)
+                - minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t327));
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t383;
+        let minus_rate_cross_leg1 = minus_gcross_vx_leg1 * (t391 - t392)
+            + minus_gcross_vy_leg1 * t379 + minus_gcross_vz_leg1 * t373;
+        let t412 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t414 = c_armcross_leg1 * rate_rod_leg1;
+        let t416 = t381 * t381 + t412 + t414 * t414;
+        let t420 = t44 * (minus_rate_cross_leg1 * t381);
+        let t422 = t67 * t310 + t69 * t416 + t420 + t420;
+        let t423 = t371 * t378;
+        let t426 = t371 * t392;
+        let t427 = t44 * minus_rate_cross_leg1;
+        let t430 = minus_rate_cross_leg1 * t427 - t44 * t416;
+        let t438 = t44 * (minus_rate_cross_leg1 * t414);
+        let t440 = t58 * t310 + t59 * t416 + t438 + t438;
+        let rate_dot_arm_leg1 = garm_vx_leg1 * (t422 - t423)
+            - garm_vy_leg1 * (t426 + t430) + garm_vz_leg1 * t440;
+        let t443 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t445 = actuator_velocities[1] * actuator_velocities[1];
+        let t447 = 0.52 * t156;
+        let minus_s_rod_leg2 = 1.7241379310344827 * t140;
+        let t452 = 1.0 - 2.972651605231867 * t141;
+        ::overact::guard::reach(t452, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t452);
+        ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
+        let c_cross_leg2 = (t143 - (0.0676 + t141) - 0.3364 * t452)
+            / (0.3016 * c_rod_leg2);
+        let s_cross_leg2 = 1.9230769230769231 * t150 / (0.58 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t465 = 1.0 / c_rod_leg2;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let minus_gcross_vx_leg2 = t447
+            * (c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t465)
+                - minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t465));
+        let t476 = t4 * t371;
+        let t477 = t391 - t476;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t447;
+        let t480 = t15 * t371;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t447;
+        let minus_rate_cross_leg2 = minus_gcross_vx_leg2 * t477
+            + minus_gcross_vy_leg2 * (t377 + t480) + minus_gcross_vz_leg2 * t373;
+        let t487 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let minus_grod_vx_leg2 = 1.7241379310344827 * t465;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t477;
+        let t490 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t493 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t495 = t487 + t490 * t490 + t493 * t493;
+        let t499 = t140 * (minus_rate_cross_leg2 * t490);
+        let t501 = t169 * t445 + t171 * t495 + t499 + t499;
+        let t502 = t371 * t476;
+        let t505 = t371 * t480;
+        let t506 = t140 * minus_rate_cross_leg2;
+        let t509 = minus_rate_cross_leg2 * t506 - t140 * t495;
+        let t517 = t140 * (minus_rate_cross_leg2 * t493);
+        let t519 = t154 * t445 + t155 * t495 + t517 + t517;
+        let rate_dot_arm_leg2 = garm_vy_leg2 * (t501 - t502)
+            - garm_vx_leg2 * (t505 + t509) + garm_vz_leg2 * t519;
+        let t522 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t525 = actuator_velocities[2] * actuator_velocities[2];
+        let t530 = 1.0 - 2.972651605231867 * t83;
+        ::overact::guard::reach(t530, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t530);
+        ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
+        let c_cross_leg3 = (t85 - (0.0676 + t83) - 0.3364 * t530)
+            / (0.3016 * c_rod_leg3);
+        let s_cross_leg3 = 1.9230769230769231 * t91 / (0.58 * c_rod_leg3);
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t542 = 1.0 / c_rod_leg3;
+        let minus_grod_vy_leg3 = 1.7241379310344827 * t542;
+        let t544 = t377 - t378;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t544;
+        let t546 = s_armcross_leg3 * minus_rate_rod_leg3;
+        let t548 = 0.52 * t98;
+        let gcross_vz_leg3 = s_arm_leg3 * t548;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t548;
+        let minus_s_rod_leg3 = 1.7241379310344827 * t82;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t548
+            * (minus_c_arm_leg3 * (minus_s_rod_leg3 * minus_c_armcross_leg3 * t542)
+                + s_arm_leg3 * (minus_s_rod_leg3 * s_armcross_leg3 * t542));
+        let rate_cross_leg3 = gcross_vz_leg3 * t373
+            - (minus_gcross_vx_leg3 * (t391 + t392) + minus_gcross_vy_leg3 * t544);
+        let t569 = rate_cross_leg3 * rate_cross_leg3;
+        let t571 = minus_c_armcross_leg3 * minus_rate_rod_leg3;
+        let t573 = t546 * t546 + t569 + t571 * t571;
+        let t577 = t82 * (rate_cross_leg3 * t546);
+        let t579 = t95 * t525 + t97 * t573 + t577 + t577;
+        let t582 = t82 * rate_cross_leg3;
+        let t585 = rate_cross_leg3 * t582 - t82 * t573;
+        let t593 = t82 * (rate_cross_leg3 * t571);
+        let t595 = t106 * t525 - t107 * t573 - t593 - t593;
+        let rate_dot_arm_leg3 = garm_vx_leg3 * (t423 + t579)
+            + garm_vy_leg3 * (t426 - t585) - garm_vz_leg3 * t595;
+        let t598 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t601 = 0.52 * t32;
+        let gcross_vz_leg4 = s_arm_leg4 * t601;
+        let s_rod_leg4 = 1.7241379310344827 * t16;
+        let t608 = 1.0 - 2.972651605231867 * t17;
+        ::overact::guard::reach(t608, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t608);
+        ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
+        let c_cross_leg4 = (t19 - (0.0676 + t17) - 0.3364 * t608)
+            / (0.3016 * c_rod_leg4);
+        let s_cross_leg4 = 1.9230769230769231 * t24 / (0.58 * c_rod_leg4);
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let t621 = 1.0 / c_rod_leg4;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t601
+            * (minus_c_arm_leg4 * (s_rod_leg4 * minus_c_armcross_leg4 * t621)
+                + s_arm_leg4 * (s_rod_leg4 * s_armcross_leg4 * t621));
+        let t632 = t391 + t476;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t601;
+        let rate_cross_leg4 = gcross_vz_leg4 * t373
+            - (minus_gcross_vx_leg4 * t632 + minus_gcross_vy_leg4 * (t377 - t480));
+        let t639 = t16 * rate_cross_leg4;
+        let t641 = rate_cross_leg4 * rate_cross_leg4;
+        let grod_vx_leg4 = 1.7241379310344827 * t621;
+        let rate_rod_leg4 = grod_vx_leg4 * t632;
+        let t644 = s_armcross_leg4 * rate_rod_leg4;
+        let t647 = minus_c_armcross_leg4 * rate_rod_leg4;
+        let t649 = t641 + t644 * t644 + t647 * t647;
+        let t651 = rate_cross_leg4 * t639 - t16 * t649;
+        let t654 = actuator_velocities[3] * actuator_velocities[3];
+        let t659 = t16 * (rate_cross_leg4 * t644);
+        let t661 = t120 * t654 + t122 * t649 + t659 + t659;
+        let t669 = t16 * (rate_cross_leg4 * t647);
+        let t671 = t30 * t654 - t31 * t649 - t669 - t669;
+        let rate_dot_arm_leg4 = garm_vx_leg4 * (t505 - t651)
+            + garm_vy_leg4 * (t502 + t661) - garm_vz_leg4 * t671;
+        let t674 = actuator_accelerations[3] - rate_dot_arm_leg4;
+        let t683 = garm_vx_leg1 * t443 + garm_vx_leg2 * t522 + garm_vx_leg3 * t598
+            + garm_vx_leg4 * t674;
+        let t694 = garm_vy_leg1 * t443 + garm_vy_leg2 * t522 + garm_vy_leg3 * t598
+            + garm_vy_leg4 * t674 - t258 * t683;
+        let t696 = garm_wz_leg1 * t443 + garm_wz_leg2 * t522 + garm_wz_leg3 * t598
+            + garm_wz_leg4 * t674 - t232 * t683 - t262 * t694;
+        let t707 = garm_vz_leg1 * t443 + garm_vz_leg2 * t522 + garm_vz_leg3 * t598
+            + garm_vz_leg4 * t674 - t288 * t683 - t302 * t694;
+        let t710 = t309 * (t696 - t306 * t707);
+        let t713 = t133 * t177 * t208;
+        let t716 = t161 * t111 * t177;
+        let t720 = (t133 * t716 - t74 * t111) * t208;
+        let t724 = t178 - t205 * t209;
+        let t726 = t371 * t371;
+        let t728 = c_phi * t710 - s_phi * t726;
+        let t733 = t125 - t72 * t131;
+        let t739 = t187 - t72 * t195 - t733 * t205;
+        let t741 = t71 + t72 * t112 - t733 * t178 - t739 * t209;
+        let t744 = c_phi * t726 + s_phi * t710;
+        let t750 = t305 * t707 - t306 * t710;
+        let t754 = t261 * t694 - t302 * t750 - t262 * t710;
+        let t762 = t231 * t683 - t258 * t754 - t288 * t750 - t232 * t710;
+        let t764 = c_phi * t754 - s_phi * t762;
+        let t768 = t177 + t205 * t713;
+        let t772 = t739 * t713 - t733 * t177;
+        let t782 = t733 * t716 - t72 * t111 - t739 * t720;
+        let t785 = t716 + t205 * t720;
+        let t789 = t739 * t208;
+        let t791 = t205 * t208;
+        let t801 = c_phi * t762 + s_phi * t754;
+        let t825 = t195 - t131 * t205;
+        let t827 = t112 + t131 * t178 + t825 * t209;
+        let t828 = t750 + 9.81;
+        let t836 = t825 * t713 - t131 * t177;
+        let t845 = t111 + t131 * t716 - t825 * t720;
+        let t851 = t825 * t208;
+        let t854 = 9.81 * c_arm_leg1;
+        let t855 = 9.81 * c_arm_leg2;
+        let t856 = 9.81 * minus_c_arm_leg3;
+        let t857 = 9.81 * minus_c_arm_leg4;
+        let t858 = 9.81 * minus_s_arm_leg1;
+        let t859 = 9.81 * minus_s_arm_leg2;
+        let t860 = 9.81 * s_arm_leg3;
+        let t861 = 9.81 * s_arm_leg4;
+        let gcross_wz_leg1 = t43 * minus_gcross_vx_leg1 - t36 * minus_gcross_vy_leg1;
+        let t875 = minus_gcross_vz_leg1 * t827
+            - (minus_gcross_vx_leg1 * t741 + minus_gcross_vy_leg1 * t724)
+            + gcross_wz_leg1 * t209;
+        let t876 = t43 * t710;
+        let t881 = t36 * t710;
+        let t883 = t754 + t881 - t426;
+        let t884 = t883 - t430;
+        let minus_rate_dot_cross_leg1 = minus_gcross_vx_leg1
+            * (t762 - t876 - t423 + t422) + minus_gcross_vy_leg1 * t884
+            + minus_gcross_vz_leg1 * (t750 + t440);
+        let t890 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t891 = c_rod_leg1 * minus_rate_cross_leg1;
+        let t892 = rate_rod_leg1 * t891;
+        let t893 = t890 + t892;
+        let t895 = 1.7241379310344827 * t427;
+        let t896 = rate_rod_leg1 * t895;
+        let t897 = c_rod_leg1 * t896;
+        let t898 = s_rod_leg1 * t893 + t897;
+        let grod_wz_leg1 = t36 * grod_vy_leg1;
+        let t903 = grod_vy_leg1 * t724 + grod_wz_leg1 * t209;
+        let t904 = t895 * t891;
+        let t905 = t903 * t904;
+        let t913 = minus_gcross_vx_leg1 * t772 + minus_gcross_vy_leg1 * t768
+            + minus_gcross_vz_leg1 * t836 + gcross_wz_leg1 * t713;
+        let t917 = grod_vy_leg1 * t768 - grod_wz_leg1 * t713;
+        let t918 = t917 * t904;
+        let t926 = minus_gcross_vy_leg1 * t785 - minus_gcross_vx_leg1 * t782
+            - minus_gcross_vz_leg1 * t845 + gcross_wz_leg1 * t720;
+        let t930 = grod_wz_leg1 * t720 - grod_vy_leg1 * t785;
+        let t931 = t930 * t904;
+        let t939 = minus_gcross_vx_leg1 * t789 + minus_gcross_vy_leg1 * t791
+            + minus_gcross_vz_leg1 * t851 + gcross_wz_leg1 * t208;
+        let t943 = grod_wz_leg1 * t208 - grod_vy_leg1 * t791;
+        let t944 = t943 * t904;
+        let grod_wz_leg2 = t4 * minus_grod_vx_leg2;
+        let t949 = grod_wz_leg2 * t209 - minus_grod_vx_leg2 * t741;
+        let t950 = 1.7241379310344827 * t506;
+        let t951 = c_rod_leg2 * minus_rate_cross_leg2;
+        let t952 = t950 * t951;
+        let t953 = t949 * t952;
+        let gcross_wz_leg2 = t4 * minus_gcross_vx_leg2 - t15 * minus_gcross_vy_leg2;
+        let t963 = minus_gcross_vz_leg2 * t827
+            - (minus_gcross_vx_leg2 * t741 + minus_gcross_vy_leg2 * t724)
+            + gcross_wz_leg2 * t209;
+        let t964 = t4 * t710;
+        let t966 = t762 - t964 - t505;
+        let t967 = t966 - t509;
+        let t969 = t15 * t710;
+        let minus_rate_dot_cross_leg2 = minus_gcross_vx_leg2 * t967
+            + minus_gcross_vy_leg2 * (t754 + t969 - t502 + t501)
+            + minus_gcross_vz_leg2 * (t750 + t519);
+        let t978 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t979 = minus_rate_rod_leg2 * t951;
+        let t980 = t978 + t979;
+        let t982 = minus_rate_rod_leg2 * t950;
+        let t983 = c_rod_leg2 * t982;
+        let t984 = minus_s_rod_leg2 * t980 + t983;
+        let t993 = minus_gcross_vx_leg2 * t772 + minus_gcross_vy_leg2 * t768
+            + minus_gcross_vz_leg2 * t836 + gcross_wz_leg2 * t713;
+        let t997 = minus_grod_vx_leg2 * t772 + grod_wz_leg2 * t713;
+        let t998 = t997 * t952;
+        let t1002 = grod_wz_leg2 * t720 - minus_grod_vx_leg2 * t782;
+        let t1003 = t1002 * t952;
+        let t1010 = minus_gcross_vy_leg2 * t785 - minus_gcross_vx_leg2 * t782
+            - minus_gcross_vz_leg2 * t845 + gcross_wz_leg2 * t720;
+        let t1015 = minus_grod_vx_leg2 * t789 + grod_wz_leg2 * t208;
+        let t1016 = t1015 * t952;
+        let t1023 = minus_gcross_vx_leg2 * t789 + minus_gcross_vy_leg2 * t791
+            + minus_gcross_vz_leg2 * t851 + gcross_wz_leg2 * t208;
+        let gcross_wz_leg3 = t36 * minus_gcross_vy_leg3 - t43 * minus_gcross_vx_leg3;
+        let t1035 = gcross_wz_leg3 * t209
+            - (minus_gcross_vx_leg3 * t741 + minus_gcross_vy_leg3 * t724
+                + gcross_vz_leg3 * t827);
+        let t1043 = t754 - t881 + t426;
+        let t1044 = t1043 - t585;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * (t750 - t595)
+            - (minus_gcross_vx_leg3 * (t762 + t876 + t423 + t579)
+                + minus_gcross_vy_leg3 * t1044);
+        let t1048 = minus_s_rod_leg3 * rate_dot_cross_leg3;
+        let t1049 = c_rod_leg3 * rate_cross_leg3;
+        let t1050 = minus_rate_rod_leg3 * t1049;
+        let t1051 = t1048 + t1050;
+        let t1053 = 1.7241379310344827 * t582;
+        let t1054 = minus_rate_rod_leg3 * t1053;
+        let t1055 = c_rod_leg3 * t1054;
+        let t1056 = minus_s_rod_leg3 * t1051 + t1055;
+        let grod_wz_leg3 = t36 * minus_grod_vy_leg3;
+        let t1061 = grod_wz_leg3 * t209 - minus_grod_vy_leg3 * t724;
+        let t1062 = t1053 * t1049;
+        let t1063 = t1061 * t1062;
+        let t1071 = gcross_vz_leg3 * t836
+            - (minus_gcross_vx_leg3 * t772 + minus_gcross_vy_leg3 * t768)
+            - gcross_wz_leg3 * t713;
+        let t1075 = minus_grod_vy_leg3 * t768 + grod_wz_leg3 * t713;
+        let t1076 = t1075 * t1062;
+        let t1084 = minus_gcross_vy_leg3 * t785 - minus_gcross_vx_leg3 * t782
+            + gcross_vz_leg3 * t845 + gcross_wz_leg3 * t720;
+        let t1088 = minus_grod_vy_leg3 * t785 + grod_wz_leg3 * t720;
+        let t1089 = t1088 * t1062;
+        let t1097 = minus_gcross_vx_leg3 * t789 + minus_gcross_vy_leg3 * t791
+            - gcross_vz_leg3 * t851 + gcross_wz_leg3 * t208;
+        let t1101 = minus_grod_vy_leg3 * t791 + grod_wz_leg3 * t208;
+        let t1102 = t1101 * t1062;
+        let gcross_wz_leg4 = t15 * minus_gcross_vy_leg4 - t4 * minus_gcross_vx_leg4;
+        let t1113 = gcross_wz_leg4 * t209
+            - (minus_gcross_vx_leg4 * t741 + minus_gcross_vy_leg4 * t724
+                + gcross_vz_leg4 * t827);
+        let t1117 = t762 + t964 + t505;
+        let t1118 = t1117 - t651;
+        let rate_dot_cross_leg4 = gcross_vz_leg4 * (t750 - t671)
+            - (minus_gcross_vx_leg4 * t1118
+                + minus_gcross_vy_leg4 * (t754 - t969 + t502 + t661));
+        let t1126 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t1127 = c_rod_leg4 * rate_cross_leg4;
+        let t1128 = rate_rod_leg4 * t1127;
+        let t1129 = t1126 + t1128;
+        let t1131 = 1.7241379310344827 * t639;
+        let t1132 = rate_rod_leg4 * t1131;
+        let t1133 = c_rod_leg4 * t1132;
+        let t1134 = s_rod_leg4 * t1129 + t1133;
+        let grod_wz_leg4 = t4 * grod_vx_leg4;
+        let t1139 = grod_vx_leg4 * t741 + grod_wz_leg4 * t209;
+        let t1140 = t1131 * t1127;
+        let t1141 = t1139 * t1140;
+        let t1149 = gcross_vz_leg4 * t836
+            - (minus_gcross_vx_leg4 * t772 + minus_gcross_vy_leg4 * t768)
+            - gcross_wz_leg4 * t713;
+        let t1153 = grod_vx_leg4 * t772 - grod_wz_leg4 * t713;
+        let t1154 = t1153 * t1140;
+        let t1162 = minus_gcross_vy_leg4 * t785 - minus_gcross_vx_leg4 * t782
+            + gcross_vz_leg4 * t845 + gcross_wz_leg4 * t720;
+        let t1166 = grod_vx_leg4 * t782 + grod_wz_leg4 * t720;
+        let t1167 = t1166 * t1140;
+        let t1175 = minus_gcross_vx_leg4 * t789 + minus_gcross_vy_leg4 * t791
+            - gcross_vz_leg4 * t851 + gcross_wz_leg4 * t208;
+        let t1179 = grod_wz_leg4 * t208 - grod_vx_leg4 * t789;
+        let t1180 = t1179 * t1140;
+        let t1182 = c_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t1183 = t896 - t1182;
+        let t1186 = t892 + t893;
+        let t1188 = s_rod_leg1 * (t896 + t1183) - c_rod_leg1 * t1186;
+        let t1191 = 2.972651605231867 * (t427 * t427);
+        let t1193 = t1191 - t891 * t891;
+        let t1205 = t979 + t980;
+        let t1207 = c_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t1208 = t982 - t1207;
+        let t1211 = c_rod_leg2 * t1205 - minus_s_rod_leg2 * (t982 + t1208);
+        let t1214 = 2.972651605231867 * (t506 * t506);
+        let t1216 = t1214 - t951 * t951;
+        let t1228 = c_rod_leg3 * rate_dot_cross_leg3;
+        let t1229 = t1228 - t1054;
+        let t1232 = t1050 + t1051;
+        let t1234 = minus_s_rod_leg3 * (t1054 - t1229) - c_rod_leg3 * t1232;
+        let t1237 = 2.972651605231867 * (t582 * t582);
+        let t1239 = t1237 - t1049 * t1049;
+        let t1251 = t1128 + t1129;
+        let t1253 = c_rod_leg4 * rate_dot_cross_leg4;
+        let t1254 = t1253 - t1132;
+        let t1257 = c_rod_leg4 * t1251 - s_rod_leg4 * (t1132 - t1254);
+        let t1260 = 2.972651605231867 * (t639 * t639);
+        let t1262 = t1260 - t1127 * t1127;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t884;
+        let t1277 = rate_rod_leg1 * rate_rod_leg1;
+        let t1280 = s_rod_leg1 * (t904 + rate_dot_rod_leg1)
+            + c_rod_leg1 * (t1277 - t1191);
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t967;
+        let t1296 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t1299 = minus_s_rod_leg2 * (t952 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t1296 - t1214);
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t1044;
+        let t1315 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t1318 = minus_s_rod_leg3 * (t1062 + minus_rate_dot_rod_leg3)
+            + c_rod_leg3 * (t1315 - t1237);
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t1118;
+        let t1334 = rate_rod_leg4 * rate_rod_leg4;
+        let t1337 = s_rod_leg4 * (t1140 + rate_dot_rod_leg4)
+            + c_rod_leg4 * (t1334 - t1260);
+        let t1351 = t897 + c_rod_leg1 * t1183;
+        let t1361 = t983 + c_rod_leg2 * t1208;
+        let t1371 = c_rod_leg3 * t1229 - t1055;
+        let t1381 = c_rod_leg4 * t1254 - t1133;
+        let t1390 = 1.7241379310344827 * t883;
+        let t1403 = 1.7241379310344827 * t966;
+        let t1417 = 1.7241379310344827 * t1043;
+        let t1429 = 1.7241379310344827 * t1117;
+        let t1458 = 0.8620689655172413 * t54;
+        let t1462 = 0.4482758620689655 * (t44 * s_cross_leg1);
+        let t1466 = 0.26 * c_cross_leg1;
+        let t1470 = 0.26 * actuator_accelerations[0] - t854;
+        let t1473 = t858 - 0.26 * t310;
+        let t1476 = s_rod_leg1 * (c_cross_leg1 * t1470 - s_cross_leg1 * t1473);
+        let t1481 = c_cross_leg1 * t1473 + s_cross_leg1 * t1470;
+        let t1482 = c_rod_leg1 * t1481;
+        let t1484 = t1458 * (t904 - rate_dot_rod_leg1) + t1462 * (t1191 + t1277)
+            + t1466 * t1186 - t875 * t1476 - t903 * t1482;
+        let t1495 = 0.26 * actuator_accelerations[1] - t855;
+        let t1498 = t859 - 0.26 * t445;
+        let t1501 = minus_s_rod_leg2 * (c_cross_leg2 * t1495 - s_cross_leg2 * t1498);
+        let t1505 = c_cross_leg2 * t1498 + s_cross_leg2 * t1495;
+        let t1506 = c_rod_leg2 * t1505;
+        let t1509 = 0.8620689655172413 * t150;
+        let t1513 = 0.4482758620689655 * (t140 * s_cross_leg2);
+        let t1517 = 0.26 * c_cross_leg2;
+        let t1523 = t1509 * (minus_rate_dot_rod_leg2 - t952) - t1513 * (t1214 + t1296)
+            - t1517 * t1205 - t993 * t1501 + t997 * t1506;
+        let t1531 = t860 + 0.26 * t525;
+        let t1534 = t856 + 0.26 * actuator_accelerations[2];
+        let t1537 = minus_s_rod_leg3 * (s_cross_leg3 * t1531 + c_cross_leg3 * t1534);
+        let t1541 = s_cross_leg3 * t1534 - c_cross_leg3 * t1531;
+        let t1542 = c_rod_leg3 * t1541;
+        let t1548 = 0.8620689655172413 * t91;
+        let t1552 = 0.4482758620689655 * (t82 * s_cross_leg3);
+        let t1556 = 0.26 * c_cross_leg3;
+        let t1562 = t1548 * (minus_rate_dot_rod_leg3 - t1062) - t1552 * (t1237 + t1315)
+            + t1556 * t1232 + t1084 * t1537 - t1088 * t1542;
+        let t1567 = t861 + 0.26 * t654;
+        let t1570 = t857 + 0.26 * actuator_accelerations[3];
+        let t1573 = s_rod_leg4 * (s_cross_leg4 * t1567 + c_cross_leg4 * t1570);
+        let t1577 = s_cross_leg4 * t1570 - c_cross_leg4 * t1567;
+        let t1578 = c_rod_leg4 * t1577;
+        let t1587 = 0.8620689655172413 * t24;
+        let t1591 = 0.4482758620689655 * (t16 * s_cross_leg4);
+        let t1595 = 0.26 * c_cross_leg4;
+        let t1601 = t1587 * (t1140 - rate_dot_rod_leg4) + t1591 * (t1260 + t1334)
+            - t1595 * t1251 - t1175 * t1573 - t1179 * t1578;
         Ok([
             [
-                t159 * t604, t618 * t622 - t635 * t638 - t159 * t658,
-                -(t635 * t622 + t618 * t638 + t159 * t695), t635 * t655 - t618 * t649 + t721 * t722,
-                actuator_accelerations[0], 0.0, 0.0, 0.0, -t748, 0.0, 0.0, 0.0, t752, 0.0, 0.0, 0.0,
-                actuator_velocities[0], 0.0, 0.0, 0.0,
+                t209 * t710, t724 * t728 - t741 * t744 + t209 * t764,
+                -(t741 * t728 + t724 * t744 + t209 * t801), t741 * t762 + t724 * t754 - t827 * t828,
+                actuator_accelerations[0], 0.0, 0.0, 0.0, -t854, 0.0, 0.0, 0.0, -t858, 0.0, 0.0,
+                0.0, actuator_velocities[0], 0.0, 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[0]), 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0,
-                t769 * t792 - t799, t849 * t872 - t879, t929 * t950 - t957, t1007 * t1028 - t1035,
-                t769 * t1082 + t797 * t1087, t849 * t1105 + t877 * t1110,
-                t929 * t1128 + t955 * t1133, t1007 * t1151 + t1033 * t1156,
-                t769 * t1174 + t797 * t784, t849 * t1193 + t877 * t864, t929 * t1212 + t955 * t942,
-                t1007 * t1231 + t1033 * t1020, t769 * t1245 + t799, t849 * t1255 + t879,
-                t929 * t1265 + t957, t1007 * t1275 + t1035, t769 * t1284 + t797 * t1078,
-                t877 * t1099 - t849 * t1298, t955 * t1124 - t929 * t1311,
-                t1007 * t1323 + t1033 * t1147, t797 * rate_dot_rod_leg1,
-                -(t877 * minus_rate_dot_rod_leg2), -(t955 * minus_rate_dot_rod_leg3),
-                t1033 * rate_dot_rod_leg4, t1378, -(t849 * t1395 + t877 * t1400),
-                -(t929 * t1431 + t955 * t1436), -(t1007 * t1467 + t1033 * t1472),
-                t1353 * t784 - t1356 * t1078 + t349 * t1360 + t769 * t1375, t849 * t1399,
-                t929 * t1435, t1007 * t1471,
+                -(t875 * t898 + t905), t953 - t963 * t984, t1035 * t1056 + t1063,
+                t1113 * t1134 - t1141, t875 * t1188 + t903 * t1193, t963 * t1211 + t949 * t1216,
+                t1035 * t1234 + t1061 * t1239, t1113 * t1257 + t1139 * t1262,
+                t875 * t1280 - t903 * t890, t963 * t1299 + t949 * t978,
+                t1035 * t1318 - t1061 * t1048, t1113 * t1337 + t1139 * t1126, t875 * t1351 + t905,
+                t963 * t1361 - t953, t1035 * t1371 - t1063, t1113 * t1381 + t1141,
+                t875 * t1390 - t903 * t1182, -(t963 * t1403 + t949 * t1207),
+                t1061 * t1228 - t1035 * t1417, t1113 * t1429 + t1139 * t1253,
+                t903 * rate_dot_rod_leg1, -(t949 * minus_rate_dot_rod_leg2),
+                -(t1061 * minus_rate_dot_rod_leg3), t1139 * rate_dot_rod_leg4, t1484,
+                t963 * t1501 - t949 * t1506, t1035 * t1537 - t1061 * t1542,
+                -(t1113 * t1573 + t1139 * t1578),
+                t412 * t1466 - (t1458 * t1182 + t1462 * t890) + t875 * t1481, t963 * t1505,
+                t1035 * t1541, t1113 * t1577,
             ],
             [
-                t158 * t604, -(t661 * t638 + t663 * t622 + t158 * t658),
-                t663 * t638 - t661 * t622 - t158 * t695, t661 * t655 + t663 * t649 - t728 * t722,
-                0.0, actuator_accelerations[1], 0.0, 0.0, 0.0, -t749, 0.0, 0.0, 0.0, t753, 0.0, 0.0,
-                0.0, actuator_velocities[1], 0.0, 0.0, 0.0,
+                -(t713 * t710), t768 * t728 - t772 * t744 - t713 * t764,
+                t713 * t801 - (t772 * t728 + t768 * t744), t772 * t762 + t768 * t754 + t836 * t828,
+                0.0, actuator_accelerations[1], 0.0, 0.0, 0.0, -t855, 0.0, 0.0, 0.0, -t859, 0.0,
+                0.0, 0.0, actuator_velocities[1], 0.0, 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[1]), 0.0, 0.0, 0.0, 1.0, 0.0, 0.0,
-                t807 * t792 - t812, t887 * t872 - t892, t965 * t950 - t970,
-                -(t1043 * t1028 + t1048), t807 * t1082 + t811 * t1087, t887 * t1105 + t891 * t1110,
-                t965 * t1128 + t969 * t1133, t1047 * t1156 - t1043 * t1151,
-                t807 * t1174 + t811 * t784, t887 * t1193 + t891 * t864, t965 * t1212 + t969 * t942,
-                t1047 * t1020 - t1043 * t1231, t807 * t1245 + t812, t887 * t1255 + t892,
-                t965 * t1265 + t970, t1048 - t1043 * t1275, t807 * t1284 + t811 * t1078,
-                t891 * t1099 - t887 * t1298, t969 * t1124 - t965 * t1311,
-                t1047 * t1147 - t1043 * t1323, t811 * rate_dot_rod_leg1,
-                -(t891 * minus_rate_dot_rod_leg2), -(t969 * minus_rate_dot_rod_leg3),
-                t1047 * rate_dot_rod_leg4, -(t807 * t1370 + t811 * t1376), t1417,
-                -(t965 * t1431 + t969 * t1436), t1043 * t1467 - t1047 * t1472, t807 * t1375,
-                t1404 * t864 - t1407 * t1099 + t404 * t1411 + t887 * t1399, t965 * t1435,
-                -(t1043 * t1471),
+                t913 * t898 - t918, t993 * t984 - t998, t1071 * t1056 - t1076,
+                t1149 * t1134 - t1154, t917 * t1193 - t913 * t1188, -(t993 * t1211 + t997 * t1216),
+                t1071 * t1234 - t1075 * t1239, t1149 * t1257 + t1153 * t1262,
+                -(t913 * t1280 + t917 * t890), -(t993 * t1299 + t997 * t978),
+                t1071 * t1318 + t1075 * t1048, t1149 * t1337 + t1153 * t1126, t918 - t913 * t1351,
+                t998 - t993 * t1361, t1071 * t1371 + t1076, t1149 * t1381 + t1154,
+                -(t913 * t1390 + t917 * t1182), t993 * t1403 + t997 * t1207,
+                -(t1071 * t1417 + t1075 * t1228), t1149 * t1429 + t1153 * t1253,
+                t917 * rate_dot_rod_leg1, t997 * minus_rate_dot_rod_leg2,
+                t1075 * minus_rate_dot_rod_leg3, t1153 * rate_dot_rod_leg4,
+                t913 * t1476 - t917 * t1482, t1523, t1071 * t1537 + t1075 * t1542,
+                -(t1149 * t1573 + t1153 * t1578), -(t913 * t1481),
+                t487 * t1517 - (t1509 * t1207 + t1513 * t978) - t993 * t1505, t1071 * t1541,
+                t1149 * t1577,
             ],
             [
-                t612 * t604, t669 * t622 - t675 * t638 - t612 * t658,
-                -(t675 * t622 + t669 * t638 + t612 * t695), t675 * t655 - t669 * t649 + t737 * t722,
-                0.0, 0.0, actuator_accelerations[2], 0.0, 0.0, 0.0, -t750, 0.0, 0.0, 0.0, t754, 0.0,
+                t720 * t710, t720 * t764 - (t782 * t744 + t785 * t728),
+                t785 * t744 - t782 * t728 - t720 * t801, t782 * t762 - t785 * t754 + t845 * t828,
+                0.0, 0.0, actuator_accelerations[2], 0.0, 0.0, 0.0, t856, 0.0, 0.0, 0.0, t860, 0.0,
                 0.0, 0.0, actuator_velocities[2], 0.0, 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[2]), 0.0, 0.0, 0.0, 1.0, 0.0,
-                t820 * t792 - t825, t900 * t872 - t905, t978 * t950 - t983, t1056 * t1028 - t1061,
-                t820 * t1082 + t824 * t1087, t900 * t1105 + t904 * t1110,
-                t978 * t1128 + t982 * t1133, t1056 * t1151 + t1060 * t1156,
-                t820 * t1174 + t824 * t784, t900 * t1193 + t904 * t864, t978 * t1212 + t982 * t942,
-                t1056 * t1231 + t1060 * t1020, t820 * t1245 + t825, t900 * t1255 + t905,
-                t978 * t1265 + t983, t1056 * t1275 + t1061, t820 * t1284 + t824 * t1078,
-                t904 * t1099 - t900 * t1298, t982 * t1124 - t978 * t1311,
-                t1056 * t1323 + t1060 * t1147, t824 * rate_dot_rod_leg1,
-                -(t904 * minus_rate_dot_rod_leg2), -(t982 * minus_rate_dot_rod_leg3),
-                t1060 * rate_dot_rod_leg4, -(t820 * t1370 + t824 * t1376),
-                -(t900 * t1395 + t904 * t1400), t1456, -(t1056 * t1467 + t1060 * t1472),
-                t820 * t1375, t900 * t1399,
-                t1442 * t1124 + t1446 * t942 + t474 * t1450 + t978 * t1435, t1056 * t1471,
+                -(t926 * t898 + t931), t1003 - t1010 * t984, t1084 * t1056 + t1089,
+                t1162 * t1134 - t1167, t926 * t1188 + t930 * t1193, t1010 * t1211 + t1002 * t1216,
+                t1084 * t1234 + t1088 * t1239, t1162 * t1257 + t1166 * t1262,
+                t926 * t1280 - t930 * t890, t1010 * t1299 + t1002 * t978,
+                t1084 * t1318 - t1088 * t1048, t1162 * t1337 + t1166 * t1126, t926 * t1351 + t931,
+                t1010 * t1361 - t1003, t1084 * t1371 - t1089, t1162 * t1381 + t1167,
+                t926 * t1390 - t930 * t1182, -(t1010 * t1403 + t1002 * t1207),
+                t1088 * t1228 - t1084 * t1417, t1162 * t1429 + t1166 * t1253,
+                t930 * rate_dot_rod_leg1, -(t1002 * minus_rate_dot_rod_leg2),
+                -(t1088 * minus_rate_dot_rod_leg3), t1166 * rate_dot_rod_leg4,
+                -(t926 * t1476 + t930 * t1482), t1010 * t1501 - t1002 * t1506, t1562,
+                -(t1162 * t1573 + t1166 * t1578), t926 * t1481, t1010 * t1505,
+                t1548 * t1228 + t1552 * t1048 + t569 * t1556 + t1084 * t1541, t1162 * t1577,
             ],
             [
-                -(t615 * t604), t682 * t638 + t685 * t622 + t615 * t658,
-                t682 * t622 - t685 * t638 + t615 * t695, t742 * t722 - (t682 * t655 + t685 * t649),
-                0.0, 0.0, 0.0, actuator_accelerations[3], 0.0, 0.0, 0.0, -t751, 0.0, 0.0, 0.0, t755,
+                t208 * t710, t789 * t744 - t791 * t728 + t208 * t764,
+                t789 * t728 + t791 * t744 - t208 * t801, -(t789 * t762 + t791 * t754 + t851 * t828),
+                0.0, 0.0, 0.0, actuator_accelerations[3], 0.0, 0.0, 0.0, t857, 0.0, 0.0, 0.0, t861,
                 0.0, 0.0, 0.0, actuator_velocities[3], 0.0, 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[3]), 0.0, 0.0, 0.0, 1.0,
-                t833 * t792 - t838, t913 * t872 - t918, t991 * t950 + t996, t1069 * t1028 + t1074,
-                t833 * t1082 + t837 * t1087, t913 * t1105 + t917 * t1110,
-                t991 * t1128 - t995 * t1133, t1069 * t1151 - t1073 * t1156,
-                t833 * t1174 + t837 * t784, t913 * t1193 + t917 * t864, t991 * t1212 - t995 * t942,
-                t1069 * t1231 - t1073 * t1020, t833 * t1245 + t838, t913 * t1255 + t918,
-                t991 * t1265 - t996, t1069 * t1275 - t1074, t833 * t1284 + t837 * t1078,
-                t917 * t1099 - t913 * t1298, -(t991 * t1311 + t995 * t1124),
-                t1069 * t1323 - t1073 * t1147, t837 * rate_dot_rod_leg1,
-                -(t917 * minus_rate_dot_rod_leg2), t995 * minus_rate_dot_rod_leg3,
-                -(t1073 * rate_dot_rod_leg4), -(t833 * t1370 + t837 * t1376),
-                -(t913 * t1395 + t917 * t1400), t995 * t1436 - t991 * t1431, t1495, t833 * t1375,
-                t913 * t1399, t991 * t1435,
-                t1481 * t1147 + t1485 * t1020 + t531 * t1489 + t1069 * t1471,
+                -(t939 * t898 + t944), t1016 - t1023 * t984, t1097 * t1056 + t1102,
+                t1175 * t1134 - t1180, t939 * t1188 + t943 * t1193, t1023 * t1211 + t1015 * t1216,
+                t1097 * t1234 + t1101 * t1239, t1175 * t1257 + t1179 * t1262,
+                t939 * t1280 - t943 * t890, t1023 * t1299 + t1015 * t978,
+                t1097 * t1318 - t1101 * t1048, t1175 * t1337 + t1179 * t1126, t939 * t1351 + t944,
+                t1023 * t1361 - t1016, t1097 * t1371 - t1102, t1175 * t1381 + t1180,
+                t939 * t1390 - t943 * t1182, -(t1023 * t1403 + t1015 * t1207),
+                t1101 * t1228 - t1097 * t1417, t1175 * t1429 + t1179 * t1253,
+                t943 * rate_dot_rod_leg1, -(t1015 * minus_rate_dot_rod_leg2),
+                -(t1101 * minus_rate_dot_rod_leg3), t1179 * rate_dot_rod_leg4,
+                -(t939 * t1476 + t943 * t1482), t1023 * t1501 - t1015 * t1506,
+                t1097 * t1537 - t1101 * t1542, t1601, t939 * t1481, t1023 * t1505, t1097 * t1541,
+                t1587 * t1253 + t1591 * t1126 + t641 * t1595 + t1175 * t1577,
             ],
         ])
     }
@@ -7030,7 +10538,7 @@ impl Schoenflies4 {
     /// Output: 4 x 4.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 538 operations (185 additions, 341 multiplications, 12 divisions), 0 square roots, 13 trigonometric pairs, 0 signs, 556 intermediates.
+    /// 680 operations (257 additions, 399 multiplications, 24 divisions), 8 square roots, 1 trigonometric pairs, 0 signs, 682 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7041,277 +10549,357 @@ impl Schoenflies4 {
         start: &[f64; 4],
     ) -> Result<[[f64; 4]; 4], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let t0 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t0);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        ::overact::guard::leg(c_rod_leg1, 0.9887897213061891, "leg1")?;
-        let t5 = c_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t9 = s_armcross_leg1 * c_rod_leg1;
-        let t11 = s_arm_leg1 * t5 - c_arm_leg1 * t9;
-        ::overact::guard::leg(t11, 0.9185391450939739, "leg1")?;
-        let t12 = 1.0 / t11;
-        let t13 = 3.8461538461538463 * t12;
-        let minus_garm_vx_leg1 = t5 * t13;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
-        let t17 = 0.05 * s_phi;
-        let t18 = 0.08660254037844387 * c_phi;
-        let t19 = t17 + t18;
-        let minus_garm_vy_leg1 = s_rod_leg1 * t13;
-        let t22 = 0.05 * c_phi;
-        let t23 = 0.08660254037844387 * s_phi;
-        let t24 = t22 - t23;
-        let garm_wz_leg1 = minus_garm_vx_leg1 * t19 - minus_garm_vy_leg1 * t24;
-        let t28 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t28);
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        ::overact::guard::leg(c_rod_leg2, 0.988789721306189, "leg2")?;
-        let t33 = c_armcross_leg2 * c_rod_leg2;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t37 = s_armcross_leg2 * c_rod_leg2;
-        let t39 = s_arm_leg2 * t33 - c_arm_leg2 * t37;
-        ::overact::guard::leg(t39, 0.9185391450939737, "leg2")?;
-        let t40 = 1.0 / t39;
-        let t41 = 3.8461538461538463 * t40;
-        let minus_garm_vy_leg2 = t33 * t41;
-        let t43 = t18 - t17;
-        let garm_vx_leg2 = s_rod_leg2 * t41;
-        let t46 = t23 + t22;
-        let minus_garm_wz_leg2 = minus_garm_vy_leg2 * t43 + garm_vx_leg2 * t46;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        ::overact::guard::leg(c_rod_leg3, 0.9887897213061891, "leg3")?;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t55 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t55);
-        let t58 = s_armcross_leg3 * c_rod_leg3;
-        let t60 = c_armcross_leg3 * c_rod_leg3;
-        let t62 = c_arm_leg3 * t58 - s_arm_leg3 * t60;
-        ::overact::guard::leg(t62, 0.9185391450939737, "leg3")?;
-        let t63 = 1.0 / t62;
-        let t64 = 3.8461538461538463 * t63;
-        let minus_garm_vy_leg3 = s_rod_leg3 * t64;
-        let minus_garm_vx_leg3 = t60 * t64;
-        let garm_wz_leg3 = t24 * minus_garm_vy_leg3 - t19 * minus_garm_vx_leg3;
-        let t72 = joints[9] + joints[10];
-        let (s_armcross_leg4, c_armcross_leg4) = ::overact::math::sin_cos(t72);
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        ::overact::guard::leg(c_rod_leg4, 0.9887897213061891, "leg4")?;
-        let t77 = c_armcross_leg4 * c_rod_leg4;
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let t80 = s_armcross_leg4 * c_rod_leg4;
-        let t83 = c_arm_leg4 * t80 - s_arm_leg4 * t77;
-        ::overact::guard::leg(t83, 0.9185391450939737, "leg4")?;
-        let t84 = 1.0 / t83;
-        let t85 = 3.8461538461538463 * t84;
-        let minus_garm_vy_leg4 = t77 * t85;
-        let garm_vx_leg4 = s_rod_leg4 * t85;
-        let garm_wz_leg4 = t43 * minus_garm_vy_leg4 + t46 * garm_vx_leg4;
-        let t99 = garm_vx_leg4 * garm_wz_leg4
-            - (minus_garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * minus_garm_wz_leg2
-                + minus_garm_vx_leg3 * garm_wz_leg3);
-        let t106 = minus_garm_vx_leg1 * minus_garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
-            + minus_garm_vx_leg3 * minus_garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
-        ::overact::guard::platform(t106, 19.50747081825307, "actuators")?;
-        ::overact::guard::platform(t106, 19.50747081825307, "actuators")?;
-        let t107 = 1.0 / t106;
-        let t108 = t99 * t107;
-        let t124 = minus_garm_vx_leg1 * minus_garm_vy_leg1
-            - garm_vx_leg2 * minus_garm_vy_leg2 + minus_garm_vx_leg3 * minus_garm_vy_leg3
-            - garm_vx_leg4 * minus_garm_vy_leg4;
-        let t126 = minus_garm_vy_leg2 * minus_garm_wz_leg2
-            - minus_garm_vy_leg1 * garm_wz_leg1 - minus_garm_vy_leg3 * garm_wz_leg3
-            - minus_garm_vy_leg4 * garm_wz_leg4 - t124 * t108;
-        let t134 = t124 * t107;
-        let t136 = minus_garm_vy_leg1 * minus_garm_vy_leg1
-            + minus_garm_vy_leg2 * minus_garm_vy_leg2
-            + minus_garm_vy_leg3 * minus_garm_vy_leg3
-            + minus_garm_vy_leg4 * minus_garm_vy_leg4 - t124 * t134;
-        ::overact::guard::platform(t136, 16.505615552607473, "actuators")?;
-        ::overact::guard::platform(t136, 16.505615552607473, "actuators")?;
-        let t137 = 1.0 / t136;
-        let t138 = t126 * t137;
-        let t140 = garm_wz_leg1 * garm_wz_leg1 + minus_garm_wz_leg2 * minus_garm_wz_leg2
-            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t99 * t108
-            - t126 * t138;
-        let garm_vz_leg1 = t9 * t13;
-        let garm_vz_leg2 = t37 * t41;
-        let minus_garm_vz_leg3 = t58 * t64;
-        let minus_garm_vz_leg4 = t80 * t85;
-        let t158 = garm_vx_leg2 * garm_vz_leg2 - minus_garm_vx_leg1 * garm_vz_leg1
-            + minus_garm_vx_leg3 * minus_garm_vz_leg3
-            - garm_vx_leg4 * minus_garm_vz_leg4;
-        let t168 = t158 * t107;
-        let t170 = minus_garm_vy_leg3 * minus_garm_vz_leg3
-            - (minus_garm_vy_leg1 * garm_vz_leg1 + minus_garm_vy_leg2 * garm_vz_leg2)
-            + minus_garm_vy_leg4 * minus_garm_vz_leg4 - t124 * t168;
-        let t172 = garm_vz_leg1 * garm_wz_leg1 - garm_vz_leg2 * minus_garm_wz_leg2
-            - minus_garm_vz_leg3 * garm_wz_leg3 - minus_garm_vz_leg4 * garm_wz_leg4
-            - t158 * t108 - t170 * t138;
-        let t182 = t170 * t137;
-        let t184 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3
-            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t158 * t168 - t170 * t182;
-        ::overact::guard::platform(t184, 31.117338184537527, "actuators")?;
-        ::overact::guard::platform(t184, 31.117338184537527, "actuators")?;
-        let t185 = 1.0 / t184;
-        let t186 = t172 * t185;
-        let t188 = t140 - t172 * t186;
-        ::overact::guard::platform(t188, 0.351065482163043, "actuators")?;
-        ::overact::guard::platform(t188, 0.351065482163043, "actuators")?;
-        let t189 = 1.0 / t188;
-        let t203 = garm_vx_leg2 * actuator_velocities[1]
-            - minus_garm_vx_leg1 * actuator_velocities[0]
-            - minus_garm_vx_leg3 * actuator_velocities[2]
+        let t2 = 0.05 * c_phi;
+        let t3 = 0.08660254037844387 * s_phi;
+        let t4 = t2 - t3;
+        let t5 = 0.05 * s_phi;
+        let t6 = 0.08660254037844387 * c_phi;
+        let t7 = t5 + t6;
+        let t8 = pose[1] + t7;
+        let t9 = pose[0] + t4;
+        let t10 = t9 - 0.24;
+        let t11 = t10 * t10;
+        let t12 = pose[2] * pose[2];
+        let t14 = 0.2704 * (t11 + t12);
+        let t15 = t8 * t8;
+        let t17 = t11 + t15 + t12;
+        let t19 = t17 - 0.3364 + 0.0676;
+        let t21 = t14 - t19 * t19;
+        ::overact::guard::reach(t21, "leg1")?;
+        let t22 = ::overact::math::sqrt(t21);
+        ::overact::guard::leg(t22, 0.27703140616182853, "leg1")?;
+        let t23 = 1.0 / t22;
+        let t24 = 2.0 * t23;
+        let garm_vy_leg1 = t8 * t24;
+        let t27 = 1.0 / t14;
+        let t28 = 0.52 * t10;
+        let t30 = 0.52 * pose[2];
+        let c_arm_leg1 = t27 * (t28 * t19 - t30 * t22);
+        let t34 = 0.26 * c_arm_leg1;
+        let t36 = t9 - (0.24 + t34);
+        let garm_vx_leg1 = t36 * t24;
+        let garm_wz_leg1 = t4 * garm_vy_leg1 - t7 * garm_vx_leg1;
+        let t41 = t6 - t5;
+        let t42 = t3 + t2;
+        let t43 = pose[1] + t42;
+        let t44 = t43 - 0.24;
+        let t45 = t44 * t44;
+        let t47 = 0.2704 * (t45 + t12);
+        let t48 = 1.0 / t47;
+        let t49 = 0.52 * t44;
+        let t50 = pose[0] + t41;
+        let t51 = t50 * t50;
+        let t53 = t51 + t45 + t12;
+        let t55 = t53 - 0.3364 + 0.0676;
+        let t58 = t47 - t55 * t55;
+        ::overact::guard::reach(t58, "leg2")?;
+        let t59 = ::overact::math::sqrt(t58);
+        ::overact::guard::leg(t59, 0.27703140616182853, "leg2")?;
+        let c_arm_leg2 = t48 * (t49 * t55 - t30 * t59);
+        let t63 = 0.26 * c_arm_leg2;
+        let t65 = t43 - (0.24 + t63);
+        let t66 = 1.0 / t59;
+        let t67 = 2.0 * t66;
+        let garm_vy_leg2 = t65 * t67;
+        let garm_vx_leg2 = t50 * t67;
+        let garm_wz_leg2 = t41 * garm_vy_leg2 - t42 * garm_vx_leg2;
+        let t75 = pose[0] - t4;
+        let t76 = t75 + 0.24;
+        let t77 = t76 * t76;
+        let t79 = 0.2704 * (t77 + t12);
+        let t80 = 1.0 / t79;
+        let t81 = 0.52 * t76;
+        let t82 = pose[1] - t7;
+        let t83 = t82 * t82;
+        let t85 = t77 + t83 + t12;
+        let t87 = t85 - 0.3364 + 0.0676;
+        let t90 = t79 - t87 * t87;
+        ::overact::guard::reach(t90, "leg3")?;
+        let t91 = ::overact::math::sqrt(t90);
+        ::overact::guard::leg(t91, 0.27703140616182853, "leg3")?;
+        let minus_c_arm_leg3 = t80 * (t81 * t87 + t30 * t91);
+        let t95 = 0.26 * minus_c_arm_leg3;
+        let t97 = t75 - (t95 - 0.24);
+        let t98 = 1.0 / t91;
+        let t99 = 2.0 * t98;
+        let garm_vx_leg3 = t97 * t99;
+        let garm_vy_leg3 = t82 * t99;
+        let garm_wz_leg3 = t7 * garm_vx_leg3 - t4 * garm_vy_leg3;
+        let t107 = pose[0] - t41;
+        let t108 = pose[1] - t42;
+        let t109 = t108 + 0.24;
+        let t110 = t109 * t109;
+        let t112 = 0.2704 * (t110 + t12);
+        let t113 = t107 * t107;
+        let t115 = t113 + t110 + t12;
+        let t117 = t115 - 0.3364 + 0.0676;
+        let t119 = t112 - t117 * t117;
+        ::overact::guard::reach(t119, "leg4")?;
+        let t120 = ::overact::math::sqrt(t119);
+        ::overact::guard::leg(t120, 0.27703140616182853, "leg4")?;
+        let t121 = 1.0 / t120;
+        let t122 = 2.0 * t121;
+        let garm_vx_leg4 = t107 * t122;
+        let t125 = 1.0 / t112;
+        let t126 = 0.52 * t109;
+        let minus_c_arm_leg4 = t125 * (t126 * t117 + t30 * t120);
+        let t131 = 0.26 * minus_c_arm_leg4;
+        let t133 = t108 - (t131 - 0.24);
+        let garm_vy_leg4 = t133 * t122;
+        let garm_wz_leg4 = t42 * garm_vx_leg4 - t41 * garm_vy_leg4;
+        let t145 = garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * garm_wz_leg2
+            + garm_vx_leg3 * garm_wz_leg3 + garm_vx_leg4 * garm_wz_leg4;
+        let t152 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t152, 19.507470815645043, "actuators")?;
+        ::overact::guard::platform(t152, 19.507470815645043, "actuators")?;
+        let t153 = 1.0 / t152;
+        let t154 = t145 * t153;
+        let t170 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3 + garm_vx_leg4 * garm_vy_leg4;
+        let t172 = garm_vy_leg1 * garm_wz_leg1 + garm_vy_leg2 * garm_wz_leg2
+            + garm_vy_leg3 * garm_wz_leg3 + garm_vy_leg4 * garm_wz_leg4 - t170 * t154;
+        let t180 = t170 * t153;
+        let t182 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t170 * t180;
+        ::overact::guard::platform(t182, 16.505615550045768, "actuators")?;
+        ::overact::guard::platform(t182, 16.505615550045768, "actuators")?;
+        let t183 = 1.0 / t182;
+        let t184 = t172 * t183;
+        let t186 = garm_wz_leg1 * garm_wz_leg1 + garm_wz_leg2 * garm_wz_leg2
+            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t145 * t154
+            - t172 * t184;
+        let minus_s_arm_leg1 = t27 * (t30 * t19 + t28 * t22);
+        let t191 = 0.26 * minus_s_arm_leg1;
+        let t192 = pose[2] - t191;
+        let garm_vz_leg1 = t192 * t24;
+        let minus_s_arm_leg2 = t48 * (t30 * t55 + t49 * t59);
+        let t199 = 0.26 * minus_s_arm_leg2;
+        let t200 = pose[2] - t199;
+        let garm_vz_leg2 = t200 * t67;
+        let s_arm_leg3 = t80 * (t81 * t91 - t30 * t87);
+        let t208 = 0.26 * s_arm_leg3;
+        let t209 = pose[2] + t208;
+        let garm_vz_leg3 = t209 * t99;
+        let s_arm_leg4 = t125 * (t126 * t120 - t30 * t117);
+        let t217 = 0.26 * s_arm_leg4;
+        let t218 = pose[2] + t217;
+        let garm_vz_leg4 = t218 * t122;
+        let t228 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3 + garm_vx_leg4 * garm_vz_leg4;
+        let t238 = t228 * t153;
+        let t240 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 + garm_vy_leg4 * garm_vz_leg4 - t170 * t238;
+        let t242 = garm_vz_leg1 * garm_wz_leg1 + garm_vz_leg2 * garm_wz_leg2
+            + garm_vz_leg3 * garm_wz_leg3 + garm_vz_leg4 * garm_wz_leg4 - t228 * t154
+            - t240 * t184;
+        let t252 = t240 * t183;
+        let t254 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 + garm_vz_leg4 * garm_vz_leg4 - t228 * t238
+            - t240 * t252;
+        ::overact::guard::platform(t254, 31.11733818900116, "actuators")?;
+        ::overact::guard::platform(t254, 31.11733818900116, "actuators")?;
+        let t255 = 1.0 / t254;
+        let t256 = t242 * t255;
+        let t258 = t186 - t242 * t256;
+        ::overact::guard::platform(t258, 0.35106548211906174, "actuators")?;
+        ::overact::guard::platform(t258, 0.35106548211906174, "actuators")?;
+        let t259 = 1.0 / t258;
+        let t260 = actuator_velocities[0] * actuator_velocities[0];
+        let t264 = 1.0 - 2.972651605231867 * t15;
+        ::overact::guard::reach(t264, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t264);
+        ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
+        let s_cross_leg1 = 1.9230769230769231 * t22 / (0.58 * c_rod_leg1);
+        let c_cross_leg1 = (t17 - (0.0676 + t15) - 0.3364 * t264)
+            / (0.3016 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t277 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7241379310344827 * t277;
+        let t292 = garm_vx_leg1 * actuator_velocities[0]
+            + garm_vx_leg2 * actuator_velocities[1]
+            + garm_vx_leg3 * actuator_velocities[2]
             + garm_vx_leg4 * actuator_velocities[3];
-        let t214 = minus_garm_vy_leg1 * actuator_velocities[0]
-            + minus_garm_vy_leg2 * actuator_velocities[1]
-            + minus_garm_vy_leg3 * actuator_velocities[2]
-            + minus_garm_vy_leg4 * actuator_velocities[3] + t203 * t134;
-        let t216 = garm_wz_leg1 * actuator_velocities[0]
-            - minus_garm_wz_leg2 * actuator_velocities[1]
-            + garm_wz_leg3 * actuator_velocities[2]
-            + garm_wz_leg4 * actuator_velocities[3] - t203 * t108 + t138 * t214;
-        let t227 = garm_vz_leg1 * actuator_velocities[0]
+        let t294 = garm_vy_leg1 * actuator_velocities[0]
+            + garm_vy_leg2 * actuator_velocities[1]
+            + garm_vy_leg3 * actuator_velocities[2]
+            + garm_vy_leg4 * actuator_velocities[3] - t292 * t180;
+        let t306 = garm_vz_leg1 * actuator_velocities[0]
             + garm_vz_leg2 * actuator_velocities[1]
-            - minus_garm_vz_leg3 * actuator_velocities[2]
-            - minus_garm_vz_leg4 * actuator_velocities[3] - t203 * t168 + t182 * t214;
-        let t230 = t189 * (t216 - t186 * t227);
-        let t231 = t24 * t230;
-        let t232 = t230 * t231;
-        let t233 = 0.58 * s_rod_leg1;
-        let t234 = 1.7241379310344827 * t12;
-        let gcross_vx_leg1 = c_arm_leg1 * t234;
-        let t240 = t185 * t227 - t186 * t230;
-        let t244 = t137 * t214 + t182 * t240 + t138 * t230;
-        let t250 = t203 * t107 + t134 * t244 - t168 * t240 - t108 * t230;
-        let t251 = t19 * t230;
-        let t255 = 1.0 / c_rod_leg1;
-        let gcross_vy_leg1 = t234
-            * (c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t255)
-                + s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t255));
-        let t263 = t231 - t244;
-        let minus_gcross_vz_leg1 = s_arm_leg1 * t234;
-        let rate_cross_leg1 = gcross_vx_leg1 * (t250 - t251) + gcross_vy_leg1 * t263
-            - minus_gcross_vz_leg1 * t240;
-        let grod_vy_leg1 = 1.7241379310344827 * t255;
-        let rate_rod_leg1 = grod_vy_leg1 * t263;
-        let t271 = s_armcross_leg1 * rate_rod_leg1;
-        let t273 = t233 * (rate_cross_leg1 * t271);
-        let t275 = actuator_velocities[0] * actuator_velocities[0];
-        let t281 = c_armcross_leg1 * rate_rod_leg1;
-        let t283 = t271 * t271 + rate_cross_leg1 * rate_cross_leg1 + t281 * t281;
-        let t290 = t230 * t251;
-        let t297 = minus_garm_vx_leg1
-            * (t232 + t273 - (0.26 * c_arm_leg1 * t275 + 0.58 * t5 * t283) + t273)
-            + minus_garm_vy_leg1
-                * (t290 + rate_cross_leg1 * (t233 * rate_cross_leg1) - t233 * t283);
-        let t304 = t233 * (rate_cross_leg1 * t281);
-        let rate_dot_arm_leg1 = t297
-            - garm_vz_leg1 * (0.26 * s_arm_leg1 * t275 + 0.58 * t9 * t283 + t304 + t304);
-        let t309 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t311 = t43 * t230;
-        let t312 = t230 * t311;
-        let t313 = 0.58 * s_rod_leg2;
-        let t314 = 1.7241379310344827 * t40;
-        let gcross_vy_leg2 = c_arm_leg2 * t314;
-        let t319 = 1.0 / c_rod_leg2;
-        let minus_gcross_vx_leg2 = t314
-            * (c_arm_leg2 * (c_armcross_leg2 * s_rod_leg2 * t319)
-                + s_arm_leg2 * (s_armcross_leg2 * s_rod_leg2 * t319));
-        let t327 = t46 * t230;
-        let t328 = t250 - t327;
-        let minus_gcross_vz_leg2 = s_arm_leg2 * t314;
-        let rate_cross_leg2 = gcross_vy_leg2 * (t311 - t244)
-            - minus_gcross_vx_leg2 * t328 - minus_gcross_vz_leg2 * t240;
-        let minus_grod_vx_leg2 = 1.7241379310344827 * t319;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t328;
-        let t337 = s_armcross_leg2 * minus_rate_rod_leg2;
-        let t340 = c_armcross_leg2 * minus_rate_rod_leg2;
-        let t342 = rate_cross_leg2 * rate_cross_leg2 + t337 * t337 + t340 * t340;
-        let t350 = actuator_velocities[1] * actuator_velocities[1];
-        let t356 = t313 * (rate_cross_leg2 * t337);
-        let t359 = t230 * t327;
-        let t362 = garm_vx_leg2
-            * (t312 + t313 * t342 - rate_cross_leg2 * (t313 * rate_cross_leg2))
-            + minus_garm_vy_leg2
-                * (0.26 * c_arm_leg2 * t350 + 0.58 * t33 * t342 + t356 + t356 - t359);
-        let t369 = t313 * (rate_cross_leg2 * t340);
-        let minus_rate_dot_arm_leg2 = t362
-            + garm_vz_leg2
-                * (0.26 * s_arm_leg2 * t350 + 0.58 * t37 * t342 - t369 - t369);
-        let t374 = actuator_accelerations[1] + minus_rate_dot_arm_leg2;
-        let t378 = actuator_velocities[2] * actuator_velocities[2];
-        let t381 = 1.0 / c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.7241379310344827 * t381;
-        let t383 = t244 + t231;
-        let rate_rod_leg3 = minus_grod_vy_leg3 * t383;
-        let t385 = s_armcross_leg3 * rate_rod_leg3;
-        let t387 = 1.7241379310344827 * t63;
-        let gcross_vx_leg3 = c_arm_leg3 * t387;
-        let gcross_vy_leg3 = t387
-            * (c_arm_leg3 * (c_armcross_leg3 * s_rod_leg3 * t381)
-                + s_arm_leg3 * (s_armcross_leg3 * s_rod_leg3 * t381));
-        let gcross_vz_leg3 = s_arm_leg3 * t387;
-        let rate_cross_leg3 = gcross_vx_leg3 * (t250 + t251) - gcross_vy_leg3 * t383
-            + gcross_vz_leg3 * t240;
-        let t406 = c_armcross_leg3 * rate_rod_leg3;
-        let t408 = t385 * t385 + rate_cross_leg3 * rate_cross_leg3 + t406 * t406;
-        let t411 = 0.58 * s_rod_leg3;
-        let t413 = t411 * (rate_cross_leg3 * t406);
-        let t423 = t411 * (rate_cross_leg3 * t385);
-        let t434 = minus_garm_vx_leg3
-            * (t232 - (0.26 * c_arm_leg3 * t378 + 0.58 * t60 * t408 - t423 - t423))
-            + minus_garm_vy_leg3
-                * (t290 - (t411 * t408 - rate_cross_leg3 * (t411 * rate_cross_leg3)));
-        let rate_dot_arm_leg3 = minus_garm_vz_leg3
-            * (0.26 * s_arm_leg3 * t378 + 0.58 * t58 * t408 + t413 + t413) - t434;
-        let t436 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t439 = 1.7241379310344827 * t84;
-        let gcross_vz_leg4 = s_arm_leg4 * t439;
-        let t443 = 1.0 / c_rod_leg4;
-        let minus_gcross_vx_leg4 = t439
-            * (c_arm_leg4 * (c_armcross_leg4 * s_rod_leg4 * t443)
-                + s_arm_leg4 * (s_armcross_leg4 * s_rod_leg4 * t443));
-        let t451 = t250 + t327;
-        let gcross_vy_leg4 = c_arm_leg4 * t439;
-        let rate_cross_leg4 = gcross_vz_leg4 * t240
-            - (minus_gcross_vx_leg4 * t451 + gcross_vy_leg4 * (t244 + t311));
-        let t458 = 0.58 * s_rod_leg4;
-        let grod_vx_leg4 = 1.7241379310344827 * t443;
-        let rate_rod_leg4 = grod_vx_leg4 * t451;
-        let t464 = s_armcross_leg4 * rate_rod_leg4;
-        let t467 = c_armcross_leg4 * rate_rod_leg4;
-        let t469 = rate_cross_leg4 * rate_cross_leg4 + t464 * t464 + t467 * t467;
-        let t475 = actuator_velocities[3] * actuator_velocities[3];
-        let t481 = t458 * (rate_cross_leg4 * t464);
-        let t486 = garm_vx_leg4
-            * (t312 - (rate_cross_leg4 * (t458 * rate_cross_leg4) - t458 * t469))
-            - minus_garm_vy_leg4
-                * (t359 - (0.26 * c_arm_leg4 * t475 + 0.58 * t77 * t469 - t481 - t481));
-        let t493 = t458 * (rate_cross_leg4 * t467);
-        let rate_dot_arm_leg4 = t486
-            + minus_garm_vz_leg4
-                * (0.26 * s_arm_leg4 * t475 + 0.58 * t80 * t469 + t493 + t493);
-        let t498 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t507 = garm_vx_leg2 * t374 - minus_garm_vx_leg1 * t309
-            - minus_garm_vx_leg3 * t436 + garm_vx_leg4 * t498;
-        let t518 = minus_garm_vy_leg1 * t309 + minus_garm_vy_leg2 * t374
-            + minus_garm_vy_leg3 * t436 + minus_garm_vy_leg4 * t498 + t134 * t507;
-        let t520 = garm_wz_leg1 * t309 - minus_garm_wz_leg2 * t374 + garm_wz_leg3 * t436
-            + garm_wz_leg4 * t498 - t108 * t507 + t138 * t518;
-        let t531 = garm_vz_leg1 * t309 + garm_vz_leg2 * t374 - minus_garm_vz_leg3 * t436
-            - minus_garm_vz_leg4 * t498 - t168 * t507 + t182 * t518;
-        let t534 = t189 * (t520 - t186 * t531);
-        let t535 = t230 * t230;
-        let t538 = c_phi * t535 + s_phi * t534;
-        let t541 = c_phi * t534 - s_phi * t535;
-        let t546 = t185 * t531 - t186 * t534;
-        let t550 = t137 * t518 + t182 * t546 + t138 * t534;
-        let t556 = t107 * t507 + t134 * t550 - t168 * t546 - t108 * t534;
+            + garm_vz_leg3 * actuator_velocities[2]
+            + garm_vz_leg4 * actuator_velocities[3] - t292 * t238 - t252 * t294;
+        let t318 = garm_wz_leg1 * actuator_velocities[0]
+            + garm_wz_leg2 * actuator_velocities[1]
+            + garm_wz_leg3 * actuator_velocities[2]
+            + garm_wz_leg4 * actuator_velocities[3] - t292 * t154 - t184 * t294;
+        let t321 = t259 * (t318 - t256 * t306);
+        let t323 = t255 * t306 - t256 * t321;
+        let t327 = t183 * t294 - t252 * t323 - t184 * t321;
+        let t328 = t4 * t321;
+        let t329 = t327 + t328;
+        let rate_rod_leg1 = grod_vy_leg1 * t329;
+        let t331 = s_armcross_leg1 * rate_rod_leg1;
+        let t333 = 0.52 * t23;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t333;
+        let t341 = t292 * t153 - t180 * t327 - t238 * t323 - t154 * t321;
+        let t342 = t7 * t321;
+        let s_rod_leg1 = 1.7241379310344827 * t8;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let minus_gcross_vy_leg1 = t333
+            * (c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t277)
+                - minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t277));
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t333;
+        let minus_rate_cross_leg1 = minus_gcross_vx_leg1 * (t341 - t342)
+            + minus_gcross_vy_leg1 * t329 + minus_gcross_vz_leg1 * t323;
+        let t364 = c_armcross_leg1 * rate_rod_leg1;
+        let t366 = t331 * t331 + minus_rate_cross_leg1 * minus_rate_cross_leg1
+            + t364 * t364;
+        let t370 = t8 * (minus_rate_cross_leg1 * t331);
+        let t373 = t321 * t328;
+        let t376 = t321 * t342;
+        let t383 = garm_vx_leg1 * (t34 * t260 + t36 * t366 + t370 + t370 - t373)
+            - garm_vy_leg1
+                * (t376 + minus_rate_cross_leg1 * (t8 * minus_rate_cross_leg1)
+                    - t8 * t366);
+        let t388 = t8 * (minus_rate_cross_leg1 * t364);
+        let rate_dot_arm_leg1 = t383
+            + garm_vz_leg1 * (t191 * t260 + t192 * t366 + t388 + t388);
+        let t393 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t395 = actuator_velocities[1] * actuator_velocities[1];
+        let t397 = 0.52 * t66;
+        let minus_s_rod_leg2 = 1.7241379310344827 * t50;
+        let t402 = 1.0 - 2.972651605231867 * t51;
+        ::overact::guard::reach(t402, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t402);
+        ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
+        let c_cross_leg2 = (t53 - (0.0676 + t51) - 0.3364 * t402)
+            / (0.3016 * c_rod_leg2);
+        let s_cross_leg2 = 1.9230769230769231 * t59 / (0.58 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t415 = 1.0 / c_rod_leg2;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let minus_gcross_vx_leg2 = t397
+            * (c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t415)
+                - minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t415));
+        let t426 = t42 * t321;
+        let t427 = t341 - t426;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t397;
+        let t430 = t41 * t321;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t397;
+        let minus_rate_cross_leg2 = minus_gcross_vx_leg2 * t427
+            + minus_gcross_vy_leg2 * (t327 + t430) + minus_gcross_vz_leg2 * t323;
+        let minus_grod_vx_leg2 = 1.7241379310344827 * t415;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t427;
+        let t440 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t443 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t445 = minus_rate_cross_leg2 * minus_rate_cross_leg2 + t440 * t440
+            + t443 * t443;
+        let t449 = t50 * (minus_rate_cross_leg2 * t440);
+        let t452 = t321 * t426;
+        let t455 = t321 * t430;
+        let t462 = garm_vy_leg2 * (t63 * t395 + t65 * t445 + t449 + t449 - t452)
+            - garm_vx_leg2
+                * (t455 + minus_rate_cross_leg2 * (t50 * minus_rate_cross_leg2)
+                    - t50 * t445);
+        let t467 = t50 * (minus_rate_cross_leg2 * t443);
+        let rate_dot_arm_leg2 = t462
+            + garm_vz_leg2 * (t199 * t395 + t200 * t445 + t467 + t467);
+        let t472 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t475 = actuator_velocities[2] * actuator_velocities[2];
+        let t480 = 1.0 - 2.972651605231867 * t83;
+        ::overact::guard::reach(t480, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t480);
+        ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
+        let c_cross_leg3 = (t85 - (0.0676 + t83) - 0.3364 * t480)
+            / (0.3016 * c_rod_leg3);
+        let s_cross_leg3 = 1.9230769230769231 * t91 / (0.58 * c_rod_leg3);
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t492 = 1.0 / c_rod_leg3;
+        let minus_grod_vy_leg3 = 1.7241379310344827 * t492;
+        let t494 = t327 - t328;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t494;
+        let t496 = s_armcross_leg3 * minus_rate_rod_leg3;
+        let t498 = 0.52 * t98;
+        let gcross_vz_leg3 = s_arm_leg3 * t498;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t498;
+        let minus_s_rod_leg3 = 1.7241379310344827 * t82;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t498
+            * (minus_c_arm_leg3 * (minus_s_rod_leg3 * minus_c_armcross_leg3 * t492)
+                + s_arm_leg3 * (minus_s_rod_leg3 * s_armcross_leg3 * t492));
+        let rate_cross_leg3 = gcross_vz_leg3 * t323
+            - (minus_gcross_vx_leg3 * (t341 + t342) + minus_gcross_vy_leg3 * t494);
+        let t521 = minus_c_armcross_leg3 * minus_rate_rod_leg3;
+        let t523 = t496 * t496 + rate_cross_leg3 * rate_cross_leg3 + t521 * t521;
+        let t527 = t82 * (rate_cross_leg3 * t496);
+        let t538 = garm_vx_leg3 * (t373 + t95 * t475 + t97 * t523 + t527 + t527)
+            + garm_vy_leg3
+                * (t376 - (rate_cross_leg3 * (t82 * rate_cross_leg3) - t82 * t523));
+        let t543 = t82 * (rate_cross_leg3 * t521);
+        let rate_dot_arm_leg3 = t538
+            - garm_vz_leg3 * (t208 * t475 - t209 * t523 - t543 - t543);
+        let t548 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t551 = 0.52 * t121;
+        let gcross_vz_leg4 = s_arm_leg4 * t551;
+        let s_rod_leg4 = 1.7241379310344827 * t107;
+        let t558 = 1.0 - 2.972651605231867 * t113;
+        ::overact::guard::reach(t558, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t558);
+        ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
+        let c_cross_leg4 = (t115 - (0.0676 + t113) - 0.3364 * t558)
+            / (0.3016 * c_rod_leg4);
+        let s_cross_leg4 = 1.9230769230769231 * t120 / (0.58 * c_rod_leg4);
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let t571 = 1.0 / c_rod_leg4;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t551
+            * (minus_c_arm_leg4 * (s_rod_leg4 * minus_c_armcross_leg4 * t571)
+                + s_arm_leg4 * (s_rod_leg4 * s_armcross_leg4 * t571));
+        let t582 = t341 + t426;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t551;
+        let rate_cross_leg4 = gcross_vz_leg4 * t323
+            - (minus_gcross_vx_leg4 * t582 + minus_gcross_vy_leg4 * (t327 - t430));
+        let grod_vx_leg4 = 1.7241379310344827 * t571;
+        let rate_rod_leg4 = grod_vx_leg4 * t582;
+        let t594 = s_armcross_leg4 * rate_rod_leg4;
+        let t597 = minus_c_armcross_leg4 * rate_rod_leg4;
+        let t599 = rate_cross_leg4 * rate_cross_leg4 + t594 * t594 + t597 * t597;
+        let t604 = actuator_velocities[3] * actuator_velocities[3];
+        let t609 = t107 * (rate_cross_leg4 * t594);
+        let t614 = garm_vx_leg4
+            * (t455 - (rate_cross_leg4 * (t107 * rate_cross_leg4) - t107 * t599))
+            + garm_vy_leg4 * (t452 + t131 * t604 + t133 * t599 + t609 + t609);
+        let t619 = t107 * (rate_cross_leg4 * t597);
+        let rate_dot_arm_leg4 = t614
+            - garm_vz_leg4 * (t217 * t604 - t218 * t599 - t619 - t619);
+        let t624 = actuator_accelerations[3] - rate_dot_arm_leg4;
+        let t633 = garm_vx_leg1 * t393 + garm_vx_leg2 * t472 + garm_vx_leg3 * t548
+            + garm_vx_leg4 * t624;
+        let t644 = garm_vy_leg1 * t393 + garm_vy_leg2 * t472 + garm_vy_leg3 * t548
+            + garm_vy_leg4 * t624 - t180 * t633;
+        let t646 = garm_wz_leg1 * t393 + garm_wz_leg2 * t472 + garm_wz_leg3 * t548
+            + garm_wz_leg4 * t624 - t154 * t633 - t184 * t644;
+        let t657 = garm_vz_leg1 * t393 + garm_vz_leg2 * t472 + garm_vz_leg3 * t548
+            + garm_vz_leg4 * t624 - t238 * t633 - t252 * t644;
+        let t660 = t259 * (t646 - t256 * t657);
+        let t661 = t321 * t321;
+        let t664 = c_phi * t661 + s_phi * t660;
+        let t667 = c_phi * t660 - s_phi * t661;
+        let t671 = t255 * t657 - t256 * t660;
+        let t675 = t183 * t644 - t252 * t671 - t184 * t660;
+        let t683 = t153 * t633 - t180 * t675 - t238 * t671 - t154 * t660;
         Ok([
-            [0.0, -t538, -t541, t556], [0.0, t541, -t538, -t550], [0.0, 0.0, 0.0, t546 + 9.81],
-            [t534, -(s_phi * t556 + c_phi * t550), -(c_phi * t556 - s_phi * t550), 0.0],
+            [0.0, -t664, -t667, t683], [0.0, t667, -t664, t675], [0.0, 0.0, 0.0, t671 + 9.81],
+            [t660, c_phi * t675 - s_phi * t683, -(c_phi * t683 + s_phi * t675), 0.0],
         ])
     }
     /// The payload's columns of case 2, eq. (38).
@@ -7324,7 +10912,7 @@ impl Schoenflies4 {
     /// Output: 4 x 4.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 238 operations (81 additions, 149 multiplications, 8 divisions), 0 square roots, 13 trigonometric pairs, 0 signs, 248 intermediates.
+    /// 328 operations (129 additions, 187 multiplications, 12 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 318 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7333,138 +10921,159 @@ impl Schoenflies4 {
         twist: &[f64; 4],
         acceleration: &[f64; 4],
     ) -> Result<[[f64; 4]; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t4 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t4);
-        let t7 = c_armcross_leg2 * c_rod_leg2;
-        let t9 = s_armcross_leg2 * c_rod_leg2;
-        let t11 = s_arm_leg2 * t7 - c_arm_leg2 * t9;
-        ::overact::guard::leg(t11, 0.9185391450939737, "leg2")?;
-        let t12 = 3.8461538461538463 / t11;
-        let garm_vx_leg2 = s_rod_leg2 * t12;
-        let t14 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t14);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        let t19 = c_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t23 = s_armcross_leg1 * c_rod_leg1;
-        let t25 = s_arm_leg1 * t19 - c_arm_leg1 * t23;
-        ::overact::guard::leg(t25, 0.9185391450939739, "leg1")?;
-        let t26 = 3.8461538461538463 / t25;
-        let minus_garm_vx_leg1 = t19 * t26;
-        ::overact::guard::platform(
-            minus_garm_vx_leg1,
-            3.0598754214874657,
-            "kept actuators",
-        )?;
-        let t28 = 1.0 / minus_garm_vx_leg1;
-        let garm_vz_leg2 = t9 * t12;
-        let garm_vz_leg1 = t23 * t26;
-        let t32 = garm_vz_leg1 * t28;
-        let t34 = garm_vz_leg2 + garm_vx_leg2 * t32;
-        let t35 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t35);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t40 = c_armcross_leg3 * c_rod_leg3;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t43 = s_armcross_leg3 * c_rod_leg3;
-        let t46 = c_arm_leg3 * t43 - s_arm_leg3 * t40;
-        ::overact::guard::leg(t46, 0.9185391450939737, "leg3")?;
-        let t47 = 3.8461538461538463 / t46;
-        let minus_garm_vx_leg3 = t40 * t47;
-        let minus_garm_vz_leg3 = t43 * t47;
-        let t52 = minus_garm_vz_leg3 + minus_garm_vx_leg3 * t32;
-        ::overact::guard::platform(t52, 5.5782916905211675, "kept actuators")?;
-        let t53 = 1.0 / t52;
-        let t54 = minus_garm_vx_leg3 * t28 * t53;
-        let minus_garm_vy_leg1 = s_rod_leg1 * t26;
-        let t58 = minus_garm_vy_leg1 * t28;
-        let minus_garm_vy_leg3 = s_rod_leg3 * t47;
-        let t62 = (minus_garm_vx_leg3 * t58 - minus_garm_vy_leg3) * t53;
-        let minus_garm_vy_leg2 = t7 * t12;
-        let t67 = t34 * t62 - (minus_garm_vy_leg2 + garm_vx_leg2 * t58);
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let t72 = joints[9] + joints[10];
-        let (s_armcross_leg4, c_armcross_leg4) = ::overact::math::sin_cos(t72);
-        let t75 = s_armcross_leg4 * c_rod_leg4;
-        let t77 = c_armcross_leg4 * c_rod_leg4;
-        let t79 = c_arm_leg4 * t75 - s_arm_leg4 * t77;
-        ::overact::guard::leg(t79, 0.9185391450939737, "leg4")?;
-        let t80 = 3.8461538461538463 / t79;
-        let garm_vx_leg4 = s_rod_leg4 * t80;
-        let minus_garm_vz_leg4 = t75 * t80;
-        let t85 = garm_vx_leg4 * t32 - minus_garm_vz_leg4;
-        let minus_garm_vy_leg4 = t77 * t80;
-        let t92 = t85 * t62 - (minus_garm_vy_leg4 + garm_vx_leg4 * t58);
-        ::overact::guard::platform(t92, 2.932125836861103, "kept actuators")?;
-        let t93 = 1.0 / t92;
-        let t94 = (garm_vx_leg4 * t28 - t85 * t54) * t93;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
-        let t99 = 0.05 * s_phi;
-        let t100 = 0.08660254037844387 * c_phi;
-        let t101 = t99 + t100;
-        let t103 = 0.05 * c_phi;
-        let t104 = 0.08660254037844387 * s_phi;
-        let t105 = t103 - t104;
-        let garm_wz_leg1 = minus_garm_vx_leg1 * t101 - minus_garm_vy_leg1 * t105;
-        let t108 = garm_wz_leg1 * t28;
-        let t110 = t100 - t99;
-        let t112 = t104 + t103;
-        let minus_garm_wz_leg2 = minus_garm_vy_leg2 * t110 + garm_vx_leg2 * t112;
-        let garm_wz_leg3 = t105 * minus_garm_vy_leg3 - t101 * minus_garm_vx_leg3;
-        let t121 = (garm_wz_leg3 - minus_garm_vx_leg3 * t108) * t53;
-        let garm_wz_leg4 = t110 * minus_garm_vy_leg4 + t112 * garm_vx_leg4;
-        let t131 = (garm_wz_leg4 + garm_vx_leg4 * t108 + t85 * t121) * t93;
-        let t133 = garm_vx_leg2 * t108 - minus_garm_wz_leg2 + t34 * t121 - t67 * t131;
-        ::overact::guard::platform(t133, 1.1850155816073358, "kept actuators")?;
-        let t134 = 1.0 / t133;
-        let t135 = (garm_vx_leg2 * t28 - t34 * t54 - t67 * t94) * t134;
-        let t140 = t85 * t53 * t93;
-        let t143 = (t34 * t53 - t67 * t140) * t134;
-        let t146 = t67 * t93 * t134;
-        let t149 = t94 - t131 * t135;
-        let t151 = twist[3] * twist[3];
-        let t153 = c_phi * acceleration[3] - s_phi * t151;
-        let t158 = t58 - t32 * t62;
-        let t164 = t108 + t32 * t121 + t158 * t131;
-        let t166 = t32 * t54 - t28 - t158 * t94 + t164 * t135;
-        let t169 = c_phi * t151 + s_phi * acceleration[3];
-        let t174 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t178 = t164 * t134;
-        let t180 = t131 * t134;
-        let t185 = t140 - t131 * t143;
-        let t191 = t164 * t143 - (t32 * t53 + t158 * t140);
-        let t198 = t158 * t93 + t164 * t146;
-        let t201 = t93 + t131 * t146;
-        let t211 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t235 = t62 * t131 - t121;
-        let t238 = acceleration[2] + 9.81;
+        let t2 = 0.08660254037844387 * s_phi;
+        let t3 = 0.05 * c_phi;
+        let t4 = t2 + t3;
+        let t5 = pose[1] - t4;
+        let t6 = t5 + 0.24;
+        let t7 = t6 * t6;
+        let t8 = pose[2] * pose[2];
+        let t10 = 0.2704 * (t7 + t8);
+        let t11 = 1.0 / t10;
+        let t12 = 0.52 * t6;
+        let t13 = 0.08660254037844387 * c_phi;
+        let t14 = 0.05 * s_phi;
+        let t15 = t13 - t14;
+        let t16 = pose[0] - t15;
+        let t21 = t16 * t16 + t7 + t8 - 0.3364 + 0.0676;
+        let t23 = t10 - t21 * t21;
+        ::overact::guard::reach(t23, "leg4")?;
+        let t24 = ::overact::math::sqrt(t23);
+        ::overact::guard::leg(t24, 0.27703140616182853, "leg4")?;
+        let t26 = 0.52 * pose[2];
+        let s_arm_leg4 = t11 * (t12 * t24 - t26 * t21);
+        let t32 = 2.0 / t24;
+        let garm_vz_leg4 = (pose[2] + 0.26 * s_arm_leg4) * t32;
+        let garm_vx_leg4 = t16 * t32;
+        let t35 = t3 - t2;
+        let t36 = pose[0] + t35;
+        let t37 = t36 - 0.24;
+        let t38 = t37 * t37;
+        let t40 = 0.2704 * (t38 + t8);
+        let t41 = 1.0 / t40;
+        let t42 = t14 + t13;
+        let t43 = pose[1] + t42;
+        let t48 = t38 + t43 * t43 + t8 - 0.3364 + 0.0676;
+        let t50 = 0.52 * t37;
+        let t52 = t40 - t48 * t48;
+        ::overact::guard::reach(t52, "leg1")?;
+        let t53 = ::overact::math::sqrt(t52);
+        ::overact::guard::leg(t53, 0.27703140616182853, "leg1")?;
+        let minus_s_arm_leg1 = t41 * (t26 * t48 + t50 * t53);
+        let t59 = 2.0 / t53;
+        let garm_vz_leg1 = (pose[2] - 0.26 * minus_s_arm_leg1) * t59;
+        let c_arm_leg1 = t41 * (t50 * t48 - t26 * t53);
+        let garm_vx_leg1 = (t36 - (0.24 + 0.26 * c_arm_leg1)) * t59;
+        ::overact::guard::platform(garm_vx_leg1, 3.059875421275039, "kept actuators")?;
+        let t69 = 1.0 / garm_vx_leg1;
+        let t70 = garm_vz_leg1 * t69;
+        let t72 = garm_vz_leg4 - garm_vx_leg4 * t70;
+        let t73 = pose[0] - t35;
+        let t74 = t73 + 0.24;
+        let t75 = t74 * t74;
+        let t77 = 0.2704 * (t75 + t8);
+        let t78 = 1.0 / t77;
+        let t79 = 0.52 * t74;
+        let t80 = pose[1] - t42;
+        let t85 = t75 + t80 * t80 + t8 - 0.3364 + 0.0676;
+        let t88 = t77 - t85 * t85;
+        ::overact::guard::reach(t88, "leg3")?;
+        let t89 = ::overact::math::sqrt(t88);
+        ::overact::guard::leg(t89, 0.27703140616182853, "leg3")?;
+        let minus_c_arm_leg3 = t78 * (t79 * t85 + t26 * t89);
+        let t96 = 2.0 / t89;
+        let garm_vx_leg3 = (t73 - (0.26 * minus_c_arm_leg3 - 0.24)) * t96;
+        let s_arm_leg3 = t78 * (t79 * t89 - t26 * t85);
+        let garm_vz_leg3 = (pose[2] + 0.26 * s_arm_leg3) * t96;
+        let t107 = garm_vz_leg3 - garm_vx_leg3 * t70;
+        ::overact::guard::platform(t107, 5.578291690921259, "kept actuators")?;
+        let t108 = 1.0 / t107;
+        let t109 = garm_vx_leg3 * t69 * t108;
+        let minus_c_arm_leg4 = t11 * (t12 * t21 + t26 * t24);
+        let garm_vy_leg4 = (t5 - (0.26 * minus_c_arm_leg4 - 0.24)) * t32;
+        let garm_vy_leg1 = t43 * t59;
+        let t122 = garm_vy_leg1 * t69;
+        let garm_vy_leg3 = t80 * t96;
+        let t128 = (garm_vy_leg3 - garm_vx_leg3 * t122) * t108;
+        let t130 = garm_vy_leg4 - garm_vx_leg4 * t122 - t72 * t128;
+        let t131 = pose[1] + t4;
+        let t132 = t131 - 0.24;
+        let t133 = t132 * t132;
+        let t135 = 0.2704 * (t133 + t8);
+        let t136 = 1.0 / t135;
+        let t137 = pose[0] + t15;
+        let t142 = t137 * t137 + t133 + t8 - 0.3364 + 0.0676;
+        let t144 = 0.52 * t132;
+        let t146 = t135 - t142 * t142;
+        ::overact::guard::reach(t146, "leg2")?;
+        let t147 = ::overact::math::sqrt(t146);
+        ::overact::guard::leg(t147, 0.27703140616182853, "leg2")?;
+        let minus_s_arm_leg2 = t136 * (t26 * t142 + t144 * t147);
+        let t153 = 2.0 / t147;
+        let garm_vz_leg2 = (pose[2] - 0.26 * minus_s_arm_leg2) * t153;
+        let garm_vx_leg2 = t137 * t153;
+        let t157 = garm_vz_leg2 - garm_vx_leg2 * t70;
+        let c_arm_leg2 = t136 * (t144 * t142 - t26 * t147);
+        let garm_vy_leg2 = (t131 - (0.24 + 0.26 * c_arm_leg2)) * t153;
+        let t172 = garm_vy_leg2 - garm_vx_leg2 * t122 - t157 * t128;
+        ::overact::guard::platform(t172, 2.9321258366411205, "kept actuators")?;
+        let t173 = 1.0 / t172;
+        let t174 = (t157 * t109 - garm_vx_leg2 * t69) * t173;
+        let garm_wz_leg4 = t4 * garm_vx_leg4 - t15 * garm_vy_leg4;
+        let garm_wz_leg1 = t35 * garm_vy_leg1 - t42 * garm_vx_leg1;
+        let t183 = garm_wz_leg1 * t69;
+        let garm_wz_leg3 = t42 * garm_vx_leg3 - t35 * garm_vy_leg3;
+        let t191 = (garm_wz_leg3 - garm_vx_leg3 * t183) * t108;
+        let garm_wz_leg2 = t15 * garm_vy_leg2 - t4 * garm_vx_leg2;
+        let t201 = (garm_wz_leg2 - garm_vx_leg2 * t183 - t157 * t191) * t173;
+        let t203 = garm_wz_leg4 - garm_vx_leg4 * t183 - t72 * t191 - t130 * t201;
+        ::overact::guard::platform(t203, 1.1850155815331067, "kept actuators")?;
+        let t204 = 1.0 / t203;
+        let t205 = (t72 * t109 - garm_vx_leg4 * t69 - t130 * t174) * t204;
+        let t208 = t130 * t173 * t204;
+        let t211 = t157 * t108 * t173;
+        let t215 = (t130 * t211 - t72 * t108) * t204;
+        let t219 = t174 - t201 * t205;
+        let t221 = twist[3] * twist[3];
+        let t223 = c_phi * acceleration[3] - s_phi * t221;
+        let t228 = t122 - t70 * t128;
+        let t234 = t183 - t70 * t191 - t228 * t201;
+        let t236 = t69 + t70 * t109 - t228 * t174 - t234 * t205;
+        let t239 = c_phi * t221 + s_phi * acceleration[3];
+        let t244 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t248 = t173 + t201 * t208;
+        let t252 = t234 * t208 - t228 * t173;
+        let t262 = t228 * t211 - t70 * t108 - t234 * t215;
+        let t265 = t211 + t201 * t215;
+        let t269 = t234 * t204;
+        let t271 = t201 * t204;
+        let t281 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t305 = t191 - t128 * t201;
+        let t308 = acceleration[2] + 9.81;
         Ok([
             [
-                t135 * acceleration[3], t149 * t153 - t166 * t169 + t135 * t174,
-                -(t166 * t153 + t149 * t169 + t135 * t211),
-                t166 * acceleration[0] + t149 * acceleration[1]
-                    + (t54 + t62 * t94 - t235 * t135) * t238,
+                t205 * acceleration[3], t219 * t223 - t236 * t239 + t205 * t244,
+                -(t236 * t223 + t219 * t239 + t205 * t281),
+                t236 * acceleration[0] + t219 * acceleration[1]
+                    - (t109 + t128 * t174 + t305 * t205) * t308,
             ],
             [
-                t134 * acceleration[3], t134 * t174 - (t178 * t169 + t180 * t153),
-                t180 * t169 - t178 * t153 - t134 * t211,
-                t178 * acceleration[0] - t180 * acceleration[1] - t235 * t134 * t238,
+                -(t208 * acceleration[3]), t248 * t223 - t252 * t239 - t208 * t244,
+                t208 * t281 - (t252 * t223 + t248 * t239),
+                t252 * acceleration[0] + t248 * acceleration[1]
+                    + (t305 * t208 - t128 * t173) * t308,
             ],
             [
-                t143 * acceleration[3], t185 * t153 - t191 * t169 + t143 * t174,
-                -(t191 * t153 + t185 * t169 + t143 * t211),
-                t191 * acceleration[0] + t185 * acceleration[1]
-                    + (t62 * t140 - t53 - t235 * t143) * t238,
+                t215 * acceleration[3], t215 * t244 - (t262 * t239 + t265 * t223),
+                t265 * t239 - t262 * t223 - t215 * t281,
+                t262 * acceleration[0] - t265 * acceleration[1]
+                    + (t108 + t128 * t211 - t305 * t215) * t308,
             ],
             [
-                -(t146 * acceleration[3]), t198 * t169 + t201 * t153 - t146 * t174,
-                t198 * t153 - t201 * t169 + t146 * t211,
-                t201 * acceleration[1] - t198 * acceleration[0]
-                    + (t62 * t93 + t235 * t146) * t238,
+                t204 * acceleration[3], t269 * t239 - t271 * t223 + t204 * t244,
+                t269 * t223 + t271 * t239 - t204 * t281,
+                -(t269 * acceleration[0] + t271 * acceleration[1] + t305 * t204 * t308),
             ],
         ])
     }
@@ -7476,7 +11085,7 @@ impl Schoenflies4 {
     ///
     /// Output: 4.
     ///
-    /// 88 operations (28 additions, 56 multiplications, 4 divisions), 0 square roots, 13 trigonometric pairs, 0 signs, 110 intermediates.
+    /// 178 operations (76 additions, 94 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 180 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7484,76 +11093,101 @@ impl Schoenflies4 {
         pose: &[f64; 4],
         torques: &[f64; 4],
     ) -> Result<[f64; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t4 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t4);
-        let t7 = c_armcross_leg2 * c_rod_leg2;
-        let t9 = s_armcross_leg2 * c_rod_leg2;
-        let t11 = s_arm_leg2 * t7 - c_arm_leg2 * t9;
-        ::overact::guard::leg(t11, 0.9185391450939737, "leg2")?;
-        let t12 = 3.8461538461538463 / t11;
-        let garm_vx_leg2 = s_rod_leg2 * t12;
-        let t15 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t15);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        let t20 = c_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t24 = s_armcross_leg1 * c_rod_leg1;
-        let t26 = s_arm_leg1 * t20 - c_arm_leg1 * t24;
-        ::overact::guard::leg(t26, 0.9185391450939739, "leg1")?;
-        let t27 = 3.8461538461538463 / t26;
-        let minus_garm_vx_leg1 = t20 * t27;
-        let t31 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t31);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t36 = c_armcross_leg3 * c_rod_leg3;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t39 = s_armcross_leg3 * c_rod_leg3;
-        let t42 = c_arm_leg3 * t39 - s_arm_leg3 * t36;
-        ::overact::guard::leg(t42, 0.9185391450939737, "leg3")?;
-        let t43 = 3.8461538461538463 / t42;
-        let minus_garm_vx_leg3 = t36 * t43;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let t51 = joints[9] + joints[10];
-        let (s_armcross_leg4, c_armcross_leg4) = ::overact::math::sin_cos(t51);
-        let t54 = s_armcross_leg4 * c_rod_leg4;
-        let t56 = c_armcross_leg4 * c_rod_leg4;
-        let t58 = c_arm_leg4 * t54 - s_arm_leg4 * t56;
-        ::overact::guard::leg(t58, 0.9185391450939737, "leg4")?;
-        let t59 = 3.8461538461538463 / t58;
-        let garm_vx_leg4 = s_rod_leg4 * t59;
-        let minus_garm_vy_leg1 = s_rod_leg1 * t27;
-        let minus_garm_vy_leg2 = t7 * t12;
-        let minus_garm_vy_leg3 = s_rod_leg3 * t43;
-        let minus_garm_vy_leg4 = t56 * t59;
-        let garm_vz_leg1 = t24 * t27;
-        let garm_vz_leg2 = t9 * t12;
-        let minus_garm_vz_leg3 = t39 * t43;
-        let minus_garm_vz_leg4 = t54 * t59;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
-        let t87 = 0.05 * s_phi;
-        let t88 = 0.08660254037844387 * c_phi;
-        let t89 = t87 + t88;
-        let t91 = 0.05 * c_phi;
-        let t92 = 0.08660254037844387 * s_phi;
-        let t93 = t91 - t92;
-        let garm_wz_leg1 = minus_garm_vx_leg1 * t89 - minus_garm_vy_leg1 * t93;
-        let t97 = t88 - t87;
-        let t99 = t92 + t91;
-        let minus_garm_wz_leg2 = minus_garm_vy_leg2 * t97 + garm_vx_leg2 * t99;
-        let garm_wz_leg3 = t93 * minus_garm_vy_leg3 - t89 * minus_garm_vx_leg3;
-        let garm_wz_leg4 = t97 * minus_garm_vy_leg4 + t99 * garm_vx_leg4;
+        let t2 = 0.05 * c_phi;
+        let t3 = 0.08660254037844387 * s_phi;
+        let t4 = t2 - t3;
+        let t5 = pose[0] + t4;
+        let t6 = t5 - 0.24;
+        let t7 = t6 * t6;
+        let t8 = pose[2] * pose[2];
+        let t10 = 0.2704 * (t7 + t8);
+        let t11 = 1.0 / t10;
+        let t12 = 0.52 * t6;
+        let t13 = 0.05 * s_phi;
+        let t14 = 0.08660254037844387 * c_phi;
+        let t15 = t13 + t14;
+        let t16 = pose[1] + t15;
+        let t21 = t7 + t16 * t16 + t8 - 0.3364 + 0.0676;
+        let t23 = 0.52 * pose[2];
+        let t25 = t10 - t21 * t21;
+        ::overact::guard::reach(t25, "leg1")?;
+        let t26 = ::overact::math::sqrt(t25);
+        ::overact::guard::leg(t26, 0.27703140616182853, "leg1")?;
+        let c_arm_leg1 = t11 * (t12 * t21 - t23 * t26);
+        let t33 = 2.0 / t26;
+        let garm_vx_leg1 = (t5 - (0.24 + 0.26 * c_arm_leg1)) * t33;
+        let t36 = t14 - t13;
+        let t37 = pose[0] + t36;
+        let t38 = t3 + t2;
+        let t39 = pose[1] + t38;
+        let t40 = t39 - 0.24;
+        let t41 = t40 * t40;
+        let t43 = 0.2704 * (t41 + t8);
+        let t48 = t37 * t37 + t41 + t8 - 0.3364 + 0.0676;
+        let t50 = t43 - t48 * t48;
+        ::overact::guard::reach(t50, "leg2")?;
+        let t51 = ::overact::math::sqrt(t50);
+        ::overact::guard::leg(t51, 0.27703140616182853, "leg2")?;
+        let t52 = 2.0 / t51;
+        let garm_vx_leg2 = t37 * t52;
+        let t56 = pose[0] - t4;
+        let t57 = t56 + 0.24;
+        let t58 = t57 * t57;
+        let t60 = 0.2704 * (t58 + t8);
+        let t61 = 1.0 / t60;
+        let t62 = 0.52 * t57;
+        let t63 = pose[1] - t15;
+        let t68 = t58 + t63 * t63 + t8 - 0.3364 + 0.0676;
+        let t71 = t60 - t68 * t68;
+        ::overact::guard::reach(t71, "leg3")?;
+        let t72 = ::overact::math::sqrt(t71);
+        ::overact::guard::leg(t72, 0.27703140616182853, "leg3")?;
+        let minus_c_arm_leg3 = t61 * (t62 * t68 + t23 * t72);
+        let t79 = 2.0 / t72;
+        let garm_vx_leg3 = (t56 - (0.26 * minus_c_arm_leg3 - 0.24)) * t79;
+        let t83 = pose[0] - t36;
+        let t84 = pose[1] - t38;
+        let t85 = t84 + 0.24;
+        let t86 = t85 * t85;
+        let t88 = 0.2704 * (t86 + t8);
+        let t93 = t83 * t83 + t86 + t8 - 0.3364 + 0.0676;
+        let t95 = t88 - t93 * t93;
+        ::overact::guard::reach(t95, "leg4")?;
+        let t96 = ::overact::math::sqrt(t95);
+        ::overact::guard::leg(t96, 0.27703140616182853, "leg4")?;
+        let t97 = 2.0 / t96;
+        let garm_vx_leg4 = t83 * t97;
+        let garm_vy_leg1 = t16 * t33;
+        let t103 = 1.0 / t43;
+        let t104 = 0.52 * t40;
+        let c_arm_leg2 = t103 * (t104 * t48 - t23 * t51);
+        let garm_vy_leg2 = (t39 - (0.24 + 0.26 * c_arm_leg2)) * t52;
+        let garm_vy_leg3 = t63 * t79;
+        let t118 = 1.0 / t88;
+        let t119 = 0.52 * t85;
+        let minus_c_arm_leg4 = t118 * (t119 * t93 + t23 * t96);
+        let garm_vy_leg4 = (t84 - (0.26 * minus_c_arm_leg4 - 0.24)) * t97;
+        let minus_s_arm_leg1 = t11 * (t23 * t21 + t12 * t26);
+        let garm_vz_leg1 = (pose[2] - 0.26 * minus_s_arm_leg1) * t33;
+        let minus_s_arm_leg2 = t103 * (t23 * t48 + t104 * t51);
+        let garm_vz_leg2 = (pose[2] - 0.26 * minus_s_arm_leg2) * t52;
+        let s_arm_leg3 = t61 * (t62 * t72 - t23 * t68);
+        let garm_vz_leg3 = (pose[2] + 0.26 * s_arm_leg3) * t79;
+        let s_arm_leg4 = t118 * (t119 * t96 - t23 * t93);
+        let garm_vz_leg4 = (pose[2] + 0.26 * s_arm_leg4) * t97;
+        let garm_wz_leg1 = t4 * garm_vy_leg1 - t15 * garm_vx_leg1;
+        let garm_wz_leg2 = t36 * garm_vy_leg2 - t38 * garm_vx_leg2;
+        let garm_wz_leg3 = t15 * garm_vx_leg3 - t4 * garm_vy_leg3;
+        let garm_wz_leg4 = t38 * garm_vx_leg4 - t36 * garm_vy_leg4;
         Ok([
-            garm_vx_leg2 * torques[1] - minus_garm_vx_leg1 * torques[0]
-                - minus_garm_vx_leg3 * torques[2] + garm_vx_leg4 * torques[3],
-            -(minus_garm_vy_leg1 * torques[0] + minus_garm_vy_leg2 * torques[1]
-                + minus_garm_vy_leg3 * torques[2] + minus_garm_vy_leg4 * torques[3]),
+            garm_vx_leg1 * torques[0] + garm_vx_leg2 * torques[1]
+                + garm_vx_leg3 * torques[2] + garm_vx_leg4 * torques[3],
+            garm_vy_leg1 * torques[0] + garm_vy_leg2 * torques[1]
+                + garm_vy_leg3 * torques[2] + garm_vy_leg4 * torques[3],
             garm_vz_leg1 * torques[0] + garm_vz_leg2 * torques[1]
-                - minus_garm_vz_leg3 * torques[2] - minus_garm_vz_leg4 * torques[3],
-            garm_wz_leg1 * torques[0] - minus_garm_wz_leg2 * torques[1]
+                + garm_vz_leg3 * torques[2] + garm_vz_leg4 * torques[3],
+            garm_wz_leg1 * torques[0] + garm_wz_leg2 * torques[1]
                 + garm_wz_leg3 * torques[2] + garm_wz_leg4 * torques[3],
         ])
     }
@@ -7580,7 +11214,7 @@ impl Schoenflies4 {
     ///
     /// Output: 4.
     ///
-    /// 1201 operations (477 additions, 712 multiplications, 12 divisions), 0 square roots, 13 trigonometric pairs, 4 signs, 1227 intermediates.
+    /// 1323 operations (545 additions, 754 multiplications, 24 divisions), 8 square roots, 1 trigonometric pairs, 4 signs, 1333 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7590,8 +11224,626 @@ impl Schoenflies4 {
         acceleration: &[f64; 4],
         parameters: &[f64; 76],
     ) -> Result<[f64; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::inverse_dynamics_from_joints(pose, joints, twist, acceleration, parameters)
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
+        let t2 = 0.05 * c_phi;
+        let t3 = 0.08660254037844387 * s_phi;
+        let t4 = t2 - t3;
+        let t5 = pose[0] + t4;
+        let t6 = t5 - 0.24;
+        let t7 = t6 * t6;
+        let t8 = pose[2] * pose[2];
+        let t10 = 0.2704 * (t7 + t8);
+        let t11 = 1.0 / t10;
+        let t12 = 0.52 * t6;
+        let t13 = 0.05 * s_phi;
+        let t14 = 0.08660254037844387 * c_phi;
+        let t15 = t13 + t14;
+        let t16 = pose[1] + t15;
+        let t17 = t16 * t16;
+        let t19 = t7 + t17 + t8;
+        let t21 = t19 - 0.3364 + 0.0676;
+        let t23 = 0.52 * pose[2];
+        let t25 = t10 - t21 * t21;
+        ::overact::guard::reach(t25, "leg1")?;
+        let t26 = ::overact::math::sqrt(t25);
+        ::overact::guard::leg(t26, 0.27703140616182853, "leg1")?;
+        let c_arm_leg1 = t11 * (t12 * t21 - t23 * t26);
+        let t30 = 0.26 * c_arm_leg1;
+        let t32 = t5 - (0.24 + t30);
+        let t33 = 1.0 / t26;
+        let t34 = 2.0 * t33;
+        let garm_vx_leg1 = t32 * t34;
+        let t36 = t15 * acceleration[3];
+        let t38 = t4 * twist[3];
+        let t39 = twist[3] * t38;
+        let t41 = t15 * twist[3];
+        let t42 = twist[0] - t41;
+        let garm_vy_leg1 = t16 * t34;
+        let t45 = twist[1] + t38;
+        let minus_s_arm_leg1 = t11 * (t23 * t21 + t12 * t26);
+        let t52 = 0.26 * minus_s_arm_leg1;
+        let t53 = pose[2] - t52;
+        let garm_vz_leg1 = t53 * t34;
+        let rate_arm_leg1 = garm_vx_leg1 * t42 + garm_vy_leg1 * t45
+            + garm_vz_leg1 * twist[2];
+        let t57 = rate_arm_leg1 * rate_arm_leg1;
+        let t61 = 1.0 - 2.972651605231867 * t17;
+        ::overact::guard::reach(t61, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t61);
+        ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
+        let s_cross_leg1 = 1.9230769230769231 * t26 / (0.58 * c_rod_leg1);
+        let c_cross_leg1 = (t19 - (0.0676 + t17) - 0.3364 * t61) / (0.3016 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t74 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7241379310344827 * t74;
+        let rate_rod_leg1 = grod_vy_leg1 * t45;
+        let t77 = s_armcross_leg1 * rate_rod_leg1;
+        let t79 = 0.52 * t33;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t79;
+        let s_rod_leg1 = 1.7241379310344827 * t16;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let minus_gcross_vy_leg1 = t79
+            * (c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t74)
+                - minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t74));
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t79;
+        let minus_rate_cross_leg1 = minus_gcross_vx_leg1 * t42
+            + minus_gcross_vy_leg1 * t45 + minus_gcross_vz_leg1 * twist[2];
+        let t99 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t101 = c_armcross_leg1 * rate_rod_leg1;
+        let t103 = t77 * t77 + t99 + t101 * t101;
+        let t107 = t16 * (minus_rate_cross_leg1 * t77);
+        let t110 = acceleration[0] - t36 - t39 + t30 * t57 + t32 * t103 + t107 + t107;
+        let t112 = t4 * acceleration[3];
+        let t114 = twist[3] * t41;
+        let t116 = t16 * minus_rate_cross_leg1;
+        let t120 = acceleration[1] + t112 - t114
+            - (minus_rate_cross_leg1 * t116 - t16 * t103);
+        let t127 = t16 * (minus_rate_cross_leg1 * t101);
+        let t130 = acceleration[2] + t52 * t57 + t53 * t103 + t127 + t127;
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t110 + garm_vy_leg1 * t120
+            + garm_vz_leg1 * t130;
+        let t134 = 9.81 * c_arm_leg1;
+        let t137 = 9.81 * minus_s_arm_leg1;
+        let t146 = parameters[0] * rate_dot_arm_leg1 - parameters[1] * t134
+            - parameters[2] * t137 + parameters[3] * rate_dot_arm_leg1
+            + parameters[4] * rate_arm_leg1
+            + ::overact::math::signed(parameters[5], rate_arm_leg1) + parameters[6];
+        let t148 = 1.7241379310344827 * t116;
+        let t149 = c_rod_leg1 * minus_rate_cross_leg1;
+        let t150 = t148 * t149;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t120;
+        let t152 = t150 - rate_dot_rod_leg1;
+        let t154 = t149 * t149;
+        let t155 = rate_rod_leg1 * rate_rod_leg1;
+        let minus_rate_dot_cross_leg1 = minus_gcross_vx_leg1 * t110
+            + minus_gcross_vy_leg1 * t120 + minus_gcross_vz_leg1 * t130;
+        let t164 = c_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t168 = t137 - 0.26 * t57;
+        let t171 = 0.26 * rate_dot_arm_leg1 - t134;
+        let t173 = c_cross_leg1 * t168 + s_cross_leg1 * t171;
+        let t174 = c_rod_leg1 * t173;
+        let t177 = 0.8620689655172413 * t26
+            * (parameters[14] * t152 - parameters[13] * (t154 + t155)
+                - parameters[15] * t164 + parameters[16] * t174);
+        let t180 = t150 + rate_dot_rod_leg1;
+        let t183 = 2.972651605231867 * (t116 * t116);
+        let t187 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t190 = s_rod_leg1 * t173;
+        let t193 = 0.4482758620689655 * (t16 * s_cross_leg1)
+            * (parameters[13] * t180 - parameters[14] * (t183 + t155)
+                + parameters[15] * t187 - parameters[16] * t190);
+        let t196 = rate_rod_leg1 * t148;
+        let t197 = t196 - t164;
+        let t198 = t196 + t197;
+        let t200 = rate_rod_leg1 * t149;
+        let t201 = t187 + t200;
+        let t202 = t200 + t201;
+        let t209 = c_cross_leg1 * t171 - s_cross_leg1 * t168;
+        let t213 = t177 - t193
+            + 0.26 * c_cross_leg1
+                * (parameters[13] * t198 + parameters[14] * t202 + parameters[15] * t99
+                    + parameters[16] * t209);
+        let t214 = t146 + t213;
+        let t225 = parameters[8] * t198 - parameters[7] * t201 + parameters[9] * t180
+            + parameters[10] * t200 + parameters[11] * (t154 - t155);
+        let t242 = parameters[9] * (t155 - t183)
+            - (parameters[7] * t196 + parameters[8] * t202) + parameters[10] * t197
+            - parameters[11] * t152;
+        let t250 = s_rod_leg1
+            * (t225 - parameters[12] * t200 - parameters[14] * t209
+                + parameters[15] * t190)
+            + c_rod_leg1
+                * (t242 + parameters[12] * t196 + parameters[13] * t209
+                    + parameters[15] * t174);
+        let t253 = t14 - t13;
+        let t254 = pose[0] + t253;
+        let t255 = t3 + t2;
+        let t256 = pose[1] + t255;
+        let t257 = t256 - 0.24;
+        let t258 = t257 * t257;
+        let t260 = 0.2704 * (t258 + t8);
+        let t261 = t254 * t254;
+        let t263 = t261 + t258 + t8;
+        let t265 = t263 - 0.3364 + 0.0676;
+        let t267 = t260 - t265 * t265;
+        ::overact::guard::reach(t267, "leg2")?;
+        let t268 = ::overact::math::sqrt(t267);
+        ::overact::guard::leg(t268, 0.27703140616182853, "leg2")?;
+        let t269 = 1.0 / t268;
+        let t270 = 2.0 * t269;
+        let garm_vx_leg2 = t254 * t270;
+        let t272 = t255 * acceleration[3];
+        let t274 = t253 * twist[3];
+        let t275 = twist[3] * t274;
+        let t277 = 0.52 * t269;
+        let t278 = 1.0 / t260;
+        let t279 = 0.52 * t257;
+        let c_arm_leg2 = t278 * (t279 * t265 - t23 * t268);
+        let minus_s_rod_leg2 = 1.7241379310344827 * t254;
+        let t288 = 1.0 - 2.972651605231867 * t261;
+        ::overact::guard::reach(t288, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t288);
+        ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
+        let c_cross_leg2 = (t263 - (0.0676 + t261) - 0.3364 * t288)
+            / (0.3016 * c_rod_leg2);
+        let minus_s_arm_leg2 = t278 * (t23 * t265 + t279 * t268);
+        let s_cross_leg2 = 1.9230769230769231 * t268 / (0.58 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t305 = 1.0 / c_rod_leg2;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let minus_gcross_vx_leg2 = t277
+            * (c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t305)
+                - minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t305));
+        let t316 = t255 * twist[3];
+        let t317 = twist[0] - t316;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t277;
+        let t320 = twist[1] + t274;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t277;
+        let minus_rate_cross_leg2 = minus_gcross_vx_leg2 * t317
+            + minus_gcross_vy_leg2 * t320 + minus_gcross_vz_leg2 * twist[2];
+        let t326 = t254 * minus_rate_cross_leg2;
+        let t328 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let minus_grod_vx_leg2 = 1.7241379310344827 * t305;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t317;
+        let t331 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t334 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t336 = t328 + t331 * t331 + t334 * t334;
+        let t339 = acceleration[0] - t272 - t275
+            - (minus_rate_cross_leg2 * t326 - t254 * t336);
+        let t341 = 0.26 * c_arm_leg2;
+        let t343 = t256 - (0.24 + t341);
+        let garm_vy_leg2 = t343 * t270;
+        let t345 = t253 * acceleration[3];
+        let t347 = twist[3] * t316;
+        let t352 = 0.26 * minus_s_arm_leg2;
+        let t353 = pose[2] - t352;
+        let garm_vz_leg2 = t353 * t270;
+        let rate_arm_leg2 = garm_vx_leg2 * t317 + garm_vy_leg2 * t320
+            + garm_vz_leg2 * twist[2];
+        let t357 = rate_arm_leg2 * rate_arm_leg2;
+        let t362 = t254 * (minus_rate_cross_leg2 * t331);
+        let t365 = acceleration[1] + t345 - t347 + t341 * t357 + t343 * t336 + t362
+            + t362;
+        let t372 = t254 * (minus_rate_cross_leg2 * t334);
+        let t375 = acceleration[2] + t352 * t357 + t353 * t336 + t372 + t372;
+        let rate_dot_arm_leg2 = garm_vx_leg2 * t339 + garm_vy_leg2 * t365
+            + garm_vz_leg2 * t375;
+        let t379 = 9.81 * c_arm_leg2;
+        let t382 = 9.81 * minus_s_arm_leg2;
+        let t391 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t379
+            - parameters[19] * t382 + parameters[20] * rate_dot_arm_leg2
+            + parameters[21] * rate_arm_leg2
+            + ::overact::math::signed(parameters[22], rate_arm_leg2) + parameters[23];
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t339;
+        let t394 = 1.7241379310344827 * t326;
+        let t395 = c_rod_leg2 * minus_rate_cross_leg2;
+        let t396 = t394 * t395;
+        let t397 = minus_rate_dot_rod_leg2 - t396;
+        let t399 = t395 * t395;
+        let t400 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let minus_rate_dot_cross_leg2 = minus_gcross_vx_leg2 * t339
+            + minus_gcross_vy_leg2 * t365 + minus_gcross_vz_leg2 * t375;
+        let t409 = c_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t413 = t382 - 0.26 * t357;
+        let t416 = 0.26 * rate_dot_arm_leg2 - t379;
+        let t418 = c_cross_leg2 * t413 + s_cross_leg2 * t416;
+        let t419 = c_rod_leg2 * t418;
+        let t422 = 0.8620689655172413 * t268
+            * (parameters[31] * t397 - parameters[30] * (t399 + t400)
+                - parameters[32] * t409 + parameters[33] * t419);
+        let t425 = minus_s_rod_leg2 * t418;
+        let t427 = t396 + minus_rate_dot_rod_leg2;
+        let t430 = 2.972651605231867 * (t326 * t326);
+        let t434 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t438 = 0.4482758620689655 * (t254 * s_cross_leg2)
+            * (parameters[33] * t425
+                - (parameters[30] * t427 + parameters[31] * (t430 + t400)
+                    + parameters[32] * t434));
+        let t441 = minus_rate_rod_leg2 * t395;
+        let t442 = t434 + t441;
+        let t443 = t441 + t442;
+        let t445 = minus_rate_rod_leg2 * t394;
+        let t446 = t445 - t409;
+        let t447 = t445 + t446;
+        let t454 = c_cross_leg2 * t416 - s_cross_leg2 * t413;
+        let t458 = t422 + t438
+            - 0.26 * c_cross_leg2
+                * (parameters[31] * t443 - parameters[30] * t447 - parameters[32] * t328
+                    - parameters[33] * t454);
+        let t459 = t391 + t458;
+        let t470 = parameters[25] * t443 - parameters[24] * t445
+            + parameters[26] * (t400 - t430) + parameters[27] * t446
+            - parameters[28] * t397;
+        let t487 = parameters[24] * t442 + parameters[25] * t447 - parameters[26] * t427
+            - parameters[27] * t441 + parameters[28] * (t399 - t400);
+        let t495 = c_rod_leg2
+            * (t470 + parameters[29] * t445 + parameters[30] * t454
+                + parameters[32] * t419)
+            - minus_s_rod_leg2
+                * (t487 + parameters[29] * t441 - parameters[31] * t454
+                    - parameters[32] * t425);
+        let t507 = parameters[24] * t396 + parameters[25] * (t430 - t399)
+            + parameters[26] * t434 - parameters[27] * t396 - parameters[28] * t409;
+        let t513 = t507 - parameters[29] * minus_rate_dot_rod_leg2
+            + parameters[30] * t425 - parameters[31] * t419;
+        let t517 = pose[0] - t4;
+        let t518 = t517 + 0.24;
+        let t519 = t518 * t518;
+        let t521 = 0.2704 * (t519 + t8);
+        let t522 = 1.0 / t521;
+        let t523 = 0.52 * t518;
+        let t524 = pose[1] - t15;
+        let t525 = t524 * t524;
+        let t527 = t519 + t525 + t8;
+        let t529 = t527 - 0.3364 + 0.0676;
+        let t532 = t521 - t529 * t529;
+        ::overact::guard::reach(t532, "leg3")?;
+        let t533 = ::overact::math::sqrt(t532);
+        ::overact::guard::leg(t533, 0.27703140616182853, "leg3")?;
+        let minus_c_arm_leg3 = t522 * (t523 * t529 + t23 * t533);
+        let t537 = 0.26 * minus_c_arm_leg3;
+        let t539 = t517 - (t537 - 0.24);
+        let t540 = 1.0 / t533;
+        let t541 = 2.0 * t540;
+        let garm_vx_leg3 = t539 * t541;
+        let t545 = twist[0] + t41;
+        let garm_vy_leg3 = t524 * t541;
+        let t548 = twist[1] - t38;
+        let s_arm_leg3 = t522 * (t523 * t533 - t23 * t529);
+        let t555 = 0.26 * s_arm_leg3;
+        let t556 = pose[2] + t555;
+        let garm_vz_leg3 = t556 * t541;
+        let rate_arm_leg3 = garm_vx_leg3 * t545 + garm_vy_leg3 * t548
+            + garm_vz_leg3 * twist[2];
+        let t560 = rate_arm_leg3 * rate_arm_leg3;
+        let t565 = 1.0 - 2.972651605231867 * t525;
+        ::overact::guard::reach(t565, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t565);
+        ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
+        let c_cross_leg3 = (t527 - (0.0676 + t525) - 0.3364 * t565)
+            / (0.3016 * c_rod_leg3);
+        let s_cross_leg3 = 1.9230769230769231 * t533 / (0.58 * c_rod_leg3);
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t577 = 1.0 / c_rod_leg3;
+        let minus_grod_vy_leg3 = 1.7241379310344827 * t577;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t548;
+        let t580 = s_armcross_leg3 * minus_rate_rod_leg3;
+        let t582 = 0.52 * t540;
+        let gcross_vz_leg3 = s_arm_leg3 * t582;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t582;
+        let minus_s_rod_leg3 = 1.7241379310344827 * t524;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t582
+            * (minus_c_arm_leg3 * (minus_s_rod_leg3 * minus_c_armcross_leg3 * t577)
+                + s_arm_leg3 * (minus_s_rod_leg3 * s_armcross_leg3 * t577));
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * t545 + minus_gcross_vy_leg3 * t548);
+        let t602 = rate_cross_leg3 * rate_cross_leg3;
+        let t604 = minus_c_armcross_leg3 * minus_rate_rod_leg3;
+        let t606 = t580 * t580 + t602 + t604 * t604;
+        let t610 = t524 * (rate_cross_leg3 * t580);
+        let t613 = acceleration[0] + t36 + t39 + t537 * t560 + t539 * t606 + t610 + t610;
+        let t617 = t524 * rate_cross_leg3;
+        let t621 = acceleration[1] - t112 + t114
+            - (rate_cross_leg3 * t617 - t524 * t606);
+        let t628 = t524 * (rate_cross_leg3 * t604);
+        let t631 = acceleration[2] - (t555 * t560 - t556 * t606 - t628 - t628);
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t613 + garm_vy_leg3 * t621
+            + garm_vz_leg3 * t631;
+        let t635 = 9.81 * minus_c_arm_leg3;
+        let t638 = 9.81 * s_arm_leg3;
+        let t647 = parameters[34] * rate_dot_arm_leg3 + parameters[35] * t635
+            + parameters[36] * t638 + parameters[37] * rate_dot_arm_leg3
+            + parameters[38] * rate_arm_leg3
+            + ::overact::math::signed(parameters[39], rate_arm_leg3) + parameters[40];
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t621;
+        let t650 = 1.7241379310344827 * t617;
+        let t651 = c_rod_leg3 * rate_cross_leg3;
+        let t652 = t650 * t651;
+        let t653 = minus_rate_dot_rod_leg3 - t652;
+        let t655 = t651 * t651;
+        let t656 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * t631
+            - (minus_gcross_vx_leg3 * t613 + minus_gcross_vy_leg3 * t621);
+        let t665 = c_rod_leg3 * rate_dot_cross_leg3;
+        let t669 = t635 + 0.26 * rate_dot_arm_leg3;
+        let t672 = t638 + 0.26 * t560;
+        let t674 = s_cross_leg3 * t669 - c_cross_leg3 * t672;
+        let t675 = c_rod_leg3 * t674;
+        let t678 = 0.8620689655172413 * t533
+            * (parameters[48] * t653 - parameters[47] * (t655 + t656)
+                + parameters[49] * t665 + parameters[50] * t675);
+        let t681 = minus_s_rod_leg3 * rate_dot_cross_leg3;
+        let t683 = t652 + minus_rate_dot_rod_leg3;
+        let t686 = 2.972651605231867 * (t617 * t617);
+        let t691 = minus_s_rod_leg3 * t674;
+        let t694 = 0.4482758620689655 * (t524 * s_cross_leg3)
+            * (parameters[49] * t681
+                - (parameters[47] * t683 + parameters[48] * (t686 + t656))
+                + parameters[50] * t691);
+        let t697 = minus_rate_rod_leg3 * t650;
+        let t698 = t665 - t697;
+        let t699 = t697 - t698;
+        let t701 = minus_rate_rod_leg3 * t651;
+        let t702 = t681 + t701;
+        let t703 = t701 + t702;
+        let t710 = s_cross_leg3 * t672 + c_cross_leg3 * t669;
+        let t714 = t678 + t694
+            - 0.26 * c_cross_leg3
+                * (parameters[47] * t699 - parameters[48] * t703 - parameters[49] * t602
+                    - parameters[50] * t710);
+        let t715 = t647 + t714;
+        let t726 = parameters[41] * t697 - parameters[42] * t703
+            + parameters[43] * (t656 - t686) + parameters[44] * t698
+            - parameters[45] * t653;
+        let t743 = parameters[44] * t701
+            - (parameters[41] * t702 + parameters[42] * t699 + parameters[43] * t683)
+            + parameters[45] * (t655 - t656);
+        let t751 = c_rod_leg3
+            * (t726 - parameters[46] * t697 + parameters[47] * t710
+                + parameters[49] * t675)
+            - minus_s_rod_leg3
+                * (t743 - parameters[46] * t701 - parameters[48] * t710
+                    - parameters[49] * t691);
+        let t754 = garm_vx_leg1 * t214 - minus_gcross_vx_leg1 * t250
+            + garm_vx_leg2 * t459 - minus_gcross_vx_leg2 * t495
+            - minus_grod_vx_leg2 * t513 + garm_vx_leg3 * t715
+            - minus_gcross_vx_leg3 * t751;
+        let t755 = pose[0] - t253;
+        let t756 = pose[1] - t255;
+        let t757 = t756 + 0.24;
+        let t758 = t757 * t757;
+        let t760 = 0.2704 * (t758 + t8);
+        let t761 = t755 * t755;
+        let t763 = t761 + t758 + t8;
+        let t765 = t763 - 0.3364 + 0.0676;
+        let t767 = t760 - t765 * t765;
+        ::overact::guard::reach(t767, "leg4")?;
+        let t768 = ::overact::math::sqrt(t767);
+        ::overact::guard::leg(t768, 0.27703140616182853, "leg4")?;
+        let t769 = 1.0 / t768;
+        let t770 = 2.0 * t769;
+        let garm_vx_leg4 = t755 * t770;
+        let t774 = 1.0 / t760;
+        let t775 = 0.52 * t757;
+        let s_arm_leg4 = t774 * (t775 * t768 - t23 * t765);
+        let t780 = 0.52 * t769;
+        let gcross_vz_leg4 = s_arm_leg4 * t780;
+        let minus_c_arm_leg4 = t774 * (t775 * t765 + t23 * t768);
+        let s_rod_leg4 = 1.7241379310344827 * t755;
+        let t791 = 1.0 - 2.972651605231867 * t761;
+        ::overact::guard::reach(t791, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t791);
+        ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
+        let c_cross_leg4 = (t763 - (0.0676 + t761) - 0.3364 * t791)
+            / (0.3016 * c_rod_leg4);
+        let s_cross_leg4 = 1.9230769230769231 * t768 / (0.58 * c_rod_leg4);
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let t804 = 1.0 / c_rod_leg4;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t780
+            * (minus_c_arm_leg4 * (s_rod_leg4 * minus_c_armcross_leg4 * t804)
+                + s_arm_leg4 * (s_rod_leg4 * s_armcross_leg4 * t804));
+        let t815 = twist[0] + t316;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t780;
+        let t818 = twist[1] - t274;
+        let rate_cross_leg4 = gcross_vz_leg4 * twist[2]
+            - (minus_gcross_vx_leg4 * t815 + minus_gcross_vy_leg4 * t818);
+        let t822 = t755 * rate_cross_leg4;
+        let t824 = rate_cross_leg4 * rate_cross_leg4;
+        let grod_vx_leg4 = 1.7241379310344827 * t804;
+        let rate_rod_leg4 = grod_vx_leg4 * t815;
+        let t827 = s_armcross_leg4 * rate_rod_leg4;
+        let t830 = minus_c_armcross_leg4 * rate_rod_leg4;
+        let t832 = t824 + t827 * t827 + t830 * t830;
+        let t835 = acceleration[0] + t272 + t275
+            - (rate_cross_leg4 * t822 - t755 * t832);
+        let t837 = 0.26 * minus_c_arm_leg4;
+        let t839 = t756 - (t837 - 0.24);
+        let garm_vy_leg4 = t839 * t770;
+        let t846 = 0.26 * s_arm_leg4;
+        let t847 = pose[2] + t846;
+        let garm_vz_leg4 = t847 * t770;
+        let rate_arm_leg4 = garm_vx_leg4 * t815 + garm_vy_leg4 * t818
+            + garm_vz_leg4 * twist[2];
+        let t851 = rate_arm_leg4 * rate_arm_leg4;
+        let t856 = t755 * (rate_cross_leg4 * t827);
+        let t859 = acceleration[1] - t345 + t347 + t837 * t851 + t839 * t832 + t856
+            + t856;
+        let t866 = t755 * (rate_cross_leg4 * t830);
+        let t869 = acceleration[2] - (t846 * t851 - t847 * t832 - t866 - t866);
+        let rate_dot_arm_leg4 = garm_vx_leg4 * t835 + garm_vy_leg4 * t859
+            + garm_vz_leg4 * t869;
+        let t873 = 9.81 * minus_c_arm_leg4;
+        let t876 = 9.81 * s_arm_leg4;
+        let t885 = parameters[51] * rate_dot_arm_leg4 + parameters[52] * t873
+            + parameters[53] * t876 + parameters[54] * rate_dot_arm_leg4
+            + parameters[55] * rate_arm_leg4
+            + ::overact::math::signed(parameters[56], rate_arm_leg4) + parameters[57];
+        let t887 = 1.7241379310344827 * t822;
+        let t888 = c_rod_leg4 * rate_cross_leg4;
+        let t889 = t887 * t888;
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t835;
+        let t891 = t889 - rate_dot_rod_leg4;
+        let t893 = t888 * t888;
+        let t894 = rate_rod_leg4 * rate_rod_leg4;
+        let rate_dot_cross_leg4 = gcross_vz_leg4 * t869
+            - (minus_gcross_vx_leg4 * t835 + minus_gcross_vy_leg4 * t859);
+        let t903 = c_rod_leg4 * rate_dot_cross_leg4;
+        let t907 = t873 + 0.26 * rate_dot_arm_leg4;
+        let t910 = t876 + 0.26 * t851;
+        let t912 = s_cross_leg4 * t907 - c_cross_leg4 * t910;
+        let t913 = c_rod_leg4 * t912;
+        let t916 = 0.8620689655172413 * t768
+            * (parameters[65] * t891 - parameters[64] * (t893 + t894)
+                + parameters[66] * t903 + parameters[67] * t913);
+        let t919 = t889 + rate_dot_rod_leg4;
+        let t922 = 2.972651605231867 * (t822 * t822);
+        let t926 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t929 = s_rod_leg4 * t912;
+        let t932 = 0.4482758620689655 * (t755 * s_cross_leg4)
+            * (parameters[64] * t919 - parameters[65] * (t922 + t894)
+                - parameters[66] * t926 - parameters[67] * t929);
+        let t935 = rate_rod_leg4 * t887;
+        let t936 = t903 - t935;
+        let t937 = t935 - t936;
+        let t939 = rate_rod_leg4 * t888;
+        let t940 = t926 + t939;
+        let t941 = t939 + t940;
+        let t948 = s_cross_leg4 * t910 + c_cross_leg4 * t907;
+        let t952 = t916 - t932
+            - 0.26 * c_cross_leg4
+                * (parameters[64] * t937 + parameters[65] * t941 - parameters[66] * t824
+                    - parameters[67] * t948);
+        let t953 = t885 + t952;
+        let t964 = parameters[58] * t940 - parameters[59] * t937 + parameters[60] * t919
+            - parameters[61] * t939 + parameters[62] * (t893 - t894);
+        let t981 = parameters[58] * t935 + parameters[59] * t941
+            + parameters[60] * (t894 - t922) + parameters[61] * t936
+            - parameters[62] * t891;
+        let t989 = s_rod_leg4
+            * (t964 + parameters[63] * t939 - parameters[65] * t948
+                + parameters[66] * t929)
+            + c_rod_leg4
+                * (t981 - parameters[63] * t935 + parameters[64] * t948
+                    + parameters[66] * t913);
+        let t1001 = parameters[59] * (t922 - t893) - parameters[58] * t889
+            + parameters[60] * t926 + parameters[61] * t889 + parameters[62] * t903;
+        let t1007 = t1001 + parameters[63] * rate_dot_rod_leg4 - parameters[64] * t929
+            - parameters[65] * t913;
+        let t1013 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t1015 = twist[3] * twist[3];
+        let t1025 = parameters[71] * t1013
+            - (parameters[69] * t1015 + acceleration[3] * parameters[70])
+            - parameters[73] * t1015 - acceleration[3] * parameters[74]
+            + parameters[75] * t1013;
+        let t1032 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t1040 = acceleration[3] * parameters[69] - parameters[70] * t1015
+            + parameters[71] * t1032 + acceleration[3] * parameters[73]
+            - parameters[74] * t1015 + parameters[75] * t1032;
+        let t1043 = t754 + garm_vx_leg4 * t953 - minus_gcross_vx_leg4 * t989
+            + grod_vx_leg4 * t1007 + c_phi * t1025 - s_phi * t1040;
+        let t1050 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t1050, 19.507470815645043, "actuators")?;
+        let t1051 = 1.0 / t1050;
+        let t1059 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3 + garm_vx_leg4 * garm_vy_leg4;
+        let t1060 = t1059 * t1051;
+        let t1069 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t1059 * t1060;
+        ::overact::guard::platform(t1069, 16.505615550045768, "actuators")?;
+        let t1070 = 1.0 / t1069;
+        let t1083 = parameters[8] * (t183 - t154) - parameters[7] * t150
+            - parameters[9] * t187 + parameters[10] * t150 - parameters[11] * t164;
+        let t1089 = t1083 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t190
+            - parameters[14] * t174;
+        let t1108 = parameters[41] * t652 + parameters[42] * (t686 - t655)
+            - parameters[43] * t681 - parameters[44] * t652 + parameters[45] * t665;
+        let t1114 = t1108 - parameters[46] * minus_rate_dot_rod_leg3
+            + parameters[47] * t691 - parameters[48] * t675;
+        let t1117 = garm_vy_leg1 * t214 - minus_gcross_vy_leg1 * t250
+            + grod_vy_leg1 * t1089 + garm_vy_leg2 * t459 - minus_gcross_vy_leg2 * t495
+            + garm_vy_leg3 * t715 - minus_gcross_vy_leg3 * t751
+            - minus_grod_vy_leg3 * t1114;
+        let t1127 = t1117 + garm_vy_leg4 * t953 - minus_gcross_vy_leg4 * t989
+            + s_phi * t1025 + c_phi * t1040 - t1043 * t1060;
+        let t1142 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3 + garm_vx_leg4 * garm_vz_leg4;
+        let t1143 = t1142 * t1051;
+        let t1145 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 + garm_vy_leg4 * garm_vz_leg4 - t1059 * t1143;
+        let t1146 = t1145 * t1070;
+        let t1157 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 + garm_vz_leg4 * garm_vz_leg4 - t1142 * t1143
+            - t1145 * t1146;
+        ::overact::guard::platform(t1157, 31.11733818900116, "actuators")?;
+        let t1158 = 1.0 / t1157;
+        let t1169 = garm_vz_leg1 * t214 - minus_gcross_vz_leg1 * t250
+            + garm_vz_leg2 * t459 - minus_gcross_vz_leg2 * t495 + garm_vz_leg3 * t715
+            + gcross_vz_leg3 * t751;
+        let t1174 = acceleration[2] + 9.81;
+        let t1180 = t1169 + garm_vz_leg4 * t953 + gcross_vz_leg4 * t989
+            + parameters[71] * t1174 + parameters[75] * t1174 - t1043 * t1143;
+        let t1182 = t1180 - t1146 * t1127;
+        let garm_wz_leg1 = t4 * garm_vy_leg1 - t15 * garm_vx_leg1;
+        let garm_wz_leg2 = t253 * garm_vy_leg2 - t255 * garm_vx_leg2;
+        let garm_wz_leg3 = t15 * garm_vx_leg3 - t4 * garm_vy_leg3;
+        let garm_wz_leg4 = t255 * garm_vx_leg4 - t253 * garm_vy_leg4;
+        let t1209 = garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * garm_wz_leg2
+            + garm_vx_leg3 * garm_wz_leg3 + garm_vx_leg4 * garm_wz_leg4;
+        let t1210 = t1209 * t1051;
+        let t1221 = garm_vy_leg1 * garm_wz_leg1 + garm_vy_leg2 * garm_wz_leg2
+            + garm_vy_leg3 * garm_wz_leg3 + garm_vy_leg4 * garm_wz_leg4 - t1059 * t1210;
+        let t1222 = t1221 * t1070;
+        let t1224 = garm_vz_leg1 * garm_wz_leg1 + garm_vz_leg2 * garm_wz_leg2
+            + garm_vz_leg3 * garm_wz_leg3 + garm_vz_leg4 * garm_wz_leg4 - t1142 * t1210
+            - t1145 * t1222;
+        let t1225 = t1224 * t1158;
+        let t1236 = garm_wz_leg1 * garm_wz_leg1 + garm_wz_leg2 * garm_wz_leg2
+            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t1209 * t1210
+            - t1221 * t1222;
+        let t1238 = t1236 - t1224 * t1225;
+        ::overact::guard::platform(t1238, 0.35106548211906174, "actuators")?;
+        let gcross_wz_leg1 = t15 * minus_gcross_vx_leg1 - t4 * minus_gcross_vy_leg1;
+        let grod_wz_leg1 = t4 * grod_vy_leg1;
+        let gcross_wz_leg2 = t255 * minus_gcross_vx_leg2 - t253 * minus_gcross_vy_leg2;
+        let grod_wz_leg2 = t255 * minus_grod_vx_leg2;
+        let t1257 = garm_wz_leg1 * t214 + gcross_wz_leg1 * t250 + grod_wz_leg1 * t1089
+            + garm_wz_leg2 * t459 + gcross_wz_leg2 * t495 + grod_wz_leg2 * t513;
+        let gcross_wz_leg3 = t4 * minus_gcross_vy_leg3 - t15 * minus_gcross_vx_leg3;
+        let grod_wz_leg3 = t4 * minus_grod_vy_leg3;
+        let gcross_wz_leg4 = t253 * minus_gcross_vy_leg4 - t255 * minus_gcross_vx_leg4;
+        let grod_wz_leg4 = t255 * grod_vx_leg4;
+        let t1277 = t1257 + garm_wz_leg3 * t715 + gcross_wz_leg3 * t751
+            + grod_wz_leg3 * t1114 + garm_wz_leg4 * t953 + gcross_wz_leg4 * t989
+            + grod_wz_leg4 * t1007;
+        let t1288 = acceleration[3] * parameters[68] + parameters[69] * t1032
+            - parameters[70] * t1013 + acceleration[3] * parameters[72]
+            + parameters[73] * t1032 - parameters[74] * t1013;
+        let t1296 = (t1277 + t1288 - t1043 * t1210 - t1222 * t1127 - t1225 * t1182)
+            / t1238;
+        let t1298 = t1158 * t1182 - t1225 * t1296;
+        let t1302 = t1070 * t1127 - t1146 * t1298 - t1222 * t1296;
+        let t1308 = t1043 * t1051 - t1060 * t1302 - t1143 * t1298 - t1210 * t1296;
+        Ok([
+            garm_vx_leg1 * t1308 + garm_vy_leg1 * t1302 + garm_vz_leg1 * t1298
+                + garm_wz_leg1 * t1296,
+            garm_vx_leg2 * t1308 + garm_vy_leg2 * t1302 + garm_vz_leg2 * t1298
+                + garm_wz_leg2 * t1296,
+            garm_vx_leg3 * t1308 + garm_vy_leg3 * t1302 + garm_vz_leg3 * t1298
+                + garm_wz_leg3 * t1296,
+            garm_vx_leg4 * t1308 + garm_vy_leg4 * t1302 + garm_vz_leg4 * t1298
+                + garm_wz_leg4 * t1296,
+        ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -8176,7 +12428,7 @@ impl Schoenflies4 {
     ///
     /// Output: 4.
     ///
-    /// 1306 operations (529 additions, 765 multiplications, 12 divisions), 0 square roots, 13 trigonometric pairs, 4 signs, 1332 intermediates.
+    /// 1428 operations (597 additions, 807 multiplications, 24 divisions), 8 square roots, 1 trigonometric pairs, 4 signs, 1438 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -8188,580 +12440,664 @@ impl Schoenflies4 {
         start: &[f64; 4],
     ) -> Result<[f64; 4], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
-        let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        ::overact::guard::leg(c_rod_leg1, 0.9887897213061891, "leg1")?;
-        let t12 = s_armcross_leg1 * c_rod_leg1;
-        let t13 = c_armcross_leg1 * c_rod_leg1;
-        let t16 = s_arm_leg1 * t13 - c_arm_leg1 * t12;
-        ::overact::guard::leg(t16, 0.9185391450939739, "leg1")?;
-        let t17 = 1.0 / t16;
-        let t18 = 3.8461538461538463 * t17;
-        let garm_vz_leg1 = t12 * t18;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
-        let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        ::overact::guard::leg(c_rod_leg2, 0.988789721306189, "leg2")?;
-        let t33 = s_armcross_leg2 * c_rod_leg2;
-        let t34 = c_armcross_leg2 * c_rod_leg2;
-        let t37 = s_arm_leg2 * t34 - c_arm_leg2 * t33;
-        ::overact::guard::leg(t37, 0.9185391450939737, "leg2")?;
-        let t38 = 1.0 / t37;
-        let t39 = 3.8461538461538463 * t38;
-        let garm_vz_leg2 = t33 * t39;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
-        let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        ::overact::guard::leg(c_rod_leg3, 0.9887897213061891, "leg3")?;
-        let t55 = s_armcross_leg3 * c_rod_leg3;
-        let t57 = c_armcross_leg3 * c_rod_leg3;
-        let t59 = c_arm_leg3 * t55 - s_arm_leg3 * t57;
-        ::overact::guard::leg(t59, 0.9185391450939737, "leg3")?;
-        let t60 = 1.0 / t59;
-        let t61 = 3.8461538461538463 * t60;
-        let minus_garm_vz_leg3 = t55 * t61;
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let (s_cross_leg4, c_cross_leg4) = ::overact::math::sin_cos(joints[10]);
-        let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
-        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        ::overact::guard::leg(c_rod_leg4, 0.9887897213061891, "leg4")?;
-        let t77 = s_armcross_leg4 * c_rod_leg4;
-        let t79 = c_armcross_leg4 * c_rod_leg4;
-        let t81 = c_arm_leg4 * t77 - s_arm_leg4 * t79;
-        ::overact::guard::leg(t81, 0.9185391450939737, "leg4")?;
-        let t82 = 1.0 / t81;
-        let t83 = 3.8461538461538463 * t82;
-        let minus_garm_vz_leg4 = t77 * t83;
-        let garm_vx_leg2 = s_rod_leg2 * t39;
-        let minus_garm_vx_leg1 = t13 * t18;
-        let minus_garm_vx_leg3 = t57 * t61;
-        let garm_vx_leg4 = s_rod_leg4 * t83;
-        let t97 = garm_vx_leg2 * garm_vz_leg2 - minus_garm_vx_leg1 * garm_vz_leg1
-            + minus_garm_vx_leg3 * minus_garm_vz_leg3
-            - garm_vx_leg4 * minus_garm_vz_leg4;
-        let t104 = minus_garm_vx_leg1 * minus_garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
-            + minus_garm_vx_leg3 * minus_garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
-        ::overact::guard::platform(t104, 19.50747081825307, "actuators")?;
-        ::overact::guard::platform(t104, 19.50747081825307, "actuators")?;
-        ::overact::guard::platform(t104, 19.50747081825307, "actuators")?;
+        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
+        let t2 = 0.05 * c_phi;
+        let t3 = 0.08660254037844387 * s_phi;
+        let t4 = t2 - t3;
+        let t5 = pose[0] + t4;
+        let t6 = t5 - 0.24;
+        let t7 = t6 * t6;
+        let t8 = pose[2] * pose[2];
+        let t10 = 0.2704 * (t7 + t8);
+        let t11 = 1.0 / t10;
+        let t12 = 0.52 * t6;
+        let t13 = 0.05 * s_phi;
+        let t14 = 0.08660254037844387 * c_phi;
+        let t15 = t13 + t14;
+        let t16 = pose[1] + t15;
+        let t17 = t16 * t16;
+        let t19 = t7 + t17 + t8;
+        let t21 = t19 - 0.3364 + 0.0676;
+        let t23 = 0.52 * pose[2];
+        let t25 = t10 - t21 * t21;
+        ::overact::guard::reach(t25, "leg1")?;
+        let t26 = ::overact::math::sqrt(t25);
+        ::overact::guard::leg(t26, 0.27703140616182853, "leg1")?;
+        let c_arm_leg1 = t11 * (t12 * t21 - t23 * t26);
+        let t30 = 0.26 * c_arm_leg1;
+        let t32 = t5 - (0.24 + t30);
+        let t33 = 1.0 / t26;
+        let t34 = 2.0 * t33;
+        let garm_vx_leg1 = t32 * t34;
+        let t37 = t14 - t13;
+        let t38 = pose[0] + t37;
+        let t39 = t3 + t2;
+        let t40 = pose[1] + t39;
+        let t41 = t40 - 0.24;
+        let t42 = t41 * t41;
+        let t44 = 0.2704 * (t42 + t8);
+        let t45 = t38 * t38;
+        let t47 = t45 + t42 + t8;
+        let t49 = t47 - 0.3364 + 0.0676;
+        let t51 = t44 - t49 * t49;
+        ::overact::guard::reach(t51, "leg2")?;
+        let t52 = ::overact::math::sqrt(t51);
+        ::overact::guard::leg(t52, 0.27703140616182853, "leg2")?;
+        let t53 = 1.0 / t52;
+        let t54 = 2.0 * t53;
+        let garm_vx_leg2 = t38 * t54;
+        let t58 = pose[0] - t4;
+        let t59 = t58 + 0.24;
+        let t60 = t59 * t59;
+        let t62 = 0.2704 * (t60 + t8);
+        let t63 = 1.0 / t62;
+        let t64 = 0.52 * t59;
+        let t65 = pose[1] - t15;
+        let t66 = t65 * t65;
+        let t68 = t60 + t66 + t8;
+        let t70 = t68 - 0.3364 + 0.0676;
+        let t73 = t62 - t70 * t70;
+        ::overact::guard::reach(t73, "leg3")?;
+        let t74 = ::overact::math::sqrt(t73);
+        ::overact::guard::leg(t74, 0.27703140616182853, "leg3")?;
+        let minus_c_arm_leg3 = t63 * (t64 * t70 + t23 * t74);
+        let t78 = 0.26 * minus_c_arm_leg3;
+        let t80 = t58 - (t78 - 0.24);
+        let t81 = 1.0 / t74;
+        let t82 = 2.0 * t81;
+        let garm_vx_leg3 = t80 * t82;
+        let t86 = pose[0] - t37;
+        let t87 = pose[1] - t39;
+        let t88 = t87 + 0.24;
+        let t89 = t88 * t88;
+        let t91 = 0.2704 * (t89 + t8);
+        let t92 = t86 * t86;
+        let t94 = t92 + t89 + t8;
+        let t96 = t94 - 0.3364 + 0.0676;
+        let t98 = t91 - t96 * t96;
+        ::overact::guard::reach(t98, "leg4")?;
+        let t99 = ::overact::math::sqrt(t98);
+        ::overact::guard::leg(t99, 0.27703140616182853, "leg4")?;
+        let t100 = 1.0 / t99;
+        let t101 = 2.0 * t100;
+        let garm_vx_leg4 = t86 * t101;
+        let t104 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t104, 19.507470815645043, "actuators")?;
+        ::overact::guard::platform(t104, 19.507470815645043, "actuators")?;
+        ::overact::guard::platform(t104, 19.507470815645043, "actuators")?;
         let t105 = 1.0 / t104;
-        let t106 = t97 * t105;
-        let minus_garm_vy_leg3 = s_rod_leg3 * t61;
-        let minus_garm_vy_leg1 = s_rod_leg1 * t18;
-        let minus_garm_vy_leg2 = t34 * t39;
-        let minus_garm_vy_leg4 = t79 * t83;
-        let t126 = minus_garm_vx_leg1 * minus_garm_vy_leg1
-            - garm_vx_leg2 * minus_garm_vy_leg2 + minus_garm_vx_leg3 * minus_garm_vy_leg3
-            - garm_vx_leg4 * minus_garm_vy_leg4;
-        let t128 = minus_garm_vy_leg3 * minus_garm_vz_leg3
-            - (minus_garm_vy_leg1 * garm_vz_leg1 + minus_garm_vy_leg2 * garm_vz_leg2)
-            + minus_garm_vy_leg4 * minus_garm_vz_leg4 - t126 * t106;
-        let t136 = t126 * t105;
-        let t138 = minus_garm_vy_leg1 * minus_garm_vy_leg1
-            + minus_garm_vy_leg2 * minus_garm_vy_leg2
-            + minus_garm_vy_leg3 * minus_garm_vy_leg3
-            + minus_garm_vy_leg4 * minus_garm_vy_leg4 - t126 * t136;
-        ::overact::guard::platform(t138, 16.505615552607473, "actuators")?;
-        ::overact::guard::platform(t138, 16.505615552607473, "actuators")?;
-        ::overact::guard::platform(t138, 16.505615552607473, "actuators")?;
-        let t139 = 1.0 / t138;
-        let t140 = t128 * t139;
-        let t142 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3
-            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t97 * t106 - t128 * t140;
-        ::overact::guard::platform(t142, 31.117338184537527, "actuators")?;
-        ::overact::guard::platform(t142, 31.117338184537527, "actuators")?;
-        ::overact::guard::platform(t142, 31.117338184537527, "actuators")?;
-        let t143 = 1.0 / t142;
-        let t145 = 9.81 * c_arm_leg1;
-        let t148 = 9.81 * s_arm_leg1;
-        let t157 = actuator_accelerations[0] * parameters[0] - t145 * parameters[1]
-            + t148 * parameters[2] + actuator_accelerations[0] * parameters[3]
+        let t107 = 9.81 * c_arm_leg1;
+        let minus_s_arm_leg1 = t11 * (t23 * t21 + t12 * t26);
+        let t114 = 9.81 * minus_s_arm_leg1;
+        let t123 = actuator_accelerations[0] * parameters[0] - t107 * parameters[1]
+            - t114 * parameters[2] + actuator_accelerations[0] * parameters[3]
             + actuator_velocities[0] * parameters[4]
             + ::overact::math::signed(parameters[5], actuator_velocities[0])
             + parameters[6];
-        let t159 = 0.58 * s_rod_leg1;
-        let t160 = 1.7241379310344827 * t17;
-        let gcross_vx_leg1 = c_arm_leg1 * t160;
-        let t168 = garm_vx_leg2 * actuator_velocities[1]
-            - minus_garm_vx_leg1 * actuator_velocities[0]
-            - minus_garm_vx_leg3 * actuator_velocities[2]
+        let t125 = 0.52 * t33;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t125;
+        let t133 = garm_vx_leg1 * actuator_velocities[0]
+            + garm_vx_leg2 * actuator_velocities[1]
+            + garm_vx_leg3 * actuator_velocities[2]
             + garm_vx_leg4 * actuator_velocities[3];
-        let t178 = minus_garm_vy_leg1 * actuator_velocities[0]
-            + minus_garm_vy_leg2 * actuator_velocities[1]
-            + minus_garm_vy_leg3 * actuator_velocities[2]
-            + minus_garm_vy_leg4 * actuator_velocities[3] + t168 * t136;
-        let t190 = garm_vz_leg1 * actuator_velocities[0]
+        let garm_vy_leg1 = t16 * t34;
+        let t137 = 1.0 / t44;
+        let t138 = 0.52 * t41;
+        let c_arm_leg2 = t137 * (t138 * t49 - t23 * t52);
+        let t143 = 0.26 * c_arm_leg2;
+        let t145 = t40 - (0.24 + t143);
+        let garm_vy_leg2 = t145 * t54;
+        let garm_vy_leg3 = t65 * t82;
+        let t152 = 1.0 / t91;
+        let t153 = 0.52 * t88;
+        let minus_c_arm_leg4 = t152 * (t153 * t96 + t23 * t99);
+        let t158 = 0.26 * minus_c_arm_leg4;
+        let t160 = t87 - (t158 - 0.24);
+        let garm_vy_leg4 = t160 * t101;
+        let t163 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3 + garm_vx_leg4 * garm_vy_leg4;
+        let t164 = t163 * t105;
+        let t173 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t163 * t164;
+        ::overact::guard::platform(t173, 16.505615550045768, "actuators")?;
+        ::overact::guard::platform(t173, 16.505615550045768, "actuators")?;
+        ::overact::guard::platform(t173, 16.505615550045768, "actuators")?;
+        let t174 = 1.0 / t173;
+        let t183 = garm_vy_leg1 * actuator_velocities[0]
+            + garm_vy_leg2 * actuator_velocities[1]
+            + garm_vy_leg3 * actuator_velocities[2]
+            + garm_vy_leg4 * actuator_velocities[3] - t133 * t164;
+        let t185 = 0.26 * minus_s_arm_leg1;
+        let t186 = pose[2] - t185;
+        let garm_vz_leg1 = t186 * t34;
+        let minus_s_arm_leg2 = t137 * (t23 * t49 + t138 * t52);
+        let t193 = 0.26 * minus_s_arm_leg2;
+        let t194 = pose[2] - t193;
+        let garm_vz_leg2 = t194 * t54;
+        let s_arm_leg3 = t63 * (t64 * t74 - t23 * t70);
+        let t202 = 0.26 * s_arm_leg3;
+        let t203 = pose[2] + t202;
+        let garm_vz_leg3 = t203 * t82;
+        let s_arm_leg4 = t152 * (t153 * t99 - t23 * t96);
+        let t211 = 0.26 * s_arm_leg4;
+        let t212 = pose[2] + t211;
+        let garm_vz_leg4 = t212 * t101;
+        let t222 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
+            + garm_vx_leg3 * garm_vz_leg3 + garm_vx_leg4 * garm_vz_leg4;
+        let t223 = t222 * t105;
+        let t225 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
+            + garm_vy_leg3 * garm_vz_leg3 + garm_vy_leg4 * garm_vz_leg4 - t163 * t223;
+        let t226 = t225 * t174;
+        let t237 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
+            + garm_vz_leg3 * garm_vz_leg3 + garm_vz_leg4 * garm_vz_leg4 - t222 * t223
+            - t225 * t226;
+        ::overact::guard::platform(t237, 31.11733818900116, "actuators")?;
+        ::overact::guard::platform(t237, 31.11733818900116, "actuators")?;
+        ::overact::guard::platform(t237, 31.11733818900116, "actuators")?;
+        let t238 = 1.0 / t237;
+        let t249 = garm_vz_leg1 * actuator_velocities[0]
             + garm_vz_leg2 * actuator_velocities[1]
-            - minus_garm_vz_leg3 * actuator_velocities[2]
-            - minus_garm_vz_leg4 * actuator_velocities[3] - t168 * t106 + t140 * t178;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
-        let t194 = 0.05 * s_phi;
-        let t195 = 0.08660254037844387 * c_phi;
-        let t196 = t194 + t195;
-        let t198 = 0.05 * c_phi;
-        let t199 = 0.08660254037844387 * s_phi;
-        let t200 = t198 - t199;
-        let garm_wz_leg1 = minus_garm_vx_leg1 * t196 - minus_garm_vy_leg1 * t200;
-        let t204 = t195 - t194;
-        let t206 = t199 + t198;
-        let minus_garm_wz_leg2 = minus_garm_vy_leg2 * t204 + garm_vx_leg2 * t206;
-        let garm_wz_leg3 = t200 * minus_garm_vy_leg3 - t196 * minus_garm_vx_leg3;
-        let garm_wz_leg4 = t204 * minus_garm_vy_leg4 + t206 * garm_vx_leg4;
-        let t227 = garm_vx_leg4 * garm_wz_leg4
-            - (minus_garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * minus_garm_wz_leg2
-                + minus_garm_vx_leg3 * garm_wz_leg3);
-        let t228 = t227 * t105;
-        let t239 = minus_garm_vy_leg2 * minus_garm_wz_leg2
-            - minus_garm_vy_leg1 * garm_wz_leg1 - minus_garm_vy_leg3 * garm_wz_leg3
-            - minus_garm_vy_leg4 * garm_wz_leg4 - t126 * t228;
-        let t240 = t239 * t139;
-        let t242 = garm_vz_leg1 * garm_wz_leg1 - garm_vz_leg2 * minus_garm_wz_leg2
-            - minus_garm_vz_leg3 * garm_wz_leg3 - minus_garm_vz_leg4 * garm_wz_leg4
-            - t97 * t228 - t128 * t240;
-        let t243 = t242 * t143;
-        let t254 = garm_wz_leg1 * garm_wz_leg1 + minus_garm_wz_leg2 * minus_garm_wz_leg2
-            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t227 * t228
-            - t239 * t240;
-        let t256 = t254 - t242 * t243;
-        ::overact::guard::platform(t256, 0.351065482163043, "actuators")?;
-        ::overact::guard::platform(t256, 0.351065482163043, "actuators")?;
-        ::overact::guard::platform(t256, 0.351065482163043, "actuators")?;
-        let t257 = 1.0 / t256;
-        let t268 = garm_wz_leg1 * actuator_velocities[0]
-            - minus_garm_wz_leg2 * actuator_velocities[1]
+            + garm_vz_leg3 * actuator_velocities[2]
+            + garm_vz_leg4 * actuator_velocities[3] - t133 * t223 - t226 * t183;
+        let garm_wz_leg1 = t4 * garm_vy_leg1 - t15 * garm_vx_leg1;
+        let garm_wz_leg2 = t37 * garm_vy_leg2 - t39 * garm_vx_leg2;
+        let garm_wz_leg3 = t15 * garm_vx_leg3 - t4 * garm_vy_leg3;
+        let garm_wz_leg4 = t39 * garm_vx_leg4 - t37 * garm_vy_leg4;
+        let t276 = garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * garm_wz_leg2
+            + garm_vx_leg3 * garm_wz_leg3 + garm_vx_leg4 * garm_wz_leg4;
+        let t277 = t276 * t105;
+        let t288 = garm_vy_leg1 * garm_wz_leg1 + garm_vy_leg2 * garm_wz_leg2
+            + garm_vy_leg3 * garm_wz_leg3 + garm_vy_leg4 * garm_wz_leg4 - t163 * t277;
+        let t289 = t288 * t174;
+        let t291 = garm_vz_leg1 * garm_wz_leg1 + garm_vz_leg2 * garm_wz_leg2
+            + garm_vz_leg3 * garm_wz_leg3 + garm_vz_leg4 * garm_wz_leg4 - t222 * t277
+            - t225 * t289;
+        let t292 = t291 * t238;
+        let t303 = garm_wz_leg1 * garm_wz_leg1 + garm_wz_leg2 * garm_wz_leg2
+            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t276 * t277
+            - t288 * t289;
+        let t305 = t303 - t291 * t292;
+        ::overact::guard::platform(t305, 0.35106548211906174, "actuators")?;
+        ::overact::guard::platform(t305, 0.35106548211906174, "actuators")?;
+        ::overact::guard::platform(t305, 0.35106548211906174, "actuators")?;
+        let t306 = 1.0 / t305;
+        let t317 = garm_wz_leg1 * actuator_velocities[0]
+            + garm_wz_leg2 * actuator_velocities[1]
             + garm_wz_leg3 * actuator_velocities[2]
-            + garm_wz_leg4 * actuator_velocities[3] - t168 * t228 + t240 * t178;
-        let t271 = t257 * (t268 - t243 * t190);
-        let t273 = t143 * t190 - t243 * t271;
-        let t277 = t139 * t178 + t140 * t273 + t240 * t271;
-        let t283 = t168 * t105 + t136 * t277 - t106 * t273 - t228 * t271;
-        let t284 = t196 * t271;
-        let t288 = 1.0 / c_rod_leg1;
-        let gcross_vy_leg1 = t160
-            * (c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t288)
-                + s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t288));
-        let t296 = t200 * t271;
-        let t297 = t296 - t277;
-        let minus_gcross_vz_leg1 = s_arm_leg1 * t160;
-        let rate_cross_leg1 = gcross_vx_leg1 * (t283 - t284) + gcross_vy_leg1 * t297
-            - minus_gcross_vz_leg1 * t273;
-        let t303 = t159 * rate_cross_leg1;
-        let t304 = 1.7241379310344827 * t303;
-        let t305 = c_rod_leg1 * rate_cross_leg1;
-        let t306 = t304 * t305;
-        let grod_vy_leg1 = 1.7241379310344827 * t288;
-        let t308 = t271 * t296;
-        let rate_rod_leg1 = grod_vy_leg1 * t297;
-        let t310 = s_armcross_leg1 * rate_rod_leg1;
-        let t312 = t159 * (rate_cross_leg1 * t310);
-        let t314 = actuator_velocities[0] * actuator_velocities[0];
-        let t318 = rate_cross_leg1 * rate_cross_leg1;
-        let t320 = c_armcross_leg1 * rate_rod_leg1;
-        let t322 = t310 * t310 + t318 + t320 * t320;
-        let t326 = t312 - (0.26 * c_arm_leg1 * t314 + 0.58 * t13 * t322) + t312;
-        let t329 = t271 * t284;
-        let t332 = rate_cross_leg1 * t303 - t159 * t322;
-        let t342 = t159 * (rate_cross_leg1 * t320);
-        let t344 = 0.26 * s_arm_leg1 * t314 + 0.58 * t12 * t322 + t342 + t342;
-        let rate_dot_arm_leg1 = minus_garm_vx_leg1 * (t308 + t326)
-            + minus_garm_vy_leg1 * (t329 + t332) - garm_vz_leg1 * t344;
-        let t347 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t349 = t204 * t271;
-        let t350 = t271 * t349;
-        let t351 = 0.58 * s_rod_leg2;
-        let t352 = 1.7241379310344827 * t38;
-        let gcross_vy_leg2 = c_arm_leg2 * t352;
-        let t357 = 1.0 / c_rod_leg2;
-        let minus_gcross_vx_leg2 = t352
-            * (c_arm_leg2 * (c_armcross_leg2 * s_rod_leg2 * t357)
-                + s_arm_leg2 * (s_armcross_leg2 * s_rod_leg2 * t357));
-        let t365 = t206 * t271;
-        let t366 = t283 - t365;
-        let minus_gcross_vz_leg2 = s_arm_leg2 * t352;
-        let rate_cross_leg2 = gcross_vy_leg2 * (t349 - t277)
-            - minus_gcross_vx_leg2 * t366 - minus_gcross_vz_leg2 * t273;
-        let t372 = rate_cross_leg2 * rate_cross_leg2;
-        let minus_grod_vx_leg2 = 1.7241379310344827 * t357;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t366;
-        let t375 = s_armcross_leg2 * minus_rate_rod_leg2;
-        let t378 = c_armcross_leg2 * minus_rate_rod_leg2;
-        let t380 = t372 + t375 * t375 + t378 * t378;
-        let t382 = t351 * rate_cross_leg2;
-        let t384 = t351 * t380 - rate_cross_leg2 * t382;
-        let t388 = actuator_velocities[1] * actuator_velocities[1];
-        let t394 = t351 * (rate_cross_leg2 * t375);
-        let t396 = 0.26 * c_arm_leg2 * t388 + 0.58 * t34 * t380 + t394 + t394;
-        let t397 = t271 * t365;
-        let t407 = t351 * (rate_cross_leg2 * t378);
-        let t409 = 0.26 * s_arm_leg2 * t388 + 0.58 * t33 * t380 - t407 - t407;
-        let minus_rate_dot_arm_leg2 = garm_vx_leg2 * (t350 + t384)
-            + minus_garm_vy_leg2 * (t396 - t397) + garm_vz_leg2 * t409;
-        let t412 = actuator_accelerations[1] + minus_rate_dot_arm_leg2;
-        let t416 = actuator_velocities[2] * actuator_velocities[2];
-        let t419 = 1.0 / c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.7241379310344827 * t419;
-        let t421 = t277 + t296;
-        let rate_rod_leg3 = minus_grod_vy_leg3 * t421;
-        let t423 = s_armcross_leg3 * rate_rod_leg3;
-        let t425 = 1.7241379310344827 * t60;
-        let gcross_vx_leg3 = c_arm_leg3 * t425;
-        let gcross_vy_leg3 = t425
-            * (c_arm_leg3 * (c_armcross_leg3 * s_rod_leg3 * t419)
-                + s_arm_leg3 * (s_armcross_leg3 * s_rod_leg3 * t419));
-        let gcross_vz_leg3 = s_arm_leg3 * t425;
-        let rate_cross_leg3 = gcross_vx_leg3 * (t283 + t284) - gcross_vy_leg3 * t421
-            + gcross_vz_leg3 * t273;
-        let t442 = rate_cross_leg3 * rate_cross_leg3;
-        let t444 = c_armcross_leg3 * rate_rod_leg3;
-        let t446 = t423 * t423 + t442 + t444 * t444;
-        let t449 = 0.58 * s_rod_leg3;
-        let t451 = t449 * (rate_cross_leg3 * t444);
-        let t453 = 0.26 * s_arm_leg3 * t416 + 0.58 * t55 * t446 + t451 + t451;
-        let t461 = t449 * (rate_cross_leg3 * t423);
-        let t463 = 0.26 * c_arm_leg3 * t416 + 0.58 * t57 * t446 - t461 - t461;
-        let t467 = t449 * rate_cross_leg3;
-        let t469 = t449 * t446 - rate_cross_leg3 * t467;
-        let rate_dot_arm_leg3 = minus_garm_vz_leg3 * t453
-            - (minus_garm_vx_leg3 * (t308 - t463) + minus_garm_vy_leg3 * (t329 - t469));
-        let t474 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t477 = 1.7241379310344827 * t82;
-        let gcross_vz_leg4 = s_arm_leg4 * t477;
-        let t481 = 1.0 / c_rod_leg4;
-        let minus_gcross_vx_leg4 = t477
-            * (c_arm_leg4 * (c_armcross_leg4 * s_rod_leg4 * t481)
-                + s_arm_leg4 * (s_armcross_leg4 * s_rod_leg4 * t481));
-        let t489 = t283 + t365;
-        let gcross_vy_leg4 = c_arm_leg4 * t477;
-        let rate_cross_leg4 = gcross_vz_leg4 * t273
-            - (minus_gcross_vx_leg4 * t489 + gcross_vy_leg4 * (t277 + t349));
-        let t496 = 0.58 * s_rod_leg4;
-        let t497 = t496 * rate_cross_leg4;
-        let t499 = rate_cross_leg4 * rate_cross_leg4;
-        let grod_vx_leg4 = 1.7241379310344827 * t481;
-        let rate_rod_leg4 = grod_vx_leg4 * t489;
-        let t502 = s_armcross_leg4 * rate_rod_leg4;
-        let t505 = c_armcross_leg4 * rate_rod_leg4;
-        let t507 = t499 + t502 * t502 + t505 * t505;
-        let t509 = rate_cross_leg4 * t497 - t496 * t507;
-        let t513 = actuator_velocities[3] * actuator_velocities[3];
-        let t519 = t496 * (rate_cross_leg4 * t502);
-        let t521 = 0.26 * c_arm_leg4 * t513 + 0.58 * t79 * t507 - t519 - t519;
-        let t531 = t496 * (rate_cross_leg4 * t505);
-        let t533 = 0.26 * s_arm_leg4 * t513 + 0.58 * t77 * t507 + t531 + t531;
-        let rate_dot_arm_leg4 = garm_vx_leg4 * (t350 - t509)
-            - minus_garm_vy_leg4 * (t397 - t521) + minus_garm_vz_leg4 * t533;
-        let t536 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t545 = garm_vx_leg2 * t412 - minus_garm_vx_leg1 * t347
-            - minus_garm_vx_leg3 * t474 + garm_vx_leg4 * t536;
-        let t556 = minus_garm_vy_leg1 * t347 + minus_garm_vy_leg2 * t412
-            + minus_garm_vy_leg3 * t474 + minus_garm_vy_leg4 * t536 + t136 * t545;
-        let t558 = garm_wz_leg1 * t347 - minus_garm_wz_leg2 * t412 + garm_wz_leg3 * t474
-            + garm_wz_leg4 * t536 - t228 * t545 + t240 * t556;
-        let t569 = garm_vz_leg1 * t347 + garm_vz_leg2 * t412 - minus_garm_vz_leg3 * t474
-            - minus_garm_vz_leg4 * t536 - t106 * t545 + t140 * t556;
-        let t572 = t257 * (t558 - t243 * t569);
-        let t573 = t200 * t572;
-        let t577 = t143 * t569 - t243 * t572;
-        let t581 = t139 * t556 + t140 * t577 + t240 * t572;
-        let t584 = t573 - t581 - t329 - t332;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t584;
-        let t586 = t306 - rate_dot_rod_leg1;
-        let t588 = t305 * t305;
-        let t589 = rate_rod_leg1 * rate_rod_leg1;
-        let t599 = t105 * t545 + t136 * t581 - t106 * t577 - t228 * t572;
-        let t600 = t196 * t572;
-        let rate_dot_cross_leg1 = gcross_vx_leg1 * (t599 - t600 - t308 - t326)
-            + gcross_vy_leg1 * t584 - minus_gcross_vz_leg1 * (t577 - t344);
-        let t610 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t614 = 0.26 * actuator_accelerations[0] - t145;
-        let t617 = t148 + 0.26 * t314;
-        let t619 = s_cross_leg1 * t614 - c_cross_leg1 * t617;
-        let t620 = c_rod_leg1 * t619;
-        let t623 = 0.26 * t16
-            * (parameters[14] * t586 - (t588 + t589) * parameters[13]
-                + parameters[15] * t610 + parameters[16] * t620);
-        let t626 = t306 + rate_dot_rod_leg1;
-        let t629 = 2.972651605231867 * (t303 * t303);
-        let t633 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t636 = s_rod_leg1 * t619;
-        let t639 = s_rod_leg1 * (0.26 * s_cross_leg1)
-            * (parameters[13] * t626 - (t629 + t589) * parameters[14]
-                - parameters[15] * t633 - parameters[16] * t636);
-        let t642 = rate_rod_leg1 * t304;
-        let t643 = t610 - t642;
-        let t644 = t642 - t643;
-        let t646 = rate_rod_leg1 * t305;
-        let t647 = t633 + t646;
-        let t648 = t646 + t647;
-        let t655 = s_cross_leg1 * t617 + c_cross_leg1 * t614;
-        let t659 = t623 + t639
+            + garm_wz_leg4 * actuator_velocities[3] - t133 * t277 - t289 * t183;
+        let t320 = t306 * (t317 - t292 * t249);
+        let t322 = t238 * t249 - t292 * t320;
+        let t326 = t174 * t183 - t226 * t322 - t289 * t320;
+        let t332 = t133 * t105 - t164 * t326 - t223 * t322 - t277 * t320;
+        let t333 = t15 * t320;
+        let s_rod_leg1 = 1.7241379310344827 * t16;
+        let t340 = 1.0 - 2.972651605231867 * t17;
+        ::overact::guard::reach(t340, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t340);
+        ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
+        let c_cross_leg1 = (t19 - (0.0676 + t17) - 0.3364 * t340)
+            / (0.3016 * c_rod_leg1);
+        let s_cross_leg1 = 1.9230769230769231 * t26 / (0.58 * c_rod_leg1);
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let t353 = 1.0 / c_rod_leg1;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let minus_gcross_vy_leg1 = t125
+            * (c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t353)
+                - minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t353));
+        let t364 = t4 * t320;
+        let t365 = t326 + t364;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t125;
+        let minus_rate_cross_leg1 = minus_gcross_vx_leg1 * (t332 - t333)
+            + minus_gcross_vy_leg1 * t365 + minus_gcross_vz_leg1 * t322;
+        let t371 = t16 * minus_rate_cross_leg1;
+        let t372 = 1.7241379310344827 * t371;
+        let t373 = c_rod_leg1 * minus_rate_cross_leg1;
+        let t374 = t372 * t373;
+        let grod_vy_leg1 = 1.7241379310344827 * t353;
+        let t376 = actuator_velocities[0] * actuator_velocities[0];
+        let rate_rod_leg1 = grod_vy_leg1 * t365;
+        let t379 = s_armcross_leg1 * rate_rod_leg1;
+        let t381 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t383 = c_armcross_leg1 * rate_rod_leg1;
+        let t385 = t379 * t379 + t381 + t383 * t383;
+        let t389 = t16 * (minus_rate_cross_leg1 * t379);
+        let t391 = t30 * t376 + t32 * t385 + t389 + t389;
+        let t392 = t320 * t364;
+        let t395 = t320 * t333;
+        let t398 = minus_rate_cross_leg1 * t371 - t16 * t385;
+        let t406 = t16 * (minus_rate_cross_leg1 * t383);
+        let t408 = t185 * t376 + t186 * t385 + t406 + t406;
+        let rate_dot_arm_leg1 = garm_vx_leg1 * (t391 - t392)
+            - garm_vy_leg1 * (t395 + t398) + garm_vz_leg1 * t408;
+        let t411 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t413 = actuator_velocities[1] * actuator_velocities[1];
+        let t415 = 0.52 * t53;
+        let minus_s_rod_leg2 = 1.7241379310344827 * t38;
+        let t420 = 1.0 - 2.972651605231867 * t45;
+        ::overact::guard::reach(t420, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t420);
+        ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
+        let c_cross_leg2 = (t47 - (0.0676 + t45) - 0.3364 * t420)
+            / (0.3016 * c_rod_leg2);
+        let s_cross_leg2 = 1.9230769230769231 * t52 / (0.58 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t433 = 1.0 / c_rod_leg2;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let minus_gcross_vx_leg2 = t415
+            * (c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t433)
+                - minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t433));
+        let t444 = t39 * t320;
+        let t445 = t332 - t444;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t415;
+        let t448 = t37 * t320;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t415;
+        let minus_rate_cross_leg2 = minus_gcross_vx_leg2 * t445
+            + minus_gcross_vy_leg2 * (t326 + t448) + minus_gcross_vz_leg2 * t322;
+        let t455 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let minus_grod_vx_leg2 = 1.7241379310344827 * t433;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t445;
+        let t458 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t461 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t463 = t455 + t458 * t458 + t461 * t461;
+        let t467 = t38 * (minus_rate_cross_leg2 * t458);
+        let t469 = t143 * t413 + t145 * t463 + t467 + t467;
+        let t470 = t320 * t444;
+        let t473 = t320 * t448;
+        let t474 = t38 * minus_rate_cross_leg2;
+        let t477 = minus_rate_cross_leg2 * t474 - t38 * t463;
+        let t485 = t38 * (minus_rate_cross_leg2 * t461);
+        let t487 = t193 * t413 + t194 * t463 + t485 + t485;
+        let rate_dot_arm_leg2 = garm_vy_leg2 * (t469 - t470)
+            - garm_vx_leg2 * (t473 + t477) + garm_vz_leg2 * t487;
+        let t490 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t493 = actuator_velocities[2] * actuator_velocities[2];
+        let t498 = 1.0 - 2.972651605231867 * t66;
+        ::overact::guard::reach(t498, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t498);
+        ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
+        let c_cross_leg3 = (t68 - (0.0676 + t66) - 0.3364 * t498)
+            / (0.3016 * c_rod_leg3);
+        let s_cross_leg3 = 1.9230769230769231 * t74 / (0.58 * c_rod_leg3);
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t510 = 1.0 / c_rod_leg3;
+        let minus_grod_vy_leg3 = 1.7241379310344827 * t510;
+        let t512 = t326 - t364;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t512;
+        let t514 = s_armcross_leg3 * minus_rate_rod_leg3;
+        let t516 = 0.52 * t81;
+        let gcross_vz_leg3 = s_arm_leg3 * t516;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t516;
+        let minus_s_rod_leg3 = 1.7241379310344827 * t65;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t516
+            * (minus_c_arm_leg3 * (minus_s_rod_leg3 * minus_c_armcross_leg3 * t510)
+                + s_arm_leg3 * (minus_s_rod_leg3 * s_armcross_leg3 * t510));
+        let rate_cross_leg3 = gcross_vz_leg3 * t322
+            - (minus_gcross_vx_leg3 * (t332 + t333) + minus_gcross_vy_leg3 * t512);
+        let t537 = rate_cross_leg3 * rate_cross_leg3;
+        let t539 = minus_c_armcross_leg3 * minus_rate_rod_leg3;
+        let t541 = t514 * t514 + t537 + t539 * t539;
+        let t545 = t65 * (rate_cross_leg3 * t514);
+        let t547 = t78 * t493 + t80 * t541 + t545 + t545;
+        let t550 = t65 * rate_cross_leg3;
+        let t553 = rate_cross_leg3 * t550 - t65 * t541;
+        let t561 = t65 * (rate_cross_leg3 * t539);
+        let t563 = t202 * t493 - t203 * t541 - t561 - t561;
+        let rate_dot_arm_leg3 = garm_vx_leg3 * (t392 + t547)
+            + garm_vy_leg3 * (t395 - t553) - garm_vz_leg3 * t563;
+        let t566 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t569 = 0.52 * t100;
+        let gcross_vz_leg4 = s_arm_leg4 * t569;
+        let s_rod_leg4 = 1.7241379310344827 * t86;
+        let t576 = 1.0 - 2.972651605231867 * t92;
+        ::overact::guard::reach(t576, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t576);
+        ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
+        let c_cross_leg4 = (t94 - (0.0676 + t92) - 0.3364 * t576)
+            / (0.3016 * c_rod_leg4);
+        let s_cross_leg4 = 1.9230769230769231 * t99 / (0.58 * c_rod_leg4);
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let t589 = 1.0 / c_rod_leg4;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t569
+            * (minus_c_arm_leg4 * (s_rod_leg4 * minus_c_armcross_leg4 * t589)
+                + s_arm_leg4 * (s_rod_leg4 * s_armcross_leg4 * t589));
+        let t600 = t332 + t444;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t569;
+        let rate_cross_leg4 = gcross_vz_leg4 * t322
+            - (minus_gcross_vx_leg4 * t600 + minus_gcross_vy_leg4 * (t326 - t448));
+        let t607 = t86 * rate_cross_leg4;
+        let t609 = rate_cross_leg4 * rate_cross_leg4;
+        let grod_vx_leg4 = 1.7241379310344827 * t589;
+        let rate_rod_leg4 = grod_vx_leg4 * t600;
+        let t612 = s_armcross_leg4 * rate_rod_leg4;
+        let t615 = minus_c_armcross_leg4 * rate_rod_leg4;
+        let t617 = t609 + t612 * t612 + t615 * t615;
+        let t619 = rate_cross_leg4 * t607 - t86 * t617;
+        let t622 = actuator_velocities[3] * actuator_velocities[3];
+        let t627 = t86 * (rate_cross_leg4 * t612);
+        let t629 = t158 * t622 + t160 * t617 + t627 + t627;
+        let t637 = t86 * (rate_cross_leg4 * t615);
+        let t639 = t211 * t622 - t212 * t617 - t637 - t637;
+        let rate_dot_arm_leg4 = garm_vx_leg4 * (t473 - t619)
+            + garm_vy_leg4 * (t470 + t629) - garm_vz_leg4 * t639;
+        let t642 = actuator_accelerations[3] - rate_dot_arm_leg4;
+        let t651 = garm_vx_leg1 * t411 + garm_vx_leg2 * t490 + garm_vx_leg3 * t566
+            + garm_vx_leg4 * t642;
+        let t653 = garm_vy_leg1 * t411 + garm_vy_leg2 * t490 + garm_vy_leg3 * t566
+            + garm_vy_leg4 * t642 - t164 * t651;
+        let t665 = garm_vz_leg1 * t411 + garm_vz_leg2 * t490 + garm_vz_leg3 * t566
+            + garm_vz_leg4 * t642 - t223 * t651 - t226 * t653;
+        let t677 = garm_wz_leg1 * t411 + garm_wz_leg2 * t490 + garm_wz_leg3 * t566
+            + garm_wz_leg4 * t642 - t277 * t651 - t289 * t653;
+        let t680 = t306 * (t677 - t292 * t665);
+        let t682 = t238 * t665 - t292 * t680;
+        let t686 = t174 * t653 - t226 * t682 - t289 * t680;
+        let t687 = t4 * t680;
+        let t690 = t686 + t687 - t395 - t398;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t690;
+        let t692 = t374 - rate_dot_rod_leg1;
+        let t694 = t373 * t373;
+        let t695 = rate_rod_leg1 * rate_rod_leg1;
+        let t705 = t105 * t651 - t164 * t686 - t223 * t682 - t277 * t680;
+        let t706 = t15 * t680;
+        let minus_rate_dot_cross_leg1 = minus_gcross_vx_leg1
+            * (t705 - t706 - t392 + t391) + minus_gcross_vy_leg1 * t690
+            + minus_gcross_vz_leg1 * (t682 + t408);
+        let t716 = c_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t720 = t114 - 0.26 * t376;
+        let t723 = 0.26 * actuator_accelerations[0] - t107;
+        let t725 = c_cross_leg1 * t720 + s_cross_leg1 * t723;
+        let t726 = c_rod_leg1 * t725;
+        let t729 = 0.8620689655172413 * t26
+            * (parameters[14] * t692 - (t694 + t695) * parameters[13]
+                - parameters[15] * t716 + parameters[16] * t726);
+        let t732 = t374 + rate_dot_rod_leg1;
+        let t735 = 2.972651605231867 * (t371 * t371);
+        let t739 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t742 = s_rod_leg1 * t725;
+        let t745 = 0.4482758620689655 * (t16 * s_cross_leg1)
+            * (parameters[13] * t732 - (t735 + t695) * parameters[14]
+                + parameters[15] * t739 - parameters[16] * t742);
+        let t748 = rate_rod_leg1 * t372;
+        let t749 = t748 - t716;
+        let t750 = t748 + t749;
+        let t752 = rate_rod_leg1 * t373;
+        let t753 = t739 + t752;
+        let t754 = t752 + t753;
+        let t761 = c_cross_leg1 * t723 - s_cross_leg1 * t720;
+        let t765 = t729 - t745
             + 0.26 * c_cross_leg1
-                * (parameters[13] * t644 + parameters[14] * t648 - t318 * parameters[15]
-                    - parameters[16] * t655);
-        let t660 = t157 - t659;
-        let t671 = parameters[7] * t647 - parameters[8] * t644 + parameters[9] * t626
-            - t646 * parameters[10] + parameters[11] * (t588 - t589);
-        let t688 = t642 * parameters[7] + parameters[8] * t648
-            + parameters[9] * (t589 - t629) + parameters[10] * t643
-            - parameters[11] * t586;
-        let t696 = s_rod_leg1
-            * (t671 + t646 * parameters[12] - parameters[14] * t655
-                + parameters[15] * t636)
+                * (parameters[13] * t750 + parameters[14] * t754 + t381 * parameters[15]
+                    + parameters[16] * t761);
+        let t766 = t123 + t765;
+        let t777 = parameters[8] * t750 - parameters[7] * t753 + parameters[9] * t732
+            + t752 * parameters[10] + parameters[11] * (t694 - t695);
+        let t794 = parameters[9] * (t695 - t735)
+            - (t748 * parameters[7] + parameters[8] * t754) + parameters[10] * t749
+            - parameters[11] * t692;
+        let t802 = s_rod_leg1
+            * (t777 - t752 * parameters[12] - parameters[14] * t761
+                + parameters[15] * t742)
             + c_rod_leg1
-                * (t688 - t642 * parameters[12] + parameters[13] * t655
-                    + parameters[15] * t620);
-        let t700 = 9.81 * c_arm_leg2;
-        let t703 = 9.81 * s_arm_leg2;
-        let t712 = actuator_accelerations[1] * parameters[17] - t700 * parameters[18]
-            + t703 * parameters[19] + actuator_accelerations[1] * parameters[20]
+                * (t794 + t748 * parameters[12] + parameters[13] * t761
+                    + parameters[15] * t726);
+        let t806 = 9.81 * c_arm_leg2;
+        let t809 = 9.81 * minus_s_arm_leg2;
+        let t818 = actuator_accelerations[1] * parameters[17] - t806 * parameters[18]
+            - t809 * parameters[19] + actuator_accelerations[1] * parameters[20]
             + actuator_velocities[1] * parameters[21]
             + ::overact::math::signed(parameters[22], actuator_velocities[1])
             + parameters[23];
-        let t714 = 1.7241379310344827 * t382;
-        let t715 = c_rod_leg2 * rate_cross_leg2;
-        let t716 = t714 * t715;
-        let t717 = t206 * t572;
-        let t720 = t599 - t717 - t350 - t384;
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t720;
-        let t722 = t716 + minus_rate_dot_rod_leg2;
-        let t724 = t715 * t715;
-        let t725 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t729 = t204 * t572;
-        let rate_dot_cross_leg2 = gcross_vy_leg2 * (t729 - t581 - t397 + t396)
-            - minus_gcross_vx_leg2 * t720 - minus_gcross_vz_leg2 * (t577 - t409);
-        let t739 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t743 = 0.26 * actuator_accelerations[1] - t700;
-        let t746 = t703 + 0.26 * t388;
-        let t748 = s_cross_leg2 * t743 - c_cross_leg2 * t746;
-        let t749 = c_rod_leg2 * t748;
-        let t752 = 0.26 * t37
-            * (parameters[31] * t722 - (t724 + t725) * parameters[30]
-                + parameters[32] * t739 + parameters[33] * t749);
-        let t755 = t716 - minus_rate_dot_rod_leg2;
-        let t758 = 2.972651605231867 * (t382 * t382);
-        let t762 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t765 = s_rod_leg2 * t748;
-        let t768 = s_rod_leg2 * (0.26 * s_cross_leg2)
-            * (parameters[30] * t755 - (t758 + t725) * parameters[31]
-                - parameters[32] * t762 - parameters[33] * t765);
-        let t771 = minus_rate_rod_leg2 * t715;
-        let t772 = t762 - t771;
-        let t773 = t772 - t771;
-        let t775 = minus_rate_rod_leg2 * t714;
-        let t776 = t739 + t775;
-        let t777 = t775 + t776;
-        let t784 = s_cross_leg2 * t746 + c_cross_leg2 * t743;
-        let t788 = t752 + t768
-            + 0.26 * c_cross_leg2
-                * (parameters[31] * t773 - parameters[30] * t777 - t372 * parameters[32]
-                    - parameters[33] * t784);
-        let t789 = t712 - t788;
-        let t800 = parameters[24] * t772 + parameters[25] * t777 + parameters[26] * t755
-            + t771 * parameters[27] + parameters[28] * (t724 - t725);
-        let t817 = parameters[25] * t773 - t775 * parameters[24]
-            + parameters[26] * (t725 - t758) + parameters[27] * t776
-            - parameters[28] * t722;
-        let t825 = s_rod_leg2
-            * (t800 - t771 * parameters[29] - parameters[31] * t784
-                + parameters[32] * t765)
-            + c_rod_leg2
-                * (t817 + t775 * parameters[29] + parameters[30] * t784
-                    + parameters[32] * t749);
-        let t835 = t329 - (t581 + t573) - t469;
-        let rate_dot_cross_leg3 = gcross_vx_leg3 * (t599 + t600 + t308 - t463)
-            + gcross_vy_leg3 * t835 + gcross_vz_leg3 * (t577 - t453);
-        let t841 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t842 = c_rod_leg3 * rate_cross_leg3;
-        let t843 = rate_rod_leg3 * t842;
-        let t844 = t841 + t843;
-        let t846 = 1.7241379310344827 * t467;
-        let t847 = rate_rod_leg3 * t846;
-        let t848 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t849 = t848 - t847;
-        let t850 = t847 - t849;
-        let t853 = t846 * t842;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t835;
-        let t855 = t853 - minus_rate_dot_rod_leg3;
-        let t860 = t842 * t842;
-        let t861 = rate_rod_leg3 * rate_rod_leg3;
-        let t864 = parameters[41] * t844 - parameters[42] * t850 + parameters[43] * t855
-            - t843 * parameters[44] + parameters[45] * (t860 - t861);
-        let t867 = 9.81 * s_arm_leg3;
-        let t869 = t867 + 0.26 * t416;
-        let t872 = 9.81 * c_arm_leg3;
-        let t873 = 0.26 * actuator_accelerations[2] - t872;
-        let t875 = s_cross_leg3 * t869 + c_cross_leg3 * t873;
-        let t880 = s_cross_leg3 * t873 - c_cross_leg3 * t869;
-        let t881 = s_rod_leg3 * t880;
-        let t886 = t843 + t844;
-        let t890 = 2.972651605231867 * (t467 * t467);
-        let t896 = t853 + minus_rate_dot_rod_leg3;
-        let t898 = t847 * parameters[41] + parameters[42] * t886
-            + parameters[43] * (t861 - t890) + parameters[44] * t849
-            - parameters[45] * t896;
-        let t903 = c_rod_leg3 * t880;
-        let t907 = s_rod_leg3
-            * (t864 + t843 * parameters[46] - parameters[48] * t875
-                + parameters[49] * t881)
-            + c_rod_leg3
-                * (t898 - t847 * parameters[46] + parameters[47] * t875
-                    + parameters[49] * t903);
-        let t920 = actuator_accelerations[2] * parameters[34] - t872 * parameters[35]
-            + t867 * parameters[36] + actuator_accelerations[2] * parameters[37]
+        let t820 = t39 * t680;
+        let t823 = t705 - t820 - t473 - t477;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t823;
+        let t825 = 1.7241379310344827 * t474;
+        let t826 = c_rod_leg2 * minus_rate_cross_leg2;
+        let t827 = t825 * t826;
+        let t828 = minus_rate_dot_rod_leg2 - t827;
+        let t830 = t826 * t826;
+        let t831 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t836 = t37 * t680;
+        let minus_rate_dot_cross_leg2 = minus_gcross_vx_leg2 * t823
+            + minus_gcross_vy_leg2 * (t686 + t836 - t470 + t469)
+            + minus_gcross_vz_leg2 * (t682 + t487);
+        let t845 = c_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t849 = t809 - 0.26 * t413;
+        let t852 = 0.26 * actuator_accelerations[1] - t806;
+        let t854 = c_cross_leg2 * t849 + s_cross_leg2 * t852;
+        let t855 = c_rod_leg2 * t854;
+        let t858 = 0.8620689655172413 * t52
+            * (parameters[31] * t828 - (t830 + t831) * parameters[30]
+                - parameters[32] * t845 + parameters[33] * t855);
+        let t861 = minus_s_rod_leg2 * t854;
+        let t863 = t827 + minus_rate_dot_rod_leg2;
+        let t866 = 2.972651605231867 * (t474 * t474);
+        let t870 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t874 = 0.4482758620689655 * (t38 * s_cross_leg2)
+            * (parameters[33] * t861
+                - (parameters[30] * t863 + (t866 + t831) * parameters[31]
+                    + parameters[32] * t870));
+        let t877 = minus_rate_rod_leg2 * t826;
+        let t878 = t870 + t877;
+        let t879 = t877 + t878;
+        let t881 = minus_rate_rod_leg2 * t825;
+        let t882 = t881 - t845;
+        let t883 = t881 + t882;
+        let t890 = c_cross_leg2 * t852 - s_cross_leg2 * t849;
+        let t894 = t858 + t874
+            - 0.26 * c_cross_leg2
+                * (parameters[31] * t879 - parameters[30] * t883 - t455 * parameters[32]
+                    - parameters[33] * t890);
+        let t895 = t818 + t894;
+        let t906 = parameters[25] * t879 - t881 * parameters[24]
+            + parameters[26] * (t831 - t866) + parameters[27] * t882
+            - parameters[28] * t828;
+        let t923 = parameters[24] * t878 + parameters[25] * t883 - parameters[26] * t863
+            - t877 * parameters[27] + parameters[28] * (t830 - t831);
+        let t931 = c_rod_leg2
+            * (t906 + t881 * parameters[29] + parameters[30] * t890
+                + parameters[32] * t855)
+            - minus_s_rod_leg2
+                * (t923 + t877 * parameters[29] - parameters[31] * t890
+                    - parameters[32] * t861);
+        let t943 = t827 * parameters[24] + parameters[25] * (t866 - t830)
+            + parameters[26] * t870 - t827 * parameters[27] - parameters[28] * t845;
+        let t949 = t943 - parameters[29] * minus_rate_dot_rod_leg2
+            + parameters[30] * t861 - parameters[31] * t855;
+        let t954 = 9.81 * minus_c_arm_leg3;
+        let t957 = 9.81 * s_arm_leg3;
+        let t966 = actuator_accelerations[2] * parameters[34] + t954 * parameters[35]
+            + t957 * parameters[36] + actuator_accelerations[2] * parameters[37]
             + actuator_velocities[2] * parameters[38]
             + ::overact::math::signed(parameters[39], actuator_velocities[2])
             + parameters[40];
-        let t930 = 0.26 * t59
-            * (parameters[48] * t896 - (t860 + t861) * parameters[47]
-                + parameters[49] * t848 + parameters[50] * t903);
-        let t941 = s_rod_leg3 * (0.26 * s_cross_leg3)
-            * (parameters[47] * t855 - (t890 + t861) * parameters[48]
-                - parameters[49] * t841 - parameters[50] * t881);
-        let t952 = t930 - t941
+        let t970 = t686 - t687 + t395 - t553;
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t970;
+        let t972 = 1.7241379310344827 * t550;
+        let t973 = c_rod_leg3 * rate_cross_leg3;
+        let t974 = t972 * t973;
+        let t975 = minus_rate_dot_rod_leg3 - t974;
+        let t977 = t973 * t973;
+        let t978 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let rate_dot_cross_leg3 = gcross_vz_leg3 * (t682 - t563)
+            - (minus_gcross_vx_leg3 * (t705 + t706 + t392 + t547)
+                + minus_gcross_vy_leg3 * t970);
+        let t991 = c_rod_leg3 * rate_dot_cross_leg3;
+        let t995 = t954 + 0.26 * actuator_accelerations[2];
+        let t998 = t957 + 0.26 * t493;
+        let t1000 = s_cross_leg3 * t995 - c_cross_leg3 * t998;
+        let t1001 = c_rod_leg3 * t1000;
+        let t1004 = 0.8620689655172413 * t74
+            * (parameters[48] * t975 - (t977 + t978) * parameters[47]
+                + parameters[49] * t991 + parameters[50] * t1001);
+        let t1007 = minus_s_rod_leg3 * rate_dot_cross_leg3;
+        let t1009 = t974 + minus_rate_dot_rod_leg3;
+        let t1012 = 2.972651605231867 * (t550 * t550);
+        let t1017 = minus_s_rod_leg3 * t1000;
+        let t1020 = 0.4482758620689655 * (t65 * s_cross_leg3)
+            * (parameters[49] * t1007
+                - (parameters[47] * t1009 + (t1012 + t978) * parameters[48])
+                + parameters[50] * t1017);
+        let t1023 = minus_rate_rod_leg3 * t972;
+        let t1024 = t991 - t1023;
+        let t1025 = t1023 - t1024;
+        let t1027 = minus_rate_rod_leg3 * t973;
+        let t1028 = t1007 + t1027;
+        let t1029 = t1027 + t1028;
+        let t1036 = s_cross_leg3 * t998 + c_cross_leg3 * t995;
+        let t1040 = t1004 + t1020
             - 0.26 * c_cross_leg3
-                * (parameters[47] * t850 + parameters[48] * t886 - t442 * parameters[49]
-                    - parameters[50] * t875);
-        let t953 = t920 + t952;
-        let t956 = garm_vz_leg1 * t660 - minus_gcross_vz_leg1 * t696
-            + garm_vz_leg2 * t789 - minus_gcross_vz_leg2 * t825 + gcross_vz_leg3 * t907
-            - minus_garm_vz_leg3 * t953;
-        let t963 = t599 + t717 + t350 - t509;
-        let rate_dot_cross_leg4 = gcross_vy_leg4 * (t397 - (t581 + t729) - t521)
-            - minus_gcross_vx_leg4 * t963 + gcross_vz_leg4 * (t577 - t533);
-        let t969 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t970 = c_rod_leg4 * rate_cross_leg4;
-        let t971 = rate_rod_leg4 * t970;
-        let t972 = t969 + t971;
-        let t974 = 1.7241379310344827 * t497;
-        let t975 = rate_rod_leg4 * t974;
-        let t976 = c_rod_leg4 * rate_dot_cross_leg4;
-        let t977 = t976 - t975;
-        let t978 = t975 - t977;
-        let t981 = t974 * t970;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t963;
-        let t983 = t981 + rate_dot_rod_leg4;
-        let t988 = t970 * t970;
-        let t989 = rate_rod_leg4 * rate_rod_leg4;
-        let t992 = parameters[58] * t972 - parameters[59] * t978 + parameters[60] * t983
-            - t971 * parameters[61] + parameters[62] * (t988 - t989);
-        let t995 = 9.81 * s_arm_leg4;
-        let t997 = t995 + 0.26 * t513;
-        let t1000 = 9.81 * c_arm_leg4;
-        let t1001 = 0.26 * actuator_accelerations[3] - t1000;
-        let t1003 = s_cross_leg4 * t997 + c_cross_leg4 * t1001;
-        let t1008 = s_cross_leg4 * t1001 - c_cross_leg4 * t997;
-        let t1009 = s_rod_leg4 * t1008;
-        let t1014 = t971 + t972;
-        let t1018 = 2.972651605231867 * (t497 * t497);
-        let t1024 = t981 - rate_dot_rod_leg4;
-        let t1026 = t975 * parameters[58] + parameters[59] * t1014
-            + parameters[60] * (t989 - t1018) + parameters[61] * t977
-            - parameters[62] * t1024;
-        let t1031 = c_rod_leg4 * t1008;
-        let t1035 = s_rod_leg4
-            * (t992 + t971 * parameters[63] - parameters[65] * t1003
-                + parameters[66] * t1009)
-            + c_rod_leg4
-                * (t1026 - t975 * parameters[63] + parameters[64] * t1003
-                    + parameters[66] * t1031);
-        let t1048 = actuator_accelerations[3] * parameters[51] - t1000 * parameters[52]
-            + t995 * parameters[53] + actuator_accelerations[3] * parameters[54]
+                * (parameters[47] * t1025 - parameters[48] * t1029
+                    - t537 * parameters[49] - parameters[50] * t1036);
+        let t1041 = t966 + t1040;
+        let t1052 = t1023 * parameters[41] - parameters[42] * t1029
+            + parameters[43] * (t978 - t1012) + parameters[44] * t1024
+            - parameters[45] * t975;
+        let t1069 = t1027 * parameters[44]
+            - (parameters[41] * t1028 + parameters[42] * t1025 + parameters[43] * t1009)
+            + parameters[45] * (t977 - t978);
+        let t1077 = c_rod_leg3
+            * (t1052 - t1023 * parameters[46] + parameters[47] * t1036
+                + parameters[49] * t1001)
+            - minus_s_rod_leg3
+                * (t1069 - t1027 * parameters[46] - parameters[48] * t1036
+                    - parameters[49] * t1017);
+        let t1080 = garm_vx_leg1 * t766 - minus_gcross_vx_leg1 * t802
+            + garm_vx_leg2 * t895 - minus_gcross_vx_leg2 * t931
+            - minus_grod_vx_leg2 * t949 + garm_vx_leg3 * t1041
+            - minus_gcross_vx_leg3 * t1077;
+        let t1082 = 9.81 * minus_c_arm_leg4;
+        let t1085 = 9.81 * s_arm_leg4;
+        let t1094 = actuator_accelerations[3] * parameters[51] + t1082 * parameters[52]
+            + t1085 * parameters[53] + actuator_accelerations[3] * parameters[54]
             + actuator_velocities[3] * parameters[55]
             + ::overact::math::signed(parameters[56], actuator_velocities[3])
             + parameters[57];
-        let t1058 = 0.26 * t81
-            * (parameters[65] * t1024 - (t988 + t989) * parameters[64]
-                + parameters[66] * t976 + parameters[67] * t1031);
-        let t1069 = s_rod_leg4 * (0.26 * s_cross_leg4)
-            * (parameters[64] * t983 - (t1018 + t989) * parameters[65]
-                - parameters[66] * t969 - parameters[67] * t1009);
-        let t1080 = t1058 - t1069
+        let t1096 = 1.7241379310344827 * t607;
+        let t1097 = c_rod_leg4 * rate_cross_leg4;
+        let t1098 = t1096 * t1097;
+        let t1101 = t705 + t820 + t473 - t619;
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t1101;
+        let t1103 = t1098 - rate_dot_rod_leg4;
+        let t1105 = t1097 * t1097;
+        let t1106 = rate_rod_leg4 * rate_rod_leg4;
+        let rate_dot_cross_leg4 = gcross_vz_leg4 * (t682 - t639)
+            - (minus_gcross_vx_leg4 * t1101
+                + minus_gcross_vy_leg4 * (t686 - t836 + t470 + t629));
+        let t1119 = c_rod_leg4 * rate_dot_cross_leg4;
+        let t1123 = t1082 + 0.26 * actuator_accelerations[3];
+        let t1126 = t1085 + 0.26 * t622;
+        let t1128 = s_cross_leg4 * t1123 - c_cross_leg4 * t1126;
+        let t1129 = c_rod_leg4 * t1128;
+        let t1132 = 0.8620689655172413 * t99
+            * (parameters[65] * t1103 - (t1105 + t1106) * parameters[64]
+                + parameters[66] * t1119 + parameters[67] * t1129);
+        let t1135 = t1098 + rate_dot_rod_leg4;
+        let t1138 = 2.972651605231867 * (t607 * t607);
+        let t1142 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t1145 = s_rod_leg4 * t1128;
+        let t1148 = 0.4482758620689655 * (t86 * s_cross_leg4)
+            * (parameters[64] * t1135 - (t1138 + t1106) * parameters[65]
+                - parameters[66] * t1142 - parameters[67] * t1145);
+        let t1151 = rate_rod_leg4 * t1096;
+        let t1152 = t1119 - t1151;
+        let t1153 = t1151 - t1152;
+        let t1155 = rate_rod_leg4 * t1097;
+        let t1156 = t1142 + t1155;
+        let t1157 = t1155 + t1156;
+        let t1164 = s_cross_leg4 * t1126 + c_cross_leg4 * t1123;
+        let t1168 = t1132 - t1148
             - 0.26 * c_cross_leg4
-                * (parameters[64] * t978 + parameters[65] * t1014 - t499 * parameters[66]
-                    - parameters[67] * t1003);
-        let t1081 = t1048 + t1080;
-        let t1085 = t577 + 9.81;
-        let t1105 = parameters[25] * (t758 - t724) - t716 * parameters[24]
-            + parameters[26] * t762 + t716 * parameters[27] + parameters[28] * t739;
-        let t1111 = t1105 - parameters[29] * minus_rate_dot_rod_leg2
-            - parameters[30] * t765 - parameters[31] * t749;
-        let t1118 = gcross_vx_leg1 * t696 - minus_garm_vx_leg1 * t660
-            + garm_vx_leg2 * t789 - minus_gcross_vx_leg2 * t825
-            - minus_grod_vx_leg2 * t1111 + gcross_vx_leg3 * t907
-            - minus_garm_vx_leg3 * t953;
-        let t1131 = parameters[59] * (t1018 - t988) - t981 * parameters[58]
-            + parameters[60] * t969 + t981 * parameters[61] + parameters[62] * t976;
-        let t1137 = t1131 + parameters[63] * rate_dot_rod_leg4 - parameters[64] * t1009
-            - parameters[65] * t1031;
-        let t1143 = c_phi * t599 - s_phi * t581;
-        let t1145 = t271 * t271;
-        let t1155 = parameters[71] * t1143
-            - (t1145 * parameters[69] + t572 * parameters[70]) - t1145 * parameters[73]
-            - t572 * parameters[74] + parameters[75] * t1143;
-        let t1162 = s_phi * t599 + c_phi * t581;
-        let t1170 = t572 * parameters[69] - t1145 * parameters[70]
-            - parameters[71] * t1162 + t572 * parameters[73] - t1145 * parameters[74]
-            - parameters[75] * t1162;
-        let t1173 = t1118 + garm_vx_leg4 * t1081 - minus_gcross_vx_leg4 * t1035
-            + grod_vx_leg4 * t1137 + c_phi * t1155 - s_phi * t1170;
-        let t1175 = t956 + gcross_vz_leg4 * t1035 - minus_garm_vz_leg4 * t1081
-            + parameters[71] * t1085 + parameters[75] * t1085 - t106 * t1173;
-        let t1188 = parameters[8] * (t629 - t588) - t306 * parameters[7]
-            + parameters[9] * t633 + t306 * parameters[10] + parameters[11] * t610;
-        let t1194 = t1188 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t636
-            - parameters[14] * t620;
-        let t1213 = parameters[42] * (t890 - t860) - t853 * parameters[41]
-            + parameters[43] * t841 + t853 * parameters[44] + parameters[45] * t848;
-        let t1219 = t1213 - parameters[46] * minus_rate_dot_rod_leg3
-            - parameters[47] * t881 - parameters[48] * t903;
-        let t1222 = gcross_vy_leg1 * t696 - minus_garm_vy_leg1 * t660
-            + grod_vy_leg1 * t1194 + gcross_vy_leg2 * t825 - minus_garm_vy_leg2 * t789
-            + gcross_vy_leg3 * t907 - minus_garm_vy_leg3 * t953
-            - minus_grod_vy_leg3 * t1219;
-        let t1232 = t1222 + gcross_vy_leg4 * t1035 - minus_garm_vy_leg4 * t1081
-            + s_phi * t1155 + c_phi * t1170 - t136 * t1173;
-        let t1234 = t1175 - t140 * t1232;
-        let gcross_wz_leg1 = gcross_vy_leg1 * t200 - gcross_vx_leg1 * t196;
-        let grod_wz_leg1 = grod_vy_leg1 * t200;
-        let gcross_wz_leg2 = gcross_vy_leg2 * t204 + minus_gcross_vx_leg2 * t206;
-        let grod_wz_leg2 = minus_grod_vx_leg2 * t206;
-        let t1254 = garm_wz_leg1 * t660 + gcross_wz_leg1 * t696 + grod_wz_leg1 * t1194
-            + gcross_wz_leg2 * t825 - minus_garm_wz_leg2 * t789 + grod_wz_leg2 * t1111;
-        let gcross_wz_leg3 = t196 * gcross_vx_leg3 - t200 * gcross_vy_leg3;
-        let grod_wz_leg3 = t200 * minus_grod_vy_leg3;
-        let minus_gcross_wz_leg4 = t204 * gcross_vy_leg4 + t206 * minus_gcross_vx_leg4;
-        let grod_wz_leg4 = t206 * grod_vx_leg4;
-        let t1274 = t1254 + garm_wz_leg3 * t953 + gcross_wz_leg3 * t907
-            + grod_wz_leg3 * t1219 + garm_wz_leg4 * t1081 - minus_gcross_wz_leg4 * t1035
-            + grod_wz_leg4 * t1137;
-        let t1285 = t572 * parameters[68] - parameters[69] * t1162
-            - parameters[70] * t1143 + t572 * parameters[72] - parameters[73] * t1162
-            - parameters[74] * t1143;
-        let t1293 = t257 * (t1274 + t1285 - t228 * t1173 - t240 * t1232 - t243 * t1234);
-        let t1295 = t143 * t1234 - t243 * t1293;
-        let t1302 = t139 * t1232 - t140 * t1295 - t240 * t1293;
-        let t1308 = t105 * t1173 - t136 * t1302 - t106 * t1295 - t228 * t1293;
+                * (parameters[64] * t1153 + parameters[65] * t1157
+                    - t609 * parameters[66] - parameters[67] * t1164);
+        let t1169 = t1094 + t1168;
+        let t1180 = parameters[58] * t1156 - parameters[59] * t1153
+            + parameters[60] * t1135 - t1155 * parameters[61]
+            + parameters[62] * (t1105 - t1106);
+        let t1197 = t1151 * parameters[58] + parameters[59] * t1157
+            + parameters[60] * (t1106 - t1138) + parameters[61] * t1152
+            - parameters[62] * t1103;
+        let t1205 = s_rod_leg4
+            * (t1180 + t1155 * parameters[63] - parameters[65] * t1164
+                + parameters[66] * t1145)
+            + c_rod_leg4
+                * (t1197 - t1151 * parameters[63] + parameters[64] * t1164
+                    + parameters[66] * t1129);
+        let t1217 = parameters[59] * (t1138 - t1105) - t1098 * parameters[58]
+            + parameters[60] * t1142 + t1098 * parameters[61] + parameters[62] * t1119;
+        let t1223 = t1217 + parameters[63] * rate_dot_rod_leg4 - parameters[64] * t1145
+            - parameters[65] * t1129;
+        let t1229 = c_phi * t705 + s_phi * t686;
+        let t1231 = t320 * t320;
+        let t1241 = parameters[71] * t1229
+            - (t1231 * parameters[69] + t680 * parameters[70]) - t1231 * parameters[73]
+            - t680 * parameters[74] + parameters[75] * t1229;
+        let t1248 = c_phi * t686 - s_phi * t705;
+        let t1256 = t680 * parameters[69] - t1231 * parameters[70]
+            + parameters[71] * t1248 + t680 * parameters[73] - t1231 * parameters[74]
+            + parameters[75] * t1248;
+        let t1259 = t1080 + garm_vx_leg4 * t1169 - minus_gcross_vx_leg4 * t1205
+            + grod_vx_leg4 * t1223 + c_phi * t1241 - s_phi * t1256;
+        let t1273 = parameters[8] * (t735 - t694) - t374 * parameters[7]
+            - parameters[9] * t739 + t374 * parameters[10] - parameters[11] * t716;
+        let t1279 = t1273 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t742
+            - parameters[14] * t726;
+        let t1298 = t974 * parameters[41] + parameters[42] * (t1012 - t977)
+            - parameters[43] * t1007 - t974 * parameters[44] + parameters[45] * t991;
+        let t1304 = t1298 - parameters[46] * minus_rate_dot_rod_leg3
+            + parameters[47] * t1017 - parameters[48] * t1001;
+        let t1307 = garm_vy_leg1 * t766 - minus_gcross_vy_leg1 * t802
+            + grod_vy_leg1 * t1279 + garm_vy_leg2 * t895 - minus_gcross_vy_leg2 * t931
+            + garm_vy_leg3 * t1041 - minus_gcross_vy_leg3 * t1077
+            - minus_grod_vy_leg3 * t1304;
+        let t1317 = t1307 + garm_vy_leg4 * t1169 - minus_gcross_vy_leg4 * t1205
+            + s_phi * t1241 + c_phi * t1256 - t164 * t1259;
+        let t1329 = garm_vz_leg1 * t766 - minus_gcross_vz_leg1 * t802
+            + garm_vz_leg2 * t895 - minus_gcross_vz_leg2 * t931 + garm_vz_leg3 * t1041
+            + gcross_vz_leg3 * t1077;
+        let t1334 = t682 + 9.81;
+        let t1340 = t1329 + garm_vz_leg4 * t1169 + gcross_vz_leg4 * t1205
+            + parameters[71] * t1334 + parameters[75] * t1334 - t223 * t1259;
+        let t1342 = t1340 - t226 * t1317;
+        let gcross_wz_leg1 = t15 * minus_gcross_vx_leg1 - t4 * minus_gcross_vy_leg1;
+        let grod_wz_leg1 = t4 * grod_vy_leg1;
+        let gcross_wz_leg2 = t39 * minus_gcross_vx_leg2 - t37 * minus_gcross_vy_leg2;
+        let grod_wz_leg2 = t39 * minus_grod_vx_leg2;
+        let t1362 = garm_wz_leg1 * t766 + gcross_wz_leg1 * t802 + grod_wz_leg1 * t1279
+            + garm_wz_leg2 * t895 + gcross_wz_leg2 * t931 + grod_wz_leg2 * t949;
+        let gcross_wz_leg3 = t4 * minus_gcross_vy_leg3 - t15 * minus_gcross_vx_leg3;
+        let grod_wz_leg3 = t4 * minus_grod_vy_leg3;
+        let gcross_wz_leg4 = t37 * minus_gcross_vy_leg4 - t39 * minus_gcross_vx_leg4;
+        let grod_wz_leg4 = t39 * grod_vx_leg4;
+        let t1382 = t1362 + garm_wz_leg3 * t1041 + gcross_wz_leg3 * t1077
+            + grod_wz_leg3 * t1304 + garm_wz_leg4 * t1169 + gcross_wz_leg4 * t1205
+            + grod_wz_leg4 * t1223;
+        let t1393 = t680 * parameters[68] + parameters[69] * t1248
+            - parameters[70] * t1229 + t680 * parameters[72] + parameters[73] * t1248
+            - parameters[74] * t1229;
+        let t1401 = t306 * (t1382 + t1393 - t277 * t1259 - t289 * t1317 - t292 * t1342);
+        let t1403 = t238 * t1342 - t292 * t1401;
+        let t1407 = t174 * t1317 - t226 * t1403 - t289 * t1401;
+        let t1413 = t105 * t1259 - t164 * t1407 - t223 * t1403 - t277 * t1401;
         Ok([
-            garm_vz_leg1 * t1295
-                - (minus_garm_vx_leg1 * t1308 + minus_garm_vy_leg1 * t1302)
-                + garm_wz_leg1 * t1293,
-            garm_vx_leg2 * t1308 - minus_garm_vy_leg2 * t1302 + garm_vz_leg2 * t1295
-                - minus_garm_wz_leg2 * t1293,
-            garm_wz_leg3 * t1293
-                - (minus_garm_vx_leg3 * t1308 + minus_garm_vy_leg3 * t1302
-                    + minus_garm_vz_leg3 * t1295),
-            garm_vx_leg4 * t1308 - minus_garm_vy_leg4 * t1302
-                - minus_garm_vz_leg4 * t1295 + garm_wz_leg4 * t1293,
+            garm_vx_leg1 * t1413 + garm_vy_leg1 * t1407 + garm_vz_leg1 * t1403
+                + garm_wz_leg1 * t1401,
+            garm_vx_leg2 * t1413 + garm_vy_leg2 * t1407 + garm_vz_leg2 * t1403
+                + garm_wz_leg2 * t1401,
+            garm_vx_leg3 * t1413 + garm_vy_leg3 * t1407 + garm_vz_leg3 * t1403
+                + garm_wz_leg3 * t1401,
+            garm_vx_leg4 * t1413 + garm_vy_leg4 * t1407 + garm_vz_leg4 * t1403
+                + garm_wz_leg4 * t1401,
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -8772,7 +13108,7 @@ impl Schoenflies4 {
     ///
     /// Output: 4 x 4.
     ///
-    /// 1240 operations (456 additions, 776 multiplications, 8 divisions), 0 square roots, 13 trigonometric pairs, 0 signs, 1256 intermediates.
+    /// 1394 operations (524 additions, 850 multiplications, 20 divisions), 8 square roots, 1 trigonometric pairs, 0 signs, 1394 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -8780,566 +13116,633 @@ impl Schoenflies4 {
         pose: &[f64; 4],
         parameters: &[f64; 76],
     ) -> Result<[[f64; 4]; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
-        let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        ::overact::guard::leg(c_rod_leg1, 0.9887897213061891, "leg1")?;
-        let t12 = c_armcross_leg1 * c_rod_leg1;
-        let t14 = s_armcross_leg1 * c_rod_leg1;
-        let t16 = s_arm_leg1 * t12 - c_arm_leg1 * t14;
-        ::overact::guard::leg(t16, 0.9185391450939739, "leg1")?;
-        let t17 = 1.0 / t16;
-        let t18 = 1.7241379310344827 * t17;
-        let gcross_vx_leg1 = c_arm_leg1 * t18;
-        let t20 = s_rod_leg1 * gcross_vx_leg1;
-        let t22 = c_rod_leg1 * gcross_vx_leg1;
-        let t25 = 3.8461538461538463 * t17;
-        let minus_garm_vx_leg1 = t12 * t25;
-        let t28 = c_cross_leg1 * (0.26 * minus_garm_vx_leg1);
-        let t31 = c_armcross_leg1 * s_rod_leg1;
-        let t43 = s_rod_leg1
-            * (parameters[7] * t20 + parameters[8] * t22 + parameters[14] * t28
-                + t31 * parameters[15])
-            + c_rod_leg1
-                * (parameters[8] * t20 + parameters[10] * t22 - parameters[13] * t28
-                    + t12 * parameters[15]);
-        let t48 = 0.26 * t16;
-        let t54 = s_rod_leg1 * (0.26 * s_cross_leg1);
-        let t60 = 0.26 * c_cross_leg1;
-        let t67 = t48 * (parameters[15] * t22 + t12 * parameters[16])
-            - t54 * (parameters[15] * t20 + t31 * parameters[16])
-            + t60 * (parameters[14] * t20 - parameters[13] * t22 + parameters[16] * t28);
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        ::overact::guard::leg(c_rod_leg2, 0.988789721306189, "leg2")?;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
-        let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t83 = c_armcross_leg2 * c_rod_leg2;
-        let t85 = s_armcross_leg2 * c_rod_leg2;
-        let t87 = s_arm_leg2 * t83 - c_arm_leg2 * t85;
-        ::overact::guard::leg(t87, 0.9185391450939737, "leg2")?;
-        let t88 = 1.0 / t87;
-        let t89 = 3.8461538461538463 * t88;
-        let garm_vx_leg2 = s_rod_leg2 * t89;
-        let t95 = s_rod_leg2 * (0.26 * s_cross_leg2);
-        let t96 = 1.0 / c_rod_leg2;
-        let minus_grod_vx_leg2 = 1.7241379310344827 * t96;
-        let t99 = 1.7241379310344827 * t88;
-        let t100 = c_armcross_leg2 * s_rod_leg2;
-        let t103 = s_armcross_leg2 * s_rod_leg2;
-        let minus_gcross_vx_leg2 = t99
-            * (c_arm_leg2 * (t100 * t96) + s_arm_leg2 * (t103 * t96));
-        let t108 = s_rod_leg2 * minus_gcross_vx_leg2;
-        let t113 = s_rod_leg2 * (s_cross_leg2 * (0.26 * garm_vx_leg2));
-        let t117 = 0.26 * t87;
-        let t119 = c_rod_leg2 * minus_gcross_vx_leg2;
-        let t125 = t95
-            * (minus_grod_vx_leg2 * parameters[30] - parameters[32] * t108
-                + parameters[33] * t113)
-            - t117
-                * (minus_grod_vx_leg2 * parameters[31] - parameters[32] * t119
-                    - s_rod_leg2 * parameters[33]);
-        let t126 = 0.26 * c_cross_leg2;
-        let t127 = parameters[30] * t119;
-        let t130 = 0.58 * t119;
-        let t135 = garm_vx_leg2 * parameters[17] + garm_vx_leg2 * parameters[20] + t125
-            - t126 * (t127 - parameters[31] * t108 - parameters[33] * t130);
-        let t146 = s_rod_leg2
-            * (parameters[32] * t113
-                - (parameters[24] * t108 + parameters[25] * t119
-                    + minus_grod_vx_leg2 * parameters[26] + parameters[31] * t130));
-        let t156 = c_rod_leg2
-            * (0.58 * t127
-                - (parameters[25] * t108 + parameters[27] * t119
-                    + minus_grod_vx_leg2 * parameters[28])
-                - s_rod_leg2 * parameters[32]);
-        let t169 = minus_grod_vx_leg2
-            * (s_rod_leg2 * parameters[31]
-                - (parameters[26] * t108 + parameters[28] * t119
-                    + minus_grod_vx_leg2 * parameters[29] + parameters[30] * t113));
-        let t171 = gcross_vx_leg1 * t43
-            + minus_garm_vx_leg1
-                * (minus_garm_vx_leg1 * parameters[0]
-                    + minus_garm_vx_leg1 * parameters[3] + t67) + garm_vx_leg2 * t135
-            - minus_gcross_vx_leg2 * (t146 + t156) - t169;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
-        let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        ::overact::guard::leg(c_rod_leg3, 0.9887897213061891, "leg3")?;
-        let t184 = s_armcross_leg3 * c_rod_leg3;
-        let t186 = c_armcross_leg3 * c_rod_leg3;
-        let t188 = c_arm_leg3 * t184 - s_arm_leg3 * t186;
-        ::overact::guard::leg(t188, 0.9185391450939737, "leg3")?;
-        let t189 = 1.0 / t188;
-        let t190 = 1.7241379310344827 * t189;
-        let gcross_vx_leg3 = c_arm_leg3 * t190;
-        let t192 = s_rod_leg3 * gcross_vx_leg3;
-        let t194 = c_rod_leg3 * gcross_vx_leg3;
-        let t197 = 3.8461538461538463 * t189;
-        let minus_garm_vx_leg3 = t186 * t197;
-        let t200 = c_cross_leg3 * (0.26 * minus_garm_vx_leg3);
-        let t203 = c_armcross_leg3 * s_rod_leg3;
-        let t215 = s_rod_leg3
-            * (parameters[41] * t192 + parameters[42] * t194 + parameters[48] * t200
-                - t203 * parameters[49])
-            + c_rod_leg3
-                * (parameters[42] * t192 + parameters[44] * t194 - parameters[47] * t200
-                    - t186 * parameters[49]);
-        let t217 = 0.26 * t188;
-        let t223 = s_rod_leg3 * (0.26 * s_cross_leg3);
-        let t229 = 0.26 * c_cross_leg3;
-        let t236 = t217 * (parameters[49] * t194 - t186 * parameters[50])
-            - t223 * (t203 * parameters[50] - parameters[49] * t192)
-            - t229
-                * (parameters[48] * t192 - parameters[47] * t194
-                    + parameters[50] * t200);
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        ::overact::guard::leg(c_rod_leg4, 0.9887897213061891, "leg4")?;
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let (s_cross_leg4, c_cross_leg4) = ::overact::math::sin_cos(joints[10]);
-        let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
-        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let t256 = s_armcross_leg4 * c_rod_leg4;
-        let t258 = c_armcross_leg4 * c_rod_leg4;
-        let t260 = c_arm_leg4 * t256 - s_arm_leg4 * t258;
-        ::overact::guard::leg(t260, 0.9185391450939737, "leg4")?;
-        let t261 = 1.0 / t260;
-        let t262 = 3.8461538461538463 * t261;
-        let garm_vx_leg4 = s_rod_leg4 * t262;
-        let t267 = 0.26 * t260;
-        let t269 = 1.7241379310344827 * t261;
-        let t270 = c_armcross_leg4 * s_rod_leg4;
-        let t271 = 1.0 / c_rod_leg4;
-        let t274 = s_armcross_leg4 * s_rod_leg4;
-        let minus_gcross_vx_leg4 = t269
-            * (c_arm_leg4 * (t270 * t271) + s_arm_leg4 * (t274 * t271));
-        let t279 = c_rod_leg4 * minus_gcross_vx_leg4;
-        let grod_vx_leg4 = 1.7241379310344827 * t271;
-        let t287 = s_rod_leg4 * (0.26 * s_cross_leg4);
-        let t289 = s_rod_leg4 * minus_gcross_vx_leg4;
-        let t294 = s_rod_leg4 * (s_cross_leg4 * (0.26 * garm_vx_leg4));
-        let t298 = t267
-            * (s_rod_leg4 * parameters[67]
-                - (parameters[66] * t279 + grod_vx_leg4 * parameters[65]))
-            - t287
-                * (grod_vx_leg4 * parameters[64] + parameters[66] * t289
-                    - parameters[67] * t294);
-        let t299 = 0.26 * c_cross_leg4;
-        let t300 = parameters[64] * t279;
-        let t303 = 0.58 * t279;
-        let t308 = garm_vx_leg4 * parameters[51] + garm_vx_leg4 * parameters[54] + t298
-            - t299 * (t300 - parameters[65] * t289 - parameters[67] * t303);
-        let t319 = s_rod_leg4
-            * (grod_vx_leg4 * parameters[60]
-                - (parameters[58] * t289 + parameters[59] * t279) - parameters[65] * t303
-                + parameters[66] * t294);
-        let t329 = c_rod_leg4
-            * (grod_vx_leg4 * parameters[62]
-                - (parameters[59] * t289 + parameters[61] * t279) + 0.58 * t300
-                + s_rod_leg4 * parameters[66]);
-        let t342 = grod_vx_leg4
-            * (grod_vx_leg4 * parameters[63]
-                - (parameters[60] * t289 + parameters[62] * t279) - parameters[64] * t294
-                - s_rod_leg4 * parameters[65]);
-        let t344 = t171 + gcross_vx_leg3 * t215
-            - minus_garm_vx_leg3
-                * (t236
-                    - (minus_garm_vx_leg3 * parameters[34]
-                        + minus_garm_vx_leg3 * parameters[37])) + garm_vx_leg4 * t308
-            - minus_gcross_vx_leg4 * (t319 + t329) + t342;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
-        let t355 = c_phi * (c_phi * parameters[71] + c_phi * parameters[75])
-            + s_phi * (s_phi * parameters[71] + s_phi * parameters[75]);
-        let t357 = 1.0 / c_rod_leg1;
-        let t360 = s_armcross_leg1 * s_rod_leg1;
-        let gcross_vy_leg1 = t18
-            * (c_arm_leg1 * (t31 * t357) + s_arm_leg1 * (t360 * t357));
-        let t365 = s_rod_leg1 * gcross_vy_leg1;
-        let t367 = c_rod_leg1 * gcross_vy_leg1;
-        let grod_vy_leg1 = 1.7241379310344827 * t357;
-        let t373 = 0.58 * t367;
-        let minus_garm_vy_leg1 = s_rod_leg1 * t25;
-        let t379 = s_rod_leg1 * (s_cross_leg1 * (0.26 * minus_garm_vy_leg1));
-        let t382 = s_rod_leg1
-            * (parameters[7] * t365 + parameters[8] * t367 + grod_vy_leg1 * parameters[9]
-                + parameters[14] * t373 - parameters[15] * t379);
-        let t388 = parameters[13] * t373;
-        let t393 = t382
+        let t2 = 0.05 * c_phi;
+        let t3 = 0.08660254037844387 * s_phi;
+        let t4 = t2 - t3;
+        let t5 = pose[0] + t4;
+        let t6 = t5 - 0.24;
+        let t7 = t6 * t6;
+        let t8 = pose[2] * pose[2];
+        let t10 = 0.2704 * (t7 + t8);
+        let t11 = 1.0 / t10;
+        let t12 = 0.52 * t6;
+        let t13 = 0.05 * s_phi;
+        let t14 = 0.08660254037844387 * c_phi;
+        let t15 = t13 + t14;
+        let t16 = pose[1] + t15;
+        let t17 = t16 * t16;
+        let t19 = t7 + t17 + t8;
+        let t21 = t19 - 0.3364 + 0.0676;
+        let t23 = 0.52 * pose[2];
+        let t25 = t10 - t21 * t21;
+        ::overact::guard::reach(t25, "leg1")?;
+        let t26 = ::overact::math::sqrt(t25);
+        ::overact::guard::leg(t26, 0.27703140616182853, "leg1")?;
+        let c_arm_leg1 = t11 * (t12 * t21 - t23 * t26);
+        let t32 = t5 - (0.24 + 0.26 * c_arm_leg1);
+        let t33 = 1.0 / t26;
+        let t34 = 2.0 * t33;
+        let garm_vx_leg1 = t32 * t34;
+        let t39 = 0.8620689655172413 * t26;
+        let t40 = 1.7241379310344827 * t32;
+        let t43 = 1.0 - 2.972651605231867 * t17;
+        ::overact::guard::reach(t43, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t43);
+        ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
+        let t45 = 0.52 * t33;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t45;
+        let t47 = c_rod_leg1 * minus_gcross_vx_leg1;
+        let s_cross_leg1 = 1.9230769230769231 * t26 / (0.58 * c_rod_leg1);
+        let t55 = 0.4482758620689655 * (t16 * s_cross_leg1);
+        let s_rod_leg1 = 1.7241379310344827 * t16;
+        let t57 = s_rod_leg1 * minus_gcross_vx_leg1;
+        let c_cross_leg1 = (t19 - (0.0676 + t17) - 0.3364 * t43) / (0.3016 * c_rod_leg1);
+        let minus_s_arm_leg1 = t11 * (t23 * t21 + t12 * t26);
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let t72 = s_rod_leg1 * c_armcross_leg1;
+        let t77 = 0.26 * c_cross_leg1;
+        let t82 = c_cross_leg1 * (0.26 * garm_vx_leg1);
+        let t86 = t39 * (t40 * parameters[16] - parameters[15] * t47)
+            - t55 * (parameters[15] * t57 - t72 * parameters[16])
+            - t77 * (parameters[13] * t47 - parameters[14] * t57 - parameters[16] * t82);
+        let t105 = s_rod_leg1
+            * (t72 * parameters[15]
+                - (parameters[7] * t57 + parameters[8] * t47 + parameters[14] * t82))
             + c_rod_leg1
-                * (parameters[8] * t365 + parameters[10] * t367
-                    + grod_vy_leg1 * parameters[11] - t388
-                    + s_rod_leg1 * parameters[15]);
-        let t410 = t48
-            * (parameters[15] * t367 - grod_vy_leg1 * parameters[14]
-                + s_rod_leg1 * parameters[16])
-            + t54
-                * (grod_vy_leg1 * parameters[13] - parameters[15] * t365
-                    + parameters[16] * t379);
-        let t418 = minus_garm_vy_leg1 * parameters[0]
-            + minus_garm_vy_leg1 * parameters[3] + t410
-            + t60
-                * (parameters[14] * t365 - 1.7241379310344827 * t388
-                    + parameters[16] * t373);
-        let gcross_vy_leg2 = c_arm_leg2 * t99;
-        let t422 = s_rod_leg2 * gcross_vy_leg2;
-        let t427 = c_rod_leg2 * gcross_vy_leg2;
-        let minus_garm_vy_leg2 = t83 * t89;
-        let t438 = c_cross_leg2 * (0.26 * minus_garm_vy_leg2);
-        let t442 = t95 * (parameters[32] * t422 + t100 * parameters[33])
-            - t117 * (parameters[32] * t427 + t83 * parameters[33])
-            - t126
-                * (parameters[31] * t422 - parameters[30] * t427
-                    + parameters[33] * t438);
-        let t446 = t442
-            - (minus_garm_vy_leg2 * parameters[17]
-                + minus_garm_vy_leg2 * parameters[20]);
-        let t464 = s_rod_leg2
-            * (parameters[24] * t422 + parameters[25] * t427 + parameters[31] * t438
-                + t100 * parameters[32])
-            + c_rod_leg2
-                * (parameters[25] * t422 + parameters[27] * t427 - parameters[30] * t438
-                    + t83 * parameters[32]);
-        let t475 = garm_vx_leg2 * t446 - minus_gcross_vx_leg2 * t464
+                * (parameters[13] * t82 - (parameters[8] * t57 + parameters[10] * t47)
+                    + t40 * parameters[15]);
+        let t108 = t14 - t13;
+        let t109 = pose[0] + t108;
+        let t110 = t3 + t2;
+        let t111 = pose[1] + t110;
+        let t112 = t111 - 0.24;
+        let t113 = t112 * t112;
+        let t115 = 0.2704 * (t113 + t8);
+        let t116 = t109 * t109;
+        let t118 = t116 + t113 + t8;
+        let t120 = t118 - 0.3364 + 0.0676;
+        let t122 = t115 - t120 * t120;
+        ::overact::guard::reach(t122, "leg2")?;
+        let t123 = ::overact::math::sqrt(t122);
+        ::overact::guard::leg(t123, 0.27703140616182853, "leg2")?;
+        let t124 = 1.0 / t123;
+        let t125 = 2.0 * t124;
+        let garm_vx_leg2 = t109 * t125;
+        let t130 = 0.8620689655172413 * t123;
+        let t132 = 1.0 - 2.972651605231867 * t116;
+        ::overact::guard::reach(t132, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t132);
+        ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
+        let t134 = 1.0 / c_rod_leg2;
+        let minus_grod_vx_leg2 = 1.7241379310344827 * t134;
+        let t137 = 0.52 * t124;
+        let t138 = 1.0 / t115;
+        let t139 = 0.52 * t112;
+        let c_arm_leg2 = t138 * (t139 * t120 - t23 * t123);
+        let minus_s_rod_leg2 = 1.7241379310344827 * t109;
+        let c_cross_leg2 = (t118 - (0.0676 + t116) - 0.3364 * t132)
+            / (0.3016 * c_rod_leg2);
+        let minus_s_arm_leg2 = t138 * (t23 * t120 + t139 * t123);
+        let s_cross_leg2 = 1.9230769230769231 * t123 / (0.58 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t161 = minus_s_rod_leg2 * c_armcross_leg2;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t167 = minus_s_rod_leg2 * s_armcross_leg2;
+        let minus_gcross_vx_leg2 = t137
+            * (c_arm_leg2 * (t161 * t134) - minus_s_arm_leg2 * (t167 * t134));
+        let t172 = c_rod_leg2 * minus_gcross_vx_leg2;
+        let t179 = 0.4482758620689655 * (t109 * s_cross_leg2);
+        let t182 = minus_s_rod_leg2 * (s_cross_leg2 * (0.26 * garm_vx_leg2));
+        let t185 = minus_s_rod_leg2 * minus_gcross_vx_leg2;
+        let t190 = t130
+            * (minus_grod_vx_leg2 * parameters[31] - parameters[32] * t172
+                + minus_s_rod_leg2 * parameters[33])
+            + t179
+                * (parameters[33] * t182
+                    - (minus_grod_vx_leg2 * parameters[30] + parameters[32] * t185));
+        let t191 = 0.26 * c_cross_leg2;
+        let t192 = parameters[30] * t172;
+        let t195 = 0.58 * t172;
+        let t200 = garm_vx_leg2 * parameters[17] + garm_vx_leg2 * parameters[20] + t190
+            - t191 * (t192 + parameters[31] * t185 - parameters[33] * t195);
+        let t211 = c_rod_leg2
+            * (parameters[25] * t185 - parameters[27] * t172
+                - minus_grod_vx_leg2 * parameters[28] + 0.58 * t192
+                + minus_s_rod_leg2 * parameters[32]);
+        let t221 = minus_s_rod_leg2
+            * (parameters[24] * t185 - parameters[25] * t172
+                - minus_grod_vx_leg2 * parameters[26] - parameters[31] * t195
+                - parameters[32] * t182);
+        let t234 = minus_grod_vx_leg2
+            * (parameters[26] * t185 - parameters[28] * t172
+                - minus_grod_vx_leg2 * parameters[29] + parameters[30] * t182
+                - minus_s_rod_leg2 * parameters[31]);
+        let t236 = garm_vx_leg1
+            * (garm_vx_leg1 * parameters[0] + garm_vx_leg1 * parameters[3] + t86)
+            - minus_gcross_vx_leg1 * t105 + garm_vx_leg2 * t200
+            - minus_gcross_vx_leg2 * (t211 - t221) - t234;
+        let t237 = pose[0] - t4;
+        let t238 = t237 + 0.24;
+        let t239 = t238 * t238;
+        let t241 = 0.2704 * (t239 + t8);
+        let t242 = 1.0 / t241;
+        let t243 = 0.52 * t238;
+        let t244 = pose[1] - t15;
+        let t245 = t244 * t244;
+        let t247 = t239 + t245 + t8;
+        let t249 = t247 - 0.3364 + 0.0676;
+        let t252 = t241 - t249 * t249;
+        ::overact::guard::reach(t252, "leg3")?;
+        let t253 = ::overact::math::sqrt(t252);
+        ::overact::guard::leg(t253, 0.27703140616182853, "leg3")?;
+        let minus_c_arm_leg3 = t242 * (t243 * t249 + t23 * t253);
+        let t259 = t237 - (0.26 * minus_c_arm_leg3 - 0.24);
+        let t260 = 1.0 / t253;
+        let t261 = 2.0 * t260;
+        let garm_vx_leg3 = t259 * t261;
+        let t266 = 0.8620689655172413 * t253;
+        let t267 = 1.7241379310344827 * t259;
+        let t270 = 1.0 - 2.972651605231867 * t245;
+        ::overact::guard::reach(t270, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t270);
+        ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
+        let t272 = 0.52 * t260;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t272;
+        let t274 = c_rod_leg3 * minus_gcross_vx_leg3;
+        let s_cross_leg3 = 1.9230769230769231 * t253 / (0.58 * c_rod_leg3);
+        let t282 = 0.4482758620689655 * (t244 * s_cross_leg3);
+        let minus_s_rod_leg3 = 1.7241379310344827 * t244;
+        let c_cross_leg3 = (t247 - (0.0676 + t245) - 0.3364 * t270)
+            / (0.3016 * c_rod_leg3);
+        let s_arm_leg3 = t242 * (t243 * t253 - t23 * t249);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t297 = minus_s_rod_leg3 * minus_c_armcross_leg3;
+        let t299 = minus_s_rod_leg3 * minus_gcross_vx_leg3;
+        let t304 = 0.26 * c_cross_leg3;
+        let t306 = c_cross_leg3 * (0.26 * garm_vx_leg3);
+        let t313 = t266 * (t267 * parameters[50] - parameters[49] * t274)
+            + t282 * (t297 * parameters[50] - parameters[49] * t299)
+            + t304
+                * (parameters[50] * t306
+                    - (parameters[47] * t274 + parameters[48] * t299));
+        let t332 = c_rod_leg3
+            * (parameters[42] * t299 - parameters[44] * t274 + parameters[47] * t306
+                + t267 * parameters[49])
+            - minus_s_rod_leg3
+                * (parameters[41] * t299 - parameters[42] * t274 - parameters[48] * t306
+                    - t297 * parameters[49]);
+        let t336 = pose[0] - t108;
+        let t337 = pose[1] - t110;
+        let t338 = t337 + 0.24;
+        let t339 = t338 * t338;
+        let t341 = 0.2704 * (t339 + t8);
+        let t342 = t336 * t336;
+        let t344 = t342 + t339 + t8;
+        let t346 = t344 - 0.3364 + 0.0676;
+        let t348 = t341 - t346 * t346;
+        ::overact::guard::reach(t348, "leg4")?;
+        let t349 = ::overact::math::sqrt(t348);
+        ::overact::guard::leg(t349, 0.27703140616182853, "leg4")?;
+        let t350 = 1.0 / t349;
+        let t351 = 2.0 * t350;
+        let garm_vx_leg4 = t336 * t351;
+        let t356 = 0.8620689655172413 * t349;
+        let s_rod_leg4 = 1.7241379310344827 * t336;
+        let t360 = 1.0 - 2.972651605231867 * t342;
+        ::overact::guard::reach(t360, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t360);
+        ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
+        let t362 = 0.52 * t350;
+        let t363 = 1.0 / t341;
+        let t364 = 0.52 * t338;
+        let minus_c_arm_leg4 = t363 * (t364 * t346 + t23 * t349);
+        let c_cross_leg4 = (t344 - (0.0676 + t342) - 0.3364 * t360)
+            / (0.3016 * c_rod_leg4);
+        let s_arm_leg4 = t363 * (t364 * t349 - t23 * t346);
+        let s_cross_leg4 = 1.9230769230769231 * t349 / (0.58 * c_rod_leg4);
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let t385 = s_rod_leg4 * minus_c_armcross_leg4;
+        let t386 = 1.0 / c_rod_leg4;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let t392 = s_rod_leg4 * s_armcross_leg4;
+        let minus_gcross_vx_leg4 = t362
+            * (minus_c_arm_leg4 * (t385 * t386) + s_arm_leg4 * (t392 * t386));
+        let t397 = c_rod_leg4 * minus_gcross_vx_leg4;
+        let grod_vx_leg4 = 1.7241379310344827 * t386;
+        let t405 = 0.4482758620689655 * (t336 * s_cross_leg4);
+        let t407 = s_rod_leg4 * minus_gcross_vx_leg4;
+        let t412 = s_rod_leg4 * (s_cross_leg4 * (0.26 * garm_vx_leg4));
+        let t416 = t356
+            * (s_rod_leg4 * parameters[67]
+                - (parameters[66] * t397 + grod_vx_leg4 * parameters[65]))
+            - t405
+                * (grod_vx_leg4 * parameters[64] + parameters[66] * t407
+                    - parameters[67] * t412);
+        let t417 = 0.26 * c_cross_leg4;
+        let t418 = parameters[64] * t397;
+        let t421 = 0.58 * t397;
+        let t426 = garm_vx_leg4 * parameters[51] + garm_vx_leg4 * parameters[54] + t416
+            - t417 * (t418 - parameters[65] * t407 - parameters[67] * t421);
+        let t437 = s_rod_leg4
+            * (grod_vx_leg4 * parameters[60]
+                - (parameters[58] * t407 + parameters[59] * t397) - parameters[65] * t421
+                + parameters[66] * t412);
+        let t447 = c_rod_leg4
+            * (grod_vx_leg4 * parameters[62]
+                - (parameters[59] * t407 + parameters[61] * t397) + 0.58 * t418
+                + s_rod_leg4 * parameters[66]);
+        let t460 = grod_vx_leg4
+            * (grod_vx_leg4 * parameters[63]
+                - (parameters[60] * t407 + parameters[62] * t397) - parameters[64] * t412
+                - s_rod_leg4 * parameters[65]);
+        let t462 = t236
+            + garm_vx_leg3
+                * (garm_vx_leg3 * parameters[34] + garm_vx_leg3 * parameters[37] + t313)
+            - minus_gcross_vx_leg3 * t332 + garm_vx_leg4 * t426
+            - minus_gcross_vx_leg4 * (t437 + t447) + t460;
+        let t471 = c_phi * (c_phi * parameters[71] + c_phi * parameters[75])
+            + s_phi * (s_phi * parameters[71] + s_phi * parameters[75]);
+        let garm_vy_leg1 = t16 * t34;
+        let t478 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7241379310344827 * t478;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t486 = s_rod_leg1 * s_armcross_leg1;
+        let minus_gcross_vy_leg1 = t45
+            * (c_arm_leg1 * (t72 * t478) - minus_s_arm_leg1 * (t486 * t478));
+        let t491 = c_rod_leg1 * minus_gcross_vy_leg1;
+        let t497 = s_rod_leg1 * minus_gcross_vy_leg1;
+        let t502 = s_rod_leg1 * (s_cross_leg1 * (0.26 * garm_vy_leg1));
+        let t506 = t39
+            * (s_rod_leg1 * parameters[16]
+                - (grod_vy_leg1 * parameters[14] + parameters[15] * t491))
+            - t55
+                * (grod_vy_leg1 * parameters[13] + parameters[15] * t497
+                    - parameters[16] * t502);
+        let t507 = parameters[13] * t491;
+        let t510 = 0.58 * t491;
+        let t515 = garm_vy_leg1 * parameters[0] + garm_vy_leg1 * parameters[3] + t506
+            - t77 * (t507 - parameters[14] * t497 - parameters[16] * t510);
+        let t526 = s_rod_leg1
+            * (grod_vy_leg1 * parameters[9]
+                - (parameters[7] * t497 + parameters[8] * t491) - parameters[14] * t510
+                + parameters[15] * t502);
+        let t536 = c_rod_leg1
+            * (grod_vy_leg1 * parameters[11]
+                - (parameters[8] * t497 + parameters[10] * t491) + 0.58 * t507
+                + s_rod_leg1 * parameters[15]);
+        let t537 = t526 + t536;
+        let t542 = t111 - (0.24 + 0.26 * c_arm_leg2);
+        let garm_vy_leg2 = t542 * t125;
+        let t547 = 1.7241379310344827 * t542;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t137;
+        let t550 = c_rod_leg2 * minus_gcross_vy_leg2;
+        let t555 = minus_s_rod_leg2 * minus_gcross_vy_leg2;
+        let t564 = c_cross_leg2 * (0.26 * garm_vy_leg2);
+        let t568 = t130 * (t547 * parameters[33] - parameters[32] * t550)
+            + t179 * (t161 * parameters[33] - parameters[32] * t555)
+            - t191
+                * (parameters[30] * t550 + parameters[31] * t555
+                    - parameters[33] * t564);
+        let t569 = garm_vy_leg2 * parameters[17] + garm_vy_leg2 * parameters[20] + t568;
+        let t587 = c_rod_leg2
+            * (parameters[25] * t555 - parameters[27] * t550 + parameters[30] * t564
+                + t547 * parameters[32])
+            - minus_s_rod_leg2
+                * (parameters[24] * t555 - parameters[25] * t550 - parameters[31] * t564
+                    - t161 * parameters[32]);
+        let t598 = garm_vx_leg2 * t569 - minus_gcross_vx_leg2 * t587
             - minus_grod_vx_leg2
-                * (parameters[26] * t422 + parameters[28] * t427 - t100 * parameters[30]
-                    - t83 * parameters[31]);
-        let t477 = 1.0 / c_rod_leg3;
-        let t480 = s_armcross_leg3 * s_rod_leg3;
-        let gcross_vy_leg3 = t190
-            * (c_arm_leg3 * (t203 * t477) + s_arm_leg3 * (t480 * t477));
-        let t485 = s_rod_leg3 * gcross_vy_leg3;
-        let t487 = c_rod_leg3 * gcross_vy_leg3;
-        let minus_grod_vy_leg3 = 1.7241379310344827 * t477;
-        let t493 = 0.58 * t487;
-        let minus_garm_vy_leg3 = s_rod_leg3 * t197;
-        let t499 = s_rod_leg3 * (s_cross_leg3 * (0.26 * minus_garm_vy_leg3));
-        let t502 = s_rod_leg3
-            * (parameters[41] * t485 + parameters[42] * t487
-                - minus_grod_vy_leg3 * parameters[43] + parameters[48] * t493
-                - parameters[49] * t499);
-        let t508 = parameters[47] * t493;
-        let t513 = t502
-            + c_rod_leg3
-                * (parameters[42] * t485 + parameters[44] * t487
-                    - minus_grod_vy_leg3 * parameters[45] - t508
-                    - s_rod_leg3 * parameters[49]);
-        let t527 = t217
-            * (minus_grod_vy_leg3 * parameters[48] + parameters[49] * t487
-                - s_rod_leg3 * parameters[50])
-            - t223
-                * (parameters[50] * t499
-                    - (minus_grod_vy_leg3 * parameters[47] + parameters[49] * t485));
-        let t538 = t527
-            - t229
-                * (parameters[48] * t485 - 1.7241379310344827 * t508
-                    + parameters[50] * t493)
-            - (minus_garm_vy_leg3 * parameters[34]
-                + minus_garm_vy_leg3 * parameters[37]);
-        let gcross_vy_leg4 = c_arm_leg4 * t269;
-        let t543 = c_rod_leg4 * gcross_vy_leg4;
-        let t549 = s_rod_leg4 * gcross_vy_leg4;
-        let minus_garm_vy_leg4 = t258 * t262;
-        let t559 = c_cross_leg4 * (0.26 * minus_garm_vy_leg4);
-        let t563 = t267 * (parameters[66] * t543 - t258 * parameters[67])
-            - t287 * (t270 * parameters[67] - parameters[66] * t549)
-            - t299
-                * (parameters[65] * t549 - parameters[64] * t543
-                    + parameters[67] * t559);
-        let t567 = t563
-            - (minus_garm_vy_leg4 * parameters[51]
-                + minus_garm_vy_leg4 * parameters[54]);
-        let t585 = s_rod_leg4
-            * (parameters[58] * t549 + parameters[59] * t543 + parameters[65] * t559
-                - t270 * parameters[66])
+                * (parameters[26] * t555 - parameters[28] * t550 + t161 * parameters[30]
+                    - t547 * parameters[31]);
+        let garm_vy_leg3 = t244 * t261;
+        let t604 = 1.0 / c_rod_leg3;
+        let minus_grod_vy_leg3 = 1.7241379310344827 * t604;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t612 = minus_s_rod_leg3 * s_armcross_leg3;
+        let minus_gcross_vy_leg3 = t272
+            * (minus_c_arm_leg3 * (t297 * t604) + s_arm_leg3 * (t612 * t604));
+        let t617 = c_rod_leg3 * minus_gcross_vy_leg3;
+        let t625 = minus_s_rod_leg3 * (s_cross_leg3 * (0.26 * garm_vy_leg3));
+        let t627 = minus_s_rod_leg3 * minus_gcross_vy_leg3;
+        let t633 = t266
+            * (minus_grod_vy_leg3 * parameters[48] - parameters[49] * t617
+                + minus_s_rod_leg3 * parameters[50])
+            + t282
+                * (parameters[50] * t625
+                    - (parameters[49] * t627 + minus_grod_vy_leg3 * parameters[47]));
+        let t634 = 0.58 * t617;
+        let t636 = parameters[47] * t617;
+        let t642 = garm_vy_leg3 * parameters[34] + garm_vy_leg3 * parameters[37] + t633
+            + t304 * (parameters[50] * t634 - (t636 + parameters[48] * t627));
+        let t653 = c_rod_leg3
+            * (parameters[42] * t627 - parameters[44] * t617
+                - minus_grod_vy_leg3 * parameters[45] + 0.58 * t636
+                + minus_s_rod_leg3 * parameters[49]);
+        let t663 = minus_s_rod_leg3
+            * (parameters[41] * t627 - parameters[42] * t617
+                - minus_grod_vy_leg3 * parameters[43] - parameters[48] * t634
+                - parameters[49] * t625);
+        let t664 = t653 - t663;
+        let t670 = t337 - (0.26 * minus_c_arm_leg4 - 0.24);
+        let garm_vy_leg4 = t670 * t351;
+        let t675 = 1.7241379310344827 * t670;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t362;
+        let t678 = c_rod_leg4 * minus_gcross_vy_leg4;
+        let t682 = s_rod_leg4 * minus_gcross_vy_leg4;
+        let t692 = c_cross_leg4 * (0.26 * garm_vy_leg4);
+        let t696 = t356 * (t675 * parameters[67] - parameters[66] * t678)
+            - t405 * (parameters[66] * t682 - t385 * parameters[67])
+            - t417
+                * (parameters[64] * t678 - parameters[65] * t682
+                    - parameters[67] * t692);
+        let t697 = garm_vy_leg4 * parameters[51] + garm_vy_leg4 * parameters[54] + t696;
+        let t715 = s_rod_leg4
+            * (t385 * parameters[66]
+                - (parameters[58] * t682 + parameters[59] * t678
+                    + parameters[65] * t692))
             + c_rod_leg4
-                * (parameters[59] * t549 + parameters[61] * t543 - parameters[64] * t559
-                    - t258 * parameters[66]);
-        let t596 = garm_vx_leg4 * t567 - minus_gcross_vx_leg4 * t585
-            + grod_vx_leg4
-                * (parameters[60] * t549 + parameters[62] * t543 + t270 * parameters[64]
-                    + t258 * parameters[65]);
-        let t597 = gcross_vx_leg1 * t393 + minus_garm_vx_leg1 * t418 + t475
-            + gcross_vx_leg3 * t513 - minus_garm_vx_leg3 * t538 + t596;
-        let garm_vz_leg1 = t14 * t25;
-        let t600 = c_cross_leg1 * (0.26 * garm_vz_leg1);
-        let minus_gcross_vz_leg1 = s_arm_leg1 * t18;
-        let t603 = s_rod_leg1 * minus_gcross_vz_leg1;
-        let t605 = c_rod_leg1 * minus_gcross_vz_leg1;
-        let t620 = c_rod_leg1
-            * (parameters[13] * t600 - (parameters[8] * t603 + parameters[10] * t605)
-                - t14 * parameters[15])
+                * (parameters[64] * t692
+                    - (parameters[59] * t682 + parameters[61] * t678)
+                    + t675 * parameters[66]);
+        let t726 = garm_vx_leg4 * t697 - minus_gcross_vx_leg4 * t715
+            - grod_vx_leg4
+                * (parameters[60] * t682 + parameters[62] * t678 + t385 * parameters[64]
+                    + t675 * parameters[65]);
+        let t727 = garm_vx_leg1 * t515 - minus_gcross_vx_leg1 * t537 + t598
+            + garm_vx_leg3 * t642 - minus_gcross_vx_leg3 * t664 + t726;
+        let t729 = pose[2] - 0.26 * minus_s_arm_leg1;
+        let garm_vz_leg1 = t729 * t34;
+        let t734 = 1.7241379310344827 * t729;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t45;
+        let t737 = c_rod_leg1 * minus_gcross_vz_leg1;
+        let t741 = s_rod_leg1 * minus_gcross_vz_leg1;
+        let t751 = c_cross_leg1 * (0.26 * garm_vz_leg1);
+        let t755 = t39 * (t734 * parameters[16] - parameters[15] * t737)
+            - t55 * (parameters[15] * t741 + t486 * parameters[16])
+            - t77
+                * (parameters[13] * t737 - parameters[14] * t741
+                    - parameters[16] * t751);
+        let t756 = garm_vz_leg1 * parameters[0] + garm_vz_leg1 * parameters[3] + t755;
+        let t774 = c_rod_leg1
+            * (parameters[13] * t751 - (parameters[8] * t741 + parameters[10] * t737)
+                + t734 * parameters[15])
             - s_rod_leg1
-                * (parameters[7] * t603 + parameters[8] * t605 + parameters[14] * t600
-                    + t360 * parameters[15]);
-        let t640 = t54 * (parameters[15] * t603 + t360 * parameters[16])
-            - t48 * (parameters[15] * t605 + t14 * parameters[16])
-            + t60
-                * (parameters[13] * t605 - parameters[14] * t603
-                    - parameters[16] * t600);
-        let t641 = garm_vz_leg1 * parameters[0] + garm_vz_leg1 * parameters[3] - t640;
-        let garm_vz_leg2 = t85 * t89;
-        let minus_gcross_vz_leg2 = s_arm_leg2 * t99;
-        let t649 = c_rod_leg2 * minus_gcross_vz_leg2;
-        let t654 = s_rod_leg2 * minus_gcross_vz_leg2;
-        let t664 = c_cross_leg2 * (0.26 * garm_vz_leg2);
-        let t668 = t117 * (parameters[32] * t649 + t85 * parameters[33])
-            - t95 * (parameters[32] * t654 + t103 * parameters[33])
-            - t126
-                * (parameters[30] * t649 - parameters[31] * t654
-                    - parameters[33] * t664);
-        let t669 = garm_vz_leg2 * parameters[17] + garm_vz_leg2 * parameters[20] + t668;
-        let t687 = c_rod_leg2
-            * (parameters[30] * t664 - (parameters[25] * t654 + parameters[27] * t649)
-                - t85 * parameters[32])
-            - s_rod_leg2
-                * (parameters[24] * t654 + parameters[25] * t649 + parameters[31] * t664
-                    + t103 * parameters[32]);
-        let t698 = garm_vx_leg2 * t669 - minus_gcross_vx_leg2 * t687
+                * (parameters[7] * t741 + parameters[8] * t737 + parameters[14] * t751
+                    + t486 * parameters[15]);
+        let t778 = pose[2] - 0.26 * minus_s_arm_leg2;
+        let garm_vz_leg2 = t778 * t125;
+        let t783 = 1.7241379310344827 * t778;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t137;
+        let t786 = c_rod_leg2 * minus_gcross_vz_leg2;
+        let t791 = minus_s_rod_leg2 * minus_gcross_vz_leg2;
+        let t800 = c_cross_leg2 * (0.26 * garm_vz_leg2);
+        let t804 = t130 * (t783 * parameters[33] - parameters[32] * t786)
+            - t179 * (t167 * parameters[33] + parameters[32] * t791)
+            - t191
+                * (parameters[30] * t786 + parameters[31] * t791
+                    - parameters[33] * t800);
+        let t805 = garm_vz_leg2 * parameters[17] + garm_vz_leg2 * parameters[20] + t804;
+        let t823 = c_rod_leg2
+            * (parameters[25] * t791 - parameters[27] * t786 + parameters[30] * t800
+                + t783 * parameters[32])
+            - minus_s_rod_leg2
+                * (parameters[24] * t791 - parameters[25] * t786 - parameters[31] * t800
+                    + t167 * parameters[32]);
+        let t834 = garm_vx_leg2 * t805 - minus_gcross_vx_leg2 * t823
             - minus_grod_vx_leg2
-                * (t103 * parameters[30]
-                    - (parameters[26] * t654 + parameters[28] * t649)
-                    + t85 * parameters[31]);
-        let gcross_vz_leg3 = s_arm_leg3 * t190;
-        let t701 = s_rod_leg3 * gcross_vz_leg3;
-        let t703 = c_rod_leg3 * gcross_vz_leg3;
-        let minus_garm_vz_leg3 = t184 * t197;
-        let t708 = c_cross_leg3 * (0.26 * minus_garm_vz_leg3);
-        let t722 = s_rod_leg3
-            * (parameters[41] * t701 + parameters[42] * t703 + parameters[48] * t708
-                - t480 * parameters[49])
-            + c_rod_leg3
-                * (parameters[42] * t701 + parameters[44] * t703 - parameters[47] * t708
-                    - t184 * parameters[49]);
-        let t739 = t217 * (parameters[49] * t703 - t184 * parameters[50])
-            - t223 * (t480 * parameters[50] - parameters[49] * t701)
-            - t229
-                * (parameters[48] * t701 - parameters[47] * t703
-                    + parameters[50] * t708);
-        let t743 = t739
-            - (minus_garm_vz_leg3 * parameters[34]
-                + minus_garm_vz_leg3 * parameters[37]);
-        let gcross_vz_leg4 = s_arm_leg4 * t269;
-        let t748 = c_rod_leg4 * gcross_vz_leg4;
-        let t754 = s_rod_leg4 * gcross_vz_leg4;
-        let minus_garm_vz_leg4 = t256 * t262;
-        let t764 = c_cross_leg4 * (0.26 * minus_garm_vz_leg4);
-        let t768 = t267 * (parameters[66] * t748 - t256 * parameters[67])
-            - t287 * (t274 * parameters[67] - parameters[66] * t754)
-            - t299
-                * (parameters[65] * t754 - parameters[64] * t748
-                    + parameters[67] * t764);
-        let t772 = t768
-            - (minus_garm_vz_leg4 * parameters[51]
-                + minus_garm_vz_leg4 * parameters[54]);
-        let t790 = s_rod_leg4
-            * (parameters[58] * t754 + parameters[59] * t748 + parameters[65] * t764
-                - t274 * parameters[66])
+                * (parameters[26] * t791 - parameters[28] * t786 - t167 * parameters[30]
+                    - t783 * parameters[31]);
+        let t837 = pose[2] + 0.26 * s_arm_leg3;
+        let garm_vz_leg3 = t837 * t261;
+        let gcross_vz_leg3 = s_arm_leg3 * t272;
+        let t843 = c_rod_leg3 * gcross_vz_leg3;
+        let t845 = 1.7241379310344827 * t837;
+        let t849 = minus_s_rod_leg3 * gcross_vz_leg3;
+        let t859 = c_cross_leg3 * (0.26 * garm_vz_leg3);
+        let t863 = t266 * (parameters[49] * t843 + t845 * parameters[50])
+            + t282 * (parameters[49] * t849 - t612 * parameters[50])
+            + t304
+                * (parameters[47] * t843 + parameters[48] * t849
+                    + parameters[50] * t859);
+        let t864 = garm_vz_leg3 * parameters[34] + garm_vz_leg3 * parameters[37] + t863;
+        let t882 = c_rod_leg3
+            * (parameters[44] * t843 - parameters[42] * t849 + parameters[47] * t859
+                + t845 * parameters[49])
+            - minus_s_rod_leg3
+                * (parameters[42] * t843 - parameters[41] * t849 - parameters[48] * t859
+                    + t612 * parameters[49]);
+        let t887 = pose[2] + 0.26 * s_arm_leg4;
+        let garm_vz_leg4 = t887 * t351;
+        let gcross_vz_leg4 = s_arm_leg4 * t362;
+        let t893 = c_rod_leg4 * gcross_vz_leg4;
+        let t895 = 1.7241379310344827 * t887;
+        let t900 = s_rod_leg4 * gcross_vz_leg4;
+        let t909 = c_cross_leg4 * (0.26 * garm_vz_leg4);
+        let t913 = t356 * (parameters[66] * t893 + t895 * parameters[67])
+            - t405 * (t392 * parameters[67] - parameters[66] * t900)
+            - t417
+                * (parameters[65] * t900 - parameters[64] * t893
+                    - parameters[67] * t909);
+        let t914 = garm_vz_leg4 * parameters[51] + garm_vz_leg4 * parameters[54] + t913;
+        let t932 = s_rod_leg4
+            * (parameters[58] * t900 + parameters[59] * t893 - parameters[65] * t909
+                - t392 * parameters[66])
             + c_rod_leg4
-                * (parameters[59] * t754 + parameters[61] * t748 - parameters[64] * t764
-                    - t256 * parameters[66]);
-        let t801 = garm_vx_leg4 * t772 - minus_gcross_vx_leg4 * t790
+                * (parameters[59] * t900 + parameters[61] * t893 + parameters[64] * t909
+                    + t895 * parameters[66]);
+        let t943 = garm_vx_leg4 * t914 - minus_gcross_vx_leg4 * t932
             + grod_vx_leg4
-                * (parameters[60] * t754 + parameters[62] * t748 + t274 * parameters[64]
-                    + t256 * parameters[65]);
-        let t802 = gcross_vx_leg1 * t620 - minus_garm_vx_leg1 * t641 + t698
-            + gcross_vx_leg3 * t722 - minus_garm_vx_leg3 * t743 + t801;
-        let t803 = 0.05 * c_phi;
-        let t804 = 0.08660254037844387 * s_phi;
-        let t805 = t803 - t804;
-        let t807 = 0.05 * s_phi;
-        let t808 = 0.08660254037844387 * c_phi;
-        let t809 = t807 + t808;
-        let gcross_wz_leg1 = gcross_vy_leg1 * t805 - gcross_vx_leg1 * t809;
-        let t812 = s_rod_leg1 * gcross_wz_leg1;
-        let t814 = c_rod_leg1 * gcross_wz_leg1;
-        let grod_wz_leg1 = grod_vy_leg1 * t805;
-        let garm_wz_leg1 = minus_garm_vx_leg1 * t809 - minus_garm_vy_leg1 * t805;
-        let t823 = 0.26 * garm_wz_leg1;
-        let t824 = c_cross_leg1 * t823;
-        let t828 = s_rod_leg1 * (s_cross_leg1 * t823);
-        let t831 = s_rod_leg1
-            * (parameters[7] * t812 + parameters[8] * t814 + grod_wz_leg1 * parameters[9]
-                - parameters[14] * t824 + parameters[15] * t828);
-        let t841 = s_rod_leg1 * t805 - t12 * t809;
-        let t844 = c_rod_leg1
-            * (parameters[8] * t812 + parameters[10] * t814
-                + grod_wz_leg1 * parameters[11] + parameters[13] * t824
-                + parameters[15] * t841);
-        let t845 = t831 + t844;
-        let t862 = t48
-            * (parameters[15] * t814 - grod_wz_leg1 * parameters[14]
-                + parameters[16] * t841)
-            + t54
-                * (grod_wz_leg1 * parameters[13] - parameters[15] * t812
-                    - parameters[16] * t828);
-        let t870 = garm_wz_leg1 * parameters[0] + garm_wz_leg1 * parameters[3]
-            - (t862
-                + t60
-                    * (parameters[14] * t812 - parameters[13] * t814
-                        - parameters[16] * t824));
-        let t873 = t808 - t807;
-        let t875 = t804 + t803;
-        let gcross_wz_leg2 = gcross_vy_leg2 * t873 + minus_gcross_vx_leg2 * t875;
-        let t878 = s_rod_leg2 * gcross_wz_leg2;
-        let grod_wz_leg2 = minus_grod_vx_leg2 * t875;
-        let minus_garm_wz_leg2 = minus_garm_vy_leg2 * t873 + garm_vx_leg2 * t875;
-        let t886 = 0.26 * minus_garm_wz_leg2;
-        let t888 = s_rod_leg2 * (s_cross_leg2 * t886);
-        let t892 = c_rod_leg2 * gcross_wz_leg2;
-        let t898 = s_rod_leg2 * t875 + t83 * t873;
-        let t902 = t95
-            * (parameters[32] * t878 - grod_wz_leg2 * parameters[30]
-                - parameters[33] * t888)
-            - t117
-                * (parameters[32] * t892 - grod_wz_leg2 * parameters[31]
-                    + parameters[33] * t898);
-        let t906 = c_cross_leg2 * t886;
-        let t914 = t902
-            - t126
-                * (parameters[31] * t878 - parameters[30] * t892 + parameters[33] * t906)
-            - (minus_garm_wz_leg2 * parameters[17]
-                + minus_garm_wz_leg2 * parameters[20]);
-        let t925 = s_rod_leg2
-            * (parameters[24] * t878 + parameters[25] * t892
-                + grod_wz_leg2 * parameters[26] + parameters[31] * t906
-                - parameters[32] * t888);
-        let t935 = c_rod_leg2
-            * (parameters[25] * t878 + parameters[27] * t892
-                + grod_wz_leg2 * parameters[28] - parameters[30] * t906
-                + parameters[32] * t898);
-        let t936 = t925 + t935;
-        let t947 = parameters[26] * t878 + parameters[28] * t892
-            + grod_wz_leg2 * parameters[29] + parameters[30] * t888
-            - parameters[31] * t898;
-        let gcross_wz_leg3 = t809 * gcross_vx_leg3 - t805 * gcross_vy_leg3;
-        let t954 = s_rod_leg3 * gcross_wz_leg3;
-        let t956 = c_rod_leg3 * gcross_wz_leg3;
-        let grod_wz_leg3 = t805 * minus_grod_vy_leg3;
-        let garm_wz_leg3 = t805 * minus_garm_vy_leg3 - t809 * minus_garm_vx_leg3;
-        let t965 = 0.26 * garm_wz_leg3;
-        let t966 = c_cross_leg3 * t965;
-        let t970 = s_rod_leg3 * (s_cross_leg3 * t965);
-        let t973 = s_rod_leg3
-            * (parameters[41] * t954 + parameters[42] * t956
-                + grod_wz_leg3 * parameters[43] - parameters[48] * t966
-                + parameters[49] * t970);
-        let t983 = t809 * t186 - t805 * s_rod_leg3;
-        let t986 = c_rod_leg3
-            * (parameters[42] * t954 + parameters[44] * t956
-                + grod_wz_leg3 * parameters[45] + parameters[47] * t966
-                - parameters[49] * t983);
-        let t987 = t973 + t986;
-        let t1004 = t217
-            * (parameters[49] * t956 - grod_wz_leg3 * parameters[48]
-                - parameters[50] * t983)
-            + t223
-                * (parameters[50] * t970 + parameters[49] * t954
-                    - grod_wz_leg3 * parameters[47]);
-        let t1012 = garm_wz_leg3 * parameters[34] + garm_wz_leg3 * parameters[37] + t1004
-            - t229
-                * (parameters[48] * t954 - parameters[47] * t956
-                    - parameters[50] * t966);
-        let t1015 = gcross_vx_leg1 * t845 - minus_garm_vx_leg1 * t870
-            + garm_vx_leg2 * t914 - minus_gcross_vx_leg2 * t936
-            - minus_grod_vx_leg2 * t947 + gcross_vx_leg3 * t987
-            - minus_garm_vx_leg3 * t1012;
-        let garm_wz_leg4 = t873 * minus_garm_vy_leg4 + t875 * garm_vx_leg4;
-        let t1024 = t875 * s_rod_leg4 + t873 * t258;
-        let minus_gcross_wz_leg4 = t873 * gcross_vy_leg4 + t875 * minus_gcross_vx_leg4;
-        let t1029 = c_rod_leg4 * minus_gcross_wz_leg4;
-        let grod_wz_leg4 = t875 * grod_vx_leg4;
-        let t1037 = s_rod_leg4 * minus_gcross_wz_leg4;
-        let t1040 = 0.26 * garm_wz_leg4;
-        let t1042 = s_rod_leg4 * (s_cross_leg4 * t1040);
-        let t1046 = t267
-            * (parameters[67] * t1024
-                - (parameters[66] * t1029 + grod_wz_leg4 * parameters[65]))
-            - t287
-                * (grod_wz_leg4 * parameters[64] + parameters[66] * t1037
-                    - parameters[67] * t1042);
-        let t1050 = c_cross_leg4 * t1040;
-        let t1055 = garm_wz_leg4 * parameters[51] + garm_wz_leg4 * parameters[54] + t1046
-            - t299
-                * (parameters[64] * t1029 - parameters[65] * t1037
-                    - parameters[67] * t1050);
-        let t1066 = s_rod_leg4
-            * (grod_wz_leg4 * parameters[60]
-                - (parameters[58] * t1037 + parameters[59] * t1029)
-                - parameters[65] * t1050 + parameters[66] * t1042);
-        let t1076 = c_rod_leg4
-            * (grod_wz_leg4 * parameters[62]
-                - (parameters[59] * t1037 + parameters[61] * t1029)
-                + parameters[64] * t1050 + parameters[66] * t1024);
-        let t1077 = t1066 + t1076;
-        let t1088 = grod_wz_leg4 * parameters[63]
-            - (parameters[60] * t1037 + parameters[62] * t1029) - parameters[64] * t1042
-            - parameters[65] * t1024;
-        let t1092 = parameters[70] + parameters[74];
-        let t1094 = parameters[69] + parameters[73];
-        let t1097 = t1015 + garm_vx_leg4 * t1055 - minus_gcross_vx_leg4 * t1077
-            + grod_vx_leg4 * t1088 - (c_phi * t1092 + s_phi * t1094);
-        let t1110 = grod_vy_leg1
-            * (parameters[9] * t365 + parameters[11] * t367
-                + grod_vy_leg1 * parameters[12] + parameters[13] * t379
+                * (parameters[60] * t900 + parameters[62] * t893 + t392 * parameters[64]
+                    - t895 * parameters[65]);
+        let t944 = garm_vx_leg1 * t756 - minus_gcross_vx_leg1 * t774 + t834
+            + garm_vx_leg3 * t864 - minus_gcross_vx_leg3 * t882 + t943;
+        let garm_wz_leg1 = t4 * garm_vy_leg1 - t15 * garm_vx_leg1;
+        let t954 = 1.7241379310344827 * (t4 * t16 - t15 * t32);
+        let grod_wz_leg1 = t4 * grod_vy_leg1;
+        let gcross_wz_leg1 = t15 * minus_gcross_vx_leg1 - t4 * minus_gcross_vy_leg1;
+        let t961 = c_rod_leg1 * gcross_wz_leg1;
+        let t967 = s_rod_leg1 * gcross_wz_leg1;
+        let t970 = 0.26 * garm_wz_leg1;
+        let t972 = s_rod_leg1 * (s_cross_leg1 * t970);
+        let t976 = t39
+            * (parameters[16] * t954
+                - (grod_wz_leg1 * parameters[14] - parameters[15] * t961))
+            - t55
+                * (grod_wz_leg1 * parameters[13] - parameters[15] * t967
+                    - parameters[16] * t972);
+        let t980 = c_cross_leg1 * t970;
+        let t985 = garm_wz_leg1 * parameters[0] + garm_wz_leg1 * parameters[3] + t976
+            - t77
+                * (parameters[14] * t967 - parameters[13] * t961
+                    - parameters[16] * t980);
+        let t996 = s_rod_leg1
+            * (grod_wz_leg1 * parameters[9] + parameters[7] * t967 + parameters[8] * t961
+                - parameters[14] * t980 + parameters[15] * t972);
+        let t1006 = c_rod_leg1
+            * (grod_wz_leg1 * parameters[11] + parameters[8] * t967
+                + parameters[10] * t961 + parameters[13] * t980 + parameters[15] * t954);
+        let t1007 = t996 + t1006;
+        let garm_wz_leg2 = t108 * garm_vy_leg2 - t110 * garm_vx_leg2;
+        let gcross_wz_leg2 = t110 * minus_gcross_vx_leg2 - t108 * minus_gcross_vy_leg2;
+        let t1019 = c_rod_leg2 * gcross_wz_leg2;
+        let grod_wz_leg2 = t110 * minus_grod_vx_leg2;
+        let t1027 = 1.7241379310344827 * (t108 * t542 - t110 * t109);
+        let t1031 = 0.26 * garm_wz_leg2;
+        let t1033 = minus_s_rod_leg2 * (s_cross_leg2 * t1031);
+        let t1036 = minus_s_rod_leg2 * gcross_wz_leg2;
+        let t1041 = t130
+            * (parameters[32] * t1019 - grod_wz_leg2 * parameters[31]
+                + parameters[33] * t1027)
+            + t179
+                * (parameters[33] * t1033 + grod_wz_leg2 * parameters[30]
+                    + parameters[32] * t1036);
+        let t1045 = c_cross_leg2 * t1031;
+        let t1050 = garm_wz_leg2 * parameters[17] + garm_wz_leg2 * parameters[20] + t1041
+            + t191
+                * (parameters[30] * t1019 + parameters[31] * t1036
+                    + parameters[33] * t1045);
+        let t1061 = c_rod_leg2
+            * (parameters[27] * t1019 - parameters[25] * t1036
+                + grod_wz_leg2 * parameters[28] + parameters[30] * t1045
+                + parameters[32] * t1027);
+        let t1071 = minus_s_rod_leg2
+            * (parameters[25] * t1019 - parameters[24] * t1036
+                + grod_wz_leg2 * parameters[26] - parameters[31] * t1045
+                - parameters[32] * t1033);
+        let t1072 = t1061 - t1071;
+        let t1083 = parameters[28] * t1019 - parameters[26] * t1036
+            + grod_wz_leg2 * parameters[29] + parameters[30] * t1033
+            - parameters[31] * t1027;
+        let garm_wz_leg3 = t15 * garm_vx_leg3 - t4 * garm_vy_leg3;
+        let gcross_wz_leg3 = t4 * minus_gcross_vy_leg3 - t15 * minus_gcross_vx_leg3;
+        let t1096 = c_rod_leg3 * gcross_wz_leg3;
+        let grod_wz_leg3 = t4 * minus_grod_vy_leg3;
+        let t1104 = 1.7241379310344827 * (t15 * t259 - t4 * t244);
+        let t1108 = minus_s_rod_leg3 * gcross_wz_leg3;
+        let t1112 = 0.26 * garm_wz_leg3;
+        let t1114 = minus_s_rod_leg3 * (s_cross_leg3 * t1112);
+        let t1118 = t266
+            * (parameters[49] * t1096 - grod_wz_leg3 * parameters[48]
+                + parameters[50] * t1104)
+            + t282
+                * (parameters[49] * t1108 + grod_wz_leg3 * parameters[47]
+                    + parameters[50] * t1114);
+        let t1122 = c_cross_leg3 * t1112;
+        let t1127 = garm_wz_leg3 * parameters[34] + garm_wz_leg3 * parameters[37] + t1118
+            + t304
+                * (parameters[47] * t1096 + parameters[48] * t1108
+                    + parameters[50] * t1122);
+        let t1138 = c_rod_leg3
+            * (parameters[44] * t1096 - parameters[42] * t1108
+                + grod_wz_leg3 * parameters[45] + parameters[47] * t1122
+                + parameters[49] * t1104);
+        let t1148 = minus_s_rod_leg3
+            * (parameters[42] * t1096 - parameters[41] * t1108
+                + grod_wz_leg3 * parameters[43] - parameters[48] * t1122
+                - parameters[49] * t1114);
+        let t1149 = t1138 - t1148;
+        let t1152 = garm_vx_leg1 * t985 - minus_gcross_vx_leg1 * t1007
+            + garm_vx_leg2 * t1050 - minus_gcross_vx_leg2 * t1072
+            - minus_grod_vx_leg2 * t1083 + garm_vx_leg3 * t1127
+            - minus_gcross_vx_leg3 * t1149;
+        let garm_wz_leg4 = t110 * garm_vx_leg4 - t108 * garm_vy_leg4;
+        let gcross_wz_leg4 = t108 * minus_gcross_vy_leg4 - t110 * minus_gcross_vx_leg4;
+        let t1162 = c_rod_leg4 * gcross_wz_leg4;
+        let grod_wz_leg4 = t110 * grod_vx_leg4;
+        let t1170 = 1.7241379310344827 * (t110 * t336 - t108 * t670);
+        let t1175 = s_rod_leg4 * gcross_wz_leg4;
+        let t1178 = 0.26 * garm_wz_leg4;
+        let t1180 = s_rod_leg4 * (s_cross_leg4 * t1178);
+        let t1184 = t356
+            * (parameters[66] * t1162 - grod_wz_leg4 * parameters[65]
+                + parameters[67] * t1170)
+            - t405
+                * (grod_wz_leg4 * parameters[64] - parameters[66] * t1175
+                    - parameters[67] * t1180);
+        let t1188 = c_cross_leg4 * t1178;
+        let t1193 = garm_wz_leg4 * parameters[51] + garm_wz_leg4 * parameters[54] + t1184
+            - t417
+                * (parameters[65] * t1175 - parameters[64] * t1162
+                    - parameters[67] * t1188);
+        let t1204 = s_rod_leg4
+            * (parameters[58] * t1175 + parameters[59] * t1162
+                + grod_wz_leg4 * parameters[60] - parameters[65] * t1188
+                + parameters[66] * t1180);
+        let t1214 = c_rod_leg4
+            * (parameters[59] * t1175 + parameters[61] * t1162
+                + grod_wz_leg4 * parameters[62] + parameters[64] * t1188
+                + parameters[66] * t1170);
+        let t1215 = t1204 + t1214;
+        let t1226 = parameters[60] * t1175 + parameters[62] * t1162
+            + grod_wz_leg4 * parameters[63] - parameters[64] * t1180
+            - parameters[65] * t1170;
+        let t1230 = parameters[70] + parameters[74];
+        let t1232 = parameters[69] + parameters[73];
+        let t1235 = t1152 + garm_vx_leg4 * t1193 - minus_gcross_vx_leg4 * t1215
+            + grod_vx_leg4 * t1226 - (c_phi * t1230 + s_phi * t1232);
+        let t1248 = grod_vy_leg1
+            * (grod_vy_leg1 * parameters[12]
+                - (parameters[9] * t497 + parameters[11] * t491) - parameters[13] * t502
                 - s_rod_leg1 * parameters[14]);
-        let t1128 = minus_grod_vy_leg3
-            * (parameters[43] * t485 + parameters[45] * t487
-                - minus_grod_vy_leg3 * parameters[46] + parameters[47] * t499
-                + s_rod_leg3 * parameters[48]);
-        let t1130 = gcross_vy_leg1 * t393 + minus_garm_vy_leg1 * t418 + t1110
-            + gcross_vy_leg2 * t464 - minus_garm_vy_leg2 * t446 + gcross_vy_leg3 * t513
-            - minus_garm_vy_leg3 * t538 - t1128;
-        let t1147 = gcross_vy_leg1 * t620 - minus_garm_vy_leg1 * t641
+        let t1266 = minus_grod_vy_leg3
+            * (parameters[43] * t627 - parameters[45] * t617
+                - minus_grod_vy_leg3 * parameters[46] + parameters[47] * t625
+                - minus_s_rod_leg3 * parameters[48]);
+        let t1268 = garm_vy_leg1 * t515 - minus_gcross_vy_leg1 * t537 + t1248
+            + garm_vy_leg2 * t569 - minus_gcross_vy_leg2 * t587 + garm_vy_leg3 * t642
+            - minus_gcross_vy_leg3 * t664 - t1266;
+        let t1285 = garm_vy_leg1 * t756 - minus_gcross_vy_leg1 * t774
             + grod_vy_leg1
-                * (t360 * parameters[13] - (parameters[9] * t603 + parameters[11] * t605)
-                    + t14 * parameters[14]);
-        let t1163 = gcross_vy_leg3 * t722 - minus_garm_vy_leg3 * t743
+                * (t486 * parameters[13] - (parameters[9] * t741 + parameters[11] * t737)
+                    - t734 * parameters[14]);
+        let t1301 = garm_vy_leg3 * t864 - minus_gcross_vy_leg3 * t882
             - minus_grod_vy_leg3
-                * (parameters[43] * t701 + parameters[45] * t703 + t480 * parameters[47]
-                    + t184 * parameters[48]);
-        let t1168 = t1147 + gcross_vy_leg2 * t687 - minus_garm_vy_leg2 * t669 + t1163
-            + gcross_vy_leg4 * t790 - minus_garm_vy_leg4 * t772;
-        let t1180 = parameters[9] * t812 + parameters[11] * t814
-            + grod_wz_leg1 * parameters[12] - parameters[13] * t828
-            - parameters[14] * t841;
-        let t1198 = parameters[43] * t954 + parameters[45] * t956
-            + grod_wz_leg3 * parameters[46] - parameters[47] * t970
-            + parameters[48] * t983;
-        let t1201 = gcross_vy_leg1 * t845 - minus_garm_vy_leg1 * t870
-            + grod_vy_leg1 * t1180 + gcross_vy_leg2 * t936 - minus_garm_vy_leg2 * t914
-            + gcross_vy_leg3 * t987 - minus_garm_vy_leg3 * t1012
-            - minus_grod_vy_leg3 * t1198;
-        let t1209 = t1201 + gcross_vy_leg4 * t1077 - minus_garm_vy_leg4 * t1055
-            + c_phi * t1094 - s_phi * t1092;
-        let t1220 = garm_vz_leg1 * t641 - minus_gcross_vz_leg1 * t620
-            + garm_vz_leg2 * t669 - minus_gcross_vz_leg2 * t687 + gcross_vz_leg3 * t722
-            - minus_garm_vz_leg3 * t743;
-        let t1236 = garm_vz_leg1 * t870 - minus_gcross_vz_leg1 * t845
-            + garm_vz_leg2 * t914 - minus_gcross_vz_leg2 * t936 + gcross_vz_leg3 * t987
-            - minus_garm_vz_leg3 * t1012;
-        let t1240 = t1236 + gcross_vz_leg4 * t1077 - minus_garm_vz_leg4 * t1055;
-        let t1251 = garm_wz_leg1 * t870 + gcross_wz_leg1 * t845 + grod_wz_leg1 * t1180
-            + gcross_wz_leg2 * t936 - minus_garm_wz_leg2 * t914 + grod_wz_leg2 * t947;
-        let t1263 = t1251 + garm_wz_leg3 * t1012 + gcross_wz_leg3 * t987
-            + grod_wz_leg3 * t1198 + garm_wz_leg4 * t1055 - minus_gcross_wz_leg4 * t1077
-            + grod_wz_leg4 * t1088;
+                * (parameters[45] * t843 - parameters[43] * t849 - t612 * parameters[47]
+                    - t845 * parameters[48]);
+        let t1306 = t1285 + garm_vy_leg2 * t805 - minus_gcross_vy_leg2 * t823 + t1301
+            + garm_vy_leg4 * t914 - minus_gcross_vy_leg4 * t932;
+        let t1318 = grod_wz_leg1 * parameters[12] + parameters[9] * t967
+            + parameters[11] * t961 - parameters[13] * t972 - parameters[14] * t954;
+        let t1336 = parameters[45] * t1096 - parameters[43] * t1108
+            + grod_wz_leg3 * parameters[46] + parameters[47] * t1114
+            - parameters[48] * t1104;
+        let t1339 = garm_vy_leg1 * t985 - minus_gcross_vy_leg1 * t1007
+            + grod_vy_leg1 * t1318 + garm_vy_leg2 * t1050 - minus_gcross_vy_leg2 * t1072
+            + garm_vy_leg3 * t1127 - minus_gcross_vy_leg3 * t1149
+            - minus_grod_vy_leg3 * t1336;
+        let t1347 = t1339 + garm_vy_leg4 * t1193 - minus_gcross_vy_leg4 * t1215
+            + c_phi * t1232 - s_phi * t1230;
+        let t1358 = garm_vz_leg1 * t756 - minus_gcross_vz_leg1 * t774
+            + garm_vz_leg2 * t805 - minus_gcross_vz_leg2 * t823 + garm_vz_leg3 * t864
+            + gcross_vz_leg3 * t882;
+        let t1374 = garm_vz_leg1 * t985 - minus_gcross_vz_leg1 * t1007
+            + garm_vz_leg2 * t1050 - minus_gcross_vz_leg2 * t1072 + garm_vz_leg3 * t1127
+            + gcross_vz_leg3 * t1149;
+        let t1378 = t1374 + garm_vz_leg4 * t1193 + gcross_vz_leg4 * t1215;
+        let t1389 = garm_wz_leg1 * t985 + gcross_wz_leg1 * t1007 + grod_wz_leg1 * t1318
+            + garm_wz_leg2 * t1050 + gcross_wz_leg2 * t1072 + grod_wz_leg2 * t1083;
+        let t1401 = t1389 + garm_wz_leg3 * t1127 + gcross_wz_leg3 * t1149
+            + grod_wz_leg3 * t1336 + garm_wz_leg4 * t1193 + gcross_wz_leg4 * t1215
+            + grod_wz_leg4 * t1226;
         Ok([
-            [t344 + t355, t597, t802, t1097],
+            [t462 + t471, t727, t944, t1235],
             [
-                t597, t1130 + gcross_vy_leg4 * t585 - minus_garm_vy_leg4 * t567 + t355, t1168,
-                t1209,
+                t727, t1268 + garm_vy_leg4 * t697 - minus_gcross_vy_leg4 * t715 + t471, t1306,
+                t1347,
             ],
             [
-                t802, t1168, t1220 + gcross_vz_leg4 * t790 - minus_garm_vz_leg4 * t772 + t355,
-                t1240,
+                t944, t1306, t1358 + garm_vz_leg4 * t914 + gcross_vz_leg4 * t932 + t471, t1378,
             ],
-            [t1097, t1209, t1240, t1263 + parameters[68] + parameters[72]],
+            [t1235, t1347, t1378, t1401 + parameters[68] + parameters[72]],
         ])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -9351,7 +13754,7 @@ impl Schoenflies4 {
     ///
     /// Output: 4.
     ///
-    /// 986 operations (376 additions, 602 multiplications, 8 divisions), 0 square roots, 13 trigonometric pairs, 4 signs, 1012 intermediates.
+    /// 1108 operations (444 additions, 644 multiplications, 20 divisions), 8 square roots, 1 trigonometric pairs, 4 signs, 1118 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -9360,469 +13763,554 @@ impl Schoenflies4 {
         twist: &[f64; 4],
         parameters: &[f64; 76],
     ) -> Result<[f64; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
-        let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        ::overact::guard::leg(c_rod_leg1, 0.9887897213061891, "leg1")?;
-        let t12 = c_armcross_leg1 * c_rod_leg1;
-        let t14 = s_armcross_leg1 * c_rod_leg1;
-        let t16 = s_arm_leg1 * t12 - c_arm_leg1 * t14;
-        ::overact::guard::leg(t16, 0.9185391450939739, "leg1")?;
-        let t17 = 1.0 / t16;
-        let t18 = 1.7241379310344827 * t17;
-        let gcross_vx_leg1 = c_arm_leg1 * t18;
-        let minus_gcross_vz_leg1 = s_arm_leg1 * t18;
-        let t22 = 3.8461538461538463 * t17;
-        let garm_vz_leg1 = t14 * t22;
-        let minus_garm_vx_leg1 = t12 * t22;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
-        let t28 = 0.05 * s_phi;
-        let t29 = 0.08660254037844387 * c_phi;
-        let t30 = t28 + t29;
-        let t31 = t30 * twist[3];
-        let t32 = twist[0] - t31;
-        let minus_garm_vy_leg1 = s_rod_leg1 * t22;
-        let t35 = 0.05 * c_phi;
-        let t36 = 0.08660254037844387 * s_phi;
-        let t37 = t35 - t36;
-        let t38 = t37 * twist[3];
-        let t39 = twist[1] + t38;
-        let rate_arm_leg1 = garm_vz_leg1 * twist[2]
-            - (minus_garm_vx_leg1 * t32 + minus_garm_vy_leg1 * t39);
-        let t43 = rate_arm_leg1 * rate_arm_leg1;
-        let t46 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.7241379310344827 * t46;
-        let rate_rod_leg1 = grod_vy_leg1 * t39;
-        let t49 = s_armcross_leg1 * rate_rod_leg1;
-        let gcross_vy_leg1 = t18
-            * (c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t46)
-                + s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t46));
-        let rate_cross_leg1 = gcross_vx_leg1 * t32 + gcross_vy_leg1 * t39
-            - minus_gcross_vz_leg1 * twist[2];
-        let t64 = rate_cross_leg1 * rate_cross_leg1;
-        let t66 = c_armcross_leg1 * rate_rod_leg1;
-        let t68 = t49 * t49 + t64 + t66 * t66;
-        let t71 = 0.58 * s_rod_leg1;
-        let t73 = t71 * (rate_cross_leg1 * t66);
-        let t75 = 0.26 * s_arm_leg1 * t43 + 0.58 * t14 * t68 + t73 + t73;
-        let t77 = twist[3] * t38;
-        let t79 = t71 * (rate_cross_leg1 * t49);
-        let t87 = t77 + t79 - (0.26 * c_arm_leg1 * t43 + 0.58 * t12 * t68) + t79;
-        let t89 = twist[3] * t31;
-        let t90 = t71 * rate_cross_leg1;
-        let t94 = t89 + rate_cross_leg1 * t90 - t71 * t68;
-        let rate_dot_cross_leg1 = minus_gcross_vz_leg1 * t75
-            - (gcross_vx_leg1 * t87 + gcross_vy_leg1 * t94);
-        let t98 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t99 = c_rod_leg1 * rate_cross_leg1;
-        let t100 = rate_rod_leg1 * t99;
-        let t101 = t98 + t100;
-        let t103 = 1.7241379310344827 * t90;
-        let t104 = rate_rod_leg1 * t103;
-        let t105 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t106 = t105 - t104;
-        let t107 = t104 - t106;
-        let t110 = t103 * t99;
-        let minus_rate_dot_rod_leg1 = grod_vy_leg1 * t94;
-        let t112 = t110 - minus_rate_dot_rod_leg1;
-        let t117 = t99 * t99;
-        let t118 = rate_rod_leg1 * rate_rod_leg1;
-        let t121 = parameters[7] * t101 - parameters[8] * t107 + parameters[9] * t112
-            - parameters[10] * t100 + parameters[11] * (t117 - t118);
-        let t124 = 9.81 * s_arm_leg1;
-        let t126 = t124 + 0.26 * t43;
-        let rate_dot_arm_leg1 = minus_garm_vx_leg1 * t87 + minus_garm_vy_leg1 * t94
-            - garm_vz_leg1 * t75;
-        let t134 = 9.81 * c_arm_leg1;
-        let t135 = 0.26 * rate_dot_arm_leg1 - t134;
-        let t137 = s_cross_leg1 * t126 + c_cross_leg1 * t135;
-        let t142 = s_cross_leg1 * t135 - c_cross_leg1 * t126;
-        let t143 = s_rod_leg1 * t142;
-        let t148 = t100 + t101;
-        let t152 = 2.972651605231867 * (t90 * t90);
-        let t158 = t110 + minus_rate_dot_rod_leg1;
-        let t160 = parameters[7] * t104 + parameters[8] * t148
-            + parameters[9] * (t118 - t152) + parameters[10] * t106
-            - parameters[11] * t158;
-        let t165 = c_rod_leg1 * t142;
-        let t169 = s_rod_leg1
-            * (t121 + parameters[12] * t100 - parameters[14] * t137
-                + parameters[15] * t143)
-            + c_rod_leg1
-                * (t160 - parameters[12] * t104 + parameters[13] * t137
-                    + parameters[15] * t165);
-        let t182 = parameters[0] * rate_dot_arm_leg1 - parameters[1] * t134
-            + parameters[2] * t124 + parameters[3] * rate_dot_arm_leg1
+        let t2 = 0.05 * c_phi;
+        let t3 = 0.08660254037844387 * s_phi;
+        let t4 = t2 - t3;
+        let t5 = pose[0] + t4;
+        let t6 = t5 - 0.24;
+        let t7 = t6 * t6;
+        let t8 = pose[2] * pose[2];
+        let t10 = 0.2704 * (t7 + t8);
+        let t11 = 1.0 / t10;
+        let t12 = 0.52 * t6;
+        let t13 = 0.05 * s_phi;
+        let t14 = 0.08660254037844387 * c_phi;
+        let t15 = t13 + t14;
+        let t16 = pose[1] + t15;
+        let t17 = t16 * t16;
+        let t19 = t7 + t17 + t8;
+        let t21 = t19 - 0.3364 + 0.0676;
+        let t23 = 0.52 * pose[2];
+        let t25 = t10 - t21 * t21;
+        ::overact::guard::reach(t25, "leg1")?;
+        let t26 = ::overact::math::sqrt(t25);
+        ::overact::guard::leg(t26, 0.27703140616182853, "leg1")?;
+        let c_arm_leg1 = t11 * (t12 * t21 - t23 * t26);
+        let t30 = 0.26 * c_arm_leg1;
+        let t32 = t5 - (0.24 + t30);
+        let t33 = 1.0 / t26;
+        let t34 = 2.0 * t33;
+        let garm_vx_leg1 = t32 * t34;
+        let t36 = t15 * twist[3];
+        let t37 = twist[0] - t36;
+        let garm_vy_leg1 = t16 * t34;
+        let t40 = t4 * twist[3];
+        let t41 = twist[1] + t40;
+        let minus_s_arm_leg1 = t11 * (t23 * t21 + t12 * t26);
+        let t48 = 0.26 * minus_s_arm_leg1;
+        let t49 = pose[2] - t48;
+        let garm_vz_leg1 = t49 * t34;
+        let rate_arm_leg1 = garm_vx_leg1 * t37 + garm_vy_leg1 * t41
+            + garm_vz_leg1 * twist[2];
+        let t53 = rate_arm_leg1 * rate_arm_leg1;
+        let t57 = 1.0 - 2.972651605231867 * t17;
+        ::overact::guard::reach(t57, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t57);
+        ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
+        let s_cross_leg1 = 1.9230769230769231 * t26 / (0.58 * c_rod_leg1);
+        let c_cross_leg1 = (t19 - (0.0676 + t17) - 0.3364 * t57) / (0.3016 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t70 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7241379310344827 * t70;
+        let rate_rod_leg1 = grod_vy_leg1 * t41;
+        let t73 = s_armcross_leg1 * rate_rod_leg1;
+        let t75 = 0.52 * t33;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t75;
+        let s_rod_leg1 = 1.7241379310344827 * t16;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let minus_gcross_vy_leg1 = t75
+            * (c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t70)
+                - minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t70));
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t75;
+        let minus_rate_cross_leg1 = minus_gcross_vx_leg1 * t37
+            + minus_gcross_vy_leg1 * t41 + minus_gcross_vz_leg1 * twist[2];
+        let t95 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t97 = c_armcross_leg1 * rate_rod_leg1;
+        let t99 = t73 * t73 + t95 + t97 * t97;
+        let t103 = t16 * (minus_rate_cross_leg1 * t73);
+        let t106 = twist[3] * t40;
+        let t107 = t30 * t53 + t32 * t99 + t103 + t103 - t106;
+        let t109 = twist[3] * t36;
+        let t110 = t16 * minus_rate_cross_leg1;
+        let t114 = t109 + minus_rate_cross_leg1 * t110 - t16 * t99;
+        let t121 = t16 * (minus_rate_cross_leg1 * t97);
+        let t123 = t48 * t53 + t49 * t99 + t121 + t121;
+        let rate_dot_arm_leg1 = garm_vx_leg1 * t107 - garm_vy_leg1 * t114
+            + garm_vz_leg1 * t123;
+        let t127 = 9.81 * c_arm_leg1;
+        let t130 = 9.81 * minus_s_arm_leg1;
+        let t139 = parameters[0] * rate_dot_arm_leg1 - parameters[1] * t127
+            - parameters[2] * t130 + parameters[3] * rate_dot_arm_leg1
             + parameters[4] * rate_arm_leg1
             + ::overact::math::signed(parameters[5], rate_arm_leg1) + parameters[6];
-        let t192 = 0.26 * t16
-            * (parameters[14] * t158 - parameters[13] * (t117 + t118)
-                + parameters[15] * t105 + parameters[16] * t165);
-        let t203 = s_rod_leg1 * (0.26 * s_cross_leg1)
-            * (parameters[13] * t112 - parameters[14] * (t152 + t118)
-                - parameters[15] * t98 - parameters[16] * t143);
-        let t214 = t192 + t203
-            + 0.26 * c_cross_leg1
-                * (parameters[13] * t107 + parameters[14] * t148 - parameters[15] * t64
-                    - parameters[16] * t137);
-        let t215 = t182 - t214;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        ::overact::guard::leg(c_rod_leg2, 0.988789721306189, "leg2")?;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
-        let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t230 = c_armcross_leg2 * c_rod_leg2;
-        let t232 = s_armcross_leg2 * c_rod_leg2;
-        let t234 = s_arm_leg2 * t230 - c_arm_leg2 * t232;
-        ::overact::guard::leg(t234, 0.9185391450939737, "leg2")?;
-        let t235 = 1.0 / t234;
-        let t236 = 3.8461538461538463 * t235;
-        let garm_vx_leg2 = s_rod_leg2 * t236;
-        let t238 = 9.81 * s_arm_leg2;
-        let t240 = t29 - t28;
-        let t241 = t240 * twist[3];
-        let t242 = twist[3] * t241;
-        let t243 = 0.58 * s_rod_leg2;
-        let t244 = 1.7241379310344827 * t235;
-        let gcross_vy_leg2 = c_arm_leg2 * t244;
-        let t246 = twist[1] + t241;
-        let t249 = 1.0 / c_rod_leg2;
-        let minus_gcross_vx_leg2 = t244
-            * (c_arm_leg2 * (c_armcross_leg2 * s_rod_leg2 * t249)
-                + s_arm_leg2 * (s_armcross_leg2 * s_rod_leg2 * t249));
-        let t257 = t36 + t35;
-        let t258 = t257 * twist[3];
-        let t259 = twist[0] - t258;
-        let minus_gcross_vz_leg2 = s_arm_leg2 * t244;
-        let rate_cross_leg2 = gcross_vy_leg2 * t246 - minus_gcross_vx_leg2 * t259
-            - minus_gcross_vz_leg2 * twist[2];
-        let t265 = rate_cross_leg2 * rate_cross_leg2;
-        let minus_grod_vx_leg2 = 1.7241379310344827 * t249;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t259;
-        let t268 = s_armcross_leg2 * minus_rate_rod_leg2;
-        let t271 = c_armcross_leg2 * minus_rate_rod_leg2;
-        let t273 = t265 + t268 * t268 + t271 * t271;
-        let t275 = t243 * rate_cross_leg2;
-        let t278 = t242 + t243 * t273 - rate_cross_leg2 * t275;
-        let minus_garm_vy_leg2 = t230 * t236;
-        let garm_vz_leg2 = t232 * t236;
-        let rate_arm_leg2 = garm_vx_leg2 * t259 - minus_garm_vy_leg2 * t246
+        let t141 = 1.7241379310344827 * t110;
+        let t142 = c_rod_leg1 * minus_rate_cross_leg1;
+        let t143 = t141 * t142;
+        let minus_rate_dot_rod_leg1 = grod_vy_leg1 * t114;
+        let t145 = t143 + minus_rate_dot_rod_leg1;
+        let t147 = t142 * t142;
+        let t148 = rate_rod_leg1 * rate_rod_leg1;
+        let rate_dot_cross_leg1 = minus_gcross_vy_leg1 * t114
+            - minus_gcross_vx_leg1 * t107 - minus_gcross_vz_leg1 * t123;
+        let t157 = c_rod_leg1 * rate_dot_cross_leg1;
+        let t161 = t130 - 0.26 * t53;
+        let t164 = 0.26 * rate_dot_arm_leg1 - t127;
+        let t166 = c_cross_leg1 * t161 + s_cross_leg1 * t164;
+        let t167 = c_rod_leg1 * t166;
+        let t170 = 0.8620689655172413 * t26
+            * (parameters[14] * t145 - parameters[13] * (t147 + t148)
+                + parameters[15] * t157 + parameters[16] * t167);
+        let t173 = t143 - minus_rate_dot_rod_leg1;
+        let t176 = 2.972651605231867 * (t110 * t110);
+        let t180 = s_rod_leg1 * rate_dot_cross_leg1;
+        let t183 = s_rod_leg1 * t166;
+        let t186 = 0.4482758620689655 * (t16 * s_cross_leg1)
+            * (parameters[13] * t173 - parameters[14] * (t176 + t148)
+                - parameters[15] * t180 - parameters[16] * t183);
+        let t189 = rate_rod_leg1 * t142;
+        let t190 = t180 - t189;
+        let t191 = t190 - t189;
+        let t193 = rate_rod_leg1 * t141;
+        let t194 = t157 + t193;
+        let t195 = t193 + t194;
+        let t202 = c_cross_leg1 * t164 - s_cross_leg1 * t161;
+        let t206 = t170 - t186
+            - 0.26 * c_cross_leg1
+                * (parameters[14] * t191 - parameters[13] * t195 - parameters[15] * t95
+                    - parameters[16] * t202);
+        let t207 = t139 + t206;
+        let t218 = parameters[7] * t190 + parameters[8] * t195 + parameters[9] * t173
+            + parameters[10] * t189 + parameters[11] * (t147 - t148);
+        let t235 = parameters[8] * t191 - parameters[7] * t193
+            + parameters[9] * (t148 - t176) + parameters[10] * t194
+            - parameters[11] * t145;
+        let t243 = s_rod_leg1
+            * (t218 - parameters[12] * t189 - parameters[14] * t202
+                + parameters[15] * t183)
+            + c_rod_leg1
+                * (t235 + parameters[12] * t193 + parameters[13] * t202
+                    + parameters[15] * t167);
+        let t246 = t14 - t13;
+        let t247 = pose[0] + t246;
+        let t248 = t3 + t2;
+        let t249 = pose[1] + t248;
+        let t250 = t249 - 0.24;
+        let t251 = t250 * t250;
+        let t253 = 0.2704 * (t251 + t8);
+        let t254 = t247 * t247;
+        let t256 = t254 + t251 + t8;
+        let t258 = t256 - 0.3364 + 0.0676;
+        let t260 = t253 - t258 * t258;
+        ::overact::guard::reach(t260, "leg2")?;
+        let t261 = ::overact::math::sqrt(t260);
+        ::overact::guard::leg(t261, 0.27703140616182853, "leg2")?;
+        let t262 = 1.0 / t261;
+        let t263 = 2.0 * t262;
+        let garm_vx_leg2 = t247 * t263;
+        let t265 = 1.0 / t253;
+        let t266 = 0.52 * t250;
+        let c_arm_leg2 = t265 * (t266 * t258 - t23 * t261);
+        let t271 = 0.26 * c_arm_leg2;
+        let t273 = t249 - (0.24 + t271);
+        let garm_vy_leg2 = t273 * t263;
+        let t275 = t248 * twist[3];
+        let t276 = twist[0] - t275;
+        let t278 = t246 * twist[3];
+        let t279 = twist[1] + t278;
+        let minus_s_arm_leg2 = t265 * (t23 * t258 + t266 * t261);
+        let t286 = 0.26 * minus_s_arm_leg2;
+        let t287 = pose[2] - t286;
+        let garm_vz_leg2 = t287 * t263;
+        let rate_arm_leg2 = garm_vx_leg2 * t276 + garm_vy_leg2 * t279
             + garm_vz_leg2 * twist[2];
-        let t288 = rate_arm_leg2 * rate_arm_leg2;
-        let t294 = t243 * (rate_cross_leg2 * t268);
-        let t297 = twist[3] * t258;
-        let t298 = 0.26 * c_arm_leg2 * t288 + 0.58 * t230 * t273 + t294 + t294 - t297;
-        let t307 = t243 * (rate_cross_leg2 * t271);
-        let t309 = 0.26 * s_arm_leg2 * t288 + 0.58 * t232 * t273 - t307 - t307;
-        let minus_rate_dot_arm_leg2 = garm_vx_leg2 * t278 + minus_garm_vy_leg2 * t298
-            + garm_vz_leg2 * t309;
-        let t313 = 9.81 * c_arm_leg2;
-        let t323 = parameters[19] * t238
-            - (parameters[17] * minus_rate_dot_arm_leg2 + parameters[18] * t313)
-            + parameters[21] * rate_arm_leg2 - parameters[20] * minus_rate_dot_arm_leg2
+        let t291 = rate_arm_leg2 * rate_arm_leg2;
+        let t293 = 0.52 * t262;
+        let minus_s_rod_leg2 = 1.7241379310344827 * t247;
+        let t298 = 1.0 - 2.972651605231867 * t254;
+        ::overact::guard::reach(t298, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t298);
+        ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
+        let c_cross_leg2 = (t256 - (0.0676 + t254) - 0.3364 * t298)
+            / (0.3016 * c_rod_leg2);
+        let s_cross_leg2 = 1.9230769230769231 * t261 / (0.58 * c_rod_leg2);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t311 = 1.0 / c_rod_leg2;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let minus_gcross_vx_leg2 = t293
+            * (c_arm_leg2 * (minus_s_rod_leg2 * c_armcross_leg2 * t311)
+                - minus_s_arm_leg2 * (minus_s_rod_leg2 * s_armcross_leg2 * t311));
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t293;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t293;
+        let minus_rate_cross_leg2 = minus_gcross_vx_leg2 * t276
+            + minus_gcross_vy_leg2 * t279 + minus_gcross_vz_leg2 * twist[2];
+        let t329 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let minus_grod_vx_leg2 = 1.7241379310344827 * t311;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t276;
+        let t332 = s_armcross_leg2 * minus_rate_rod_leg2;
+        let t335 = c_armcross_leg2 * minus_rate_rod_leg2;
+        let t337 = t329 + t332 * t332 + t335 * t335;
+        let t341 = t247 * (minus_rate_cross_leg2 * t332);
+        let t344 = twist[3] * t275;
+        let t345 = t271 * t291 + t273 * t337 + t341 + t341 - t344;
+        let t347 = twist[3] * t278;
+        let t348 = t247 * minus_rate_cross_leg2;
+        let t352 = t347 + minus_rate_cross_leg2 * t348 - t247 * t337;
+        let t359 = t247 * (minus_rate_cross_leg2 * t335);
+        let t361 = t286 * t291 + t287 * t337 + t359 + t359;
+        let rate_dot_arm_leg2 = garm_vy_leg2 * t345 - garm_vx_leg2 * t352
+            + garm_vz_leg2 * t361;
+        let t365 = 9.81 * c_arm_leg2;
+        let t368 = 9.81 * minus_s_arm_leg2;
+        let t377 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t365
+            - parameters[19] * t368 + parameters[20] * rate_dot_arm_leg2
+            + parameters[21] * rate_arm_leg2
             + ::overact::math::signed(parameters[22], rate_arm_leg2) + parameters[23];
-        let t325 = 1.7241379310344827 * t275;
-        let t326 = c_rod_leg2 * rate_cross_leg2;
-        let t327 = t325 * t326;
-        let rate_dot_rod_leg2 = minus_grod_vx_leg2 * t278;
-        let t329 = t327 - rate_dot_rod_leg2;
-        let t331 = t326 * t326;
-        let t332 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let rate_dot_cross_leg2 = minus_gcross_vx_leg2 * t278 + gcross_vy_leg2 * t298
-            + minus_gcross_vz_leg2 * t309;
-        let t341 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t345 = t238 + 0.26 * t288;
-        let t348 = t313 + 0.26 * minus_rate_dot_arm_leg2;
-        let t350 = c_cross_leg2 * t345 + s_cross_leg2 * t348;
-        let t351 = c_rod_leg2 * t350;
-        let t354 = 0.26 * t234
-            * (parameters[31] * t329 - parameters[30] * (t331 + t332)
-                + parameters[32] * t341 - parameters[33] * t351);
-        let t357 = t327 + rate_dot_rod_leg2;
-        let t360 = 2.972651605231867 * (t275 * t275);
-        let t364 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t367 = s_rod_leg2 * t350;
-        let t370 = s_rod_leg2 * (0.26 * s_cross_leg2)
-            * (parameters[30] * t357 - parameters[31] * (t360 + t332)
-                - parameters[32] * t364 + parameters[33] * t367);
-        let t373 = minus_rate_rod_leg2 * t326;
-        let t374 = t364 - t373;
-        let t375 = t374 - t373;
-        let t377 = minus_rate_rod_leg2 * t325;
-        let t378 = t341 + t377;
-        let t379 = t377 + t378;
-        let t386 = s_cross_leg2 * t345 - c_cross_leg2 * t348;
-        let t390 = t354 + t370
-            + 0.26 * c_cross_leg2
-                * (parameters[31] * t375 - parameters[30] * t379 - parameters[32] * t265
-                    - parameters[33] * t386);
-        let t391 = t323 - t390;
-        let t402 = parameters[24] * t374 + parameters[25] * t379 + parameters[26] * t357
-            + parameters[27] * t373 + parameters[28] * (t331 - t332);
-        let t419 = parameters[25] * t375 - parameters[24] * t377
-            + parameters[26] * (t332 - t360) + parameters[27] * t378
-            - parameters[28] * t329;
-        let t427 = s_rod_leg2
-            * (t402 - parameters[29] * t373 - parameters[31] * t386
-                - parameters[32] * t367)
-            + c_rod_leg2
-                * (t419 + parameters[29] * t377 + parameters[30] * t386
-                    - parameters[32] * t351);
-        let t439 = parameters[25] * (t360 - t331) - parameters[24] * t327
-            + parameters[26] * t364 + parameters[27] * t327 + parameters[28] * t341;
-        let t445 = t439 + parameters[29] * rate_dot_rod_leg2 + parameters[30] * t367
-            + parameters[31] * t351;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
-        let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        ::overact::guard::leg(c_rod_leg3, 0.9887897213061891, "leg3")?;
-        let t461 = s_armcross_leg3 * c_rod_leg3;
-        let t463 = c_armcross_leg3 * c_rod_leg3;
-        let t465 = c_arm_leg3 * t461 - s_arm_leg3 * t463;
-        ::overact::guard::leg(t465, 0.9185391450939737, "leg3")?;
-        let t466 = 1.0 / t465;
-        let t467 = 1.7241379310344827 * t466;
-        let gcross_vx_leg3 = c_arm_leg3 * t467;
-        let t470 = 3.8461538461538463 * t466;
-        let minus_garm_vx_leg3 = t463 * t470;
-        let t472 = twist[0] + t31;
-        let minus_garm_vy_leg3 = s_rod_leg3 * t470;
-        let t475 = twist[1] - t38;
-        let minus_garm_vz_leg3 = t461 * t470;
-        let minus_rate_arm_leg3 = minus_garm_vx_leg3 * t472 + minus_garm_vy_leg3 * t475
-            + minus_garm_vz_leg3 * twist[2];
-        let t481 = minus_rate_arm_leg3 * minus_rate_arm_leg3;
-        let t484 = 1.0 / c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.7241379310344827 * t484;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t475;
-        let t487 = s_armcross_leg3 * minus_rate_rod_leg3;
-        let gcross_vy_leg3 = t467
-            * (c_arm_leg3 * (c_armcross_leg3 * s_rod_leg3 * t484)
-                + s_arm_leg3 * (s_armcross_leg3 * s_rod_leg3 * t484));
-        let gcross_vz_leg3 = s_arm_leg3 * t467;
-        let rate_cross_leg3 = gcross_vx_leg3 * t472 + gcross_vy_leg3 * t475
-            + gcross_vz_leg3 * twist[2];
-        let t503 = rate_cross_leg3 * rate_cross_leg3;
-        let t505 = c_armcross_leg3 * minus_rate_rod_leg3;
-        let t507 = t487 * t487 + t503 + t505 * t505;
-        let t510 = 0.58 * s_rod_leg3;
-        let t512 = t510 * (rate_cross_leg3 * t487);
-        let t515 = t77 - (0.26 * c_arm_leg3 * t481 + 0.58 * t463 * t507 + t512 + t512);
-        let t518 = t510 * rate_cross_leg3;
-        let t521 = t89 - (t510 * t507 - rate_cross_leg3 * t518);
-        let t530 = t510 * (rate_cross_leg3 * t505);
-        let t532 = 0.26 * s_arm_leg3 * t481 + 0.58 * t461 * t507 - t530 - t530;
-        let rate_dot_cross_leg3 = gcross_vx_leg3 * t515 + gcross_vy_leg3 * t521
-            - gcross_vz_leg3 * t532;
-        let t535 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t536 = c_rod_leg3 * rate_cross_leg3;
-        let t537 = minus_rate_rod_leg3 * t536;
-        let t538 = t535 - t537;
-        let t540 = 1.7241379310344827 * t518;
-        let t541 = minus_rate_rod_leg3 * t540;
-        let t542 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t543 = t542 + t541;
-        let t544 = t541 + t543;
-        let t547 = t540 * t536;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t521;
-        let t549 = t547 - minus_rate_dot_rod_leg3;
-        let t554 = t536 * t536;
-        let t555 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t558 = parameters[41] * t538 + parameters[42] * t544 + parameters[43] * t549
-            + parameters[44] * t537 + parameters[45] * (t554 - t555);
-        let t561 = 9.81 * s_arm_leg3;
-        let t563 = t561 + 0.26 * t481;
-        let rate_dot_arm_leg3 = minus_garm_vz_leg3 * t532
-            - (minus_garm_vx_leg3 * t515 + minus_garm_vy_leg3 * t521);
-        let t571 = 9.81 * c_arm_leg3;
-        let t572 = 0.26 * rate_dot_arm_leg3 - t571;
-        let t574 = s_cross_leg3 * t563 + c_cross_leg3 * t572;
-        let t579 = s_cross_leg3 * t572 - c_cross_leg3 * t563;
-        let t580 = s_rod_leg3 * t579;
-        let t584 = t538 - t537;
-        let t589 = 2.972651605231867 * (t518 * t518);
-        let t595 = t547 + minus_rate_dot_rod_leg3;
-        let t597 = parameters[42] * t584 - parameters[41] * t541
-            + parameters[43] * (t555 - t589) + parameters[44] * t543
-            - parameters[45] * t595;
-        let t602 = c_rod_leg3 * t579;
-        let t606 = s_rod_leg3
-            * (t558 - parameters[46] * t537 - parameters[48] * t574
-                + parameters[49] * t580)
-            + c_rod_leg3
-                * (t597 + parameters[46] * t541 + parameters[47] * t574
-                    + parameters[49] * t602);
-        let t619 = parameters[34] * rate_dot_arm_leg3 - parameters[35] * t571
-            + parameters[36] * t561 + parameters[37] * rate_dot_arm_leg3
-            - parameters[38] * minus_rate_arm_leg3
-            - ::overact::math::signed(parameters[39], minus_rate_arm_leg3)
-            + parameters[40];
-        let t629 = 0.26 * t465
-            * (parameters[48] * t595 - parameters[47] * (t554 + t555)
-                + parameters[49] * t542 + parameters[50] * t602);
-        let t640 = s_rod_leg3 * (0.26 * s_cross_leg3)
-            * (parameters[47] * t549 - parameters[48] * (t589 + t555)
-                - parameters[49] * t535 - parameters[50] * t580);
-        let t651 = t629 - t640
+        let rate_dot_cross_leg2 = minus_gcross_vx_leg2 * t352
+            - minus_gcross_vy_leg2 * t345 - minus_gcross_vz_leg2 * t361;
+        let t384 = c_rod_leg2 * rate_dot_cross_leg2;
+        let t386 = c_rod_leg2 * minus_rate_cross_leg2;
+        let t387 = t386 * t386;
+        let t388 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t391 = 1.7241379310344827 * t348;
+        let t392 = t391 * t386;
+        let rate_dot_rod_leg2 = minus_grod_vx_leg2 * t352;
+        let t394 = t392 + rate_dot_rod_leg2;
+        let t399 = t368 - 0.26 * t291;
+        let t402 = 0.26 * rate_dot_arm_leg2 - t365;
+        let t404 = c_cross_leg2 * t399 + s_cross_leg2 * t402;
+        let t405 = c_rod_leg2 * t404;
+        let t408 = 0.8620689655172413 * t261
+            * (parameters[32] * t384
+                - (parameters[30] * (t387 + t388) + parameters[31] * t394)
+                + parameters[33] * t405);
+        let t411 = rate_dot_rod_leg2 - t392;
+        let t414 = 2.972651605231867 * (t348 * t348);
+        let t418 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t421 = minus_s_rod_leg2 * t404;
+        let t424 = 0.4482758620689655 * (t247 * s_cross_leg2)
+            * (parameters[30] * t411 - parameters[31] * (t414 + t388)
+                + parameters[32] * t418 + parameters[33] * t421);
+        let t427 = minus_rate_rod_leg2 * t386;
+        let t428 = t427 - t418;
+        let t429 = t427 + t428;
+        let t431 = minus_rate_rod_leg2 * t391;
+        let t432 = t384 + t431;
+        let t433 = t431 + t432;
+        let t440 = c_cross_leg2 * t402 - s_cross_leg2 * t399;
+        let t444 = t408 + t424
+            - 0.26 * c_cross_leg2
+                * (parameters[31] * t429 - parameters[30] * t433 - parameters[32] * t329
+                    - parameters[33] * t440);
+        let t445 = t377 + t444;
+        let t456 = parameters[25] * t429 - parameters[24] * t431
+            + parameters[26] * (t388 - t414) + parameters[27] * t432
+            + parameters[28] * t394;
+        let t473 = parameters[24] * t428 + parameters[25] * t433 + parameters[26] * t411
+            - parameters[27] * t427 + parameters[28] * (t387 - t388);
+        let t481 = c_rod_leg2
+            * (t456 + parameters[29] * t431 + parameters[30] * t440
+                + parameters[32] * t405)
+            - minus_s_rod_leg2
+                * (t473 + parameters[29] * t427 - parameters[31] * t440
+                    - parameters[32] * t421);
+        let t493 = parameters[24] * t392 + parameters[25] * (t414 - t387)
+            - parameters[26] * t418 - parameters[27] * t392 + parameters[28] * t384;
+        let t499 = t493 + parameters[29] * rate_dot_rod_leg2 + parameters[30] * t421
+            - parameters[31] * t405;
+        let t503 = pose[0] - t4;
+        let t504 = t503 + 0.24;
+        let t505 = t504 * t504;
+        let t507 = 0.2704 * (t505 + t8);
+        let t508 = 1.0 / t507;
+        let t509 = 0.52 * t504;
+        let t510 = pose[1] - t15;
+        let t511 = t510 * t510;
+        let t513 = t505 + t511 + t8;
+        let t515 = t513 - 0.3364 + 0.0676;
+        let t518 = t507 - t515 * t515;
+        ::overact::guard::reach(t518, "leg3")?;
+        let t519 = ::overact::math::sqrt(t518);
+        ::overact::guard::leg(t519, 0.27703140616182853, "leg3")?;
+        let minus_c_arm_leg3 = t508 * (t509 * t515 + t23 * t519);
+        let t523 = 0.26 * minus_c_arm_leg3;
+        let t525 = t503 - (t523 - 0.24);
+        let t526 = 1.0 / t519;
+        let t527 = 2.0 * t526;
+        let garm_vx_leg3 = t525 * t527;
+        let t529 = twist[0] + t36;
+        let garm_vy_leg3 = t510 * t527;
+        let t532 = twist[1] - t40;
+        let s_arm_leg3 = t508 * (t509 * t519 - t23 * t515);
+        let t539 = 0.26 * s_arm_leg3;
+        let t540 = pose[2] + t539;
+        let garm_vz_leg3 = t540 * t527;
+        let rate_arm_leg3 = garm_vx_leg3 * t529 + garm_vy_leg3 * t532
+            + garm_vz_leg3 * twist[2];
+        let t544 = rate_arm_leg3 * rate_arm_leg3;
+        let t549 = 1.0 - 2.972651605231867 * t511;
+        ::overact::guard::reach(t549, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t549);
+        ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
+        let c_cross_leg3 = (t513 - (0.0676 + t511) - 0.3364 * t549)
+            / (0.3016 * c_rod_leg3);
+        let s_cross_leg3 = 1.9230769230769231 * t519 / (0.58 * c_rod_leg3);
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t561 = 1.0 / c_rod_leg3;
+        let minus_grod_vy_leg3 = 1.7241379310344827 * t561;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t532;
+        let t564 = s_armcross_leg3 * minus_rate_rod_leg3;
+        let t566 = 0.52 * t526;
+        let gcross_vz_leg3 = s_arm_leg3 * t566;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t566;
+        let minus_s_rod_leg3 = 1.7241379310344827 * t510;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let minus_gcross_vy_leg3 = t566
+            * (minus_c_arm_leg3 * (minus_s_rod_leg3 * minus_c_armcross_leg3 * t561)
+                + s_arm_leg3 * (minus_s_rod_leg3 * s_armcross_leg3 * t561));
+        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
+            - (minus_gcross_vx_leg3 * t529 + minus_gcross_vy_leg3 * t532);
+        let t586 = rate_cross_leg3 * rate_cross_leg3;
+        let t588 = minus_c_armcross_leg3 * minus_rate_rod_leg3;
+        let t590 = t564 * t564 + t586 + t588 * t588;
+        let t594 = t510 * (rate_cross_leg3 * t564);
+        let t597 = t106 + t523 * t544 + t525 * t590 + t594 + t594;
+        let t599 = t510 * rate_cross_leg3;
+        let t603 = t109 - (rate_cross_leg3 * t599 - t510 * t590);
+        let t610 = t510 * (rate_cross_leg3 * t588);
+        let t612 = t539 * t544 - t540 * t590 - t610 - t610;
+        let rate_dot_arm_leg3 = garm_vx_leg3 * t597 + garm_vy_leg3 * t603
+            - garm_vz_leg3 * t612;
+        let t616 = 9.81 * minus_c_arm_leg3;
+        let t619 = 9.81 * s_arm_leg3;
+        let t628 = parameters[34] * rate_dot_arm_leg3 + parameters[35] * t616
+            + parameters[36] * t619 + parameters[37] * rate_dot_arm_leg3
+            + parameters[38] * rate_arm_leg3
+            + ::overact::math::signed(parameters[39], rate_arm_leg3) + parameters[40];
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t603;
+        let t631 = 1.7241379310344827 * t599;
+        let t632 = c_rod_leg3 * rate_cross_leg3;
+        let t633 = t631 * t632;
+        let t634 = minus_rate_dot_rod_leg3 - t633;
+        let t636 = t632 * t632;
+        let t637 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let minus_rate_dot_cross_leg3 = minus_gcross_vx_leg3 * t597
+            + minus_gcross_vy_leg3 * t603 + gcross_vz_leg3 * t612;
+        let t646 = c_rod_leg3 * minus_rate_dot_cross_leg3;
+        let t650 = t616 + 0.26 * rate_dot_arm_leg3;
+        let t653 = t619 + 0.26 * t544;
+        let t655 = s_cross_leg3 * t650 - c_cross_leg3 * t653;
+        let t656 = c_rod_leg3 * t655;
+        let t659 = 0.8620689655172413 * t519
+            * (parameters[48] * t634 - parameters[47] * (t636 + t637)
+                - parameters[49] * t646 + parameters[50] * t656);
+        let t662 = minus_s_rod_leg3 * t655;
+        let t664 = t633 + minus_rate_dot_rod_leg3;
+        let t667 = 2.972651605231867 * (t599 * t599);
+        let t671 = minus_s_rod_leg3 * minus_rate_dot_cross_leg3;
+        let t675 = 0.4482758620689655 * (t510 * s_cross_leg3)
+            * (parameters[50] * t662
+                - (parameters[47] * t664 + parameters[48] * (t667 + t637)
+                    + parameters[49] * t671));
+        let t678 = minus_rate_rod_leg3 * t631;
+        let t679 = t646 + t678;
+        let t680 = t678 + t679;
+        let t682 = minus_rate_rod_leg3 * t632;
+        let t683 = t671 - t682;
+        let t684 = t683 - t682;
+        let t691 = s_cross_leg3 * t653 + c_cross_leg3 * t650;
+        let t695 = t659 + t675
             - 0.26 * c_cross_leg3
-                * (parameters[48] * t584 - parameters[47] * t544 - parameters[49] * t503
-                    - parameters[50] * t574);
-        let t652 = t619 + t651;
-        let t655 = gcross_vx_leg1 * t169 - minus_garm_vx_leg1 * t215
-            + garm_vx_leg2 * t391 - minus_gcross_vx_leg2 * t427
-            - minus_grod_vx_leg2 * t445 + gcross_vx_leg3 * t606
-            - minus_garm_vx_leg3 * t652;
-        let (s_rod_leg4, c_rod_leg4) = ::overact::math::sin_cos(joints[11]);
-        ::overact::guard::leg(c_rod_leg4, 0.9887897213061891, "leg4")?;
-        let (s_arm_leg4, c_arm_leg4) = ::overact::math::sin_cos(joints[9]);
-        let (s_cross_leg4, c_cross_leg4) = ::overact::math::sin_cos(joints[10]);
-        let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
-        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let t668 = s_armcross_leg4 * c_rod_leg4;
-        let t670 = c_armcross_leg4 * c_rod_leg4;
-        let t672 = c_arm_leg4 * t668 - s_arm_leg4 * t670;
-        ::overact::guard::leg(t672, 0.9185391450939737, "leg4")?;
-        let t673 = 1.0 / t672;
-        let t674 = 3.8461538461538463 * t673;
-        let garm_vx_leg4 = s_rod_leg4 * t674;
-        let t676 = 1.7241379310344827 * t673;
-        let gcross_vy_leg4 = c_arm_leg4 * t676;
-        let t678 = twist[1] - t241;
-        let t681 = 1.0 / c_rod_leg4;
-        let minus_gcross_vx_leg4 = t676
-            * (c_arm_leg4 * (c_armcross_leg4 * s_rod_leg4 * t681)
-                + s_arm_leg4 * (s_armcross_leg4 * s_rod_leg4 * t681));
-        let t689 = twist[0] + t258;
-        let gcross_vz_leg4 = s_arm_leg4 * t676;
-        let rate_cross_leg4 = gcross_vy_leg4 * t678 - minus_gcross_vx_leg4 * t689
-            + gcross_vz_leg4 * twist[2];
-        let t695 = 0.58 * s_rod_leg4;
-        let t696 = t695 * rate_cross_leg4;
-        let t698 = rate_cross_leg4 * rate_cross_leg4;
-        let grod_vx_leg4 = 1.7241379310344827 * t681;
-        let rate_rod_leg4 = grod_vx_leg4 * t689;
-        let t701 = s_armcross_leg4 * rate_rod_leg4;
-        let t704 = c_armcross_leg4 * rate_rod_leg4;
-        let t706 = t698 + t701 * t701 + t704 * t704;
-        let t709 = t242 - (rate_cross_leg4 * t696 - t695 * t706);
-        let minus_garm_vy_leg4 = t670 * t674;
-        let minus_garm_vz_leg4 = t668 * t674;
-        let rate_arm_leg4 = garm_vx_leg4 * t689 - minus_garm_vy_leg4 * t678
-            - minus_garm_vz_leg4 * twist[2];
-        let t719 = rate_arm_leg4 * rate_arm_leg4;
-        let t725 = t695 * (rate_cross_leg4 * t701);
-        let t728 = t297 - (0.26 * c_arm_leg4 * t719 + 0.58 * t670 * t706 - t725 - t725);
-        let t737 = t695 * (rate_cross_leg4 * t704);
-        let t739 = 0.26 * s_arm_leg4 * t719 + 0.58 * t668 * t706 + t737 + t737;
-        let rate_dot_arm_leg4 = garm_vx_leg4 * t709 - minus_garm_vy_leg4 * t728
-            + minus_garm_vz_leg4 * t739;
-        let t743 = 9.81 * c_arm_leg4;
-        let t746 = 9.81 * s_arm_leg4;
-        let t755 = parameters[51] * rate_dot_arm_leg4 - parameters[52] * t743
-            + parameters[53] * t746 + parameters[54] * rate_dot_arm_leg4
+                * (parameters[47] * t680 + parameters[48] * t684 - parameters[49] * t586
+                    - parameters[50] * t691);
+        let t696 = t628 + t695;
+        let t707 = parameters[41] * t678 + parameters[42] * t684
+            + parameters[43] * (t637 - t667) - parameters[44] * t679
+            - parameters[45] * t634;
+        let t724 = parameters[41] * t683 - parameters[42] * t680 - parameters[43] * t664
+            + parameters[44] * t682 + parameters[45] * (t636 - t637);
+        let t732 = c_rod_leg3
+            * (t707 - parameters[46] * t678 + parameters[47] * t691
+                + parameters[49] * t656)
+            - minus_s_rod_leg3
+                * (t724 - parameters[46] * t682 - parameters[48] * t691
+                    - parameters[49] * t662);
+        let t735 = garm_vx_leg1 * t207 - minus_gcross_vx_leg1 * t243
+            + garm_vx_leg2 * t445 - minus_gcross_vx_leg2 * t481
+            - minus_grod_vx_leg2 * t499 + garm_vx_leg3 * t696
+            - minus_gcross_vx_leg3 * t732;
+        let t736 = pose[0] - t246;
+        let t737 = pose[1] - t248;
+        let t738 = t737 + 0.24;
+        let t739 = t738 * t738;
+        let t741 = 0.2704 * (t739 + t8);
+        let t742 = t736 * t736;
+        let t744 = t742 + t739 + t8;
+        let t746 = t744 - 0.3364 + 0.0676;
+        let t748 = t741 - t746 * t746;
+        ::overact::guard::reach(t748, "leg4")?;
+        let t749 = ::overact::math::sqrt(t748);
+        ::overact::guard::leg(t749, 0.27703140616182853, "leg4")?;
+        let t750 = 1.0 / t749;
+        let t751 = 2.0 * t750;
+        let garm_vx_leg4 = t736 * t751;
+        let t753 = 1.0 / t741;
+        let t754 = 0.52 * t738;
+        let s_arm_leg4 = t753 * (t754 * t749 - t23 * t746);
+        let t759 = 0.52 * t750;
+        let gcross_vz_leg4 = s_arm_leg4 * t759;
+        let minus_c_arm_leg4 = t753 * (t754 * t746 + t23 * t749);
+        let s_rod_leg4 = 1.7241379310344827 * t736;
+        let t770 = 1.0 - 2.972651605231867 * t742;
+        ::overact::guard::reach(t770, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t770);
+        ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
+        let c_cross_leg4 = (t744 - (0.0676 + t742) - 0.3364 * t770)
+            / (0.3016 * c_rod_leg4);
+        let s_cross_leg4 = 1.9230769230769231 * t749 / (0.58 * c_rod_leg4);
+        let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
+            + s_arm_leg4 * s_cross_leg4;
+        let t783 = 1.0 / c_rod_leg4;
+        let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
+            - minus_c_arm_leg4 * s_cross_leg4;
+        let minus_gcross_vx_leg4 = t759
+            * (minus_c_arm_leg4 * (s_rod_leg4 * minus_c_armcross_leg4 * t783)
+                + s_arm_leg4 * (s_rod_leg4 * s_armcross_leg4 * t783));
+        let t794 = twist[0] + t275;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t759;
+        let t797 = twist[1] - t278;
+        let rate_cross_leg4 = gcross_vz_leg4 * twist[2]
+            - (minus_gcross_vx_leg4 * t794 + minus_gcross_vy_leg4 * t797);
+        let t801 = t736 * rate_cross_leg4;
+        let t803 = rate_cross_leg4 * rate_cross_leg4;
+        let grod_vx_leg4 = 1.7241379310344827 * t783;
+        let rate_rod_leg4 = grod_vx_leg4 * t794;
+        let t806 = s_armcross_leg4 * rate_rod_leg4;
+        let t809 = minus_c_armcross_leg4 * rate_rod_leg4;
+        let t811 = t803 + t806 * t806 + t809 * t809;
+        let t814 = t347 - (rate_cross_leg4 * t801 - t736 * t811);
+        let t816 = 0.26 * minus_c_arm_leg4;
+        let t818 = t737 - (t816 - 0.24);
+        let garm_vy_leg4 = t818 * t751;
+        let t823 = 0.26 * s_arm_leg4;
+        let t824 = pose[2] + t823;
+        let garm_vz_leg4 = t824 * t751;
+        let rate_arm_leg4 = garm_vx_leg4 * t794 + garm_vy_leg4 * t797
+            + garm_vz_leg4 * twist[2];
+        let t828 = rate_arm_leg4 * rate_arm_leg4;
+        let t833 = t736 * (rate_cross_leg4 * t806);
+        let t836 = t344 + t816 * t828 + t818 * t811 + t833 + t833;
+        let t843 = t736 * (rate_cross_leg4 * t809);
+        let t845 = t823 * t828 - t824 * t811 - t843 - t843;
+        let rate_dot_arm_leg4 = garm_vx_leg4 * t814 + garm_vy_leg4 * t836
+            - garm_vz_leg4 * t845;
+        let t849 = 9.81 * minus_c_arm_leg4;
+        let t852 = 9.81 * s_arm_leg4;
+        let t861 = parameters[51] * rate_dot_arm_leg4 + parameters[52] * t849
+            + parameters[53] * t852 + parameters[54] * rate_dot_arm_leg4
             + parameters[55] * rate_arm_leg4
             + ::overact::math::signed(parameters[56], rate_arm_leg4) + parameters[57];
-        let t757 = 1.7241379310344827 * t696;
-        let t758 = c_rod_leg4 * rate_cross_leg4;
-        let t759 = t757 * t758;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t709;
-        let t761 = t759 - rate_dot_rod_leg4;
-        let t763 = t758 * t758;
-        let t764 = rate_rod_leg4 * rate_rod_leg4;
-        let rate_dot_cross_leg4 = gcross_vy_leg4 * t728 - minus_gcross_vx_leg4 * t709
-            - gcross_vz_leg4 * t739;
-        let t773 = c_rod_leg4 * rate_dot_cross_leg4;
-        let t777 = 0.26 * rate_dot_arm_leg4 - t743;
-        let t780 = t746 + 0.26 * t719;
-        let t782 = s_cross_leg4 * t777 - c_cross_leg4 * t780;
-        let t783 = c_rod_leg4 * t782;
-        let t786 = 0.26 * t672
-            * (parameters[65] * t761 - parameters[64] * (t763 + t764)
-                + parameters[66] * t773 + parameters[67] * t783);
-        let t789 = t759 + rate_dot_rod_leg4;
-        let t792 = 2.972651605231867 * (t696 * t696);
-        let t796 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t799 = s_rod_leg4 * t782;
-        let t802 = s_rod_leg4 * (0.26 * s_cross_leg4)
-            * (parameters[64] * t789 - parameters[65] * (t792 + t764)
-                - parameters[66] * t796 - parameters[67] * t799);
-        let t805 = rate_rod_leg4 * t757;
-        let t806 = t773 - t805;
-        let t807 = t805 - t806;
-        let t809 = rate_rod_leg4 * t758;
-        let t810 = t796 + t809;
-        let t811 = t809 + t810;
-        let t818 = s_cross_leg4 * t780 + c_cross_leg4 * t777;
-        let t822 = t786 - t802
+        let t863 = 1.7241379310344827 * t801;
+        let t864 = c_rod_leg4 * rate_cross_leg4;
+        let t865 = t863 * t864;
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t814;
+        let t867 = t865 - rate_dot_rod_leg4;
+        let t869 = t864 * t864;
+        let t870 = rate_rod_leg4 * rate_rod_leg4;
+        let minus_rate_dot_cross_leg4 = minus_gcross_vx_leg4 * t814
+            + minus_gcross_vy_leg4 * t836 + gcross_vz_leg4 * t845;
+        let t879 = c_rod_leg4 * minus_rate_dot_cross_leg4;
+        let t883 = t849 + 0.26 * rate_dot_arm_leg4;
+        let t886 = t852 + 0.26 * t828;
+        let t888 = s_cross_leg4 * t883 - c_cross_leg4 * t886;
+        let t889 = c_rod_leg4 * t888;
+        let t892 = 0.8620689655172413 * t749
+            * (parameters[65] * t867 - parameters[64] * (t869 + t870)
+                - parameters[66] * t879 + parameters[67] * t889);
+        let t895 = t865 + rate_dot_rod_leg4;
+        let t898 = 2.972651605231867 * (t801 * t801);
+        let t902 = s_rod_leg4 * minus_rate_dot_cross_leg4;
+        let t905 = s_rod_leg4 * t888;
+        let t908 = 0.4482758620689655 * (t736 * s_cross_leg4)
+            * (parameters[64] * t895 - parameters[65] * (t898 + t870)
+                + parameters[66] * t902 - parameters[67] * t905);
+        let t911 = rate_rod_leg4 * t863;
+        let t912 = t879 + t911;
+        let t913 = t911 + t912;
+        let t915 = rate_rod_leg4 * t864;
+        let t916 = t915 - t902;
+        let t917 = t915 + t916;
+        let t924 = s_cross_leg4 * t886 + c_cross_leg4 * t883;
+        let t928 = t892 - t908
             - 0.26 * c_cross_leg4
-                * (parameters[64] * t807 + parameters[65] * t811 - parameters[66] * t698
-                    - parameters[67] * t818);
-        let t823 = t755 + t822;
-        let t834 = parameters[58] * t810 - parameters[59] * t807 + parameters[60] * t789
-            - parameters[61] * t809 + parameters[62] * (t763 - t764);
-        let t851 = parameters[58] * t805 + parameters[59] * t811
-            + parameters[60] * (t764 - t792) + parameters[61] * t806
-            - parameters[62] * t761;
-        let t859 = s_rod_leg4
-            * (t834 + parameters[63] * t809 - parameters[65] * t818
-                + parameters[66] * t799)
+                * (parameters[64] * t913 + parameters[65] * t917 - parameters[66] * t803
+                    - parameters[67] * t924);
+        let t929 = t861 + t928;
+        let t940 = parameters[58] * t916 - parameters[59] * t913 + parameters[60] * t895
+            - parameters[61] * t915 + parameters[62] * (t869 - t870);
+        let t957 = parameters[58] * t911 + parameters[59] * t917
+            + parameters[60] * (t870 - t898) - parameters[61] * t912
+            - parameters[62] * t867;
+        let t965 = s_rod_leg4
+            * (t940 + parameters[63] * t915 - parameters[65] * t924
+                + parameters[66] * t905)
             + c_rod_leg4
-                * (t851 - parameters[63] * t805 + parameters[64] * t818
-                    + parameters[66] * t783);
-        let t871 = parameters[59] * (t792 - t763) - parameters[58] * t759
-            + parameters[60] * t796 + parameters[61] * t759 + parameters[62] * t773;
-        let t877 = t871 + parameters[63] * rate_dot_rod_leg4 - parameters[64] * t799
-            - parameters[65] * t783;
-        let t881 = twist[3] * twist[3];
-        let t884 = parameters[70] * t881 + parameters[74] * t881;
-        let t888 = parameters[69] * t881 + parameters[73] * t881;
-        let t891 = t655 + garm_vx_leg4 * t823 - minus_gcross_vx_leg4 * t859
-            + grod_vx_leg4 * t877 + s_phi * t884 - c_phi * t888;
-        let t904 = parameters[8] * (t152 - t117) - parameters[7] * t110
-            + parameters[9] * t98 + parameters[10] * t110 + parameters[11] * t105;
-        let t910 = t904 - parameters[12] * minus_rate_dot_rod_leg1
-            - parameters[13] * t143 - parameters[14] * t165;
-        let t929 = parameters[42] * (t589 - t554) - parameters[41] * t547
-            + parameters[43] * t535 + parameters[44] * t547 + parameters[45] * t542;
-        let t935 = t929 - parameters[46] * minus_rate_dot_rod_leg3
-            - parameters[47] * t580 - parameters[48] * t602;
-        let t938 = gcross_vy_leg1 * t169 - minus_garm_vy_leg1 * t215
-            + grod_vy_leg1 * t910 + gcross_vy_leg2 * t427 - minus_garm_vy_leg2 * t391
-            + gcross_vy_leg3 * t606 - minus_garm_vy_leg3 * t652
-            - minus_grod_vy_leg3 * t935;
-        let t957 = garm_vz_leg1 * t215 - minus_gcross_vz_leg1 * t169
-            + garm_vz_leg2 * t391 - minus_gcross_vz_leg2 * t427 + gcross_vz_leg3 * t606
-            - minus_garm_vz_leg3 * t652;
-        let garm_wz_leg1 = minus_garm_vx_leg1 * t30 - minus_garm_vy_leg1 * t37;
-        let gcross_wz_leg1 = gcross_vy_leg1 * t37 - gcross_vx_leg1 * t30;
-        let grod_wz_leg1 = grod_vy_leg1 * t37;
-        let gcross_wz_leg2 = gcross_vy_leg2 * t240 + minus_gcross_vx_leg2 * t257;
-        let minus_garm_wz_leg2 = minus_garm_vy_leg2 * t240 + garm_vx_leg2 * t257;
-        let grod_wz_leg2 = minus_grod_vx_leg2 * t257;
-        let t989 = garm_wz_leg1 * t215 + gcross_wz_leg1 * t169 + grod_wz_leg1 * t910
-            + gcross_wz_leg2 * t427 - minus_garm_wz_leg2 * t391 + grod_wz_leg2 * t445;
-        let garm_wz_leg3 = t37 * minus_garm_vy_leg3 - t30 * minus_garm_vx_leg3;
-        let gcross_wz_leg3 = t30 * gcross_vx_leg3 - t37 * gcross_vy_leg3;
-        let grod_wz_leg3 = t37 * minus_grod_vy_leg3;
-        let garm_wz_leg4 = t240 * minus_garm_vy_leg4 + t257 * garm_vx_leg4;
-        let minus_gcross_wz_leg4 = t240 * gcross_vy_leg4 + t257 * minus_gcross_vx_leg4;
-        let grod_wz_leg4 = t257 * grod_vx_leg4;
-        let t1015 = t989 + garm_wz_leg3 * t652 + gcross_wz_leg3 * t606
-            + grod_wz_leg3 * t935 + garm_wz_leg4 * t823 - minus_gcross_wz_leg4 * t859
-            + grod_wz_leg4 * t877;
+                * (t957 - parameters[63] * t911 + parameters[64] * t924
+                    + parameters[66] * t889);
+        let t977 = parameters[59] * (t898 - t869) - parameters[58] * t865
+            - parameters[60] * t902 + parameters[61] * t865 - parameters[62] * t879;
+        let t983 = t977 + parameters[63] * rate_dot_rod_leg4 - parameters[64] * t905
+            - parameters[65] * t889;
+        let t987 = twist[3] * twist[3];
+        let t990 = parameters[70] * t987 + parameters[74] * t987;
+        let t994 = parameters[69] * t987 + parameters[73] * t987;
+        let t997 = t735 + garm_vx_leg4 * t929 - minus_gcross_vx_leg4 * t965
+            + grod_vx_leg4 * t983 + s_phi * t990 - c_phi * t994;
+        let t1010 = parameters[8] * (t176 - t147) - parameters[7] * t143
+            + parameters[9] * t180 + parameters[10] * t143 + parameters[11] * t157;
+        let t1016 = t1010 - parameters[12] * minus_rate_dot_rod_leg1
+            - parameters[13] * t183 - parameters[14] * t167;
+        let t1035 = parameters[41] * t633 + parameters[42] * (t667 - t636)
+            + parameters[43] * t671 - parameters[44] * t633 - parameters[45] * t646;
+        let t1041 = t1035 - parameters[46] * minus_rate_dot_rod_leg3
+            + parameters[47] * t662 - parameters[48] * t656;
+        let t1044 = garm_vy_leg1 * t207 - minus_gcross_vy_leg1 * t243
+            + grod_vy_leg1 * t1016 + garm_vy_leg2 * t445 - minus_gcross_vy_leg2 * t481
+            + garm_vy_leg3 * t696 - minus_gcross_vy_leg3 * t732
+            - minus_grod_vy_leg3 * t1041;
+        let t1063 = garm_vz_leg1 * t207 - minus_gcross_vz_leg1 * t243
+            + garm_vz_leg2 * t445 - minus_gcross_vz_leg2 * t481 + garm_vz_leg3 * t696
+            + gcross_vz_leg3 * t732;
+        let garm_wz_leg1 = t4 * garm_vy_leg1 - t15 * garm_vx_leg1;
+        let gcross_wz_leg1 = t15 * minus_gcross_vx_leg1 - t4 * minus_gcross_vy_leg1;
+        let grod_wz_leg1 = t4 * grod_vy_leg1;
+        let garm_wz_leg2 = t246 * garm_vy_leg2 - t248 * garm_vx_leg2;
+        let gcross_wz_leg2 = t248 * minus_gcross_vx_leg2 - t246 * minus_gcross_vy_leg2;
+        let grod_wz_leg2 = t248 * minus_grod_vx_leg2;
+        let t1095 = garm_wz_leg1 * t207 + gcross_wz_leg1 * t243 + grod_wz_leg1 * t1016
+            + garm_wz_leg2 * t445 + gcross_wz_leg2 * t481 + grod_wz_leg2 * t499;
+        let garm_wz_leg3 = t15 * garm_vx_leg3 - t4 * garm_vy_leg3;
+        let gcross_wz_leg3 = t4 * minus_gcross_vy_leg3 - t15 * minus_gcross_vx_leg3;
+        let grod_wz_leg3 = t4 * minus_grod_vy_leg3;
+        let garm_wz_leg4 = t248 * garm_vx_leg4 - t246 * garm_vy_leg4;
+        let gcross_wz_leg4 = t246 * minus_gcross_vy_leg4 - t248 * minus_gcross_vx_leg4;
+        let grod_wz_leg4 = t248 * grod_vx_leg4;
+        let t1121 = t1095 + garm_wz_leg3 * t696 + gcross_wz_leg3 * t732
+            + grod_wz_leg3 * t1041 + garm_wz_leg4 * t929 + gcross_wz_leg4 * t965
+            + grod_wz_leg4 * t983;
         Ok([
-            t891,
-            t938 + gcross_vy_leg4 * t859 - minus_garm_vy_leg4 * t823
-                - (s_phi * t888 + c_phi * t884),
-            t957 + gcross_vz_leg4 * t859 - minus_garm_vz_leg4 * t823
+            t997,
+            t1044 + garm_vy_leg4 * t929 - minus_gcross_vy_leg4 * t965
+                - (s_phi * t994 + c_phi * t990),
+            t1063 + garm_vz_leg4 * t929 + gcross_vz_leg4 * t965
                 + 9.81 * (parameters[71] + parameters[75]),
-            t1015,
+            t1121,
         ])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
@@ -9835,26 +14323,27 @@ impl Schoenflies4 {
     ) -> Result<[f64; Self::POSE], ::overact::Error> {
         let mut pose = *start;
         ::overact::forward::gauss_newton(
-            ::overact::forward::Measured {
-                positions: actuators,
-                is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
-            },
-            &mut pose,
-            ::overact::forward::Workspace {
-                actuators: &mut [0.0; Self::ACTUATORS],
-                inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
-                normal: &mut [0.0; Self::DOF * Self::DOF],
-                step: &mut [0.0; Self::DOF],
-            },
-            |pose, positions, jacobian| {
-                let pose = ::overact::block::array(pose)?;
-                positions.copy_from_slice(&Self::actuator_positions(pose)?);
-                jacobian.copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
-                Ok(())
-            },
-            ::overact::forward::displace,
-        )?;
-        Ok(pose)
+                ::overact::forward::Measured {
+                    positions: actuators,
+                    is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
+                },
+                &mut pose,
+                ::overact::forward::Workspace {
+                    actuators: &mut [0.0; Self::ACTUATORS],
+                    inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
+                    normal: &mut [0.0; Self::DOF * Self::DOF],
+                    step: &mut [0.0; Self::DOF],
+                },
+                |pose, positions, jacobian| {
+                    let pose = ::overact::block::array(pose)?;
+                    positions.copy_from_slice(&Self::actuator_positions(pose)?);
+                    jacobian
+                        .copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
+                    Ok(())
+                },
+                ::overact::forward::displace,
+            )
+            .map(|()| pose)
     }
 }
 impl ::overact::Model for Schoenflies4 {

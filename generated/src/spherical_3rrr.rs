@@ -215,46 +215,74 @@ impl Spherical3Rrr {
             BaseParameter::new("mx_distal_leg3", "mx_distal_leg3", &[]),
         ]
     };
-    /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration; by Newton's method.
+    /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
+    ///
+    /// Output: 9.
+    ///
+    /// 53 operations (14 additions, 30 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 59 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration on the way from home.
-    pub fn joints(
-        pose: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::JOINTS], ::overact::Error> {
-        let mut joints = Self::HOME_JOINTS;
-        ::overact::inverse::solve(
-            ::overact::inverse::Legs {
-                names: &Self::LEGS,
-                joints: &[3, 3, 3],
-                home_pose: &Self::HOME_POSE,
-                home_joints: &Self::HOME_JOINTS,
-                has_quaternion: true,
-            },
-            pose,
-            &mut joints,
-            ::overact::inverse::Workspace {
-                error: &mut [0.0; Self::JOINTS],
-                jacobian: &mut [0.0; Self::JOINTS * Self::JOINTS],
-                pose: &mut [0.0; Self::POSE],
-            },
-            |pose, joints, error, jacobian| {
-                let (pose, joints) = (
-                    ::overact::block::array(pose)?,
-                    ::overact::block::array(joints)?,
-                );
-                ::overact::block::write(
-                    &Self::closure_error_from_joints(pose, joints),
-                    error,
-                );
-                ::overact::block::write(
-                    &Self::legs_jacobian_from_joints(pose, joints),
-                    jacobian,
-                );
-                Ok(())
-            },
-        )?;
-        Ok(joints)
+    /// A pose out of reach, or a singular configuration.
+    pub fn joints(pose: &[f64; 4]) -> Result<[f64; 9], ::overact::Error> {
+        let t0 = 2.0 * pose[1];
+        let t2 = 1.0 - pose[1] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = t2 - t4;
+        let t6 = pose[2] * t0;
+        let t7 = pose[0] * t3;
+        let minus_s_distal_leg1 = t6 - t7;
+        let t10 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t10, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t10);
+        let t13 = 1.0 / (t5 * c_distal_leg1);
+        let t14 = 2.0 * pose[2];
+        let t15 = pose[3] * t14;
+        let t16 = pose[0] * t0;
+        let t17 = t15 + t16;
+        let s_proximal_leg1 = t13 * (t5 * t17);
+        let c_proximal_leg1 = t13 * (t5 * t5);
+        let t25 = pose[3] * t0;
+        let t26 = pose[0] * t14;
+        let t27 = t25 + t26;
+        let s_wrist_leg1 = t27 / c_distal_leg1;
+        let t29 = pose[2] * t14;
+        let t31 = 1.0 - t29 - t4;
+        let c_wrist_leg1 = t31 / c_distal_leg1;
+        let t34 = t2 - t29;
+        let minus_s_distal_leg2 = t15 - t16;
+        let t37 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t37, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t37);
+        let t40 = 1.0 / (t34 * c_distal_leg2);
+        let s_proximal_leg2 = t40 * (t27 * t34);
+        let c_proximal_leg2 = t40 * (t34 * t34);
+        let t48 = t6 + t7;
+        let s_wrist_leg2 = t48 / c_distal_leg2;
+        let c_wrist_leg2 = t5 / c_distal_leg2;
+        let minus_s_distal_leg3 = t25 - t26;
+        let t54 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t54, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t54);
+        let t57 = 1.0 / (t31 * c_distal_leg3);
+        let s_proximal_leg3 = t57 * (t31 * t48);
+        let c_proximal_leg3 = t57 * (t31 * t31);
+        let s_wrist_leg3 = t17 / c_distal_leg3;
+        let c_wrist_leg3 = t34 / c_distal_leg3;
+        Ok([
+            ::overact::math::atan2(s_proximal_leg1, c_proximal_leg1),
+            ::overact::math::atan2(-minus_s_distal_leg1, c_distal_leg1),
+            ::overact::math::atan2(s_wrist_leg1, c_wrist_leg1),
+            ::overact::math::atan2(s_proximal_leg2, c_proximal_leg2),
+            ::overact::math::atan2(-minus_s_distal_leg2, c_distal_leg2),
+            ::overact::math::atan2(s_wrist_leg2, c_wrist_leg2),
+            ::overact::math::atan2(s_proximal_leg3, c_proximal_leg3),
+            ::overact::math::atan2(-minus_s_distal_leg3, c_distal_leg3),
+            ::overact::math::atan2(s_wrist_leg3, c_wrist_leg3),
+        ])
     }
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
@@ -263,13 +291,52 @@ impl Spherical3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 47 operations (14 additions, 30 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 50 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn actuator_positions(pose: &[f64; 4]) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Ok([joints[0], joints[3], joints[6]])
+        let t0 = 2.0 * pose[1];
+        let t2 = 1.0 - pose[1] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = t2 - t4;
+        let t6 = pose[2] * t0;
+        let t7 = pose[0] * t3;
+        let minus_s_distal_leg1 = t6 - t7;
+        let t10 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t10, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t10);
+        let t13 = 1.0 / (t5 * c_distal_leg1);
+        let t14 = 2.0 * pose[2];
+        let t15 = pose[3] * t14;
+        let t16 = pose[0] * t0;
+        let s_proximal_leg1 = t13 * (t5 * (t15 + t16));
+        let c_proximal_leg1 = t13 * (t5 * t5);
+        let t23 = pose[2] * t14;
+        let t24 = t2 - t23;
+        let minus_s_distal_leg2 = t15 - t16;
+        let t27 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t27, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t27);
+        let t30 = 1.0 / (t24 * c_distal_leg2);
+        let t31 = pose[3] * t0;
+        let t32 = pose[0] * t14;
+        let s_proximal_leg2 = t30 * ((t31 + t32) * t24);
+        let c_proximal_leg2 = t30 * (t24 * t24);
+        let t40 = 1.0 - t23 - t4;
+        let minus_s_distal_leg3 = t31 - t32;
+        let t43 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t43, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t43);
+        let t46 = 1.0 / (t40 * c_distal_leg3);
+        let s_proximal_leg3 = t46 * (t40 * (t6 + t7));
+        let c_proximal_leg3 = t46 * (t40 * t40);
+        Ok([
+            ::overact::math::atan2(s_proximal_leg1, c_proximal_leg1),
+            ::overact::math::atan2(s_proximal_leg2, c_proximal_leg2),
+            ::overact::math::atan2(s_proximal_leg3, c_proximal_leg3),
+        ])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -278,13 +345,76 @@ impl Spherical3Rrr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 15 operations (0 additions, 12 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 21 intermediates.
+    /// 71 operations (17 additions, 48 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 68 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian(pose: &[f64; 4]) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::inverse_jacobian_from_joints(pose, joints)
+        let t0 = 2.0 * pose[2];
+        let t1 = pose[3] * t0;
+        let t2 = 2.0 * pose[1];
+        let t3 = pose[0] * t2;
+        let minus_s_distal_leg2 = t1 - t3;
+        let t6 = 1.0 - pose[1] * t2;
+        let t7 = pose[2] * t0;
+        let t8 = t6 - t7;
+        let t10 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t10, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t10);
+        let t13 = 1.0 / (t8 * c_distal_leg2);
+        let t14 = pose[3] * t2;
+        let t15 = pose[0] * t0;
+        let t16 = t14 + t15;
+        let s_proximal_leg2 = t13 * (t16 * t8);
+        let c_proximal_leg2 = t13 * (t8 * t8);
+        let t23 = t16 * s_proximal_leg2 + t8 * c_proximal_leg2;
+        ::overact::guard::leg(t23, 1.0, "leg2")?;
+        let t24 = 1.0 / t23;
+        let gwrist_wx_leg2 = s_proximal_leg2 * t24;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
+        let minus_s_distal_leg3 = t14 - t15;
+        let t29 = 2.0 * pose[3];
+        let t30 = pose[3] * t29;
+        let t31 = 1.0 - t7 - t30;
+        let t33 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t33, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t33);
+        let t36 = 1.0 / (t31 * c_distal_leg3);
+        let c_proximal_leg3 = t36 * (t31 * t31);
+        let t40 = pose[2] * t2;
+        let t41 = pose[0] * t29;
+        let t42 = t40 + t41;
+        let s_proximal_leg3 = t36 * (t31 * t42);
+        let t46 = t31 * c_proximal_leg3 + t42 * s_proximal_leg3;
+        ::overact::guard::leg(t46, 1.0, "leg3")?;
+        let t47 = 1.0 / t46;
+        let gwrist_wx_leg3 = c_proximal_leg3 * t47;
+        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
+        let minus_s_distal_leg1 = t40 - t41;
+        let t51 = t6 - t30;
+        let t53 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t53, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t53);
+        let t56 = 1.0 / (t51 * c_distal_leg1);
+        let c_proximal_leg1 = t56 * (t51 * t51);
+        let t60 = t1 + t3;
+        let s_proximal_leg1 = t56 * (t51 * t60);
+        let t64 = t51 * c_proximal_leg1 + t60 * s_proximal_leg1;
+        ::overact::guard::leg(t64, 1.0, "leg1")?;
+        let t65 = 1.0 / t64;
+        let gwrist_wy_leg1 = c_proximal_leg1 * t65;
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
+        let gwrist_wy_leg3 = s_proximal_leg3 * t47;
+        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
+        let gwrist_wz_leg1 = s_proximal_leg1 * t65;
+        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
+        let gwrist_wz_leg2 = c_proximal_leg2 * t24;
+        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
+        Ok([
+            [1.0, -minus_gproximal_wy_leg1, -minus_gproximal_wz_leg1],
+            [-minus_gproximal_wx_leg2, 1.0, -minus_gproximal_wz_leg2],
+            [-minus_gproximal_wx_leg3, -minus_gproximal_wy_leg3, 1.0],
+        ])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -345,79 +475,111 @@ impl Spherical3Rrr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 92 operations (34 additions, 52 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 95 intermediates.
+    /// 148 operations (51 additions, 88 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 142 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn jacobian(pose: &[f64; 4]) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let t4 = 1.0 / minus_s_distal_leg2;
-        let gwrist_wx_leg2 = minus_s_proximal_leg2 * t4;
-        let gproximal_wx_leg2 = c_distal_leg2 * gwrist_wx_leg2;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t13 = 1.0 / minus_s_distal_leg3;
-        let gwrist_wx_leg3 = minus_c_proximal_leg3 * t13;
-        let gproximal_wx_leg3 = c_distal_leg3 * gwrist_wx_leg3;
-        let t17 = 1.0 + gproximal_wx_leg2 * gproximal_wx_leg2
-            + gproximal_wx_leg3 * gproximal_wx_leg3;
-        ::overact::guard::platform(t17, 1.0, "actuators")?;
-        let t18 = 1.0 / t17;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let t23 = 1.0 / minus_s_distal_leg1;
-        let gwrist_wy_leg1 = minus_c_proximal_leg1 * t23;
-        let gproximal_wy_leg1 = c_distal_leg1 * gwrist_wy_leg1;
-        let gwrist_wy_leg3 = minus_s_proximal_leg3 * t13;
-        let gproximal_wy_leg3 = c_distal_leg3 * gwrist_wy_leg3;
-        let t30 = gproximal_wy_leg1 + gproximal_wx_leg2
-            + gproximal_wx_leg3 * gproximal_wy_leg3;
-        let t31 = t30 * t18;
-        let t37 = gproximal_wy_leg1 * gproximal_wy_leg1 + 1.0
-            + gproximal_wy_leg3 * gproximal_wy_leg3 - t30 * t31;
-        ::overact::guard::platform(t37, 1.0, "actuators")?;
-        let t38 = 1.0 / t37;
-        let t39 = gproximal_wy_leg1 - t31;
-        let gwrist_wz_leg1 = minus_s_proximal_leg1 * t23;
-        let gproximal_wz_leg1 = c_distal_leg1 * gwrist_wz_leg1;
-        let gwrist_wz_leg2 = minus_c_proximal_leg2 * t4;
-        let gproximal_wz_leg2 = c_distal_leg2 * gwrist_wz_leg2;
-        let t50 = gproximal_wz_leg1 + gproximal_wx_leg2 * gproximal_wz_leg2
-            + gproximal_wx_leg3;
-        let t51 = t50 * t18;
-        let t53 = gproximal_wy_leg1 * gproximal_wz_leg1 + gproximal_wz_leg2
-            + gproximal_wy_leg3 - t30 * t51;
-        let t54 = t53 * t38;
-        let t62 = gproximal_wz_leg1 * gproximal_wz_leg1
-            + gproximal_wz_leg2 * gproximal_wz_leg2 + 1.0 - t50 * t51 - t53 * t54;
-        ::overact::guard::platform(t62, 1.0, "actuators")?;
-        let t63 = 1.0 / t62;
-        let t67 = t63 * (gproximal_wz_leg1 - t51 - t54 * t39);
-        let t69 = t38 * t39 - t54 * t67;
-        let t76 = 1.0 - gproximal_wx_leg2 * t31;
-        let t82 = t63 * (gproximal_wz_leg2 - gproximal_wx_leg2 * t51 - t54 * t76);
-        let t84 = t38 * t76 - t54 * t82;
-        let t91 = gproximal_wy_leg3 - gproximal_wx_leg3 * t31;
-        let t97 = t63 * (1.0 - gproximal_wx_leg3 * t51 - t54 * t91);
-        let t99 = t38 * t91 - t54 * t97;
+        let t0 = 2.0 * pose[2];
+        let t1 = pose[3] * t0;
+        let t2 = 2.0 * pose[1];
+        let t3 = pose[0] * t2;
+        let minus_s_distal_leg2 = t1 - t3;
+        let t6 = 1.0 - pose[1] * t2;
+        let t7 = pose[2] * t0;
+        let t8 = t6 - t7;
+        let t10 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t10, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t10);
+        let t13 = 1.0 / (t8 * c_distal_leg2);
+        let t14 = pose[3] * t2;
+        let t15 = pose[0] * t0;
+        let t16 = t14 + t15;
+        let s_proximal_leg2 = t13 * (t16 * t8);
+        let c_proximal_leg2 = t13 * (t8 * t8);
+        let t23 = t16 * s_proximal_leg2 + t8 * c_proximal_leg2;
+        ::overact::guard::leg(t23, 1.0, "leg2")?;
+        let t24 = 1.0 / t23;
+        let gwrist_wx_leg2 = s_proximal_leg2 * t24;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
+        let minus_s_distal_leg3 = t14 - t15;
+        let t31 = 2.0 * pose[3];
+        let t32 = pose[3] * t31;
+        let t33 = 1.0 - t7 - t32;
+        let t35 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t35, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t35);
+        let t38 = 1.0 / (t33 * c_distal_leg3);
+        let c_proximal_leg3 = t38 * (t33 * t33);
+        let t42 = pose[2] * t2;
+        let t43 = pose[0] * t31;
+        let t44 = t42 + t43;
+        let s_proximal_leg3 = t38 * (t33 * t44);
+        let t48 = t33 * c_proximal_leg3 + t44 * s_proximal_leg3;
+        ::overact::guard::leg(t48, 1.0, "leg3")?;
+        let t49 = 1.0 / t48;
+        let gwrist_wx_leg3 = c_proximal_leg3 * t49;
+        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
+        let t53 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
+        ::overact::guard::platform(t53, 1.0, "actuators")?;
+        let t54 = 1.0 / t53;
+        let gwrist_wy_leg3 = s_proximal_leg3 * t49;
+        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
+        let minus_s_distal_leg1 = t42 - t43;
+        let t59 = t6 - t32;
+        let t61 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t61, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t61);
+        let t64 = 1.0 / (t59 * c_distal_leg1);
+        let c_proximal_leg1 = t64 * (t59 * t59);
+        let t68 = t1 + t3;
+        let s_proximal_leg1 = t64 * (t59 * t68);
+        let t72 = t59 * c_proximal_leg1 + t68 * s_proximal_leg1;
+        ::overact::guard::leg(t72, 1.0, "leg1")?;
+        let t73 = 1.0 / t72;
+        let gwrist_wy_leg1 = c_proximal_leg1 * t73;
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
+        let t77 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+            - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
+        let t78 = t77 * t54;
+        let t84 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t77 * t78;
+        ::overact::guard::platform(t84, 1.0, "actuators")?;
+        let t85 = 1.0 / t84;
+        let t86 = minus_gproximal_wy_leg1 + t78;
+        let gwrist_wz_leg1 = s_proximal_leg1 * t73;
+        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
+        let gwrist_wz_leg2 = c_proximal_leg2 * t24;
+        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
+        let t97 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
+        let t98 = t97 * t54;
+        let t100 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t77 * t98;
+        let t101 = t100 * t85;
+        let t109 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t97 * t98
+            - t100 * t101;
+        ::overact::guard::platform(t109, 1.0, "actuators")?;
+        let t110 = 1.0 / t109;
+        let t114 = t110 * (t101 * t86 - (minus_gproximal_wz_leg1 + t98));
+        let t116 = t85 * t86 + t101 * t114;
+        let t123 = 1.0 + minus_gproximal_wx_leg2 * t78;
+        let t129 = t110
+            * (minus_gproximal_wx_leg2 * t98 - minus_gproximal_wz_leg2 - t101 * t123);
+        let t131 = t85 * t123 - t101 * t129;
+        let t138 = minus_gproximal_wx_leg3 * t78 - minus_gproximal_wy_leg3;
+        let t144 = t110 * (1.0 + minus_gproximal_wx_leg3 * t98 - t101 * t138);
+        let t146 = t85 * t138 - t101 * t144;
         Ok([
             [
-                t18 - t31 * t69 - t51 * t67, gproximal_wx_leg2 * t18 - t31 * t84 - t51 * t82,
-                gproximal_wx_leg3 * t18 - t31 * t99 - t51 * t97,
+                t54 + t78 * t116 - t98 * t114,
+                -(minus_gproximal_wx_leg2 * t54 + t78 * t131 + t98 * t129),
+                -(minus_gproximal_wx_leg3 * t54 + t78 * t146 + t98 * t144),
             ],
-            [t69, t84, t99],
-            [t67, t82, t97],
+            [-t116, t131, t146],
+            [t114, t129, t144],
         ])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -558,105 +720,6 @@ impl Spherical3Rrr {
             [0.0, 0.0, minus_s_distal_leg3],
         ]
     }
-    /// By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m, rad).
-    ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
-    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    ///
-    /// Output: 9.
-    ///
-    /// 185 operations (68 additions, 117 multiplications, 0 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 194 intermediates.
-    #[must_use]
-    pub fn closure_error_from_joints(pose: &[f64; 4], joints: &[f64; 9]) -> [f64; 9] {
-        let t0 = 2.0 * pose[1];
-        let t1 = pose[3] * t0;
-        let t2 = 2.0 * pose[2];
-        let t3 = pose[0] * t2;
-        let t4 = t1 - t3;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        let t9 = minus_c_proximal_leg1 * c_distal_leg1;
-        let (s_wrist_leg1, c_wrist_leg1) = ::overact::math::sin_cos(joints[2]);
-        let t14 = t9 * c_wrist_leg1 + minus_s_proximal_leg1 * s_wrist_leg1;
-        let t17 = 1.0 - pose[1] * t0;
-        let t18 = pose[2] * t2;
-        let t19 = t17 - t18;
-        let t22 = t9 * s_wrist_leg1 - minus_s_proximal_leg1 * c_wrist_leg1;
-        let t25 = pose[3] * t2;
-        let t26 = pose[0] * t0;
-        let t27 = t25 + t26;
-        let t28 = minus_c_proximal_leg1 * minus_s_distal_leg1;
-        let t31 = t25 - t26;
-        let t32 = minus_s_proximal_leg1 * c_distal_leg1;
-        let t35 = t32 * s_wrist_leg1 + minus_c_proximal_leg1 * c_wrist_leg1;
-        let t37 = pose[2] * t0;
-        let t38 = 2.0 * pose[3];
-        let t39 = pose[0] * t38;
-        let t40 = t37 + t39;
-        let t43 = minus_c_proximal_leg1 * s_wrist_leg1 - t32 * c_wrist_leg1;
-        let t46 = pose[3] * t38;
-        let t47 = t17 - t46;
-        let t48 = minus_s_proximal_leg1 * minus_s_distal_leg1;
-        let t51 = t4 * t14 + t19 * t22 + t27 * t28 - (t31 * t35 - t40 * t43 + t47 * t48);
-        let t53 = t1 + t3;
-        let t56 = 1.0 - t18 - t46;
-        let t59 = t37 - t39;
-        let t62 = minus_s_distal_leg1 * c_wrist_leg1;
-        let t64 = minus_s_distal_leg1 * s_wrist_leg1;
-        let t69 = t53 * t35 - t56 * t43 + t59 * t48
-            - (t4 * t62 + t19 * t64 - t27 * c_distal_leg1);
-        let t81 = t40 * t62 + t31 * t64 - t47 * c_distal_leg1
-            - (t56 * t14 + t53 * t22 + t59 * t28);
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        let (s_wrist_leg2, c_wrist_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t87 = minus_s_distal_leg2 * c_wrist_leg2;
-        let t89 = minus_s_distal_leg2 * s_wrist_leg2;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let t96 = minus_c_proximal_leg2 * c_distal_leg2;
-        let t99 = t96 * c_wrist_leg2 + minus_s_proximal_leg2 * s_wrist_leg2;
-        let t103 = t96 * s_wrist_leg2 - minus_s_proximal_leg2 * c_wrist_leg2;
-        let t106 = minus_c_proximal_leg2 * minus_s_distal_leg2;
-        let t109 = t27 * t87 + t4 * t89 - t19 * c_distal_leg2
-            - (t47 * t99 + t40 * t103 + t31 * t106);
-        let t116 = minus_s_proximal_leg2 * c_distal_leg2;
-        let t119 = t116 * s_wrist_leg2 + minus_c_proximal_leg2 * c_wrist_leg2;
-        let t123 = minus_c_proximal_leg2 * s_wrist_leg2 - t116 * c_wrist_leg2;
-        let t126 = minus_s_proximal_leg2 * minus_s_distal_leg2;
-        let t129 = t59 * t99 + t56 * t103 + t53 * t106
-            - (t4 * t119 - t27 * t123 + t19 * t126);
-        let t141 = t40 * t119 - t47 * t123 + t31 * t126
-            - (t59 * t87 + t56 * t89 - t53 * c_distal_leg2);
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        let t147 = minus_s_proximal_leg3 * c_distal_leg3;
-        let (s_wrist_leg3, c_wrist_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t152 = t147 * s_wrist_leg3 + minus_c_proximal_leg3 * c_wrist_leg3;
-        let t156 = minus_c_proximal_leg3 * s_wrist_leg3 - t147 * c_wrist_leg3;
-        let t159 = minus_s_proximal_leg3 * minus_s_distal_leg3;
-        let t162 = minus_s_distal_leg3 * c_wrist_leg3;
-        let t164 = minus_s_distal_leg3 * s_wrist_leg3;
-        let t169 = t27 * t152 - t19 * t156 + t4 * t159
-            - (t31 * t162 + t47 * t164 - t40 * c_distal_leg3);
-        let t176 = minus_c_proximal_leg3 * c_distal_leg3;
-        let t179 = t176 * c_wrist_leg3 + minus_s_proximal_leg3 * s_wrist_leg3;
-        let t183 = t176 * s_wrist_leg3 - minus_s_proximal_leg3 * c_wrist_leg3;
-        let t186 = minus_c_proximal_leg3 * minus_s_distal_leg3;
-        let t189 = t53 * t162 + t59 * t164 - t56 * c_distal_leg3
-            - (t19 * t179 + t27 * t183 + t4 * t186);
-        let t201 = t31 * t179 + t47 * t183 + t40 * t186
-            - (t59 * t152 - t53 * t156 + t56 * t159);
-        [
-            0.5 * t51, 0.5 * t69, 0.5 * t81, 0.5 * t109, 0.5 * t129, 0.5 * t141, 0.5 * t169,
-            0.5 * t189, 0.5 * t201,
-        ]
-    }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
     /// From the platform's pose and motion.
@@ -665,7 +728,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 9.
     ///
-    /// 45 operations (12 additions, 30 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 48 intermediates.
+    /// 107 operations (29 additions, 72 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 101 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -673,51 +736,86 @@ impl Spherical3Rrr {
         pose: &[f64; 4],
         twist: &[f64; 3],
     ) -> Result<[f64; 9], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let t4 = 1.0 / minus_s_distal_leg1;
-        let gwrist_wy_leg1 = minus_c_proximal_leg1 * t4;
-        let gproximal_wy_leg1 = c_distal_leg1 * gwrist_wy_leg1;
-        let gwrist_wz_leg1 = minus_s_proximal_leg1 * t4;
-        let gproximal_wz_leg1 = c_distal_leg1 * gwrist_wz_leg1;
-        let rate_proximal_leg1 = twist[0] + gproximal_wy_leg1 * twist[1]
-            + gproximal_wz_leg1 * twist[2];
-        let rate_distal_leg1 = minus_c_proximal_leg1 * twist[2]
-            - minus_s_proximal_leg1 * twist[1];
+        let t0 = 2.0 * pose[1];
+        let t1 = pose[2] * t0;
+        let t2 = 2.0 * pose[3];
+        let t3 = pose[0] * t2;
+        let minus_s_distal_leg1 = t1 - t3;
+        let t6 = 1.0 - pose[1] * t0;
+        let t7 = pose[3] * t2;
+        let t8 = t6 - t7;
+        let t10 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t10, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t10);
+        let t13 = 1.0 / (t8 * c_distal_leg1);
+        let c_proximal_leg1 = t13 * (t8 * t8);
+        let t17 = 2.0 * pose[2];
+        let t18 = pose[3] * t17;
+        let t19 = pose[0] * t0;
+        let t20 = t18 + t19;
+        let s_proximal_leg1 = t13 * (t8 * t20);
+        let t24 = t8 * c_proximal_leg1 + t20 * s_proximal_leg1;
+        ::overact::guard::leg(t24, 1.0, "leg1")?;
+        let t25 = 1.0 / t24;
+        let gwrist_wy_leg1 = c_proximal_leg1 * t25;
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
+        let gwrist_wz_leg1 = s_proximal_leg1 * t25;
+        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
+        let rate_proximal_leg1 = twist[0] - minus_gproximal_wy_leg1 * twist[1]
+            - minus_gproximal_wz_leg1 * twist[2];
+        let gdistal_wz_leg1 = t8 * t25;
+        let minus_gdistal_wy_leg1 = t20 * t25;
+        let rate_distal_leg1 = gdistal_wz_leg1 * twist[2]
+            - minus_gdistal_wy_leg1 * twist[1];
         let rate_wrist_leg1 = gwrist_wy_leg1 * twist[1] + gwrist_wz_leg1 * twist[2];
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let t23 = 1.0 / minus_s_distal_leg2;
-        let gwrist_wx_leg2 = minus_s_proximal_leg2 * t23;
-        let gproximal_wx_leg2 = c_distal_leg2 * gwrist_wx_leg2;
-        let gwrist_wz_leg2 = minus_c_proximal_leg2 * t23;
-        let gproximal_wz_leg2 = c_distal_leg2 * gwrist_wz_leg2;
-        let rate_proximal_leg2 = gproximal_wx_leg2 * twist[0] + twist[1]
-            + gproximal_wz_leg2 * twist[2];
-        let rate_distal_leg2 = minus_c_proximal_leg2 * twist[0]
-            - minus_s_proximal_leg2 * twist[2];
+        let minus_s_distal_leg2 = t18 - t19;
+        let t43 = pose[2] * t17;
+        let t44 = t6 - t43;
+        let t46 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t46, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t46);
+        let t49 = 1.0 / (t44 * c_distal_leg2);
+        let t50 = pose[3] * t0;
+        let t51 = pose[0] * t17;
+        let t52 = t50 + t51;
+        let s_proximal_leg2 = t49 * (t52 * t44);
+        let c_proximal_leg2 = t49 * (t44 * t44);
+        let t59 = t52 * s_proximal_leg2 + t44 * c_proximal_leg2;
+        ::overact::guard::leg(t59, 1.0, "leg2")?;
+        let t60 = 1.0 / t59;
+        let gwrist_wx_leg2 = s_proximal_leg2 * t60;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
+        let gwrist_wz_leg2 = c_proximal_leg2 * t60;
+        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
+        let rate_proximal_leg2 = twist[1] - minus_gproximal_wx_leg2 * twist[0]
+            - minus_gproximal_wz_leg2 * twist[2];
+        let gdistal_wx_leg2 = t44 * t60;
+        let minus_gdistal_wz_leg2 = t52 * t60;
+        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
+            - minus_gdistal_wz_leg2 * twist[2];
         let rate_wrist_leg2 = gwrist_wx_leg2 * twist[0] + gwrist_wz_leg2 * twist[2];
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t42 = 1.0 / minus_s_distal_leg3;
-        let gwrist_wx_leg3 = minus_c_proximal_leg3 * t42;
-        let gproximal_wx_leg3 = c_distal_leg3 * gwrist_wx_leg3;
-        let gwrist_wy_leg3 = minus_s_proximal_leg3 * t42;
-        let gproximal_wy_leg3 = c_distal_leg3 * gwrist_wy_leg3;
-        let rate_proximal_leg3 = gproximal_wx_leg3 * twist[0]
-            + gproximal_wy_leg3 * twist[1] + twist[2];
-        let rate_distal_leg3 = minus_c_proximal_leg3 * twist[1]
-            - minus_s_proximal_leg3 * twist[0];
+        let minus_s_distal_leg3 = t50 - t51;
+        let t79 = 1.0 - t43 - t7;
+        let t81 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t81, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t81);
+        let t84 = 1.0 / (t79 * c_distal_leg3);
+        let c_proximal_leg3 = t84 * (t79 * t79);
+        let t88 = t1 + t3;
+        let s_proximal_leg3 = t84 * (t79 * t88);
+        let t92 = t79 * c_proximal_leg3 + t88 * s_proximal_leg3;
+        ::overact::guard::leg(t92, 1.0, "leg3")?;
+        let t93 = 1.0 / t92;
+        let gwrist_wx_leg3 = c_proximal_leg3 * t93;
+        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
+        let gwrist_wy_leg3 = s_proximal_leg3 * t93;
+        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
+        let rate_proximal_leg3 = twist[2]
+            - (minus_gproximal_wx_leg3 * twist[0] + minus_gproximal_wy_leg3 * twist[1]);
+        let gdistal_wy_leg3 = t79 * t93;
+        let minus_gdistal_wx_leg3 = t88 * t93;
+        let rate_distal_leg3 = gdistal_wy_leg3 * twist[1]
+            - minus_gdistal_wx_leg3 * twist[0];
         let rate_wrist_leg3 = gwrist_wx_leg3 * twist[0] + gwrist_wy_leg3 * twist[1];
         Ok([
             rate_proximal_leg1, rate_distal_leg1, rate_wrist_leg1, rate_proximal_leg2,
@@ -734,7 +832,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 9.
     ///
-    /// 143 operations (48 additions, 92 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 146 intermediates.
+    /// 199 operations (65 additions, 128 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 193 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -743,93 +841,126 @@ impl Spherical3Rrr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[f64; 9], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let rate_distal_leg1 = minus_c_proximal_leg1 * twist[2]
-            - minus_s_proximal_leg1 * twist[1];
-        let t5 = minus_s_proximal_leg1 * rate_distal_leg1;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t9 = 1.0 / minus_s_distal_leg1;
-        let gwrist_wy_leg1 = minus_c_proximal_leg1 * t9;
-        let gwrist_wz_leg1 = minus_s_proximal_leg1 * t9;
+        let t0 = 2.0 * pose[1];
+        let t2 = 1.0 - pose[1] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = t2 - t4;
+        let t6 = pose[2] * t0;
+        let t7 = pose[0] * t3;
+        let minus_s_distal_leg1 = t6 - t7;
+        let t10 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t10, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t10);
+        let t13 = 1.0 / (t5 * c_distal_leg1);
+        let t14 = 2.0 * pose[2];
+        let t15 = pose[3] * t14;
+        let t16 = pose[0] * t0;
+        let t17 = t15 + t16;
+        let s_proximal_leg1 = t13 * (t5 * t17);
+        let c_proximal_leg1 = t13 * (t5 * t5);
+        let t24 = t5 * c_proximal_leg1 + t17 * s_proximal_leg1;
+        ::overact::guard::leg(t24, 1.0, "leg1")?;
+        let t25 = 1.0 / t24;
+        let gdistal_wz_leg1 = t5 * t25;
+        let minus_gdistal_wy_leg1 = t17 * t25;
+        let rate_distal_leg1 = gdistal_wz_leg1 * twist[2]
+            - minus_gdistal_wy_leg1 * twist[1];
+        let t31 = s_proximal_leg1 * rate_distal_leg1;
+        let gwrist_wy_leg1 = c_proximal_leg1 * t25;
+        let gwrist_wz_leg1 = s_proximal_leg1 * t25;
         let rate_wrist_leg1 = gwrist_wy_leg1 * twist[1] + gwrist_wz_leg1 * twist[2];
-        let t15 = minus_s_proximal_leg1 * minus_s_distal_leg1 * rate_wrist_leg1;
-        let t17 = minus_c_proximal_leg1 * rate_distal_leg1;
-        let t19 = minus_c_proximal_leg1 * minus_s_distal_leg1 * rate_wrist_leg1;
-        let gproximal_wy_leg1 = c_distal_leg1 * gwrist_wy_leg1;
-        let gproximal_wz_leg1 = c_distal_leg1 * gwrist_wz_leg1;
-        let rate_proximal_leg1 = twist[0] + gproximal_wy_leg1 * twist[1]
-            + gproximal_wz_leg1 * twist[2];
-        let t30 = c_distal_leg1 * rate_wrist_leg1;
-        let t35 = acceleration[1] + rate_proximal_leg1 * t17 + t17 * t30
-            + rate_proximal_leg1 * t15;
-        let t43 = acceleration[2]
-            - (rate_proximal_leg1 * t19 - t5 * t30 - rate_proximal_leg1 * t5);
-        let rate_dot_proximal_leg1 = acceleration[0] + t5 * t15 + t17 * t19
-            + gproximal_wy_leg1 * t35 + gproximal_wz_leg1 * t43;
-        let rate_dot_distal_leg1 = minus_c_proximal_leg1 * t43
-            - minus_s_proximal_leg1 * t35;
-        let rate_dot_wrist_leg1 = gwrist_wy_leg1 * t35 + gwrist_wz_leg1 * t43;
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let t56 = 1.0 / minus_s_distal_leg2;
-        let gwrist_wx_leg2 = minus_s_proximal_leg2 * t56;
-        let gproximal_wx_leg2 = c_distal_leg2 * gwrist_wx_leg2;
-        let gwrist_wz_leg2 = minus_c_proximal_leg2 * t56;
-        let gproximal_wz_leg2 = c_distal_leg2 * gwrist_wz_leg2;
-        let rate_proximal_leg2 = gproximal_wx_leg2 * twist[0] + twist[1]
-            + gproximal_wz_leg2 * twist[2];
+        let t37 = t17 * rate_wrist_leg1;
+        let t39 = c_proximal_leg1 * rate_distal_leg1;
+        let t40 = t5 * rate_wrist_leg1;
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
+        let t45 = minus_s_distal_leg1 * rate_wrist_leg1;
+        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
+        let rate_proximal_leg1 = twist[0] - minus_gproximal_wy_leg1 * twist[1]
+            - minus_gproximal_wz_leg1 * twist[2];
+        let t56 = acceleration[1]
+            - (t39 * t45 - rate_proximal_leg1 * t37 - rate_proximal_leg1 * t39);
+        let t64 = acceleration[2]
+            - (rate_proximal_leg1 * t40 + t31 * t45 - rate_proximal_leg1 * t31);
+        let rate_dot_proximal_leg1 = acceleration[0] + t31 * t37 + t39 * t40
+            - minus_gproximal_wy_leg1 * t56 - minus_gproximal_wz_leg1 * t64;
+        let rate_dot_distal_leg1 = gdistal_wz_leg1 * t64 - minus_gdistal_wy_leg1 * t56;
+        let rate_dot_wrist_leg1 = gwrist_wy_leg1 * t56 + gwrist_wz_leg1 * t64;
+        let t73 = pose[2] * t14;
+        let t74 = t2 - t73;
+        let minus_s_distal_leg2 = t15 - t16;
+        let t77 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t77, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t77);
+        let t80 = 1.0 / (t74 * c_distal_leg2);
+        let t81 = pose[3] * t0;
+        let t82 = pose[0] * t14;
+        let t83 = t81 + t82;
+        let s_proximal_leg2 = t80 * (t83 * t74);
+        let c_proximal_leg2 = t80 * (t74 * t74);
+        let t90 = t83 * s_proximal_leg2 + t74 * c_proximal_leg2;
+        ::overact::guard::leg(t90, 1.0, "leg2")?;
+        let t91 = 1.0 / t90;
+        let gdistal_wx_leg2 = t74 * t91;
+        let minus_gdistal_wz_leg2 = t83 * t91;
+        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
+            - minus_gdistal_wz_leg2 * twist[2];
+        let t97 = s_proximal_leg2 * rate_distal_leg2;
+        let gwrist_wx_leg2 = s_proximal_leg2 * t91;
+        let gwrist_wz_leg2 = c_proximal_leg2 * t91;
         let rate_wrist_leg2 = gwrist_wx_leg2 * twist[0] + gwrist_wz_leg2 * twist[2];
-        let t69 = minus_c_proximal_leg2 * minus_s_distal_leg2 * rate_wrist_leg2;
-        let rate_distal_leg2 = minus_c_proximal_leg2 * twist[0]
-            - minus_s_proximal_leg2 * twist[2];
-        let t74 = minus_s_proximal_leg2 * rate_distal_leg2;
-        let t75 = c_distal_leg2 * rate_wrist_leg2;
-        let t80 = acceleration[0]
-            - (rate_proximal_leg2 * t69 - t74 * t75 - rate_proximal_leg2 * t74);
-        let t83 = minus_s_proximal_leg2 * minus_s_distal_leg2 * rate_wrist_leg2;
-        let t85 = minus_c_proximal_leg2 * rate_distal_leg2;
-        let t95 = acceleration[2] + rate_proximal_leg2 * t85 + t85 * t75
-            + rate_proximal_leg2 * t83;
-        let rate_dot_proximal_leg2 = gproximal_wx_leg2 * t80 + acceleration[1]
-            + t74 * t83 + t85 * t69 + gproximal_wz_leg2 * t95;
-        let rate_dot_distal_leg2 = minus_c_proximal_leg2 * t80
-            - minus_s_proximal_leg2 * t95;
-        let rate_dot_wrist_leg2 = gwrist_wx_leg2 * t80 + gwrist_wz_leg2 * t95;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t108 = 1.0 / minus_s_distal_leg3;
-        let gwrist_wx_leg3 = minus_c_proximal_leg3 * t108;
-        let gproximal_wx_leg3 = c_distal_leg3 * gwrist_wx_leg3;
-        let gwrist_wy_leg3 = minus_s_proximal_leg3 * t108;
-        let gproximal_wy_leg3 = c_distal_leg3 * gwrist_wy_leg3;
-        let t115 = gproximal_wx_leg3 * twist[0] + gproximal_wy_leg3 * twist[1];
-        let rate_proximal_leg3 = t115 + twist[2];
-        let rate_distal_leg3 = minus_c_proximal_leg3 * twist[1]
-            - minus_s_proximal_leg3 * twist[0];
-        let t120 = minus_c_proximal_leg3 * rate_distal_leg3;
+        let t103 = t83 * rate_wrist_leg2;
+        let t105 = c_proximal_leg2 * rate_distal_leg2;
+        let t106 = t74 * rate_wrist_leg2;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
+        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
+        let rate_proximal_leg2 = twist[1] - minus_gproximal_wx_leg2 * twist[0]
+            - minus_gproximal_wz_leg2 * twist[2];
+        let t117 = minus_s_distal_leg2 * rate_wrist_leg2;
+        let t122 = acceleration[0]
+            - (rate_proximal_leg2 * t106 + t97 * t117 - rate_proximal_leg2 * t97);
+        let t130 = acceleration[2]
+            - (t105 * t117 - rate_proximal_leg2 * t103 - rate_proximal_leg2 * t105);
+        let rate_dot_proximal_leg2 = acceleration[1] + t97 * t103 + t105 * t106
+            - minus_gproximal_wx_leg2 * t122 - minus_gproximal_wz_leg2 * t130;
+        let rate_dot_distal_leg2 = gdistal_wx_leg2 * t122 - minus_gdistal_wz_leg2 * t130;
+        let rate_dot_wrist_leg2 = gwrist_wx_leg2 * t122 + gwrist_wz_leg2 * t130;
+        let t140 = 1.0 - t73 - t4;
+        let minus_s_distal_leg3 = t81 - t82;
+        let t143 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t143, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t143);
+        let t146 = 1.0 / (t140 * c_distal_leg3);
+        let t147 = t6 + t7;
+        let s_proximal_leg3 = t146 * (t140 * t147);
+        let c_proximal_leg3 = t146 * (t140 * t140);
+        let t154 = t140 * c_proximal_leg3 + t147 * s_proximal_leg3;
+        ::overact::guard::leg(t154, 1.0, "leg3")?;
+        let t155 = 1.0 / t154;
+        let gdistal_wy_leg3 = t140 * t155;
+        let minus_gdistal_wx_leg3 = t147 * t155;
+        let rate_distal_leg3 = gdistal_wy_leg3 * twist[1]
+            - minus_gdistal_wx_leg3 * twist[0];
+        let t161 = s_proximal_leg3 * rate_distal_leg3;
+        let gwrist_wx_leg3 = c_proximal_leg3 * t155;
+        let gwrist_wy_leg3 = s_proximal_leg3 * t155;
         let rate_wrist_leg3 = gwrist_wx_leg3 * twist[0] + gwrist_wy_leg3 * twist[1];
-        let t127 = minus_s_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let t131 = acceleration[0] + rate_proximal_leg3 * t120 + t115 * t120
-            + rate_proximal_leg3 * t127;
-        let t134 = minus_c_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let t136 = minus_s_proximal_leg3 * rate_distal_leg3;
-        let t141 = acceleration[1]
-            - (rate_proximal_leg3 * t134 - t115 * t136 - rate_proximal_leg3 * t136);
-        let rate_dot_proximal_leg3 = gproximal_wx_leg3 * t131 + gproximal_wy_leg3 * t141
-            + acceleration[2] + t136 * t127 + t120 * t134;
-        let rate_dot_distal_leg3 = minus_c_proximal_leg3 * t141
-            - minus_s_proximal_leg3 * t131;
-        let rate_dot_wrist_leg3 = gwrist_wx_leg3 * t131 + gwrist_wy_leg3 * t141;
+        let t167 = t147 * rate_wrist_leg3;
+        let t169 = c_proximal_leg3 * rate_distal_leg3;
+        let t170 = t140 * rate_wrist_leg3;
+        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
+        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
+        let t178 = minus_gproximal_wx_leg3 * twist[0]
+            + minus_gproximal_wy_leg3 * twist[1];
+        let rate_proximal_leg3 = twist[2] - t178;
+        let t185 = acceleration[0]
+            - (t178 * t169 - rate_proximal_leg3 * t167 - rate_proximal_leg3 * t169);
+        let t192 = acceleration[1]
+            - (rate_proximal_leg3 * t170 + t178 * t161 - rate_proximal_leg3 * t161);
+        let rate_dot_proximal_leg3 = acceleration[2] + t161 * t167 + t169 * t170
+            - (minus_gproximal_wx_leg3 * t185 + minus_gproximal_wy_leg3 * t192);
+        let rate_dot_distal_leg3 = gdistal_wy_leg3 * t192 - minus_gdistal_wx_leg3 * t185;
+        let rate_dot_wrist_leg3 = gwrist_wx_leg3 * t185 + gwrist_wy_leg3 * t192;
         Ok([
             rate_dot_proximal_leg1, rate_dot_distal_leg1, rate_dot_wrist_leg1,
             rate_dot_proximal_leg2, rate_dot_distal_leg2, rate_dot_wrist_leg2,
@@ -844,7 +975,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 76 operations (28 additions, 42 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 85 intermediates.
+    /// 132 operations (45 additions, 78 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 132 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -852,66 +983,99 @@ impl Spherical3Rrr {
         pose: &[f64; 4],
         actuator_velocities: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let t4 = 1.0 / minus_s_distal_leg2;
-        let gwrist_wx_leg2 = minus_s_proximal_leg2 * t4;
-        let gproximal_wx_leg2 = c_distal_leg2 * gwrist_wx_leg2;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t13 = 1.0 / minus_s_distal_leg3;
-        let gwrist_wx_leg3 = minus_c_proximal_leg3 * t13;
-        let gproximal_wx_leg3 = c_distal_leg3 * gwrist_wx_leg3;
-        let t17 = actuator_velocities[0] + gproximal_wx_leg2 * actuator_velocities[1]
-            + gproximal_wx_leg3 * actuator_velocities[2];
-        let t21 = 1.0 + gproximal_wx_leg2 * gproximal_wx_leg2
-            + gproximal_wx_leg3 * gproximal_wx_leg3;
-        ::overact::guard::platform(t21, 1.0, "actuators")?;
-        let t22 = 1.0 / t21;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let t28 = 1.0 / minus_s_distal_leg1;
-        let gwrist_wy_leg1 = minus_c_proximal_leg1 * t28;
-        let gproximal_wy_leg1 = c_distal_leg1 * gwrist_wy_leg1;
-        let gwrist_wy_leg3 = minus_s_proximal_leg3 * t13;
-        let gproximal_wy_leg3 = c_distal_leg3 * gwrist_wy_leg3;
-        let t35 = gproximal_wy_leg1 + gproximal_wx_leg2
-            + gproximal_wx_leg3 * gproximal_wy_leg3;
-        let t36 = t35 * t22;
-        let t42 = gproximal_wy_leg1 * gproximal_wy_leg1 + 1.0
-            + gproximal_wy_leg3 * gproximal_wy_leg3 - t35 * t36;
-        ::overact::guard::platform(t42, 1.0, "actuators")?;
-        let t43 = 1.0 / t42;
-        let t49 = gproximal_wy_leg1 * actuator_velocities[0] + actuator_velocities[1]
-            + gproximal_wy_leg3 * actuator_velocities[2] - t17 * t36;
-        let gwrist_wz_leg1 = minus_s_proximal_leg1 * t28;
-        let gproximal_wz_leg1 = c_distal_leg1 * gwrist_wz_leg1;
-        let gwrist_wz_leg2 = minus_c_proximal_leg2 * t4;
-        let gproximal_wz_leg2 = c_distal_leg2 * gwrist_wz_leg2;
-        let t60 = gproximal_wz_leg1 + gproximal_wx_leg2 * gproximal_wz_leg2
-            + gproximal_wx_leg3;
-        let t61 = t60 * t22;
-        let t63 = gproximal_wy_leg1 * gproximal_wz_leg1 + gproximal_wz_leg2
-            + gproximal_wy_leg3 - t35 * t61;
-        let t64 = t63 * t43;
-        let t72 = gproximal_wz_leg1 * gproximal_wz_leg1
-            + gproximal_wz_leg2 * gproximal_wz_leg2 + 1.0 - t60 * t61 - t63 * t64;
-        ::overact::guard::platform(t72, 1.0, "actuators")?;
-        let t81 = (gproximal_wz_leg1 * actuator_velocities[0]
-            + gproximal_wz_leg2 * actuator_velocities[1] + actuator_velocities[2]
-            - t17 * t61 - t64 * t49) / t72;
-        let t83 = t43 * t49 - t64 * t81;
-        Ok([t17 * t22 - t36 * t83 - t61 * t81, t83, t81])
+        let t0 = 2.0 * pose[2];
+        let t1 = pose[3] * t0;
+        let t2 = 2.0 * pose[1];
+        let t3 = pose[0] * t2;
+        let minus_s_distal_leg2 = t1 - t3;
+        let t6 = 1.0 - pose[1] * t2;
+        let t7 = pose[2] * t0;
+        let t8 = t6 - t7;
+        let t10 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t10, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t10);
+        let t13 = 1.0 / (t8 * c_distal_leg2);
+        let t14 = pose[3] * t2;
+        let t15 = pose[0] * t0;
+        let t16 = t14 + t15;
+        let s_proximal_leg2 = t13 * (t16 * t8);
+        let c_proximal_leg2 = t13 * (t8 * t8);
+        let t23 = t16 * s_proximal_leg2 + t8 * c_proximal_leg2;
+        ::overact::guard::leg(t23, 1.0, "leg2")?;
+        let t24 = 1.0 / t23;
+        let gwrist_wx_leg2 = s_proximal_leg2 * t24;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
+        let minus_s_distal_leg3 = t14 - t15;
+        let t31 = 2.0 * pose[3];
+        let t32 = pose[3] * t31;
+        let t33 = 1.0 - t7 - t32;
+        let t35 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t35, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t35);
+        let t38 = 1.0 / (t33 * c_distal_leg3);
+        let c_proximal_leg3 = t38 * (t33 * t33);
+        let t42 = pose[2] * t2;
+        let t43 = pose[0] * t31;
+        let t44 = t42 + t43;
+        let s_proximal_leg3 = t38 * (t33 * t44);
+        let t48 = t33 * c_proximal_leg3 + t44 * s_proximal_leg3;
+        ::overact::guard::leg(t48, 1.0, "leg3")?;
+        let t49 = 1.0 / t48;
+        let gwrist_wx_leg3 = c_proximal_leg3 * t49;
+        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
+        let t53 = actuator_velocities[0]
+            - minus_gproximal_wx_leg2 * actuator_velocities[1]
+            - minus_gproximal_wx_leg3 * actuator_velocities[2];
+        let t57 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
+        ::overact::guard::platform(t57, 1.0, "actuators")?;
+        let t58 = 1.0 / t57;
+        let gwrist_wy_leg3 = s_proximal_leg3 * t49;
+        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
+        let minus_s_distal_leg1 = t42 - t43;
+        let t64 = t6 - t32;
+        let t66 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t66, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t66);
+        let t69 = 1.0 / (t64 * c_distal_leg1);
+        let c_proximal_leg1 = t69 * (t64 * t64);
+        let t73 = t1 + t3;
+        let s_proximal_leg1 = t69 * (t64 * t73);
+        let t77 = t64 * c_proximal_leg1 + t73 * s_proximal_leg1;
+        ::overact::guard::leg(t77, 1.0, "leg1")?;
+        let t78 = 1.0 / t77;
+        let gwrist_wy_leg1 = c_proximal_leg1 * t78;
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
+        let t82 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+            - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
+        let t83 = t82 * t58;
+        let t89 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t82 * t83;
+        ::overact::guard::platform(t89, 1.0, "actuators")?;
+        let t90 = 1.0 / t89;
+        let t96 = actuator_velocities[1]
+            - minus_gproximal_wy_leg1 * actuator_velocities[0]
+            - minus_gproximal_wy_leg3 * actuator_velocities[2] - t53 * t83;
+        let gwrist_wz_leg1 = s_proximal_leg1 * t78;
+        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
+        let gwrist_wz_leg2 = c_proximal_leg2 * t24;
+        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
+        let t107 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
+        let t108 = t107 * t58;
+        let t110 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t82 * t108;
+        let t111 = t110 * t90;
+        let t119 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t107 * t108
+            - t110 * t111;
+        ::overact::guard::platform(t119, 1.0, "actuators")?;
+        let t128 = (actuator_velocities[2]
+            - (minus_gproximal_wz_leg1 * actuator_velocities[0]
+                + minus_gproximal_wz_leg2 * actuator_velocities[1]) - t53 * t108
+            - t111 * t96) / t119;
+        let t130 = t90 * t96 - t111 * t128;
+        Ok([t53 * t58 - t83 * t130 - t108 * t128, t130, t128])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -922,7 +1086,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 180 operations (64 additions, 110 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 189 intermediates.
+    /// 236 operations (81 additions, 146 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 236 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -931,112 +1095,151 @@ impl Spherical3Rrr {
         twist: &[f64; 3],
         actuator_accelerations: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let t4 = 1.0 / minus_s_distal_leg1;
-        let gwrist_wz_leg1 = minus_s_proximal_leg1 * t4;
-        let gproximal_wz_leg1 = c_distal_leg1 * gwrist_wz_leg1;
-        let gwrist_wy_leg1 = minus_c_proximal_leg1 * t4;
-        let gproximal_wy_leg1 = c_distal_leg1 * gwrist_wy_leg1;
-        let rate_proximal_leg1 = twist[0] + gproximal_wy_leg1 * twist[1]
-            + gproximal_wz_leg1 * twist[2];
+        let t0 = 2.0 * pose[1];
+        let t2 = 1.0 - pose[1] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = t2 - t4;
+        let t6 = pose[2] * t0;
+        let t7 = pose[0] * t3;
+        let minus_s_distal_leg1 = t6 - t7;
+        let t10 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t10, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t10);
+        let t13 = 1.0 / (t5 * c_distal_leg1);
+        let t14 = 2.0 * pose[2];
+        let t15 = pose[3] * t14;
+        let t16 = pose[0] * t0;
+        let t17 = t15 + t16;
+        let s_proximal_leg1 = t13 * (t5 * t17);
+        let c_proximal_leg1 = t13 * (t5 * t5);
+        let t24 = t5 * c_proximal_leg1 + t17 * s_proximal_leg1;
+        ::overact::guard::leg(t24, 1.0, "leg1")?;
+        let t25 = 1.0 / t24;
+        let gdistal_wz_leg1 = t5 * t25;
+        let minus_gdistal_wy_leg1 = t17 * t25;
+        let rate_distal_leg1 = gdistal_wz_leg1 * twist[2]
+            - minus_gdistal_wy_leg1 * twist[1];
+        let t31 = s_proximal_leg1 * rate_distal_leg1;
+        let gwrist_wy_leg1 = c_proximal_leg1 * t25;
+        let gwrist_wz_leg1 = s_proximal_leg1 * t25;
         let rate_wrist_leg1 = gwrist_wy_leg1 * twist[1] + gwrist_wz_leg1 * twist[2];
-        let t17 = minus_c_proximal_leg1 * minus_s_distal_leg1 * rate_wrist_leg1;
-        let rate_distal_leg1 = minus_c_proximal_leg1 * twist[2]
-            - minus_s_proximal_leg1 * twist[1];
-        let t22 = minus_s_proximal_leg1 * rate_distal_leg1;
-        let t23 = c_distal_leg1 * rate_wrist_leg1;
-        let t30 = minus_s_proximal_leg1 * minus_s_distal_leg1 * rate_wrist_leg1;
-        let t32 = minus_c_proximal_leg1 * rate_distal_leg1;
-        let t41 = t22 * t30 + t32 * t17
-            + gproximal_wy_leg1
-                * (rate_proximal_leg1 * t32 + t32 * t23 + rate_proximal_leg1 * t30);
-        let minus_rate_dot_proximal_leg1 = gproximal_wz_leg1
-            * (rate_proximal_leg1 * t17 - t22 * t23 - rate_proximal_leg1 * t22) - t41;
-        let t43 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let t48 = 1.0 / minus_s_distal_leg2;
-        let gwrist_wx_leg2 = minus_s_proximal_leg2 * t48;
-        let gproximal_wx_leg2 = c_distal_leg2 * gwrist_wx_leg2;
-        let gwrist_wz_leg2 = minus_c_proximal_leg2 * t48;
-        let gproximal_wz_leg2 = c_distal_leg2 * gwrist_wz_leg2;
-        let rate_proximal_leg2 = gproximal_wx_leg2 * twist[0] + twist[1]
-            + gproximal_wz_leg2 * twist[2];
+        let t37 = t17 * rate_wrist_leg1;
+        let t39 = c_proximal_leg1 * rate_distal_leg1;
+        let t40 = t5 * rate_wrist_leg1;
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
+        let t44 = minus_s_distal_leg1 * rate_wrist_leg1;
+        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
+        let rate_proximal_leg1 = twist[0] - minus_gproximal_wy_leg1 * twist[1]
+            - minus_gproximal_wz_leg1 * twist[2];
+        let t56 = t31 * t37 + t39 * t40
+            + minus_gproximal_wy_leg1
+                * (t39 * t44 - rate_proximal_leg1 * t37 - rate_proximal_leg1 * t39);
+        let rate_dot_proximal_leg1 = t56
+            + minus_gproximal_wz_leg1
+                * (rate_proximal_leg1 * t40 + t31 * t44 - rate_proximal_leg1 * t31);
+        let t64 = actuator_accelerations[0] - rate_dot_proximal_leg1;
+        let minus_s_distal_leg2 = t15 - t16;
+        let t66 = pose[2] * t14;
+        let t67 = t2 - t66;
+        let t69 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t69, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t69);
+        let t72 = 1.0 / (t67 * c_distal_leg2);
+        let t73 = pose[3] * t0;
+        let t74 = pose[0] * t14;
+        let t75 = t73 + t74;
+        let s_proximal_leg2 = t72 * (t75 * t67);
+        let c_proximal_leg2 = t72 * (t67 * t67);
+        let t82 = t75 * s_proximal_leg2 + t67 * c_proximal_leg2;
+        ::overact::guard::leg(t82, 1.0, "leg2")?;
+        let t83 = 1.0 / t82;
+        let gwrist_wx_leg2 = s_proximal_leg2 * t83;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
+        let gwrist_wz_leg2 = c_proximal_leg2 * t83;
+        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
+        let rate_proximal_leg2 = twist[1] - minus_gproximal_wx_leg2 * twist[0]
+            - minus_gproximal_wz_leg2 * twist[2];
         let rate_wrist_leg2 = gwrist_wx_leg2 * twist[0] + gwrist_wz_leg2 * twist[2];
-        let t61 = minus_c_proximal_leg2 * minus_s_distal_leg2 * rate_wrist_leg2;
-        let rate_distal_leg2 = minus_c_proximal_leg2 * twist[0]
-            - minus_s_proximal_leg2 * twist[2];
-        let t66 = minus_s_proximal_leg2 * rate_distal_leg2;
-        let t67 = c_distal_leg2 * rate_wrist_leg2;
-        let t74 = minus_s_proximal_leg2 * minus_s_distal_leg2 * rate_wrist_leg2;
-        let t76 = minus_c_proximal_leg2 * rate_distal_leg2;
-        let t79 = gproximal_wx_leg2
-            * (rate_proximal_leg2 * t61 - t66 * t67 - rate_proximal_leg2 * t66)
-            - (t66 * t74 + t76 * t61);
-        let minus_rate_dot_proximal_leg2 = t79
-            - gproximal_wz_leg2
-                * (rate_proximal_leg2 * t76 + t76 * t67 + rate_proximal_leg2 * t74);
-        let t87 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t94 = 1.0 / minus_s_distal_leg3;
-        let gwrist_wx_leg3 = minus_c_proximal_leg3 * t94;
-        let gproximal_wx_leg3 = c_distal_leg3 * gwrist_wx_leg3;
-        let gwrist_wy_leg3 = minus_s_proximal_leg3 * t94;
-        let gproximal_wy_leg3 = c_distal_leg3 * gwrist_wy_leg3;
-        let t101 = gproximal_wx_leg3 * twist[0] + gproximal_wy_leg3 * twist[1];
-        let rate_proximal_leg3 = t101 + twist[2];
+        let t95 = t67 * rate_wrist_leg2;
+        let gdistal_wx_leg2 = t67 * t83;
+        let minus_gdistal_wz_leg2 = t75 * t83;
+        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
+            - minus_gdistal_wz_leg2 * twist[2];
+        let t102 = s_proximal_leg2 * rate_distal_leg2;
+        let t103 = minus_s_distal_leg2 * rate_wrist_leg2;
+        let t109 = t75 * rate_wrist_leg2;
+        let t111 = c_proximal_leg2 * rate_distal_leg2;
+        let t114 = minus_gproximal_wx_leg2
+            * (rate_proximal_leg2 * t95 + t102 * t103 - rate_proximal_leg2 * t102)
+            + t102 * t109 + t111 * t95;
+        let rate_dot_proximal_leg2 = t114
+            + minus_gproximal_wz_leg2
+                * (t111 * t103 - rate_proximal_leg2 * t109 - rate_proximal_leg2 * t111);
+        let t122 = actuator_accelerations[1] - rate_dot_proximal_leg2;
+        let minus_s_distal_leg3 = t73 - t74;
+        let t127 = 1.0 - t66 - t4;
+        let t129 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t129, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t129);
+        let t132 = 1.0 / (t127 * c_distal_leg3);
+        let c_proximal_leg3 = t132 * (t127 * t127);
+        let t136 = t6 + t7;
+        let s_proximal_leg3 = t132 * (t127 * t136);
+        let t140 = t127 * c_proximal_leg3 + t136 * s_proximal_leg3;
+        ::overact::guard::leg(t140, 1.0, "leg3")?;
+        let t141 = 1.0 / t140;
+        let gwrist_wx_leg3 = c_proximal_leg3 * t141;
+        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
+        let gwrist_wy_leg3 = s_proximal_leg3 * t141;
+        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
+        let t148 = minus_gproximal_wx_leg3 * twist[0]
+            + minus_gproximal_wy_leg3 * twist[1];
+        let gdistal_wy_leg3 = t127 * t141;
+        let minus_gdistal_wx_leg3 = t136 * t141;
+        let rate_distal_leg3 = gdistal_wy_leg3 * twist[1]
+            - minus_gdistal_wx_leg3 * twist[0];
+        let t154 = c_proximal_leg3 * rate_distal_leg3;
+        let rate_proximal_leg3 = twist[2] - t148;
         let rate_wrist_leg3 = gwrist_wx_leg3 * twist[0] + gwrist_wy_leg3 * twist[1];
-        let t107 = minus_c_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let rate_distal_leg3 = minus_c_proximal_leg3 * twist[1]
-            - minus_s_proximal_leg3 * twist[0];
-        let t112 = minus_s_proximal_leg3 * rate_distal_leg3;
-        let t118 = minus_c_proximal_leg3 * rate_distal_leg3;
-        let t122 = minus_s_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let t127 = gproximal_wy_leg3
-            * (rate_proximal_leg3 * t107 - t101 * t112 - rate_proximal_leg3 * t112)
-            - gproximal_wx_leg3
-                * (rate_proximal_leg3 * t118 + t101 * t118 + rate_proximal_leg3 * t122);
-        let minus_rate_dot_proximal_leg3 = t127 - (t112 * t122 + t118 * t107);
-        let t132 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
-        let t134 = t43 + gproximal_wx_leg2 * t87 + gproximal_wx_leg3 * t132;
-        let t138 = 1.0 + gproximal_wx_leg2 * gproximal_wx_leg2
-            + gproximal_wx_leg3 * gproximal_wx_leg3;
-        ::overact::guard::platform(t138, 1.0, "actuators")?;
-        let t139 = 1.0 / t138;
-        let t143 = gproximal_wy_leg1 + gproximal_wx_leg2
-            + gproximal_wx_leg3 * gproximal_wy_leg3;
-        let t144 = t143 * t139;
-        let t150 = gproximal_wy_leg1 * gproximal_wy_leg1 + 1.0
-            + gproximal_wy_leg3 * gproximal_wy_leg3 - t143 * t144;
-        ::overact::guard::platform(t150, 1.0, "actuators")?;
-        let t151 = 1.0 / t150;
-        let t157 = gproximal_wy_leg1 * t43 + t87 + gproximal_wy_leg3 * t132
-            - t134 * t144;
-        let t164 = gproximal_wz_leg1 + gproximal_wx_leg2 * gproximal_wz_leg2
-            + gproximal_wx_leg3;
-        let t165 = t164 * t139;
-        let t167 = gproximal_wy_leg1 * gproximal_wz_leg1 + gproximal_wz_leg2
-            + gproximal_wy_leg3 - t143 * t165;
-        let t168 = t167 * t151;
-        let t176 = gproximal_wz_leg1 * gproximal_wz_leg1
-            + gproximal_wz_leg2 * gproximal_wz_leg2 + 1.0 - t164 * t165 - t167 * t168;
-        ::overact::guard::platform(t176, 1.0, "actuators")?;
-        let t185 = (gproximal_wz_leg1 * t43 + gproximal_wz_leg2 * t87 + t132
-            - t134 * t165 - t168 * t157) / t176;
-        let t187 = t151 * t157 - t168 * t185;
-        Ok([t134 * t139 - t144 * t187 - t165 * t185, t187, t185])
+        let t160 = t136 * rate_wrist_leg3;
+        let t166 = t127 * rate_wrist_leg3;
+        let t168 = s_proximal_leg3 * rate_distal_leg3;
+        let t174 = minus_gproximal_wx_leg3
+            * (t148 * t154 - rate_proximal_leg3 * t160 - rate_proximal_leg3 * t154)
+            + minus_gproximal_wy_leg3
+                * (rate_proximal_leg3 * t166 + t148 * t168 - rate_proximal_leg3 * t168);
+        let rate_dot_proximal_leg3 = t174 + t168 * t160 + t154 * t166;
+        let t179 = actuator_accelerations[2] - rate_dot_proximal_leg3;
+        let t181 = t64 - minus_gproximal_wx_leg2 * t122 - minus_gproximal_wx_leg3 * t179;
+        let t185 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
+        ::overact::guard::platform(t185, 1.0, "actuators")?;
+        let t186 = 1.0 / t185;
+        let t190 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+            - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
+        let t191 = t190 * t186;
+        let t197 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t190 * t191;
+        ::overact::guard::platform(t197, 1.0, "actuators")?;
+        let t198 = 1.0 / t197;
+        let t204 = t122 - minus_gproximal_wy_leg1 * t64 - minus_gproximal_wy_leg3 * t179
+            - t181 * t191;
+        let t211 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
+        let t212 = t211 * t186;
+        let t214 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t190 * t212;
+        let t215 = t214 * t198;
+        let t223 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t211 * t212
+            - t214 * t215;
+        ::overact::guard::platform(t223, 1.0, "actuators")?;
+        let t232 = (t179
+            - (minus_gproximal_wz_leg1 * t64 + minus_gproximal_wz_leg2 * t122)
+            - t181 * t212 - t215 * t204) / t223;
+        let t234 = t198 * t204 - t215 * t232;
+        Ok([t181 * t186 - t191 * t234 - t212 * t232, t234, t232])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1048,7 +1251,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 54.
     /// Columns: `PARAMETERS`.
     ///
-    /// 538 operations (196 additions, 339 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 427 intermediates.
+    /// 564 operations (201 additions, 357 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 444 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1057,8 +1260,323 @@ impl Spherical3Rrr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 54]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_platform_from_joints(pose, joints, twist, acceleration)
+        let t0 = 2.0 * pose[1];
+        let t2 = 1.0 - pose[1] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = t2 - t4;
+        let t6 = pose[2] * t0;
+        let t7 = pose[0] * t3;
+        let minus_s_distal_leg1 = t6 - t7;
+        let t10 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t10, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t10);
+        let t13 = 1.0 / (t5 * c_distal_leg1);
+        let t14 = 2.0 * pose[2];
+        let t15 = pose[3] * t14;
+        let t16 = pose[0] * t0;
+        let t17 = t15 + t16;
+        let s_proximal_leg1 = t13 * (t5 * t17);
+        let c_proximal_leg1 = t13 * (t5 * t5);
+        let t24 = t5 * c_proximal_leg1 + t17 * s_proximal_leg1;
+        ::overact::guard::leg(t24, 1.0, "leg1")?;
+        let t25 = 1.0 / t24;
+        let gdistal_wz_leg1 = t5 * t25;
+        let minus_gdistal_wy_leg1 = t17 * t25;
+        let rate_distal_leg1 = gdistal_wz_leg1 * twist[2]
+            - minus_gdistal_wy_leg1 * twist[1];
+        let t31 = s_proximal_leg1 * rate_distal_leg1;
+        let gwrist_wy_leg1 = c_proximal_leg1 * t25;
+        let gwrist_wz_leg1 = s_proximal_leg1 * t25;
+        let rate_wrist_leg1 = gwrist_wy_leg1 * twist[1] + gwrist_wz_leg1 * twist[2];
+        let t37 = t17 * rate_wrist_leg1;
+        let t39 = c_proximal_leg1 * rate_distal_leg1;
+        let t40 = t5 * rate_wrist_leg1;
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
+        let t45 = minus_s_distal_leg1 * rate_wrist_leg1;
+        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
+        let rate_proximal_leg1 = twist[0] - minus_gproximal_wy_leg1 * twist[1]
+            - minus_gproximal_wz_leg1 * twist[2];
+        let t56 = acceleration[1]
+            - (t39 * t45 - rate_proximal_leg1 * t37 - rate_proximal_leg1 * t39);
+        let t64 = acceleration[2]
+            - (rate_proximal_leg1 * t40 + t31 * t45 - rate_proximal_leg1 * t31);
+        let rate_dot_proximal_leg1 = acceleration[0] + t31 * t37 + t39 * t40
+            - minus_gproximal_wy_leg1 * t56 - minus_gproximal_wz_leg1 * t64;
+        let t67 = minus_gproximal_wy_leg1 * rate_dot_proximal_leg1;
+        let t68 = minus_gproximal_wz_leg1 * rate_dot_proximal_leg1;
+        let t69 = 9.81 * c_proximal_leg1;
+        let t71 = minus_gproximal_wz_leg1 * t69;
+        let t72 = 9.81 * s_proximal_leg1;
+        let t73 = minus_gproximal_wz_leg1 * t72;
+        let t79 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t80 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t81 = rate_distal_leg1 * t80;
+        let t82 = t79 + t81;
+        let t84 = c_distal_leg1 * rate_proximal_leg1;
+        let t85 = rate_distal_leg1 * t84;
+        let t87 = c_distal_leg1 * t82 + minus_s_distal_leg1 * t85;
+        let t88 = t84 * t80;
+        let t91 = minus_gdistal_wy_leg1 * t88 - minus_gproximal_wy_leg1 * t87;
+        let t94 = minus_gproximal_wz_leg1 * t87 + gdistal_wz_leg1 * t88;
+        let t97 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t101 = minus_s_distal_leg1 * (t81 + t82) - c_distal_leg1 * (t85 + t85 - t97);
+        let t103 = t84 * t84;
+        let t104 = t80 * t80;
+        let t105 = t103 - t104;
+        let rate_dot_distal_leg1 = gdistal_wz_leg1 * t64 - minus_gdistal_wy_leg1 * t56;
+        let t116 = rate_distal_leg1 * rate_distal_leg1;
+        let t119 = c_distal_leg1 * (t88 + rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t116 - t103);
+        let t133 = minus_s_distal_leg1 * (t88 - rate_dot_distal_leg1)
+            - c_distal_leg1 * (t104 - t116);
+        let t143 = 9.81 * (minus_s_distal_leg1 * c_proximal_leg1);
+        let t144 = 9.81 * t17;
+        let minus_s_distal_leg2 = t15 - t16;
+        let t154 = pose[2] * t14;
+        let t155 = t2 - t154;
+        let t157 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t157, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t157);
+        let t160 = 1.0 / (t155 * c_distal_leg2);
+        let t161 = pose[3] * t0;
+        let t162 = pose[0] * t14;
+        let t163 = t161 + t162;
+        let s_proximal_leg2 = t160 * (t163 * t155);
+        let c_proximal_leg2 = t160 * (t155 * t155);
+        let t170 = t163 * s_proximal_leg2 + t155 * c_proximal_leg2;
+        ::overact::guard::leg(t170, 1.0, "leg2")?;
+        let t171 = 1.0 / t170;
+        let gwrist_wx_leg2 = s_proximal_leg2 * t171;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
+        let gdistal_wx_leg2 = t155 * t171;
+        let minus_gdistal_wz_leg2 = t163 * t171;
+        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
+            - minus_gdistal_wz_leg2 * twist[2];
+        let t179 = s_proximal_leg2 * rate_distal_leg2;
+        let gwrist_wz_leg2 = c_proximal_leg2 * t171;
+        let rate_wrist_leg2 = gwrist_wx_leg2 * twist[0] + gwrist_wz_leg2 * twist[2];
+        let t184 = t163 * rate_wrist_leg2;
+        let t186 = c_proximal_leg2 * rate_distal_leg2;
+        let t187 = t155 * rate_wrist_leg2;
+        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
+        let rate_proximal_leg2 = twist[1] - minus_gproximal_wx_leg2 * twist[0]
+            - minus_gproximal_wz_leg2 * twist[2];
+        let t197 = minus_s_distal_leg2 * rate_wrist_leg2;
+        let t202 = acceleration[0]
+            - (rate_proximal_leg2 * t187 + t179 * t197 - rate_proximal_leg2 * t179);
+        let t210 = acceleration[2]
+            - (t186 * t197 - rate_proximal_leg2 * t184 - rate_proximal_leg2 * t186);
+        let rate_dot_proximal_leg2 = acceleration[1] + t179 * t184 + t186 * t187
+            - minus_gproximal_wx_leg2 * t202 - minus_gproximal_wz_leg2 * t210;
+        let t213 = minus_gproximal_wx_leg2 * rate_dot_proximal_leg2;
+        let t214 = minus_gproximal_wz_leg2 * rate_dot_proximal_leg2;
+        let t215 = 9.81 * s_proximal_leg2;
+        let t217 = minus_gproximal_wz_leg2 * t215;
+        let t218 = 9.81 * c_proximal_leg2;
+        let t219 = minus_gproximal_wz_leg2 * t218;
+        let t225 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t226 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t227 = rate_distal_leg2 * t226;
+        let t228 = t225 + t227;
+        let t230 = c_distal_leg2 * rate_proximal_leg2;
+        let t231 = rate_distal_leg2 * t230;
+        let t233 = c_distal_leg2 * t228 + minus_s_distal_leg2 * t231;
+        let t235 = t230 * t226;
+        let t237 = minus_gproximal_wx_leg2 * t233 + gdistal_wx_leg2 * t235;
+        let t240 = minus_gdistal_wz_leg2 * t235 - minus_gproximal_wz_leg2 * t233;
+        let t241 = t230 * t230;
+        let t242 = t226 * t226;
+        let t243 = t241 - t242;
+        let t247 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t251 = minus_s_distal_leg2 * (t227 + t228)
+            - c_distal_leg2 * (t231 + t231 - t247);
+        let rate_dot_distal_leg2 = gdistal_wx_leg2 * t202 - minus_gdistal_wz_leg2 * t210;
+        let t262 = rate_distal_leg2 * rate_distal_leg2;
+        let t265 = c_distal_leg2 * (t235 + rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t262 - t241);
+        let t279 = minus_s_distal_leg2 * (t235 - rate_dot_distal_leg2)
+            - c_distal_leg2 * (t242 - t262);
+        let t289 = 9.81 * (minus_s_distal_leg2 * s_proximal_leg2);
+        let t291 = 9.81 * t155;
+        let minus_s_distal_leg3 = t161 - t162;
+        let t301 = 1.0 - t154 - t4;
+        let t303 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t303, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t303);
+        let t306 = 1.0 / (t301 * c_distal_leg3);
+        let c_proximal_leg3 = t306 * (t301 * t301);
+        let t310 = t6 + t7;
+        let s_proximal_leg3 = t306 * (t301 * t310);
+        let t314 = t301 * c_proximal_leg3 + t310 * s_proximal_leg3;
+        ::overact::guard::leg(t314, 1.0, "leg3")?;
+        let t315 = 1.0 / t314;
+        let gwrist_wx_leg3 = c_proximal_leg3 * t315;
+        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
+        let gdistal_wy_leg3 = t301 * t315;
+        let minus_gdistal_wx_leg3 = t310 * t315;
+        let rate_distal_leg3 = gdistal_wy_leg3 * twist[1]
+            - minus_gdistal_wx_leg3 * twist[0];
+        let t323 = s_proximal_leg3 * rate_distal_leg3;
+        let gwrist_wy_leg3 = s_proximal_leg3 * t315;
+        let rate_wrist_leg3 = gwrist_wx_leg3 * twist[0] + gwrist_wy_leg3 * twist[1];
+        let t328 = t310 * rate_wrist_leg3;
+        let t330 = c_proximal_leg3 * rate_distal_leg3;
+        let t331 = t301 * rate_wrist_leg3;
+        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
+        let t338 = minus_gproximal_wx_leg3 * twist[0]
+            + minus_gproximal_wy_leg3 * twist[1];
+        let rate_proximal_leg3 = twist[2] - t338;
+        let t345 = acceleration[0]
+            - (t338 * t330 - rate_proximal_leg3 * t328 - rate_proximal_leg3 * t330);
+        let t352 = acceleration[1]
+            - (rate_proximal_leg3 * t331 + t338 * t323 - rate_proximal_leg3 * t323);
+        let rate_dot_proximal_leg3 = acceleration[2] + t323 * t328 + t330 * t331
+            - (minus_gproximal_wx_leg3 * t345 + minus_gproximal_wy_leg3 * t352);
+        let t356 = minus_gproximal_wx_leg3 * rate_dot_proximal_leg3;
+        let t357 = minus_gproximal_wy_leg3 * rate_dot_proximal_leg3;
+        let t363 = c_distal_leg3 * rate_proximal_leg3;
+        let t364 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t365 = t363 * t364;
+        let t367 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t368 = rate_distal_leg3 * t364;
+        let t369 = t367 + t368;
+        let t371 = rate_distal_leg3 * t363;
+        let t373 = c_distal_leg3 * t369 + minus_s_distal_leg3 * t371;
+        let t375 = minus_gdistal_wx_leg3 * t365 - minus_gproximal_wx_leg3 * t373;
+        let t378 = minus_gproximal_wy_leg3 * t373 + gdistal_wy_leg3 * t365;
+        let t381 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t385 = minus_s_distal_leg3 * (t368 + t369)
+            - c_distal_leg3 * (t371 + t371 - t381);
+        let t387 = t363 * t363;
+        let t388 = t364 * t364;
+        let t389 = t387 - t388;
+        let rate_dot_distal_leg3 = gdistal_wy_leg3 * t352 - minus_gdistal_wx_leg3 * t345;
+        let t400 = rate_distal_leg3 * rate_distal_leg3;
+        let t403 = c_distal_leg3 * (t365 + rate_dot_distal_leg3)
+            + minus_s_distal_leg3 * (t400 - t387);
+        let t418 = minus_s_distal_leg3 * (t365 - rate_dot_distal_leg3)
+            - c_distal_leg3 * (t388 - t400);
+        let t426 = 9.81 * minus_s_distal_leg3;
+        let t429 = 9.81 * c_distal_leg3;
+        let t436 = t301 * acceleration[0] + t310 * acceleration[1]
+            + minus_s_distal_leg3 * acceleration[2];
+        let t442 = t301 * twist[0] + t310 * twist[1] + minus_s_distal_leg3 * twist[2];
+        let t447 = t163 * twist[0] + minus_s_distal_leg2 * twist[1] + t155 * twist[2];
+        let t448 = t442 * t447;
+        let t449 = minus_s_distal_leg1 * t448;
+        let t455 = minus_s_distal_leg1 * twist[0] + t5 * twist[1] + t17 * twist[2];
+        let t456 = t442 * t455;
+        let t457 = t163 * t456;
+        let t460 = t5 * t448;
+        let t462 = minus_s_distal_leg2 * t456;
+        let t465 = t17 * t448;
+        let t467 = t155 * t456;
+        let t469 = t455 * t447;
+        let t470 = t469 + t436;
+        let t476 = minus_s_distal_leg1 * acceleration[0] + t5 * acceleration[1]
+            + t17 * acceleration[2];
+        let t477 = t448 - t476;
+        let t480 = t442 * t442;
+        let t481 = t455 * t455;
+        let t482 = t480 - t481;
+        let t499 = t163 * acceleration[0] + minus_s_distal_leg2 * acceleration[1]
+            + t155 * acceleration[2];
+        let t500 = t456 + t499;
+        let t502 = t447 * t447;
+        let t503 = t502 - t480;
+        let t506 = t469 - t436;
+        let t520 = t301 * t469;
+        let t524 = t310 * t469;
+        let t528 = minus_s_distal_leg3 * t469;
+        let t531 = t481 - t502;
+        let t533 = t456 - t499;
+        let t536 = t448 + t476;
+        Ok([
+            [
+                rate_dot_proximal_leg1, -t69, t72, rate_dot_proximal_leg1, rate_proximal_leg1,
+                ::overact::math::sign(rate_proximal_leg1), 1.0, t87, t101, -t119,
+                rate_dot_proximal_leg1 - t87, t133, 0.0, t143, -(9.81 * t5), -t72, -t213,
+                -(minus_gproximal_wx_leg2 * t215), -t217, -t213,
+                -(minus_gproximal_wx_leg2 * rate_proximal_leg2),
+                -::overact::math::signed(minus_gproximal_wx_leg2, rate_proximal_leg2),
+                -minus_gproximal_wx_leg2, -t237,
+                gdistal_wx_leg2 * t243 - minus_gproximal_wx_leg2 * t251,
+                minus_gproximal_wx_leg2 * t265 - gdistal_wx_leg2 * t225, t237 - t213,
+                -(minus_gproximal_wx_leg2 * t279 + gdistal_wx_leg2 * t247),
+                gdistal_wx_leg2 * rate_dot_distal_leg2,
+                minus_gproximal_wx_leg2 * t289 - gdistal_wx_leg2 * t291,
+                -(9.81 * minus_s_distal_leg2), t217, -t356, -t356,
+                -(minus_gproximal_wx_leg3 * rate_proximal_leg3),
+                -::overact::math::signed(minus_gproximal_wx_leg3, rate_proximal_leg3),
+                -minus_gproximal_wx_leg3, t375,
+                -(minus_gproximal_wx_leg3 * t385 + minus_gdistal_wx_leg3 * t389),
+                minus_gproximal_wx_leg3 * t403 + minus_gdistal_wx_leg3 * t367, -(t356 + t375),
+                minus_gdistal_wx_leg3 * t381 - minus_gproximal_wx_leg3 * t418,
+                -(minus_gdistal_wx_leg3 * rate_dot_distal_leg3), minus_gdistal_wx_leg3 * t426,
+                -(minus_gdistal_wx_leg3 * t429), t301 * t436 + t449 - t457,
+                minus_s_distal_leg1 * t470 - t301 * t477 + t163 * t482,
+                t301 * t500 + minus_s_distal_leg1 * t503 - t163 * t506,
+                minus_s_distal_leg1 * t476 - t520 + t457,
+                t301 * t531 - minus_s_distal_leg1 * t533 + t163 * t536, t520 - t449 + t163 * t499,
+                t163 * t144 - minus_s_distal_leg1 * t291, t301 * t291 - t163 * t426,
+                minus_s_distal_leg1 * t426 - t301 * t144,
+            ],
+            [
+                -t67, minus_gproximal_wy_leg1 * t69, -t71, -t67,
+                -(minus_gproximal_wy_leg1 * rate_proximal_leg1),
+                -::overact::math::signed(minus_gproximal_wy_leg1, rate_proximal_leg1),
+                -minus_gproximal_wy_leg1, t91,
+                -(minus_gproximal_wy_leg1 * t101 + minus_gdistal_wy_leg1 * t105),
+                minus_gproximal_wy_leg1 * t119 + minus_gdistal_wy_leg1 * t79, -(t67 + t91),
+                minus_gdistal_wy_leg1 * t97 - minus_gproximal_wy_leg1 * t133,
+                -(minus_gdistal_wy_leg1 * rate_dot_distal_leg1),
+                minus_gdistal_wy_leg1 * t144 - minus_gproximal_wy_leg1 * t143,
+                9.81 * minus_s_distal_leg1, t71, rate_dot_proximal_leg2, t215, t218,
+                rate_dot_proximal_leg2, rate_proximal_leg2,
+                ::overact::math::sign(rate_proximal_leg2), 1.0, t233, t251, -t265,
+                rate_dot_proximal_leg2 - t233, t279, 0.0, -t289, 9.81 * t163, -t218, -t357, -t357,
+                -(minus_gproximal_wy_leg3 * rate_proximal_leg3),
+                -::overact::math::signed(minus_gproximal_wy_leg3, rate_proximal_leg3),
+                -minus_gproximal_wy_leg3, -t378,
+                gdistal_wy_leg3 * t389 - minus_gproximal_wy_leg3 * t385,
+                minus_gproximal_wy_leg3 * t403 - gdistal_wy_leg3 * t367, t378 - t357,
+                -(minus_gproximal_wy_leg3 * t418 + gdistal_wy_leg3 * t381),
+                gdistal_wy_leg3 * rate_dot_distal_leg3, -(gdistal_wy_leg3 * t426),
+                gdistal_wy_leg3 * t429, t310 * t436 + t460 - t462,
+                t5 * t470 - t310 * t477 + minus_s_distal_leg2 * t482,
+                t310 * t500 + t5 * t503 - minus_s_distal_leg2 * t506, t5 * t476 - t524 + t462,
+                t310 * t531 - t5 * t533 + minus_s_distal_leg2 * t536,
+                t524 - t460 + minus_s_distal_leg2 * t499, minus_s_distal_leg2 * t144 - t5 * t291,
+                t310 * t291 - minus_s_distal_leg2 * t426, t5 * t426 - t310 * t144,
+            ],
+            [
+                -t68, t71, -t73, -t68, -(minus_gproximal_wz_leg1 * rate_proximal_leg1),
+                -::overact::math::signed(minus_gproximal_wz_leg1, rate_proximal_leg1),
+                -minus_gproximal_wz_leg1, -t94,
+                gdistal_wz_leg1 * t105 - minus_gproximal_wz_leg1 * t101,
+                minus_gproximal_wz_leg1 * t119 - gdistal_wz_leg1 * t79, t94 - t68,
+                -(minus_gproximal_wz_leg1 * t133 + gdistal_wz_leg1 * t97),
+                gdistal_wz_leg1 * rate_dot_distal_leg1,
+                -(minus_gproximal_wz_leg1 * t143 + gdistal_wz_leg1 * t144), 0.0, t73, -t214, -t217,
+                -t219, -t214, -(minus_gproximal_wz_leg2 * rate_proximal_leg2),
+                -::overact::math::signed(minus_gproximal_wz_leg2, rate_proximal_leg2),
+                -minus_gproximal_wz_leg2, t240,
+                -(minus_gproximal_wz_leg2 * t251 + minus_gdistal_wz_leg2 * t243),
+                minus_gproximal_wz_leg2 * t265 + minus_gdistal_wz_leg2 * t225, -(t214 + t240),
+                minus_gdistal_wz_leg2 * t247 - minus_gproximal_wz_leg2 * t279,
+                -(minus_gdistal_wz_leg2 * rate_dot_distal_leg2),
+                minus_gproximal_wz_leg2 * t289 + minus_gdistal_wz_leg2 * t291, 0.0, t219,
+                rate_dot_proximal_leg3, rate_dot_proximal_leg3, rate_proximal_leg3,
+                ::overact::math::sign(rate_proximal_leg3), 1.0, t373, t385, -t403,
+                rate_dot_proximal_leg3 - t373, t418, 0.0, 0.0, 0.0,
+                minus_s_distal_leg3 * t436 + t465 - t467,
+                t17 * t470 - minus_s_distal_leg3 * t477 + t155 * t482,
+                minus_s_distal_leg3 * t500 + t17 * t503 - t155 * t506, t17 * t476 - t528 + t467,
+                minus_s_distal_leg3 * t531 - t17 * t533 + t155 * t536, t528 - t465 + t155 * t499,
+                0.0, 0.0, 0.0,
+            ],
+        ])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1388,7 +1906,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 54.
     /// Columns: `PARAMETERS`.
     ///
-    /// 612 operations (231 additions, 375 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 507 intermediates.
+    /// 638 operations (236 additions, 393 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 524 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1399,337 +1917,440 @@ impl Spherical3Rrr {
         start: &[f64; 4],
     ) -> Result<[[f64; 54]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let t4 = 1.0 / minus_s_distal_leg1;
-        let gwrist_wy_leg1 = minus_c_proximal_leg1 * t4;
-        let gproximal_wy_leg1 = c_distal_leg1 * gwrist_wy_leg1;
-        let t7 = gproximal_wy_leg1 * actuator_accelerations[0];
-        let gwrist_wz_leg1 = minus_s_proximal_leg1 * t4;
-        let gproximal_wz_leg1 = c_distal_leg1 * gwrist_wz_leg1;
-        let t10 = gproximal_wz_leg1 * actuator_accelerations[0];
-        let t11 = 9.81 * minus_c_proximal_leg1;
-        let t13 = gproximal_wz_leg1 * t11;
-        let t14 = 9.81 * minus_s_proximal_leg1;
-        let t15 = gproximal_wz_leg1 * t14;
-        let t16 = gproximal_wy_leg1 * actuator_velocities[0];
-        let t17 = gproximal_wz_leg1 * actuator_velocities[0];
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let t26 = 1.0 / minus_s_distal_leg2;
-        let gwrist_wz_leg2 = minus_c_proximal_leg2 * t26;
-        let gproximal_wz_leg2 = c_distal_leg2 * gwrist_wz_leg2;
-        let gwrist_wx_leg2 = minus_s_proximal_leg2 * t26;
-        let gproximal_wx_leg2 = c_distal_leg2 * gwrist_wx_leg2;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t40 = 1.0 / minus_s_distal_leg3;
-        let gwrist_wx_leg3 = minus_c_proximal_leg3 * t40;
-        let gproximal_wx_leg3 = c_distal_leg3 * gwrist_wx_leg3;
-        let t43 = gproximal_wz_leg1 + gproximal_wx_leg2 * gproximal_wz_leg2
-            + gproximal_wx_leg3;
-        let t47 = 1.0 + gproximal_wx_leg2 * gproximal_wx_leg2
-            + gproximal_wx_leg3 * gproximal_wx_leg3;
-        ::overact::guard::platform(t47, 1.0, "actuators")?;
-        ::overact::guard::platform(t47, 1.0, "actuators")?;
-        let t48 = 1.0 / t47;
-        let t49 = t43 * t48;
-        let gwrist_wy_leg3 = minus_s_proximal_leg3 * t40;
-        let gproximal_wy_leg3 = c_distal_leg3 * gwrist_wy_leg3;
-        let t59 = gproximal_wy_leg1 + gproximal_wx_leg2
-            + gproximal_wx_leg3 * gproximal_wy_leg3;
-        let t61 = gproximal_wy_leg1 * gproximal_wz_leg1 + gproximal_wz_leg2
-            + gproximal_wy_leg3 - t59 * t49;
-        let t66 = t59 * t48;
-        let t68 = gproximal_wy_leg1 * gproximal_wy_leg1 + 1.0
-            + gproximal_wy_leg3 * gproximal_wy_leg3 - t59 * t66;
-        ::overact::guard::platform(t68, 1.0, "actuators")?;
-        ::overact::guard::platform(t68, 1.0, "actuators")?;
-        let t69 = 1.0 / t68;
-        let t70 = t61 * t69;
-        let t72 = gproximal_wz_leg1 * gproximal_wz_leg1
-            + gproximal_wz_leg2 * gproximal_wz_leg2 + 1.0 - t43 * t49 - t61 * t70;
-        ::overact::guard::platform(t72, 1.0, "actuators")?;
-        ::overact::guard::platform(t72, 1.0, "actuators")?;
-        let t73 = 1.0 / t72;
-        let t74 = gproximal_wz_leg2 * actuator_velocities[1];
-        let t77 = gproximal_wx_leg2 * actuator_velocities[1];
-        let t79 = gproximal_wx_leg3 * actuator_velocities[2];
-        let t80 = actuator_velocities[0] + t77 + t79;
-        let t84 = gproximal_wy_leg3 * actuator_velocities[2];
-        let t87 = t16 + actuator_velocities[1] + t84 - t80 * t66;
-        let t90 = t73 * (t17 + t74 + actuator_velocities[2] - t80 * t49 - t70 * t87);
-        let t94 = t69 * t87 - t70 * t90;
-        let rate_distal_leg1 = minus_c_proximal_leg1 * t90 - minus_s_proximal_leg1 * t94;
-        let t97 = c_distal_leg1 * actuator_velocities[0];
-        let t98 = rate_distal_leg1 * t97;
-        let t99 = minus_s_distal_leg1 * actuator_accelerations[0];
-        let t100 = t98 - t99;
-        let t102 = minus_s_distal_leg1 * actuator_velocities[0];
-        let t103 = rate_distal_leg1 * t102;
-        let t105 = minus_s_distal_leg1 * t100 + c_distal_leg1 * t103;
-        let t107 = t102 * t97;
-        let t109 = gproximal_wy_leg1 * t105 + minus_s_proximal_leg1 * t107;
-        let t112 = minus_c_proximal_leg1 * t107 - gproximal_wz_leg1 * t105;
-        let t115 = c_distal_leg1 * actuator_accelerations[0];
-        let t119 = c_distal_leg1 * (t98 + t100)
-            - minus_s_distal_leg1 * (t103 + t115 + t103);
-        let t121 = t102 * t102;
-        let t122 = t97 * t97;
-        let t123 = t121 - t122;
-        let t129 = rate_distal_leg1 * rate_distal_leg1;
-        let t132 = minus_c_proximal_leg1 * minus_s_distal_leg1;
-        let rate_wrist_leg1 = gwrist_wy_leg1 * t94 + gwrist_wz_leg1 * t90;
-        let t136 = t132 * rate_wrist_leg1;
-        let t138 = minus_s_proximal_leg1 * rate_distal_leg1;
-        let t139 = c_distal_leg1 * rate_wrist_leg1;
-        let t143 = actuator_velocities[0] * t136 - t138 * t139
-            - actuator_velocities[0] * t138;
-        let t145 = minus_s_proximal_leg1 * minus_s_distal_leg1;
-        let t146 = t145 * rate_wrist_leg1;
-        let t148 = minus_c_proximal_leg1 * rate_distal_leg1;
-        let t155 = actuator_velocities[0] * t148 + t148 * t139
-            + actuator_velocities[0] * t146;
-        let minus_rate_dot_proximal_leg1 = gproximal_wz_leg1 * t143
-            - (t138 * t146 + t148 * t136 + gproximal_wy_leg1 * t155);
-        let t159 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
-        let t161 = minus_c_proximal_leg2 * minus_s_distal_leg2;
-        let t166 = t80 * t48 - t66 * t94 - t49 * t90;
-        let rate_wrist_leg2 = gwrist_wx_leg2 * t166 + gwrist_wz_leg2 * t90;
-        let t170 = t161 * rate_wrist_leg2;
-        let rate_distal_leg2 = minus_c_proximal_leg2 * t166
-            - minus_s_proximal_leg2 * t90;
-        let t175 = minus_s_proximal_leg2 * rate_distal_leg2;
-        let t176 = c_distal_leg2 * rate_wrist_leg2;
-        let t180 = actuator_velocities[1] * t170 - t175 * t176
-            - actuator_velocities[1] * t175;
-        let t182 = minus_s_proximal_leg2 * minus_s_distal_leg2;
-        let t183 = t182 * rate_wrist_leg2;
-        let t185 = minus_c_proximal_leg2 * rate_distal_leg2;
-        let t193 = actuator_velocities[1] * t185 + t185 * t176
-            + actuator_velocities[1] * t183;
-        let minus_rate_dot_proximal_leg2 = gproximal_wx_leg2 * t180
-            - (t175 * t183 + t185 * t170) - gproximal_wz_leg2 * t193;
-        let t196 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
-        let t199 = minus_c_proximal_leg3 * minus_s_distal_leg3;
-        let rate_wrist_leg3 = gwrist_wx_leg3 * t166 + gwrist_wy_leg3 * t94;
-        let t203 = t199 * rate_wrist_leg3;
-        let t207 = gproximal_wx_leg3 * t166 + gproximal_wy_leg3 * t94;
-        let rate_distal_leg3 = minus_c_proximal_leg3 * t94
-            - minus_s_proximal_leg3 * t166;
-        let t211 = minus_s_proximal_leg3 * rate_distal_leg3;
-        let t215 = actuator_velocities[2] * t203 - t207 * t211
-            - actuator_velocities[2] * t211;
-        let t217 = minus_c_proximal_leg3 * rate_distal_leg3;
-        let t220 = minus_s_proximal_leg3 * minus_s_distal_leg3;
-        let t221 = t220 * rate_wrist_leg3;
-        let t224 = actuator_velocities[2] * t217 + t207 * t217
-            + actuator_velocities[2] * t221;
-        let minus_rate_dot_proximal_leg3 = gproximal_wy_leg3 * t215
-            - gproximal_wx_leg3 * t224 - (t211 * t221 + t217 * t203);
-        let t231 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
-        let t236 = t159 + gproximal_wx_leg2 * t196 + gproximal_wx_leg3 * t231;
-        let t244 = gproximal_wy_leg1 * t159 + t196 + gproximal_wy_leg3 * t231
-            - t66 * t236;
-        let t247 = t73
-            * (gproximal_wz_leg1 * t159 + gproximal_wz_leg2 * t196 + t231 - t49 * t236
-                - t70 * t244);
-        let t252 = t69 * t244 - t70 * t247;
-        let rate_dot_distal_leg1 = minus_c_proximal_leg1 * (t247 - t143)
-            - minus_s_proximal_leg1 * (t252 + t155);
-        let t258 = c_distal_leg1 * (t129 - t121)
-            - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t107);
-        let t272 = c_distal_leg1 * (t107 + rate_dot_distal_leg1)
-            - minus_s_distal_leg1 * (t122 - t129);
-        let t282 = 9.81 * (minus_c_proximal_leg1 * c_distal_leg1);
-        let t293 = gproximal_wx_leg2 * actuator_accelerations[1];
-        let t294 = gproximal_wz_leg2 * actuator_accelerations[1];
-        let t295 = 9.81 * minus_s_proximal_leg2;
-        let t297 = gproximal_wz_leg2 * t295;
-        let t298 = 9.81 * minus_c_proximal_leg2;
-        let t299 = gproximal_wz_leg2 * t298;
-        let t303 = minus_s_distal_leg2 * actuator_velocities[1];
-        let t304 = c_distal_leg2 * actuator_velocities[1];
-        let t305 = t303 * t304;
-        let t307 = rate_distal_leg2 * t304;
-        let t308 = minus_s_distal_leg2 * actuator_accelerations[1];
-        let t309 = t307 - t308;
-        let t311 = rate_distal_leg2 * t303;
-        let t313 = minus_s_distal_leg2 * t309 + c_distal_leg2 * t311;
-        let t315 = minus_c_proximal_leg2 * t305 - gproximal_wx_leg2 * t313;
-        let t318 = gproximal_wz_leg2 * t313 + minus_s_proximal_leg2 * t305;
-        let t321 = c_distal_leg2 * actuator_accelerations[1];
-        let t325 = c_distal_leg2 * (t307 + t309)
-            - minus_s_distal_leg2 * (t311 + t321 + t311);
-        let t327 = t303 * t303;
-        let t328 = t304 * t304;
-        let t329 = t327 - t328;
-        let t335 = rate_distal_leg2 * rate_distal_leg2;
-        let t342 = t48 * t236 - t66 * t252 - t49 * t247;
-        let rate_dot_distal_leg2 = minus_c_proximal_leg2 * (t342 - t180)
-            - minus_s_proximal_leg2 * (t247 + t193);
-        let t350 = c_distal_leg2 * (t335 - t327)
-            - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t305);
-        let t364 = c_distal_leg2 * (t305 + rate_dot_distal_leg2)
-            - minus_s_distal_leg2 * (t328 - t335);
-        let t374 = 9.81 * (minus_s_proximal_leg2 * c_distal_leg2);
-        let t385 = gproximal_wx_leg3 * actuator_accelerations[2];
-        let t386 = gproximal_wy_leg3 * actuator_accelerations[2];
-        let t390 = c_distal_leg3 * actuator_velocities[2];
-        let t391 = rate_distal_leg3 * t390;
-        let t392 = minus_s_distal_leg3 * actuator_accelerations[2];
-        let t393 = t391 - t392;
-        let t395 = minus_s_distal_leg3 * actuator_velocities[2];
-        let t396 = rate_distal_leg3 * t395;
-        let t398 = minus_s_distal_leg3 * t393 + c_distal_leg3 * t396;
-        let t400 = t395 * t390;
-        let t402 = gproximal_wx_leg3 * t398 + minus_s_proximal_leg3 * t400;
-        let t405 = minus_c_proximal_leg3 * t400 - gproximal_wy_leg3 * t398;
-        let t408 = c_distal_leg3 * actuator_accelerations[2];
-        let t412 = c_distal_leg3 * (t391 + t393)
-            - minus_s_distal_leg3 * (t396 + t408 + t396);
-        let t414 = t395 * t395;
-        let t415 = t390 * t390;
-        let t416 = t414 - t415;
-        let t424 = t211 * t211 + t217 * t217;
-        let rate_dot_distal_leg3 = minus_c_proximal_leg3 * (t252 - t215)
-            - minus_s_proximal_leg3 * (t342 + t224);
-        let t434 = c_distal_leg3 * (t424 - t414)
-            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t400);
-        let t448 = c_distal_leg3 * (t400 + rate_dot_distal_leg3)
-            - minus_s_distal_leg3 * (t415 - t424);
-        let t463 = 2.0 * pose[2];
-        let t464 = pose[2] * t463;
-        let t466 = 2.0 * pose[3];
-        let t467 = pose[3] * t466;
-        let t468 = 1.0 - t464 - t467;
-        let t470 = 2.0 * pose[1];
-        let t471 = pose[2] * t470;
-        let t472 = pose[0] * t466;
-        let t473 = t471 + t472;
-        let t476 = pose[3] * t470;
-        let t477 = pose[0] * t463;
-        let t478 = t476 - t477;
-        let t480 = t468 * t342 + t473 * t252 + t478 * t247;
-        let t482 = t471 - t472;
-        let t487 = t468 * t166 + t473 * t94 + t478 * t90;
-        let t488 = t476 + t477;
-        let t490 = pose[3] * t463;
-        let t491 = pose[0] * t470;
-        let t492 = t490 - t491;
-        let t496 = 1.0 - pose[1] * t470;
-        let t497 = t496 - t464;
-        let t499 = t488 * t166 + t492 * t94 + t497 * t90;
-        let t500 = t487 * t499;
-        let t501 = t482 * t500;
-        let t504 = t496 - t467;
-        let t507 = t490 + t491;
-        let t509 = t482 * t166 + t504 * t94 + t507 * t90;
-        let t510 = t487 * t509;
-        let t511 = t488 * t510;
-        let t514 = t504 * t500;
-        let t516 = t492 * t510;
-        let t519 = t507 * t500;
-        let t521 = t497 * t510;
-        let t523 = t509 * t499;
-        let t524 = t523 + t480;
-        let t530 = t482 * t342 + t504 * t252 + t507 * t247;
-        let t531 = t500 - t530;
-        let t534 = t487 * t487;
-        let t535 = t509 * t509;
-        let t536 = t534 - t535;
-        let t553 = t488 * t342 + t492 * t252 + t497 * t247;
-        let t554 = t510 + t553;
-        let t556 = t499 * t499;
-        let t557 = t556 - t534;
-        let t560 = t523 - t480;
-        let t574 = t468 * t523;
-        let t578 = t473 * t523;
-        let t582 = t478 * t523;
-        let t585 = t535 - t556;
-        let t587 = t510 - t553;
-        let t590 = t500 + t530;
-        let t612 = 9.81 * t507;
-        let t614 = 9.81 * t497;
-        let t621 = 9.81 * t478;
+        let t0 = 2.0 * pose[1];
+        let t1 = pose[2] * t0;
+        let t2 = 2.0 * pose[3];
+        let t3 = pose[0] * t2;
+        let minus_s_distal_leg1 = t1 - t3;
+        let t6 = 1.0 - pose[1] * t0;
+        let t7 = pose[3] * t2;
+        let t8 = t6 - t7;
+        let t10 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t10, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t10);
+        let t13 = 1.0 / (t8 * c_distal_leg1);
+        let c_proximal_leg1 = t13 * (t8 * t8);
+        let t17 = 2.0 * pose[2];
+        let t18 = pose[3] * t17;
+        let t19 = pose[0] * t0;
+        let t20 = t18 + t19;
+        let s_proximal_leg1 = t13 * (t8 * t20);
+        let t24 = t8 * c_proximal_leg1 + t20 * s_proximal_leg1;
+        ::overact::guard::leg(t24, 1.0, "leg1")?;
+        let t25 = 1.0 / t24;
+        let gwrist_wy_leg1 = c_proximal_leg1 * t25;
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
+        let t28 = minus_gproximal_wy_leg1 * actuator_accelerations[0];
+        let gwrist_wz_leg1 = s_proximal_leg1 * t25;
+        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
+        let t31 = minus_gproximal_wz_leg1 * actuator_accelerations[0];
+        let t32 = 9.81 * c_proximal_leg1;
+        let t34 = minus_gproximal_wz_leg1 * t32;
+        let t35 = 9.81 * s_proximal_leg1;
+        let t36 = minus_gproximal_wz_leg1 * t35;
+        let t37 = minus_gproximal_wy_leg1 * actuator_velocities[0];
+        let t38 = minus_gproximal_wz_leg1 * actuator_velocities[0];
+        let t42 = c_distal_leg1 * actuator_accelerations[0];
+        let gdistal_wz_leg1 = t8 * t25;
+        let minus_s_distal_leg2 = t18 - t19;
+        let t46 = pose[2] * t17;
+        let t47 = t6 - t46;
+        let t49 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t49, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t49);
+        let t52 = 1.0 / (t47 * c_distal_leg2);
+        let c_proximal_leg2 = t52 * (t47 * t47);
+        let t55 = pose[3] * t0;
+        let t56 = pose[0] * t17;
+        let t57 = t55 + t56;
+        let s_proximal_leg2 = t52 * (t57 * t47);
+        let t62 = t57 * s_proximal_leg2 + t47 * c_proximal_leg2;
+        ::overact::guard::leg(t62, 1.0, "leg2")?;
+        let t63 = 1.0 / t62;
+        let gwrist_wz_leg2 = c_proximal_leg2 * t63;
+        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
+        let gwrist_wx_leg2 = s_proximal_leg2 * t63;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
+        let minus_s_distal_leg3 = t55 - t56;
+        let t75 = 1.0 - t46 - t7;
+        let t77 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t77, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t77);
+        let t80 = 1.0 / (t75 * c_distal_leg3);
+        let c_proximal_leg3 = t80 * (t75 * t75);
+        let t84 = t1 + t3;
+        let s_proximal_leg3 = t80 * (t75 * t84);
+        let t88 = t75 * c_proximal_leg3 + t84 * s_proximal_leg3;
+        ::overact::guard::leg(t88, 1.0, "leg3")?;
+        let t89 = 1.0 / t88;
+        let gwrist_wx_leg3 = c_proximal_leg3 * t89;
+        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
+        let t92 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
+        let t96 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
+        ::overact::guard::platform(t96, 1.0, "actuators")?;
+        ::overact::guard::platform(t96, 1.0, "actuators")?;
+        let t97 = 1.0 / t96;
+        let t98 = t92 * t97;
+        let gwrist_wy_leg3 = s_proximal_leg3 * t89;
+        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
+        let t108 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+            - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
+        let t110 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t108 * t98;
+        let t115 = t108 * t97;
+        let t117 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t108 * t115;
+        ::overact::guard::platform(t117, 1.0, "actuators")?;
+        ::overact::guard::platform(t117, 1.0, "actuators")?;
+        let t118 = 1.0 / t117;
+        let t119 = t110 * t118;
+        let t121 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t92 * t98
+            - t110 * t119;
+        ::overact::guard::platform(t121, 1.0, "actuators")?;
+        ::overact::guard::platform(t121, 1.0, "actuators")?;
+        let t122 = 1.0 / t121;
+        let t123 = minus_gproximal_wz_leg2 * actuator_velocities[1];
+        let t126 = minus_gproximal_wx_leg2 * actuator_velocities[1];
+        let t128 = minus_gproximal_wx_leg3 * actuator_velocities[2];
+        let t129 = actuator_velocities[0] - t126 - t128;
+        let t133 = minus_gproximal_wy_leg3 * actuator_velocities[2];
+        let t136 = actuator_velocities[1] - t37 - t133 - t129 * t115;
+        let t139 = t122
+            * (actuator_velocities[2] - (t38 + t123) - t129 * t98 - t119 * t136);
+        let minus_gdistal_wy_leg1 = t20 * t25;
+        let t144 = t118 * t136 - t119 * t139;
+        let rate_distal_leg1 = gdistal_wz_leg1 * t139 - minus_gdistal_wy_leg1 * t144;
+        let t147 = minus_s_distal_leg1 * actuator_velocities[0];
+        let t148 = rate_distal_leg1 * t147;
+        let t149 = t42 + t148;
+        let t151 = c_distal_leg1 * actuator_velocities[0];
+        let t152 = rate_distal_leg1 * t151;
+        let t154 = c_distal_leg1 * t149 + minus_s_distal_leg1 * t152;
+        let t155 = t151 * t147;
+        let t158 = minus_gdistal_wy_leg1 * t155 - minus_gproximal_wy_leg1 * t154;
+        let t161 = minus_gproximal_wz_leg1 * t154 + gdistal_wz_leg1 * t155;
+        let t164 = minus_s_distal_leg1 * actuator_accelerations[0];
+        let t168 = minus_s_distal_leg1 * (t148 + t149)
+            - c_distal_leg1 * (t152 + t152 - t164);
+        let t170 = t151 * t151;
+        let t171 = t147 * t147;
+        let t172 = t170 - t171;
+        let t182 = t129 * t97 - t115 * t144 - t98 * t139;
+        let t185 = minus_gproximal_wx_leg3 * t182 + minus_gproximal_wy_leg3 * t144;
+        let gdistal_wy_leg3 = t75 * t89;
+        let minus_gdistal_wx_leg3 = t84 * t89;
+        let rate_distal_leg3 = gdistal_wy_leg3 * t144 - minus_gdistal_wx_leg3 * t182;
+        let t191 = c_proximal_leg3 * rate_distal_leg3;
+        let rate_wrist_leg3 = gwrist_wx_leg3 * t182 + gwrist_wy_leg3 * t144;
+        let t196 = t84 * rate_wrist_leg3;
+        let t200 = t185 * t191 - actuator_velocities[2] * t196
+            - actuator_velocities[2] * t191;
+        let t202 = t75 * rate_wrist_leg3;
+        let t204 = s_proximal_leg3 * rate_distal_leg3;
+        let t208 = actuator_velocities[2] * t202 + t185 * t204
+            - actuator_velocities[2] * t204;
+        let rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t200
+            + minus_gproximal_wy_leg3 * t208 + t204 * t196 + t191 * t202;
+        let t215 = actuator_accelerations[2] - rate_dot_proximal_leg3;
+        let t216 = s_proximal_leg1 * rate_distal_leg1;
+        let rate_wrist_leg1 = gwrist_wy_leg1 * t144 + gwrist_wz_leg1 * t139;
+        let t220 = t20 * rate_wrist_leg1;
+        let t222 = c_proximal_leg1 * rate_distal_leg1;
+        let t223 = t8 * rate_wrist_leg1;
+        let t226 = minus_s_distal_leg1 * rate_wrist_leg1;
+        let t231 = t222 * t226 - actuator_velocities[0] * t220
+            - actuator_velocities[0] * t222;
+        let t238 = actuator_velocities[0] * t223 + t216 * t226
+            - actuator_velocities[0] * t216;
+        let rate_dot_proximal_leg1 = t216 * t220 + t222 * t223
+            + minus_gproximal_wy_leg1 * t231 + minus_gproximal_wz_leg1 * t238;
+        let t241 = actuator_accelerations[0] - rate_dot_proximal_leg1;
+        let rate_wrist_leg2 = gwrist_wx_leg2 * t182 + gwrist_wz_leg2 * t139;
+        let t246 = t47 * rate_wrist_leg2;
+        let gdistal_wx_leg2 = t47 * t63;
+        let minus_gdistal_wz_leg2 = t57 * t63;
+        let rate_distal_leg2 = gdistal_wx_leg2 * t182 - minus_gdistal_wz_leg2 * t139;
+        let t253 = s_proximal_leg2 * rate_distal_leg2;
+        let t254 = minus_s_distal_leg2 * rate_wrist_leg2;
+        let t258 = actuator_velocities[1] * t246 + t253 * t254
+            - actuator_velocities[1] * t253;
+        let t260 = t57 * rate_wrist_leg2;
+        let t262 = c_proximal_leg2 * rate_distal_leg2;
+        let t270 = t262 * t254 - actuator_velocities[1] * t260
+            - actuator_velocities[1] * t262;
+        let rate_dot_proximal_leg2 = minus_gproximal_wx_leg2 * t258 + t253 * t260
+            + t262 * t246 + minus_gproximal_wz_leg2 * t270;
+        let t273 = actuator_accelerations[1] - rate_dot_proximal_leg2;
+        let t280 = t241 - minus_gproximal_wx_leg2 * t273
+            - minus_gproximal_wx_leg3 * t215;
+        let t288 = t273 - minus_gproximal_wy_leg1 * t241 - minus_gproximal_wy_leg3 * t215
+            - t115 * t280;
+        let t291 = t122
+            * (t215 - (minus_gproximal_wz_leg1 * t241 + minus_gproximal_wz_leg2 * t273)
+                - t98 * t280 - t119 * t288);
+        let t296 = t118 * t288 - t119 * t291;
+        let rate_dot_distal_leg1 = gdistal_wz_leg1 * (t291 - t238)
+            - minus_gdistal_wy_leg1 * (t296 - t231);
+        let t302 = rate_distal_leg1 * rate_distal_leg1;
+        let t305 = c_distal_leg1 * (t155 + rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t302 - t170);
+        let t319 = minus_s_distal_leg1 * (t155 - rate_dot_distal_leg1)
+            - c_distal_leg1 * (t171 - t302);
+        let t329 = 9.81 * (minus_s_distal_leg1 * c_proximal_leg1);
+        let t330 = 9.81 * t20;
+        let t339 = minus_gproximal_wx_leg2 * actuator_accelerations[1];
+        let t340 = minus_gproximal_wz_leg2 * actuator_accelerations[1];
+        let t341 = 9.81 * s_proximal_leg2;
+        let t343 = minus_gproximal_wz_leg2 * t341;
+        let t344 = 9.81 * c_proximal_leg2;
+        let t345 = minus_gproximal_wz_leg2 * t344;
+        let t349 = c_distal_leg2 * actuator_accelerations[1];
+        let t350 = minus_s_distal_leg2 * actuator_velocities[1];
+        let t351 = rate_distal_leg2 * t350;
+        let t352 = t349 + t351;
+        let t354 = c_distal_leg2 * actuator_velocities[1];
+        let t355 = rate_distal_leg2 * t354;
+        let t357 = c_distal_leg2 * t352 + minus_s_distal_leg2 * t355;
+        let t359 = t354 * t350;
+        let t361 = minus_gproximal_wx_leg2 * t357 + gdistal_wx_leg2 * t359;
+        let t364 = minus_gdistal_wz_leg2 * t359 - minus_gproximal_wz_leg2 * t357;
+        let t365 = t354 * t354;
+        let t366 = t350 * t350;
+        let t367 = t365 - t366;
+        let t371 = minus_s_distal_leg2 * actuator_accelerations[1];
+        let t375 = minus_s_distal_leg2 * (t351 + t352)
+            - c_distal_leg2 * (t355 + t355 - t371);
+        let t385 = t97 * t280 - t115 * t296 - t98 * t291;
+        let rate_dot_distal_leg2 = gdistal_wx_leg2 * (t385 - t258)
+            - minus_gdistal_wz_leg2 * (t291 - t270);
+        let t393 = rate_distal_leg2 * rate_distal_leg2;
+        let t396 = c_distal_leg2 * (t359 + rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t393 - t365);
+        let t410 = minus_s_distal_leg2 * (t359 - rate_dot_distal_leg2)
+            - c_distal_leg2 * (t366 - t393);
+        let t420 = 9.81 * (minus_s_distal_leg2 * s_proximal_leg2);
+        let t422 = 9.81 * t47;
+        let t430 = minus_gproximal_wx_leg3 * actuator_accelerations[2];
+        let t431 = minus_gproximal_wy_leg3 * actuator_accelerations[2];
+        let t435 = c_distal_leg3 * actuator_velocities[2];
+        let t436 = minus_s_distal_leg3 * actuator_velocities[2];
+        let t437 = t435 * t436;
+        let t439 = c_distal_leg3 * actuator_accelerations[2];
+        let t440 = rate_distal_leg3 * t436;
+        let t441 = t439 + t440;
+        let t443 = rate_distal_leg3 * t435;
+        let t445 = c_distal_leg3 * t441 + minus_s_distal_leg3 * t443;
+        let t447 = minus_gdistal_wx_leg3 * t437 - minus_gproximal_wx_leg3 * t445;
+        let t450 = minus_gproximal_wy_leg3 * t445 + gdistal_wy_leg3 * t437;
+        let t453 = minus_s_distal_leg3 * actuator_accelerations[2];
+        let t457 = minus_s_distal_leg3 * (t440 + t441)
+            - c_distal_leg3 * (t443 + t443 - t453);
+        let t459 = t435 * t435;
+        let t460 = t436 * t436;
+        let t461 = t459 - t460;
+        let rate_dot_distal_leg3 = gdistal_wy_leg3 * (t296 - t208)
+            - minus_gdistal_wx_leg3 * (t385 - t200);
+        let t474 = rate_distal_leg3 * rate_distal_leg3;
+        let t477 = c_distal_leg3 * (t437 + rate_dot_distal_leg3)
+            + minus_s_distal_leg3 * (t474 - t459);
+        let t492 = minus_s_distal_leg3 * (t437 - rate_dot_distal_leg3)
+            - c_distal_leg3 * (t460 - t474);
+        let t500 = 9.81 * minus_s_distal_leg3;
+        let t503 = 9.81 * c_distal_leg3;
+        let t510 = t75 * t385 + t84 * t296 + minus_s_distal_leg3 * t291;
+        let t516 = t75 * t182 + t84 * t144 + minus_s_distal_leg3 * t139;
+        let t521 = t57 * t182 + minus_s_distal_leg2 * t144 + t47 * t139;
+        let t522 = t516 * t521;
+        let t523 = minus_s_distal_leg1 * t522;
+        let t529 = minus_s_distal_leg1 * t182 + t8 * t144 + t20 * t139;
+        let t530 = t516 * t529;
+        let t531 = t57 * t530;
+        let t534 = t8 * t522;
+        let t536 = minus_s_distal_leg2 * t530;
+        let t539 = t20 * t522;
+        let t541 = t47 * t530;
+        let t543 = t529 * t521;
+        let t544 = t543 + t510;
+        let t550 = minus_s_distal_leg1 * t385 + t8 * t296 + t20 * t291;
+        let t551 = t522 - t550;
+        let t554 = t516 * t516;
+        let t555 = t529 * t529;
+        let t556 = t554 - t555;
+        let t573 = t57 * t385 + minus_s_distal_leg2 * t296 + t47 * t291;
+        let t574 = t530 + t573;
+        let t576 = t521 * t521;
+        let t577 = t576 - t554;
+        let t580 = t543 - t510;
+        let t594 = t75 * t543;
+        let t598 = t84 * t543;
+        let t602 = minus_s_distal_leg3 * t543;
+        let t605 = t555 - t576;
+        let t607 = t530 - t573;
+        let t610 = t522 + t550;
         Ok([
             [
-                actuator_accelerations[0], -t11, t14, actuator_accelerations[0],
-                actuator_velocities[0], ::overact::math::sign(actuator_velocities[0]), 1.0, -t105,
-                t119, t258, actuator_accelerations[0] + t105, t272, 0.0, -t282, -(9.81 * t132),
-                -t14, t293, gproximal_wx_leg2 * t295, t297, t293, t77,
-                ::overact::math::signed(gproximal_wx_leg2, actuator_velocities[1]),
-                gproximal_wx_leg2, t315, gproximal_wx_leg2 * t325 + minus_c_proximal_leg2 * t329,
-                gproximal_wx_leg2 * t350 - minus_c_proximal_leg2 * t308, t293 - t315,
-                gproximal_wx_leg2 * t364 + minus_c_proximal_leg2 * t321,
-                minus_c_proximal_leg2 * rate_dot_distal_leg2,
-                gproximal_wx_leg2 * t374 - 9.81 * (minus_c_proximal_leg2 * t161),
-                9.81 * c_distal_leg2, -t297, t385, t385, t79,
-                ::overact::math::signed(gproximal_wx_leg3, actuator_velocities[2]),
-                gproximal_wx_leg3, -t402, gproximal_wx_leg3 * t412 - minus_s_proximal_leg3 * t416,
-                gproximal_wx_leg3 * t434 + minus_s_proximal_leg3 * t392, t385 + t402,
-                gproximal_wx_leg3 * t448 - minus_s_proximal_leg3 * t408,
-                -(minus_s_proximal_leg3 * rate_dot_distal_leg3),
-                -(9.81 * (minus_s_proximal_leg3 * c_distal_leg3)), -(9.81 * t220),
-                t468 * t480 + t501 - t511, t482 * t524 - t468 * t531 + t488 * t536,
-                t468 * t554 + t482 * t557 - t488 * t560, t482 * t530 - t574 + t511,
-                t468 * t585 - t482 * t587 + t488 * t590, t574 - t501 + t488 * t553,
-                t488 * t612 - t482 * t614, t468 * t614 - t488 * t621, t482 * t621 - t468 * t612,
+                actuator_accelerations[0], -t32, t35, actuator_accelerations[0],
+                actuator_velocities[0], ::overact::math::sign(actuator_velocities[0]), 1.0, t154,
+                t168, -t305, actuator_accelerations[0] - t154, t319, 0.0, t329, -(9.81 * t8), -t35,
+                -t339, -(minus_gproximal_wx_leg2 * t341), -t343, -t339, -t126,
+                -::overact::math::signed(
+                    minus_gproximal_wx_leg2,
+                    actuator_velocities[1],
+                ),
+                -minus_gproximal_wx_leg2,
+                -t361,
+                gdistal_wx_leg2 * t367 - minus_gproximal_wx_leg2 * t375,
+                minus_gproximal_wx_leg2 * t396 - gdistal_wx_leg2 * t349,
+                t361 - t339,
+                -(minus_gproximal_wx_leg2 * t410 + gdistal_wx_leg2 * t371),
+                gdistal_wx_leg2 * rate_dot_distal_leg2,
+                minus_gproximal_wx_leg2 * t420 - gdistal_wx_leg2 * t422,
+                -(9.81 * minus_s_distal_leg2),
+                t343,
+                -t430,
+                -t430,
+                -t128,
+                -::overact::math::signed(
+                    minus_gproximal_wx_leg3,
+                    actuator_velocities[2],
+                ),
+                -minus_gproximal_wx_leg3,
+                t447,
+                -(minus_gproximal_wx_leg3 * t457 + minus_gdistal_wx_leg3 * t461),
+                minus_gproximal_wx_leg3 * t477 + minus_gdistal_wx_leg3 * t439,
+                -(t430 + t447),
+                minus_gdistal_wx_leg3 * t453 - minus_gproximal_wx_leg3 * t492,
+                -(minus_gdistal_wx_leg3 * rate_dot_distal_leg3),
+                minus_gdistal_wx_leg3 * t500,
+                -(minus_gdistal_wx_leg3 * t503),
+                t75 * t510 + t523 - t531,
+                minus_s_distal_leg1 * t544 - t75 * t551 + t57 * t556,
+                t75 * t574 + minus_s_distal_leg1 * t577 - t57 * t580,
+                minus_s_distal_leg1 * t550 - t594 + t531,
+                t75 * t605 - minus_s_distal_leg1 * t607 + t57 * t610,
+                t594 - t523 + t57 * t573,
+                t57 * t330 - minus_s_distal_leg1 * t422,
+                t75 * t422 - t57 * t500,
+                minus_s_distal_leg1 * t500 - t75 * t330,
             ],
             [
-                t7, -(gproximal_wy_leg1 * t11), t13, t7, t16,
-                ::overact::math::signed(gproximal_wy_leg1, actuator_velocities[0]),
-                gproximal_wy_leg1, -t109, gproximal_wy_leg1 * t119 - minus_s_proximal_leg1 * t123,
-                gproximal_wy_leg1 * t258 + minus_s_proximal_leg1 * t99, t7 + t109,
-                gproximal_wy_leg1 * t272 - minus_s_proximal_leg1 * t115,
-                -(minus_s_proximal_leg1 * rate_dot_distal_leg1),
-                9.81 * (minus_s_proximal_leg1 * t145) - gproximal_wy_leg1 * t282,
-                -(9.81 * c_distal_leg1), -t13, actuator_accelerations[1], t295, t298,
-                actuator_accelerations[1], actuator_velocities[1],
-                ::overact::math::sign(actuator_velocities[1]), 1.0, -t313, t325, t350,
-                actuator_accelerations[1] + t313, t364, 0.0, t374, 9.81 * t182, -t298, t386, t386,
-                t84, ::overact::math::signed(gproximal_wy_leg3, actuator_velocities[2]),
-                gproximal_wy_leg3, t405, gproximal_wy_leg3 * t412 + minus_c_proximal_leg3 * t416,
-                gproximal_wy_leg3 * t434 - minus_c_proximal_leg3 * t392, t386 - t405,
-                gproximal_wy_leg3 * t448 + minus_c_proximal_leg3 * t408,
-                minus_c_proximal_leg3 * rate_dot_distal_leg3,
-                9.81 * (minus_c_proximal_leg3 * c_distal_leg3), 9.81 * t199,
-                t473 * t480 + t514 - t516, t504 * t524 - t473 * t531 + t492 * t536,
-                t473 * t554 + t504 * t557 - t492 * t560, t504 * t530 - t578 + t516,
-                t473 * t585 - t504 * t587 + t492 * t590, t578 - t514 + t492 * t553,
-                t492 * t612 - t504 * t614, t473 * t614 - t492 * t621, t504 * t621 - t473 * t612,
+                -t28, minus_gproximal_wy_leg1 * t32, -t34, -t28, -t37,
+                -::overact::math::signed(
+                    minus_gproximal_wy_leg1,
+                    actuator_velocities[0],
+                ),
+                -minus_gproximal_wy_leg1,
+                t158,
+                -(minus_gproximal_wy_leg1 * t168 + minus_gdistal_wy_leg1 * t172),
+                minus_gproximal_wy_leg1 * t305 + minus_gdistal_wy_leg1 * t42,
+                -(t28 + t158),
+                minus_gdistal_wy_leg1 * t164 - minus_gproximal_wy_leg1 * t319,
+                -(minus_gdistal_wy_leg1 * rate_dot_distal_leg1),
+                minus_gdistal_wy_leg1 * t330 - minus_gproximal_wy_leg1 * t329,
+                9.81 * minus_s_distal_leg1,
+                t34,
+                actuator_accelerations[1],
+                t341,
+                t344,
+                actuator_accelerations[1],
+                actuator_velocities[1],
+                ::overact::math::sign(actuator_velocities[1]),
+                1.0,
+                t357,
+                t375,
+                -t396,
+                actuator_accelerations[1] - t357,
+                t410,
+                0.0,
+                -t420,
+                9.81 * t57,
+                -t344,
+                -t431,
+                -t431,
+                -t133,
+                -::overact::math::signed(
+                    minus_gproximal_wy_leg3,
+                    actuator_velocities[2],
+                ),
+                -minus_gproximal_wy_leg3,
+                -t450,
+                gdistal_wy_leg3 * t461 - minus_gproximal_wy_leg3 * t457,
+                minus_gproximal_wy_leg3 * t477 - gdistal_wy_leg3 * t439,
+                t450 - t431,
+                -(minus_gproximal_wy_leg3 * t492 + gdistal_wy_leg3 * t453),
+                gdistal_wy_leg3 * rate_dot_distal_leg3,
+                -(gdistal_wy_leg3 * t500),
+                gdistal_wy_leg3 * t503,
+                t84 * t510 + t534 - t536,
+                t8 * t544 - t84 * t551 + minus_s_distal_leg2 * t556,
+                t84 * t574 + t8 * t577 - minus_s_distal_leg2 * t580,
+                t8 * t550 - t598 + t536,
+                t84 * t605 - t8 * t607 + minus_s_distal_leg2 * t610,
+                t598 - t534 + minus_s_distal_leg2 * t573,
+                minus_s_distal_leg2 * t330 - t8 * t422,
+                t84 * t422 - minus_s_distal_leg2 * t500,
+                t8 * t500 - t84 * t330,
             ],
             [
-                t10, -t13, t15, t10, t17,
-                ::overact::math::signed(gproximal_wz_leg1, actuator_velocities[0]),
-                gproximal_wz_leg1, t112, gproximal_wz_leg1 * t119 + minus_c_proximal_leg1 * t123,
-                gproximal_wz_leg1 * t258 - minus_c_proximal_leg1 * t99, t10 - t112,
-                gproximal_wz_leg1 * t272 + minus_c_proximal_leg1 * t115,
-                minus_c_proximal_leg1 * rate_dot_distal_leg1,
-                -(gproximal_wz_leg1 * t282 + minus_c_proximal_leg1 * (9.81 * t145)), 0.0, -t15,
-                t294, t297, t299, t294, t74,
-                ::overact::math::signed(gproximal_wz_leg2, actuator_velocities[1]),
-                gproximal_wz_leg2, -t318, gproximal_wz_leg2 * t325 - minus_s_proximal_leg2 * t329,
-                gproximal_wz_leg2 * t350 + minus_s_proximal_leg2 * t308, t294 + t318,
-                gproximal_wz_leg2 * t364 - minus_s_proximal_leg2 * t321,
-                -(minus_s_proximal_leg2 * rate_dot_distal_leg2),
-                gproximal_wz_leg2 * t374 + minus_s_proximal_leg2 * (9.81 * t161), 0.0, -t299,
-                actuator_accelerations[2], actuator_accelerations[2], actuator_velocities[2],
-                ::overact::math::sign(actuator_velocities[2]), 1.0, -t398, t412, t434,
-                actuator_accelerations[2] + t398, t448, 0.0, 0.0, 0.0, t478 * t480 + t519 - t521,
-                t507 * t524 - t478 * t531 + t497 * t536, t478 * t554 + t507 * t557 - t497 * t560,
-                t507 * t530 - t582 + t521, t478 * t585 - t507 * t587 + t497 * t590,
-                t582 - t519 + t497 * t553, 0.0, 0.0, 0.0,
+                -t31, t34, -t36, -t31, -t38,
+                -::overact::math::signed(
+                    minus_gproximal_wz_leg1,
+                    actuator_velocities[0],
+                ),
+                -minus_gproximal_wz_leg1,
+                -t161,
+                gdistal_wz_leg1 * t172 - minus_gproximal_wz_leg1 * t168,
+                minus_gproximal_wz_leg1 * t305 - gdistal_wz_leg1 * t42,
+                t161 - t31,
+                -(minus_gproximal_wz_leg1 * t319 + gdistal_wz_leg1 * t164),
+                gdistal_wz_leg1 * rate_dot_distal_leg1,
+                -(minus_gproximal_wz_leg1 * t329 + gdistal_wz_leg1 * t330),
+                0.0,
+                t36,
+                -t340,
+                -t343,
+                -t345,
+                -t340,
+                -t123,
+                -::overact::math::signed(
+                    minus_gproximal_wz_leg2,
+                    actuator_velocities[1],
+                ),
+                -minus_gproximal_wz_leg2,
+                t364,
+                -(minus_gproximal_wz_leg2 * t375 + minus_gdistal_wz_leg2 * t367),
+                minus_gproximal_wz_leg2 * t396 + minus_gdistal_wz_leg2 * t349,
+                -(t340 + t364),
+                minus_gdistal_wz_leg2 * t371 - minus_gproximal_wz_leg2 * t410,
+                -(minus_gdistal_wz_leg2 * rate_dot_distal_leg2),
+                minus_gproximal_wz_leg2 * t420 + minus_gdistal_wz_leg2 * t422,
+                0.0,
+                t345,
+                actuator_accelerations[2],
+                actuator_accelerations[2],
+                actuator_velocities[2],
+                ::overact::math::sign(actuator_velocities[2]),
+                1.0,
+                t445,
+                t457,
+                -t477,
+                actuator_accelerations[2] - t445,
+                t492,
+                0.0,
+                0.0,
+                0.0,
+                minus_s_distal_leg3 * t510 + t539 - t541,
+                t20 * t544 - minus_s_distal_leg3 * t551 + t47 * t556,
+                minus_s_distal_leg3 * t574 + t20 * t577 - t47 * t580,
+                t20 * t550 - t602 + t541,
+                minus_s_distal_leg3 * t605 - t20 * t607 + t47 * t610,
+                t602 - t539 + t47 * t573,
+                0.0,
+                0.0,
+                0.0,
             ],
         ])
     }
@@ -1743,7 +2364,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 54.
     /// Columns: `PARAMETERS`.
     ///
-    /// 675 operations (243 additions, 428 multiplications, 4 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 584 intermediates.
+    /// 703 operations (248 additions, 448 multiplications, 7 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 603 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1752,8 +2373,387 @@ impl Spherical3Rrr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 54]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_actuators_from_joints(pose, joints, twist, acceleration)
+        let t0 = 2.0 * pose[1];
+        let t2 = 1.0 - pose[1] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = t2 - t4;
+        let t6 = pose[2] * t0;
+        let t7 = pose[0] * t3;
+        let minus_s_distal_leg1 = t6 - t7;
+        let t10 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t10, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t10);
+        let t13 = 1.0 / (t5 * c_distal_leg1);
+        let t14 = 2.0 * pose[2];
+        let t15 = pose[3] * t14;
+        let t16 = pose[0] * t0;
+        let t17 = t15 + t16;
+        let s_proximal_leg1 = t13 * (t5 * t17);
+        let c_proximal_leg1 = t13 * (t5 * t5);
+        let t24 = t5 * c_proximal_leg1 + t17 * s_proximal_leg1;
+        ::overact::guard::leg(t24, 1.0, "leg1")?;
+        let t25 = 1.0 / t24;
+        let gdistal_wz_leg1 = t5 * t25;
+        let minus_gdistal_wy_leg1 = t17 * t25;
+        let rate_distal_leg1 = gdistal_wz_leg1 * twist[2]
+            - minus_gdistal_wy_leg1 * twist[1];
+        let t31 = s_proximal_leg1 * rate_distal_leg1;
+        let gwrist_wy_leg1 = c_proximal_leg1 * t25;
+        let gwrist_wz_leg1 = s_proximal_leg1 * t25;
+        let rate_wrist_leg1 = gwrist_wy_leg1 * twist[1] + gwrist_wz_leg1 * twist[2];
+        let t37 = t17 * rate_wrist_leg1;
+        let t39 = c_proximal_leg1 * rate_distal_leg1;
+        let t40 = t5 * rate_wrist_leg1;
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
+        let t45 = minus_s_distal_leg1 * rate_wrist_leg1;
+        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
+        let rate_proximal_leg1 = twist[0] - minus_gproximal_wy_leg1 * twist[1]
+            - minus_gproximal_wz_leg1 * twist[2];
+        let t56 = acceleration[1]
+            - (t39 * t45 - rate_proximal_leg1 * t37 - rate_proximal_leg1 * t39);
+        let t64 = acceleration[2]
+            - (rate_proximal_leg1 * t40 + t31 * t45 - rate_proximal_leg1 * t31);
+        let rate_dot_proximal_leg1 = acceleration[0] + t31 * t37 + t39 * t40
+            - minus_gproximal_wy_leg1 * t56 - minus_gproximal_wz_leg1 * t64;
+        let t68 = 9.81 * s_proximal_leg1;
+        let t70 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t71 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t72 = rate_distal_leg1 * t71;
+        let t73 = t70 + t72;
+        let t75 = c_distal_leg1 * rate_proximal_leg1;
+        let t76 = rate_distal_leg1 * t75;
+        let minus_s_distal_leg2 = t15 - t16;
+        let t80 = pose[2] * t14;
+        let t81 = t2 - t80;
+        let t83 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t83, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t83);
+        let t86 = 1.0 / (t81 * c_distal_leg2);
+        let t87 = pose[3] * t0;
+        let t88 = pose[0] * t14;
+        let t89 = t87 + t88;
+        let s_proximal_leg2 = t86 * (t89 * t81);
+        let c_proximal_leg2 = t86 * (t81 * t81);
+        let t96 = t89 * s_proximal_leg2 + t81 * c_proximal_leg2;
+        ::overact::guard::leg(t96, 1.0, "leg2")?;
+        let t97 = 1.0 / t96;
+        let gwrist_wx_leg2 = s_proximal_leg2 * t97;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
+        let minus_s_distal_leg3 = t87 - t88;
+        let t102 = 1.0 - t80 - t4;
+        let t104 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t104, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t104);
+        let t107 = 1.0 / (t102 * c_distal_leg3);
+        let t108 = t6 + t7;
+        let s_proximal_leg3 = t107 * (t102 * t108);
+        let c_proximal_leg3 = t107 * (t102 * t102);
+        let t115 = t102 * c_proximal_leg3 + t108 * s_proximal_leg3;
+        ::overact::guard::leg(t115, 1.0, "leg3")?;
+        let t116 = 1.0 / t115;
+        let gwrist_wy_leg3 = s_proximal_leg3 * t116;
+        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
+        let gwrist_wx_leg3 = c_proximal_leg3 * t116;
+        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
+        let t122 = minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3
+            + minus_gproximal_wx_leg3;
+        let gwrist_wz_leg2 = c_proximal_leg2 * t97;
+        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
+        let t126 = 1.0 - minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3;
+        let t128 = minus_gproximal_wx_leg2
+            + minus_gproximal_wz_leg2 * minus_gproximal_wx_leg3;
+        let t132 = t126 - minus_gproximal_wy_leg1 * t128
+            - minus_gproximal_wz_leg1 * t122;
+        ::overact::guard::platform(t132, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t132, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t132, 1.0, "kept actuators")?;
+        let t133 = 1.0 / t132;
+        let t134 = t122 * t133;
+        let t136 = t128 * t133;
+        let t138 = gdistal_wz_leg1 * t134 - minus_gdistal_wy_leg1 * t136;
+        let t139 = t75 * t71;
+        let t141 = c_distal_leg1 * t73 + minus_s_distal_leg1 * t76 - t138 * t139;
+        let t144 = (minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t133;
+        let t148 = (1.0 - minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3) * t133;
+        let t150 = gdistal_wz_leg1 * t144 - minus_gdistal_wy_leg1 * t148;
+        let t151 = t150 * t139;
+        let t154 = (1.0 - minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2) * t133;
+        let t158 = (minus_gproximal_wz_leg2
+            + minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2) * t133;
+        let t160 = gdistal_wz_leg1 * t154 - minus_gdistal_wy_leg1 * t158;
+        let t161 = t160 * t139;
+        let t164 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t169 = t75 * t75;
+        let t170 = t71 * t71;
+        let t171 = t169 - t170;
+        let rate_dot_distal_leg1 = gdistal_wz_leg1 * t64 - minus_gdistal_wy_leg1 * t56;
+        let t181 = rate_distal_leg1 * rate_distal_leg1;
+        let t204 = 9.81 * t17;
+        let t211 = 9.81 * (minus_s_distal_leg1 * s_proximal_leg1);
+        let gdistal_wx_leg2 = t81 * t97;
+        let minus_gdistal_wz_leg2 = t89 * t97;
+        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
+            - minus_gdistal_wz_leg2 * twist[2];
+        let t221 = s_proximal_leg2 * rate_distal_leg2;
+        let rate_wrist_leg2 = gwrist_wx_leg2 * twist[0] + gwrist_wz_leg2 * twist[2];
+        let t225 = t89 * rate_wrist_leg2;
+        let t227 = c_proximal_leg2 * rate_distal_leg2;
+        let t228 = t81 * rate_wrist_leg2;
+        let rate_proximal_leg2 = twist[1] - minus_gproximal_wx_leg2 * twist[0]
+            - minus_gproximal_wz_leg2 * twist[2];
+        let t237 = minus_s_distal_leg2 * rate_wrist_leg2;
+        let t242 = acceleration[0]
+            - (rate_proximal_leg2 * t228 + t221 * t237 - rate_proximal_leg2 * t221);
+        let t250 = acceleration[2]
+            - (t227 * t237 - rate_proximal_leg2 * t225 - rate_proximal_leg2 * t227);
+        let rate_dot_proximal_leg2 = acceleration[1] + t221 * t225 + t227 * t228
+            - minus_gproximal_wx_leg2 * t242 - minus_gproximal_wz_leg2 * t250;
+        let t254 = 9.81 * c_proximal_leg2;
+        let t256 = t126 * t133;
+        let t259 = gdistal_wx_leg2 * t256 - minus_gdistal_wz_leg2 * t134;
+        let t260 = c_distal_leg2 * rate_proximal_leg2;
+        let t261 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t262 = t260 * t261;
+        let t263 = t259 * t262;
+        let t264 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t265 = rate_distal_leg2 * t261;
+        let t266 = t264 + t265;
+        let t268 = rate_distal_leg2 * t260;
+        let t273 = (minus_gproximal_wy_leg1
+            + minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3) * t133;
+        let t276 = gdistal_wx_leg2 * t273 - minus_gdistal_wz_leg2 * t144;
+        let t278 = c_distal_leg2 * t266 + minus_s_distal_leg2 * t268 - t276 * t262;
+        let t281 = (minus_gproximal_wy_leg1 * minus_gproximal_wz_leg2
+            + minus_gproximal_wz_leg1) * t133;
+        let t284 = gdistal_wx_leg2 * t281 - minus_gdistal_wz_leg2 * t154;
+        let t285 = t284 * t262;
+        let t286 = t260 * t260;
+        let t287 = t261 * t261;
+        let t288 = t286 - t287;
+        let t292 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let rate_dot_distal_leg2 = gdistal_wx_leg2 * t242 - minus_gdistal_wz_leg2 * t250;
+        let t306 = rate_distal_leg2 * rate_distal_leg2;
+        let t326 = 9.81 * t81;
+        let t334 = 9.81 * (minus_s_distal_leg2 * c_proximal_leg2);
+        let gdistal_wy_leg3 = t102 * t116;
+        let minus_gdistal_wx_leg3 = t108 * t116;
+        let rate_distal_leg3 = gdistal_wy_leg3 * twist[1]
+            - minus_gdistal_wx_leg3 * twist[0];
+        let t345 = s_proximal_leg3 * rate_distal_leg3;
+        let rate_wrist_leg3 = gwrist_wx_leg3 * twist[0] + gwrist_wy_leg3 * twist[1];
+        let t349 = t108 * rate_wrist_leg3;
+        let t351 = c_proximal_leg3 * rate_distal_leg3;
+        let t352 = t102 * rate_wrist_leg3;
+        let t358 = minus_gproximal_wx_leg3 * twist[0]
+            + minus_gproximal_wy_leg3 * twist[1];
+        let rate_proximal_leg3 = twist[2] - t358;
+        let t365 = acceleration[0]
+            - (t358 * t351 - rate_proximal_leg3 * t349 - rate_proximal_leg3 * t351);
+        let t372 = acceleration[1]
+            - (rate_proximal_leg3 * t352 + t358 * t345 - rate_proximal_leg3 * t345);
+        let rate_dot_proximal_leg3 = acceleration[2] + t345 * t349 + t351 * t352
+            - (minus_gproximal_wx_leg3 * t365 + minus_gproximal_wy_leg3 * t372);
+        let t379 = gdistal_wy_leg3 * t136 - minus_gdistal_wx_leg3 * t256;
+        let t380 = c_distal_leg3 * rate_proximal_leg3;
+        let t381 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t382 = t380 * t381;
+        let t383 = t379 * t382;
+        let t386 = gdistal_wy_leg3 * t148 - minus_gdistal_wx_leg3 * t273;
+        let t387 = t386 * t382;
+        let t388 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t389 = rate_distal_leg3 * t381;
+        let t390 = t388 + t389;
+        let t392 = rate_distal_leg3 * t380;
+        let t397 = gdistal_wy_leg3 * t158 - minus_gdistal_wx_leg3 * t281;
+        let t399 = c_distal_leg3 * t390 + minus_s_distal_leg3 * t392 - t397 * t382;
+        let t400 = t380 * t380;
+        let t401 = t381 * t381;
+        let t402 = t400 - t401;
+        let t407 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let rate_dot_distal_leg3 = gdistal_wy_leg3 * t372 - minus_gdistal_wx_leg3 * t365;
+        let t421 = rate_distal_leg3 * rate_distal_leg3;
+        let t440 = 9.81 * minus_s_distal_leg3;
+        let t444 = 9.81 * c_distal_leg3;
+        let t452 = t102 * acceleration[0] + t108 * acceleration[1]
+            + minus_s_distal_leg3 * acceleration[2];
+        let t458 = t102 * twist[0] + t108 * twist[1] + minus_s_distal_leg3 * twist[2];
+        let t463 = t89 * twist[0] + minus_s_distal_leg2 * twist[1] + t81 * twist[2];
+        let t464 = t458 * t463;
+        let t465 = minus_s_distal_leg1 * t464;
+        let t471 = minus_s_distal_leg1 * twist[0] + t5 * twist[1] + t17 * twist[2];
+        let t472 = t458 * t471;
+        let t473 = t89 * t472;
+        let t474 = t102 * t452 + t465 - t473;
+        let t477 = t5 * t464;
+        let t479 = minus_s_distal_leg2 * t472;
+        let t480 = t108 * t452 + t477 - t479;
+        let t484 = t17 * t464;
+        let t486 = t81 * t472;
+        let t487 = minus_s_distal_leg3 * t452 + t484 - t486;
+        let t500 = t471 * t463;
+        let t501 = t500 + t452;
+        let t507 = minus_s_distal_leg1 * acceleration[0] + t5 * acceleration[1]
+            + t17 * acceleration[2];
+        let t508 = t464 - t507;
+        let t511 = t458 * t458;
+        let t512 = t471 * t471;
+        let t513 = t511 - t512;
+        let t515 = minus_s_distal_leg1 * t501 - t102 * t508 + t89 * t513;
+        let t521 = t5 * t501 - t108 * t508 + minus_s_distal_leg2 * t513;
+        let t528 = t17 * t501 - minus_s_distal_leg3 * t508 + t81 * t513;
+        let t545 = t89 * acceleration[0] + minus_s_distal_leg2 * acceleration[1]
+            + t81 * acceleration[2];
+        let t546 = t472 + t545;
+        let t548 = t463 * t463;
+        let t549 = t548 - t511;
+        let t552 = t500 - t452;
+        let t554 = t102 * t546 + minus_s_distal_leg1 * t549 - t89 * t552;
+        let t560 = t108 * t546 + t5 * t549 - minus_s_distal_leg2 * t552;
+        let t567 = minus_s_distal_leg3 * t546 + t17 * t549 - t81 * t552;
+        let t581 = t102 * t500;
+        let t583 = minus_s_distal_leg1 * t507 - t581 + t473;
+        let t586 = t108 * t500;
+        let t588 = t5 * t507 - t586 + t479;
+        let t592 = minus_s_distal_leg3 * t500;
+        let t594 = t17 * t507 - t592 + t486;
+        let t607 = t512 - t548;
+        let t609 = t472 - t545;
+        let t612 = t464 + t507;
+        let t614 = t102 * t607 - minus_s_distal_leg1 * t609 + t89 * t612;
+        let t620 = t108 * t607 - t5 * t609 + minus_s_distal_leg2 * t612;
+        let t627 = minus_s_distal_leg3 * t607 - t17 * t609 + t81 * t612;
+        let t642 = t581 - t465 + t89 * t545;
+        let t646 = t586 - t477 + minus_s_distal_leg2 * t545;
+        let t651 = t592 - t484 + t81 * t545;
+        let t666 = t89 * t204 - minus_s_distal_leg1 * t326;
+        let t670 = minus_s_distal_leg2 * t204 - t5 * t326;
+        let t681 = t102 * t326 - t89 * t440;
+        let t685 = t108 * t326 - minus_s_distal_leg2 * t440;
+        let t696 = minus_s_distal_leg1 * t440 - t102 * t204;
+        let t700 = t5 * t440 - t108 * t204;
+        Ok([
+            [
+                rate_dot_proximal_leg1, -(9.81 * c_proximal_leg1), t68, rate_dot_proximal_leg1,
+                rate_proximal_leg1, ::overact::math::sign(rate_proximal_leg1), 1.0, t141,
+                minus_s_distal_leg1 * (t72 + t73) - c_distal_leg1 * (t76 + t76 - t164)
+                    + t138 * t171,
+                -(c_distal_leg1 * (t139 + rate_dot_distal_leg1)
+                    + minus_s_distal_leg1 * (t181 - t169) + t138 * t70),
+                rate_dot_proximal_leg1 - t141,
+                minus_s_distal_leg1 * (t139 - rate_dot_distal_leg1)
+                    - c_distal_leg1 * (t170 - t181) - t138 * t164,
+                t138 * rate_dot_distal_leg1,
+                9.81 * (minus_s_distal_leg1 * c_proximal_leg1) - t138 * t204,
+                -(9.81 * t5 + t138 * t211),
+                -t68,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                -t263,
+                t259 * t288,
+                -(t259 * t264),
+                t263,
+                -(t259 * t292),
+                t259 * rate_dot_distal_leg2,
+                -(t259 * t326),
+                -(t259 * t334),
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                -t383,
+                t379 * t402,
+                -(t379 * t388),
+                t383,
+                -(t379 * t407),
+                t379 * rate_dot_distal_leg3,
+                -(t379 * t440),
+                t379 * t444,
+                t256 * t474 + t136 * t480 + t134 * t487,
+                t256 * t515 + t136 * t521 + t134 * t528,
+                t256 * t554 + t136 * t560 + t134 * t567,
+                t256 * t583 + t136 * t588 + t134 * t594,
+                t256 * t614 + t136 * t620 + t134 * t627,
+                t256 * t642 + t136 * t646 + t134 * t651,
+                t256 * t666 + t136 * t670,
+                t256 * t681 + t136 * t685,
+                t256 * t696 + t136 * t700,
+            ],
+            [
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t151, t150 * t171, -(t150 * t70), t151,
+                -(t150 * t164), t150 * rate_dot_distal_leg1, -(t150 * t204), -(t150 * t211), 0.0,
+                rate_dot_proximal_leg2, 9.81 * s_proximal_leg2, t254, rate_dot_proximal_leg2,
+                rate_proximal_leg2, ::overact::math::sign(rate_proximal_leg2), 1.0, t278,
+                minus_s_distal_leg2 * (t265 + t266)
+                    - c_distal_leg2 * (t268 + t268 - t292) + t276 * t288,
+                -(c_distal_leg2 * (t262 + rate_dot_distal_leg2)
+                    + minus_s_distal_leg2 * (t306 - t286) + t276 * t264),
+                rate_dot_proximal_leg2 - t278,
+                minus_s_distal_leg2 * (t262 - rate_dot_distal_leg2)
+                    - c_distal_leg2 * (t287 - t306) - t276 * t292,
+                t276 * rate_dot_distal_leg2,
+                -(9.81 * (minus_s_distal_leg2 * s_proximal_leg2) + t276 * t326),
+                9.81 * t89 - t276 * t334,
+                -t254,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                -t387,
+                t386 * t402,
+                -(t386 * t388),
+                t387,
+                -(t386 * t407),
+                t386 * rate_dot_distal_leg3,
+                -(t386 * t440),
+                t386 * t444,
+                t273 * t474 + t148 * t480 + t144 * t487,
+                t273 * t515 + t148 * t521 + t144 * t528,
+                t273 * t554 + t148 * t560 + t144 * t567,
+                t273 * t583 + t148 * t588 + t144 * t594,
+                t273 * t614 + t148 * t620 + t144 * t627,
+                t273 * t642 + t148 * t646 + t144 * t651,
+                t273 * t666 + t148 * t670,
+                t273 * t681 + t148 * t685,
+                t273 * t696 + t148 * t700,
+            ],
+            [
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t161, t160 * t171, -(t160 * t70), t161,
+                -(t160 * t164), t160 * rate_dot_distal_leg1, -(t160 * t204), -(t160 * t211), 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t285, t284 * t288, -(t284 * t264), t285,
+                -(t284 * t292), t284 * rate_dot_distal_leg2, -(t284 * t326), -(t284 * t334), 0.0,
+                rate_dot_proximal_leg3, rate_dot_proximal_leg3, rate_proximal_leg3,
+                ::overact::math::sign(rate_proximal_leg3), 1.0, t399,
+                minus_s_distal_leg3 * (t389 + t390)
+                    - c_distal_leg3 * (t392 + t392 - t407) + t397 * t402,
+                -(c_distal_leg3 * (t382 + rate_dot_distal_leg3)
+                    + minus_s_distal_leg3 * (t421 - t400) + t397 * t388),
+                rate_dot_proximal_leg3 - t399,
+                minus_s_distal_leg3 * (t382 - rate_dot_distal_leg3)
+                    - c_distal_leg3 * (t401 - t421) - t397 * t407,
+                t397 * rate_dot_distal_leg3,
+                -(t397 * t440),
+                t397 * t444,
+                t281 * t474 + t158 * t480 + t154 * t487,
+                t281 * t515 + t158 * t521 + t154 * t528,
+                t281 * t554 + t158 * t560 + t154 * t567,
+                t281 * t583 + t158 * t588 + t154 * t594,
+                t281 * t614 + t158 * t620 + t154 * t627,
+                t281 * t642 + t158 * t646 + t154 * t651,
+                t281 * t666 + t158 * t670,
+                t281 * t681 + t158 * t685,
+                t281 * t696 + t158 * t700,
+            ],
+        ])
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -2157,7 +3157,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 54.
     /// Columns: `PARAMETERS`.
     ///
-    /// 755 operations (278 additions, 470 multiplications, 7 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 670 intermediates.
+    /// 783 operations (283 additions, 490 multiplications, 10 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 689 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2168,307 +3168,323 @@ impl Spherical3Rrr {
         start: &[f64; 4],
     ) -> Result<[[f64; 54]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let t3 = 9.81 * minus_s_proximal_leg1;
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let t9 = 1.0 / minus_s_distal_leg2;
-        let gwrist_wx_leg2 = minus_s_proximal_leg2 * t9;
-        let gproximal_wx_leg2 = c_distal_leg2 * gwrist_wx_leg2;
-        let gwrist_wz_leg2 = minus_c_proximal_leg2 * t9;
-        let gproximal_wz_leg2 = c_distal_leg2 * gwrist_wz_leg2;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t18 = 1.0 / minus_s_distal_leg3;
-        let gwrist_wx_leg3 = minus_c_proximal_leg3 * t18;
-        let gproximal_wx_leg3 = c_distal_leg3 * gwrist_wx_leg3;
-        let t22 = gproximal_wx_leg2 - gproximal_wz_leg2 * gproximal_wx_leg3;
-        let gwrist_wy_leg3 = minus_s_proximal_leg3 * t18;
-        let gproximal_wy_leg3 = c_distal_leg3 * gwrist_wy_leg3;
-        let t26 = 1.0 - gproximal_wz_leg2 * gproximal_wy_leg3;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t29 = 1.0 / minus_s_distal_leg1;
-        let gwrist_wy_leg1 = minus_c_proximal_leg1 * t29;
-        let gproximal_wy_leg1 = c_distal_leg1 * gwrist_wy_leg1;
-        let gwrist_wz_leg1 = minus_s_proximal_leg1 * t29;
-        let gproximal_wz_leg1 = c_distal_leg1 * gwrist_wz_leg1;
-        let t37 = gproximal_wx_leg2 * gproximal_wy_leg3 - gproximal_wx_leg3;
-        let t39 = t26 - gproximal_wy_leg1 * t22 + gproximal_wz_leg1 * t37;
-        ::overact::guard::platform(t39, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t39, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t39, 1.0, "kept actuators")?;
-        let t40 = 1.0 / t39;
-        let t41 = t22 * t40;
-        let t43 = t37 * t40;
-        let t45 = minus_s_proximal_leg1 * t41 + minus_c_proximal_leg1 * t43;
-        let t46 = minus_s_distal_leg1 * actuator_velocities[0];
-        let t47 = c_distal_leg1 * actuator_velocities[0];
-        let t48 = t46 * t47;
-        let t56 = gproximal_wz_leg1 + gproximal_wx_leg2 * gproximal_wz_leg2
-            + gproximal_wx_leg3;
-        let t60 = 1.0 + gproximal_wx_leg2 * gproximal_wx_leg2
-            + gproximal_wx_leg3 * gproximal_wx_leg3;
-        ::overact::guard::platform(t60, 1.0, "actuators")?;
-        ::overact::guard::platform(t60, 1.0, "actuators")?;
-        let t61 = 1.0 / t60;
-        let t62 = t56 * t61;
-        let t70 = gproximal_wy_leg1 + gproximal_wx_leg2
-            + gproximal_wx_leg3 * gproximal_wy_leg3;
-        let t72 = gproximal_wy_leg1 * gproximal_wz_leg1 + gproximal_wz_leg2
-            + gproximal_wy_leg3 - t70 * t62;
-        let t77 = t70 * t61;
-        let t79 = gproximal_wy_leg1 * gproximal_wy_leg1 + 1.0
-            + gproximal_wy_leg3 * gproximal_wy_leg3 - t70 * t77;
-        ::overact::guard::platform(t79, 1.0, "actuators")?;
-        ::overact::guard::platform(t79, 1.0, "actuators")?;
-        let t80 = 1.0 / t79;
-        let t81 = t72 * t80;
-        let t83 = gproximal_wz_leg1 * gproximal_wz_leg1
-            + gproximal_wz_leg2 * gproximal_wz_leg2 + 1.0 - t56 * t62 - t72 * t81;
-        ::overact::guard::platform(t83, 1.0, "actuators")?;
-        ::overact::guard::platform(t83, 1.0, "actuators")?;
-        let t84 = 1.0 / t83;
-        let t92 = actuator_velocities[0] + gproximal_wx_leg2 * actuator_velocities[1]
-            + gproximal_wx_leg3 * actuator_velocities[2];
-        let t100 = gproximal_wy_leg1 * actuator_velocities[0] + actuator_velocities[1]
-            + gproximal_wy_leg3 * actuator_velocities[2] - t92 * t77;
-        let t103 = t84
-            * (gproximal_wz_leg1 * actuator_velocities[0]
-                + gproximal_wz_leg2 * actuator_velocities[1] + actuator_velocities[2]
-                - t92 * t62 - t81 * t100);
-        let t107 = t80 * t100 - t81 * t103;
-        let rate_distal_leg1 = minus_c_proximal_leg1 * t103
-            - minus_s_proximal_leg1 * t107;
-        let t110 = rate_distal_leg1 * t47;
-        let t111 = minus_s_distal_leg1 * actuator_accelerations[0];
-        let t112 = t110 - t111;
-        let t114 = rate_distal_leg1 * t46;
-        let t117 = t45 * t48 - (minus_s_distal_leg1 * t112 + c_distal_leg1 * t114);
-        let t120 = (1.0 - gproximal_wz_leg1 * gproximal_wx_leg3) * t40;
-        let t124 = (gproximal_wy_leg3 - gproximal_wy_leg1 * gproximal_wx_leg3) * t40;
-        let t126 = minus_s_proximal_leg1 * t120 + minus_c_proximal_leg1 * t124;
-        let t127 = t126 * t48;
-        let t130 = (gproximal_wz_leg2 - gproximal_wz_leg1 * gproximal_wx_leg2) * t40;
-        let t134 = (1.0 - gproximal_wy_leg1 * gproximal_wx_leg2) * t40;
-        let t136 = minus_s_proximal_leg1 * t130 + minus_c_proximal_leg1 * t134;
-        let t137 = t136 * t48;
-        let t140 = c_distal_leg1 * actuator_accelerations[0];
-        let t145 = t46 * t46;
-        let t146 = t47 * t47;
-        let t147 = t145 - t146;
-        let t152 = rate_distal_leg1 * rate_distal_leg1;
-        let t155 = minus_c_proximal_leg1 * minus_s_distal_leg1;
-        let rate_wrist_leg1 = gwrist_wy_leg1 * t107 + gwrist_wz_leg1 * t103;
-        let t159 = t155 * rate_wrist_leg1;
-        let t161 = minus_s_proximal_leg1 * rate_distal_leg1;
-        let t162 = c_distal_leg1 * rate_wrist_leg1;
-        let t166 = actuator_velocities[0] * t159 - t161 * t162
-            - actuator_velocities[0] * t161;
-        let t168 = minus_s_proximal_leg1 * minus_s_distal_leg1;
-        let t169 = t168 * rate_wrist_leg1;
-        let t171 = minus_c_proximal_leg1 * rate_distal_leg1;
-        let t178 = actuator_velocities[0] * t171 + t171 * t162
-            + actuator_velocities[0] * t169;
-        let minus_rate_dot_proximal_leg1 = gproximal_wz_leg1 * t166
-            - (t161 * t169 + t171 * t159 + gproximal_wy_leg1 * t178);
-        let t182 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
-        let t184 = minus_c_proximal_leg2 * minus_s_distal_leg2;
-        let t189 = t92 * t61 - t77 * t107 - t62 * t103;
-        let rate_wrist_leg2 = gwrist_wx_leg2 * t189 + gwrist_wz_leg2 * t103;
-        let t193 = t184 * rate_wrist_leg2;
-        let rate_distal_leg2 = minus_c_proximal_leg2 * t189
-            - minus_s_proximal_leg2 * t103;
-        let t198 = minus_s_proximal_leg2 * rate_distal_leg2;
-        let t199 = c_distal_leg2 * rate_wrist_leg2;
-        let t203 = actuator_velocities[1] * t193 - t198 * t199
-            - actuator_velocities[1] * t198;
-        let t205 = minus_s_proximal_leg2 * minus_s_distal_leg2;
-        let t206 = t205 * rate_wrist_leg2;
-        let t208 = minus_c_proximal_leg2 * rate_distal_leg2;
-        let t216 = actuator_velocities[1] * t208 + t208 * t199
-            + actuator_velocities[1] * t206;
-        let minus_rate_dot_proximal_leg2 = gproximal_wx_leg2 * t203
-            - (t198 * t206 + t208 * t193) - gproximal_wz_leg2 * t216;
-        let t219 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
-        let rate_wrist_leg3 = gwrist_wx_leg3 * t189 + gwrist_wy_leg3 * t107;
-        let t226 = minus_c_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let t230 = gproximal_wx_leg3 * t189 + gproximal_wy_leg3 * t107;
-        let rate_distal_leg3 = minus_c_proximal_leg3 * t107
-            - minus_s_proximal_leg3 * t189;
-        let t234 = minus_s_proximal_leg3 * rate_distal_leg3;
-        let t238 = actuator_velocities[2] * t226 - t230 * t234
-            - actuator_velocities[2] * t234;
-        let t240 = minus_c_proximal_leg3 * rate_distal_leg3;
-        let t244 = minus_s_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let t247 = actuator_velocities[2] * t240 + t230 * t240
-            + actuator_velocities[2] * t244;
-        let minus_rate_dot_proximal_leg3 = gproximal_wy_leg3 * t238
-            - gproximal_wx_leg3 * t247 - (t234 * t244 + t240 * t226);
-        let t254 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
-        let t259 = t182 + gproximal_wx_leg2 * t219 + gproximal_wx_leg3 * t254;
-        let t267 = gproximal_wy_leg1 * t182 + t219 + gproximal_wy_leg3 * t254
-            - t77 * t259;
-        let t270 = t84
-            * (gproximal_wz_leg1 * t182 + gproximal_wz_leg2 * t219 + t254 - t62 * t259
-                - t81 * t267);
-        let t275 = t80 * t267 - t81 * t270;
-        let rate_dot_distal_leg1 = minus_c_proximal_leg1 * (t270 - t166)
-            - minus_s_proximal_leg1 * (t275 + t178);
-        let t301 = 9.81 * t168;
-        let t307 = 9.81 * (minus_s_proximal_leg1 * c_distal_leg1);
-        let t314 = 9.81 * minus_c_proximal_leg2;
-        let t316 = t26 * t40;
-        let t319 = minus_c_proximal_leg2 * t316 - minus_s_proximal_leg2 * t43;
-        let t320 = minus_s_distal_leg2 * actuator_velocities[1];
-        let t321 = c_distal_leg2 * actuator_velocities[1];
-        let t322 = t320 * t321;
-        let t323 = t319 * t322;
-        let t327 = (gproximal_wy_leg1 - gproximal_wz_leg1 * gproximal_wy_leg3) * t40;
-        let t329 = minus_s_proximal_leg2 * t124 - minus_c_proximal_leg2 * t327;
-        let t331 = rate_distal_leg2 * t321;
-        let t332 = minus_s_distal_leg2 * actuator_accelerations[1];
-        let t333 = t331 - t332;
-        let t335 = rate_distal_leg2 * t320;
-        let t338 = t329 * t322 - (minus_s_distal_leg2 * t333 + c_distal_leg2 * t335);
-        let t341 = (gproximal_wy_leg1 * gproximal_wz_leg2 - gproximal_wz_leg1) * t40;
-        let t344 = minus_c_proximal_leg2 * t341 - minus_s_proximal_leg2 * t134;
-        let t345 = t344 * t322;
-        let t346 = t320 * t320;
-        let t347 = t321 * t321;
-        let t348 = t346 - t347;
-        let t352 = c_distal_leg2 * actuator_accelerations[1];
-        let t361 = rate_distal_leg2 * rate_distal_leg2;
-        let t368 = t61 * t259 - t77 * t275 - t62 * t270;
-        let rate_dot_distal_leg2 = minus_c_proximal_leg2 * (t368 - t203)
-            - minus_s_proximal_leg2 * (t270 + t216);
-        let t393 = 9.81 * t184;
-        let t401 = 9.81 * (minus_c_proximal_leg2 * c_distal_leg2);
-        let t410 = minus_s_proximal_leg3 * t316 + minus_c_proximal_leg3 * t41;
-        let t411 = minus_s_distal_leg3 * actuator_velocities[2];
-        let t412 = c_distal_leg3 * actuator_velocities[2];
-        let t413 = t411 * t412;
-        let t414 = t410 * t413;
-        let t417 = minus_s_proximal_leg3 * t327 + minus_c_proximal_leg3 * t120;
-        let t418 = t417 * t413;
-        let t419 = rate_distal_leg3 * t412;
-        let t420 = minus_s_distal_leg3 * actuator_accelerations[2];
-        let t421 = t419 - t420;
-        let t423 = rate_distal_leg3 * t411;
-        let t428 = minus_s_proximal_leg3 * t341 + minus_c_proximal_leg3 * t130;
-        let t430 = minus_s_distal_leg3 * t421 + c_distal_leg3 * t423 + t428 * t413;
-        let t431 = t411 * t411;
-        let t432 = t412 * t412;
-        let t433 = t431 - t432;
-        let t438 = c_distal_leg3 * actuator_accelerations[2];
-        let t449 = t234 * t234 + t240 * t240;
-        let rate_dot_distal_leg3 = minus_c_proximal_leg3 * (t275 - t238)
-            - minus_s_proximal_leg3 * (t368 + t247);
-        let t475 = 9.81 * c_distal_leg3;
-        let t479 = 9.81 * minus_s_distal_leg3;
-        let t483 = 2.0 * pose[2];
-        let t484 = pose[2] * t483;
-        let t486 = 2.0 * pose[3];
-        let t487 = pose[3] * t486;
-        let t488 = 1.0 - t484 - t487;
-        let t490 = 2.0 * pose[1];
-        let t491 = pose[2] * t490;
-        let t492 = pose[0] * t486;
-        let t493 = t491 + t492;
-        let t496 = pose[3] * t490;
-        let t497 = pose[0] * t483;
-        let t498 = t496 - t497;
-        let t500 = t488 * t368 + t493 * t275 + t498 * t270;
-        let t502 = t491 - t492;
-        let t507 = t488 * t189 + t493 * t107 + t498 * t103;
-        let t508 = t496 + t497;
-        let t510 = pose[3] * t483;
-        let t511 = pose[0] * t490;
-        let t512 = t510 - t511;
-        let t516 = 1.0 - pose[1] * t490;
-        let t517 = t516 - t484;
-        let t519 = t508 * t189 + t512 * t107 + t517 * t103;
-        let t520 = t507 * t519;
-        let t521 = t502 * t520;
-        let t524 = t516 - t487;
-        let t527 = t510 + t511;
-        let t529 = t502 * t189 + t524 * t107 + t527 * t103;
-        let t530 = t507 * t529;
-        let t531 = t508 * t530;
-        let t532 = t488 * t500 + t521 - t531;
-        let t535 = t524 * t520;
-        let t537 = t512 * t530;
-        let t538 = t493 * t500 + t535 - t537;
-        let t542 = t527 * t520;
-        let t544 = t517 * t530;
-        let t545 = t498 * t500 + t542 - t544;
-        let t558 = t529 * t519;
-        let t559 = t558 + t500;
-        let t565 = t502 * t368 + t524 * t275 + t527 * t270;
-        let t566 = t520 - t565;
-        let t569 = t507 * t507;
-        let t570 = t529 * t529;
-        let t571 = t569 - t570;
-        let t573 = t502 * t559 - t488 * t566 + t508 * t571;
-        let t579 = t524 * t559 - t493 * t566 + t512 * t571;
-        let t586 = t527 * t559 - t498 * t566 + t517 * t571;
-        let t603 = t508 * t368 + t512 * t275 + t517 * t270;
-        let t604 = t530 + t603;
-        let t606 = t519 * t519;
-        let t607 = t606 - t569;
-        let t610 = t558 - t500;
-        let t612 = t488 * t604 + t502 * t607 - t508 * t610;
-        let t618 = t493 * t604 + t524 * t607 - t512 * t610;
-        let t625 = t498 * t604 + t527 * t607 - t517 * t610;
-        let t639 = t488 * t558;
-        let t641 = t502 * t565 - t639 + t531;
-        let t644 = t493 * t558;
-        let t646 = t524 * t565 - t644 + t537;
-        let t650 = t498 * t558;
-        let t652 = t527 * t565 - t650 + t544;
-        let t665 = t570 - t606;
-        let t667 = t530 - t603;
-        let t670 = t520 + t565;
-        let t672 = t488 * t665 - t502 * t667 + t508 * t670;
-        let t678 = t493 * t665 - t524 * t667 + t512 * t670;
-        let t685 = t498 * t665 - t527 * t667 + t517 * t670;
-        let t700 = t639 - t521 + t508 * t603;
-        let t704 = t644 - t535 + t512 * t603;
-        let t709 = t650 - t542 + t517 * t603;
-        let t722 = 9.81 * t527;
-        let t724 = 9.81 * t517;
-        let t726 = t508 * t722 - t502 * t724;
-        let t730 = t512 * t722 - t524 * t724;
-        let t740 = 9.81 * t498;
-        let t742 = t488 * t724 - t508 * t740;
-        let t746 = t493 * t724 - t512 * t740;
-        let t757 = t502 * t740 - t488 * t722;
-        let t761 = t524 * t740 - t493 * t722;
+        let t0 = 2.0 * pose[1];
+        let t2 = 1.0 - pose[1] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = t2 - t4;
+        let t6 = pose[2] * t0;
+        let t7 = pose[0] * t3;
+        let minus_s_distal_leg1 = t6 - t7;
+        let t10 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t10, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t10);
+        let t13 = 1.0 / (t5 * c_distal_leg1);
+        let c_proximal_leg1 = t13 * (t5 * t5);
+        let t17 = 2.0 * pose[2];
+        let t18 = pose[3] * t17;
+        let t19 = pose[0] * t0;
+        let t20 = t18 + t19;
+        let s_proximal_leg1 = t13 * (t5 * t20);
+        let t23 = 9.81 * s_proximal_leg1;
+        let t25 = c_distal_leg1 * actuator_accelerations[0];
+        let t28 = t5 * c_proximal_leg1 + t20 * s_proximal_leg1;
+        ::overact::guard::leg(t28, 1.0, "leg1")?;
+        let t29 = 1.0 / t28;
+        let gdistal_wz_leg1 = t5 * t29;
+        let gwrist_wz_leg1 = s_proximal_leg1 * t29;
+        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
+        let minus_s_distal_leg2 = t18 - t19;
+        let t35 = pose[2] * t17;
+        let t36 = t2 - t35;
+        let t38 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t38, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t38);
+        let t41 = 1.0 / (t36 * c_distal_leg2);
+        let c_proximal_leg2 = t41 * (t36 * t36);
+        let t44 = pose[3] * t0;
+        let t45 = pose[0] * t17;
+        let t46 = t44 + t45;
+        let s_proximal_leg2 = t41 * (t46 * t36);
+        let t51 = t46 * s_proximal_leg2 + t36 * c_proximal_leg2;
+        ::overact::guard::leg(t51, 1.0, "leg2")?;
+        let t52 = 1.0 / t51;
+        let gwrist_wz_leg2 = c_proximal_leg2 * t52;
+        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
+        let gwrist_wx_leg2 = s_proximal_leg2 * t52;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
+        let minus_s_distal_leg3 = t44 - t45;
+        let t64 = 1.0 - t35 - t4;
+        let t66 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t66, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t66);
+        let t69 = 1.0 / (t64 * c_distal_leg3);
+        let c_proximal_leg3 = t69 * (t64 * t64);
+        let t73 = t6 + t7;
+        let s_proximal_leg3 = t69 * (t64 * t73);
+        let t77 = t64 * c_proximal_leg3 + t73 * s_proximal_leg3;
+        ::overact::guard::leg(t77, 1.0, "leg3")?;
+        let t78 = 1.0 / t77;
+        let gwrist_wx_leg3 = c_proximal_leg3 * t78;
+        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
+        let t81 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
+        let t85 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
+        ::overact::guard::platform(t85, 1.0, "actuators")?;
+        ::overact::guard::platform(t85, 1.0, "actuators")?;
+        let t86 = 1.0 / t85;
+        let t87 = t81 * t86;
+        let gwrist_wy_leg1 = c_proximal_leg1 * t29;
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
+        let gwrist_wy_leg3 = s_proximal_leg3 * t78;
+        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
+        let t99 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+            - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
+        let t101 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t99 * t87;
+        let t106 = t99 * t86;
+        let t108 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t99 * t106;
+        ::overact::guard::platform(t108, 1.0, "actuators")?;
+        ::overact::guard::platform(t108, 1.0, "actuators")?;
+        let t109 = 1.0 / t108;
+        let t110 = t101 * t109;
+        let t112 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t81 * t87
+            - t101 * t110;
+        ::overact::guard::platform(t112, 1.0, "actuators")?;
+        ::overact::guard::platform(t112, 1.0, "actuators")?;
+        let t113 = 1.0 / t112;
+        let t121 = actuator_velocities[0]
+            - minus_gproximal_wx_leg2 * actuator_velocities[1]
+            - minus_gproximal_wx_leg3 * actuator_velocities[2];
+        let t129 = actuator_velocities[1]
+            - minus_gproximal_wy_leg1 * actuator_velocities[0]
+            - minus_gproximal_wy_leg3 * actuator_velocities[2] - t121 * t106;
+        let t132 = t113
+            * (actuator_velocities[2]
+                - (minus_gproximal_wz_leg1 * actuator_velocities[0]
+                    + minus_gproximal_wz_leg2 * actuator_velocities[1]) - t121 * t87
+                - t110 * t129);
+        let minus_gdistal_wy_leg1 = t20 * t29;
+        let t137 = t109 * t129 - t110 * t132;
+        let rate_distal_leg1 = gdistal_wz_leg1 * t132 - minus_gdistal_wy_leg1 * t137;
+        let t140 = minus_s_distal_leg1 * actuator_velocities[0];
+        let t141 = rate_distal_leg1 * t140;
+        let t142 = t25 + t141;
+        let t144 = c_distal_leg1 * actuator_velocities[0];
+        let t145 = rate_distal_leg1 * t144;
+        let t149 = minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3
+            + minus_gproximal_wx_leg3;
+        let t151 = 1.0 - minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3;
+        let t153 = minus_gproximal_wx_leg2
+            + minus_gproximal_wz_leg2 * minus_gproximal_wx_leg3;
+        let t157 = t151 - minus_gproximal_wy_leg1 * t153
+            - minus_gproximal_wz_leg1 * t149;
+        ::overact::guard::platform(t157, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t157, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t157, 1.0, "kept actuators")?;
+        let t158 = 1.0 / t157;
+        let t159 = t149 * t158;
+        let t161 = t153 * t158;
+        let t163 = gdistal_wz_leg1 * t159 - minus_gdistal_wy_leg1 * t161;
+        let t164 = t144 * t140;
+        let t166 = c_distal_leg1 * t142 + minus_s_distal_leg1 * t145 - t163 * t164;
+        let t169 = (minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t158;
+        let t173 = (1.0 - minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3) * t158;
+        let t175 = gdistal_wz_leg1 * t169 - minus_gdistal_wy_leg1 * t173;
+        let t176 = t175 * t164;
+        let t179 = (1.0 - minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2) * t158;
+        let t183 = (minus_gproximal_wz_leg2
+            + minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2) * t158;
+        let t185 = gdistal_wz_leg1 * t179 - minus_gdistal_wy_leg1 * t183;
+        let t186 = t185 * t164;
+        let t189 = minus_s_distal_leg1 * actuator_accelerations[0];
+        let t194 = t144 * t144;
+        let t195 = t140 * t140;
+        let t196 = t194 - t195;
+        let t205 = t121 * t86 - t106 * t137 - t87 * t132;
+        let t208 = minus_gproximal_wx_leg3 * t205 + minus_gproximal_wy_leg3 * t137;
+        let gdistal_wy_leg3 = t64 * t78;
+        let minus_gdistal_wx_leg3 = t73 * t78;
+        let rate_distal_leg3 = gdistal_wy_leg3 * t137 - minus_gdistal_wx_leg3 * t205;
+        let t214 = c_proximal_leg3 * rate_distal_leg3;
+        let rate_wrist_leg3 = gwrist_wx_leg3 * t205 + gwrist_wy_leg3 * t137;
+        let t219 = t73 * rate_wrist_leg3;
+        let t223 = t208 * t214 - actuator_velocities[2] * t219
+            - actuator_velocities[2] * t214;
+        let t225 = t64 * rate_wrist_leg3;
+        let t227 = s_proximal_leg3 * rate_distal_leg3;
+        let t231 = actuator_velocities[2] * t225 + t208 * t227
+            - actuator_velocities[2] * t227;
+        let rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t223
+            + minus_gproximal_wy_leg3 * t231 + t227 * t219 + t214 * t225;
+        let t238 = actuator_accelerations[2] - rate_dot_proximal_leg3;
+        let t239 = s_proximal_leg1 * rate_distal_leg1;
+        let rate_wrist_leg1 = gwrist_wy_leg1 * t137 + gwrist_wz_leg1 * t132;
+        let t243 = t20 * rate_wrist_leg1;
+        let t245 = c_proximal_leg1 * rate_distal_leg1;
+        let t246 = t5 * rate_wrist_leg1;
+        let t249 = minus_s_distal_leg1 * rate_wrist_leg1;
+        let t254 = t245 * t249 - actuator_velocities[0] * t243
+            - actuator_velocities[0] * t245;
+        let t261 = actuator_velocities[0] * t246 + t239 * t249
+            - actuator_velocities[0] * t239;
+        let rate_dot_proximal_leg1 = t239 * t243 + t245 * t246
+            + minus_gproximal_wy_leg1 * t254 + minus_gproximal_wz_leg1 * t261;
+        let t264 = actuator_accelerations[0] - rate_dot_proximal_leg1;
+        let rate_wrist_leg2 = gwrist_wx_leg2 * t205 + gwrist_wz_leg2 * t132;
+        let t269 = t36 * rate_wrist_leg2;
+        let gdistal_wx_leg2 = t36 * t52;
+        let minus_gdistal_wz_leg2 = t46 * t52;
+        let rate_distal_leg2 = gdistal_wx_leg2 * t205 - minus_gdistal_wz_leg2 * t132;
+        let t276 = s_proximal_leg2 * rate_distal_leg2;
+        let t277 = minus_s_distal_leg2 * rate_wrist_leg2;
+        let t281 = actuator_velocities[1] * t269 + t276 * t277
+            - actuator_velocities[1] * t276;
+        let t283 = t46 * rate_wrist_leg2;
+        let t285 = c_proximal_leg2 * rate_distal_leg2;
+        let t293 = t285 * t277 - actuator_velocities[1] * t283
+            - actuator_velocities[1] * t285;
+        let rate_dot_proximal_leg2 = minus_gproximal_wx_leg2 * t281 + t276 * t283
+            + t285 * t269 + minus_gproximal_wz_leg2 * t293;
+        let t296 = actuator_accelerations[1] - rate_dot_proximal_leg2;
+        let t303 = t264 - minus_gproximal_wx_leg2 * t296
+            - minus_gproximal_wx_leg3 * t238;
+        let t311 = t296 - minus_gproximal_wy_leg1 * t264 - minus_gproximal_wy_leg3 * t238
+            - t106 * t303;
+        let t314 = t113
+            * (t238 - (minus_gproximal_wz_leg1 * t264 + minus_gproximal_wz_leg2 * t296)
+                - t87 * t303 - t110 * t311);
+        let t319 = t109 * t311 - t110 * t314;
+        let rate_dot_distal_leg1 = gdistal_wz_leg1 * (t314 - t261)
+            - minus_gdistal_wy_leg1 * (t319 - t254);
+        let t325 = rate_distal_leg1 * rate_distal_leg1;
+        let t348 = 9.81 * t20;
+        let t355 = 9.81 * (minus_s_distal_leg1 * s_proximal_leg1);
+        let t361 = 9.81 * c_proximal_leg2;
+        let t363 = t151 * t158;
+        let t366 = gdistal_wx_leg2 * t363 - minus_gdistal_wz_leg2 * t159;
+        let t367 = c_distal_leg2 * actuator_velocities[1];
+        let t368 = minus_s_distal_leg2 * actuator_velocities[1];
+        let t369 = t367 * t368;
+        let t370 = t366 * t369;
+        let t371 = c_distal_leg2 * actuator_accelerations[1];
+        let t372 = rate_distal_leg2 * t368;
+        let t373 = t371 + t372;
+        let t375 = rate_distal_leg2 * t367;
+        let t380 = (minus_gproximal_wy_leg1
+            + minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3) * t158;
+        let t383 = gdistal_wx_leg2 * t380 - minus_gdistal_wz_leg2 * t169;
+        let t385 = c_distal_leg2 * t373 + minus_s_distal_leg2 * t375 - t383 * t369;
+        let t388 = (minus_gproximal_wy_leg1 * minus_gproximal_wz_leg2
+            + minus_gproximal_wz_leg1) * t158;
+        let t391 = gdistal_wx_leg2 * t388 - minus_gdistal_wz_leg2 * t179;
+        let t392 = t391 * t369;
+        let t393 = t367 * t367;
+        let t394 = t368 * t368;
+        let t395 = t393 - t394;
+        let t399 = minus_s_distal_leg2 * actuator_accelerations[1];
+        let t412 = t86 * t303 - t106 * t319 - t87 * t314;
+        let rate_dot_distal_leg2 = gdistal_wx_leg2 * (t412 - t281)
+            - minus_gdistal_wz_leg2 * (t314 - t293);
+        let t420 = rate_distal_leg2 * rate_distal_leg2;
+        let t440 = 9.81 * t36;
+        let t448 = 9.81 * (minus_s_distal_leg2 * c_proximal_leg2);
+        let t457 = gdistal_wy_leg3 * t161 - minus_gdistal_wx_leg3 * t363;
+        let t458 = c_distal_leg3 * actuator_velocities[2];
+        let t459 = minus_s_distal_leg3 * actuator_velocities[2];
+        let t460 = t458 * t459;
+        let t461 = t457 * t460;
+        let t464 = gdistal_wy_leg3 * t173 - minus_gdistal_wx_leg3 * t380;
+        let t465 = t464 * t460;
+        let t466 = c_distal_leg3 * actuator_accelerations[2];
+        let t467 = rate_distal_leg3 * t459;
+        let t468 = t466 + t467;
+        let t470 = rate_distal_leg3 * t458;
+        let t475 = gdistal_wy_leg3 * t183 - minus_gdistal_wx_leg3 * t388;
+        let t477 = c_distal_leg3 * t468 + minus_s_distal_leg3 * t470 - t475 * t460;
+        let t478 = t458 * t458;
+        let t479 = t459 * t459;
+        let t480 = t478 - t479;
+        let t485 = minus_s_distal_leg3 * actuator_accelerations[2];
+        let rate_dot_distal_leg3 = gdistal_wy_leg3 * (t319 - t231)
+            - minus_gdistal_wx_leg3 * (t412 - t223);
+        let t501 = rate_distal_leg3 * rate_distal_leg3;
+        let t520 = 9.81 * minus_s_distal_leg3;
+        let t524 = 9.81 * c_distal_leg3;
+        let t532 = t64 * t412 + t73 * t319 + minus_s_distal_leg3 * t314;
+        let t538 = t64 * t205 + t73 * t137 + minus_s_distal_leg3 * t132;
+        let t543 = t46 * t205 + minus_s_distal_leg2 * t137 + t36 * t132;
+        let t544 = t538 * t543;
+        let t545 = minus_s_distal_leg1 * t544;
+        let t551 = minus_s_distal_leg1 * t205 + t5 * t137 + t20 * t132;
+        let t552 = t538 * t551;
+        let t553 = t46 * t552;
+        let t554 = t64 * t532 + t545 - t553;
+        let t557 = t5 * t544;
+        let t559 = minus_s_distal_leg2 * t552;
+        let t560 = t73 * t532 + t557 - t559;
+        let t564 = t20 * t544;
+        let t566 = t36 * t552;
+        let t567 = minus_s_distal_leg3 * t532 + t564 - t566;
+        let t580 = t551 * t543;
+        let t581 = t580 + t532;
+        let t587 = minus_s_distal_leg1 * t412 + t5 * t319 + t20 * t314;
+        let t588 = t544 - t587;
+        let t591 = t538 * t538;
+        let t592 = t551 * t551;
+        let t593 = t591 - t592;
+        let t595 = minus_s_distal_leg1 * t581 - t64 * t588 + t46 * t593;
+        let t601 = t5 * t581 - t73 * t588 + minus_s_distal_leg2 * t593;
+        let t608 = t20 * t581 - minus_s_distal_leg3 * t588 + t36 * t593;
+        let t625 = t46 * t412 + minus_s_distal_leg2 * t319 + t36 * t314;
+        let t626 = t552 + t625;
+        let t628 = t543 * t543;
+        let t629 = t628 - t591;
+        let t632 = t580 - t532;
+        let t634 = t64 * t626 + minus_s_distal_leg1 * t629 - t46 * t632;
+        let t640 = t73 * t626 + t5 * t629 - minus_s_distal_leg2 * t632;
+        let t647 = minus_s_distal_leg3 * t626 + t20 * t629 - t36 * t632;
+        let t661 = t64 * t580;
+        let t663 = minus_s_distal_leg1 * t587 - t661 + t553;
+        let t666 = t73 * t580;
+        let t668 = t5 * t587 - t666 + t559;
+        let t672 = minus_s_distal_leg3 * t580;
+        let t674 = t20 * t587 - t672 + t566;
+        let t687 = t592 - t628;
+        let t689 = t552 - t625;
+        let t692 = t544 + t587;
+        let t694 = t64 * t687 - minus_s_distal_leg1 * t689 + t46 * t692;
+        let t700 = t73 * t687 - t5 * t689 + minus_s_distal_leg2 * t692;
+        let t707 = minus_s_distal_leg3 * t687 - t20 * t689 + t36 * t692;
+        let t722 = t661 - t545 + t46 * t625;
+        let t726 = t666 - t557 + minus_s_distal_leg2 * t625;
+        let t731 = t672 - t564 + t36 * t625;
+        let t746 = t46 * t348 - minus_s_distal_leg1 * t440;
+        let t750 = minus_s_distal_leg2 * t348 - t5 * t440;
+        let t761 = t64 * t440 - t46 * t520;
+        let t765 = t73 * t440 - minus_s_distal_leg2 * t520;
+        let t776 = minus_s_distal_leg1 * t520 - t64 * t348;
+        let t780 = t5 * t520 - t73 * t348;
         Ok([
             [
-                actuator_accelerations[0], -(9.81 * minus_c_proximal_leg1), t3,
+                actuator_accelerations[0], -(9.81 * c_proximal_leg1), t23,
                 actuator_accelerations[0], actuator_velocities[0],
-                ::overact::math::sign(actuator_velocities[0]), 1.0, t117,
-                c_distal_leg1 * (t110 + t112)
-                    - minus_s_distal_leg1 * (t114 + t140 + t114) + t45 * t147,
-                c_distal_leg1 * (t152 - t145)
-                    - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t48) - t45 * t111,
-                actuator_accelerations[0] - t117,
-                c_distal_leg1 * (t48 + rate_dot_distal_leg1)
-                    - minus_s_distal_leg1 * (t146 - t152) + t45 * t140,
-                t45 * rate_dot_distal_leg1,
-                -(9.81 * (minus_c_proximal_leg1 * c_distal_leg1) + t45 * t301),
-                t45 * t307 - 9.81 * t155,
-                -t3,
+                ::overact::math::sign(actuator_velocities[0]), 1.0, t166,
+                minus_s_distal_leg1 * (t141 + t142)
+                    - c_distal_leg1 * (t145 + t145 - t189) + t163 * t196,
+                -(c_distal_leg1 * (t164 + rate_dot_distal_leg1)
+                    + minus_s_distal_leg1 * (t325 - t194) + t163 * t25),
+                actuator_accelerations[0] - t166,
+                minus_s_distal_leg1 * (t164 - rate_dot_distal_leg1)
+                    - c_distal_leg1 * (t195 - t325) - t163 * t189,
+                t163 * rate_dot_distal_leg1,
+                9.81 * (minus_s_distal_leg1 * c_proximal_leg1) - t163 * t348,
+                -(9.81 * t5 + t163 * t355),
+                -t23,
                 0.0,
                 0.0,
                 0.0,
@@ -2476,104 +3492,103 @@ impl Spherical3Rrr {
                 0.0,
                 0.0,
                 0.0,
-                t323,
-                t319 * t348,
-                -(t319 * t332),
-                -t323,
-                t319 * t352,
-                t319 * rate_dot_distal_leg2,
-                -(t319 * t393),
-                t319 * t401,
+                -t370,
+                t366 * t395,
+                -(t366 * t371),
+                t370,
+                -(t366 * t399),
+                t366 * rate_dot_distal_leg2,
+                -(t366 * t440),
+                -(t366 * t448),
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
-                -t414,
-                -(t410 * t433),
-                t410 * t420,
-                t414,
-                -(t410 * t438),
-                -(t410 * rate_dot_distal_leg3),
-                -(t410 * t475),
-                -(t410 * t479),
-                t316 * t532 - t41 * t538 + t43 * t545,
-                t316 * t573 - t41 * t579 + t43 * t586,
-                t316 * t612 - t41 * t618 + t43 * t625,
-                t316 * t641 - t41 * t646 + t43 * t652,
-                t316 * t672 - t41 * t678 + t43 * t685,
-                t316 * t700 - t41 * t704 + t43 * t709,
-                t316 * t726 - t41 * t730,
-                t316 * t742 - t41 * t746,
-                t316 * t757 - t41 * t761,
+                -t461,
+                t457 * t480,
+                -(t457 * t466),
+                t461,
+                -(t457 * t485),
+                t457 * rate_dot_distal_leg3,
+                -(t457 * t520),
+                t457 * t524,
+                t363 * t554 + t161 * t560 + t159 * t567,
+                t363 * t595 + t161 * t601 + t159 * t608,
+                t363 * t634 + t161 * t640 + t159 * t647,
+                t363 * t663 + t161 * t668 + t159 * t674,
+                t363 * t694 + t161 * t700 + t159 * t707,
+                t363 * t722 + t161 * t726 + t159 * t731,
+                t363 * t746 + t161 * t750,
+                t363 * t761 + t161 * t765,
+                t363 * t776 + t161 * t780,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t127, -(t126 * t147), t126 * t111, t127,
-                -(t126 * t140), -(t126 * rate_dot_distal_leg1), t126 * t301, -(t126 * t307), 0.0,
-                actuator_accelerations[1], 9.81 * minus_s_proximal_leg2, t314,
-                actuator_accelerations[1], actuator_velocities[1],
-                ::overact::math::sign(actuator_velocities[1]), 1.0, t338,
-                c_distal_leg2 * (t331 + t333)
-                    - minus_s_distal_leg2 * (t335 + t352 + t335) + t329 * t348,
-                c_distal_leg2 * (t361 - t346)
-                    - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t322) - t329 * t332,
-                actuator_accelerations[1] - t338,
-                c_distal_leg2 * (t322 + rate_dot_distal_leg2)
-                    - minus_s_distal_leg2 * (t347 - t361) + t329 * t352,
-                t329 * rate_dot_distal_leg2,
-                9.81 * (minus_s_proximal_leg2 * c_distal_leg2) - t329 * t393,
-                9.81 * t205 + t329 * t401,
-                -t314,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t176, t175 * t196, -(t175 * t25), t176,
+                -(t175 * t189), t175 * rate_dot_distal_leg1, -(t175 * t348), -(t175 * t355), 0.0,
+                actuator_accelerations[1], 9.81 * s_proximal_leg2, t361, actuator_accelerations[1],
+                actuator_velocities[1], ::overact::math::sign(actuator_velocities[1]), 1.0, t385,
+                minus_s_distal_leg2 * (t372 + t373)
+                    - c_distal_leg2 * (t375 + t375 - t399) + t383 * t395,
+                -(c_distal_leg2 * (t369 + rate_dot_distal_leg2)
+                    + minus_s_distal_leg2 * (t420 - t393) + t383 * t371),
+                actuator_accelerations[1] - t385,
+                minus_s_distal_leg2 * (t369 - rate_dot_distal_leg2)
+                    - c_distal_leg2 * (t394 - t420) - t383 * t399,
+                t383 * rate_dot_distal_leg2,
+                -(9.81 * (minus_s_distal_leg2 * s_proximal_leg2) + t383 * t440),
+                9.81 * t46 - t383 * t448,
+                -t361,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
-                t418,
-                t417 * t433,
-                -(t417 * t420),
-                -t418,
-                t417 * t438,
-                t417 * rate_dot_distal_leg3,
-                t417 * t475,
-                t417 * t479,
-                t120 * t538 - t327 * t532 - t124 * t545,
-                t120 * t579 - t327 * t573 - t124 * t586,
-                t120 * t618 - t327 * t612 - t124 * t625,
-                t120 * t646 - t327 * t641 - t124 * t652,
-                t120 * t678 - t327 * t672 - t124 * t685,
-                t120 * t704 - t327 * t700 - t124 * t709,
-                t120 * t730 - t327 * t726,
-                t120 * t746 - t327 * t742,
-                t120 * t761 - t327 * t757,
+                -t465,
+                t464 * t480,
+                -(t464 * t466),
+                t465,
+                -(t464 * t485),
+                t464 * rate_dot_distal_leg3,
+                -(t464 * t520),
+                t464 * t524,
+                t380 * t554 + t173 * t560 + t169 * t567,
+                t380 * t595 + t173 * t601 + t169 * t608,
+                t380 * t634 + t173 * t640 + t169 * t647,
+                t380 * t663 + t173 * t668 + t169 * t674,
+                t380 * t694 + t173 * t700 + t169 * t707,
+                t380 * t722 + t173 * t726 + t169 * t731,
+                t380 * t746 + t173 * t750,
+                t380 * t761 + t173 * t765,
+                t380 * t776 + t173 * t780,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t137, t136 * t147, -(t136 * t111), -t137,
-                t136 * t140, t136 * rate_dot_distal_leg1, -(t136 * t301), t136 * t307, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t345, t344 * t348, -(t344 * t332), -t345, t344 * t352,
-                t344 * rate_dot_distal_leg2, -(t344 * t393), t344 * t401, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t186, t185 * t196, -(t185 * t25), t186,
+                -(t185 * t189), t185 * rate_dot_distal_leg1, -(t185 * t348), -(t185 * t355), 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t392, t391 * t395, -(t391 * t371), t392,
+                -(t391 * t399), t391 * rate_dot_distal_leg2, -(t391 * t440), -(t391 * t448), 0.0,
                 actuator_accelerations[2], actuator_accelerations[2], actuator_velocities[2],
-                ::overact::math::sign(actuator_velocities[2]), 1.0, -t430,
-                c_distal_leg3 * (t419 + t421)
-                    - minus_s_distal_leg3 * (t423 + t438 + t423) - t428 * t433,
-                c_distal_leg3 * (t449 - t431)
-                    - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t413) + t428 * t420,
-                actuator_accelerations[2] + t430,
-                c_distal_leg3 * (t413 + rate_dot_distal_leg3)
-                    - minus_s_distal_leg3 * (t432 - t449) - t428 * t438,
-                -(t428 * rate_dot_distal_leg3),
-                -(t428 * t475),
-                -(t428 * t479),
-                t341 * t532 - t130 * t538 + t134 * t545,
-                t341 * t573 - t130 * t579 + t134 * t586,
-                t341 * t612 - t130 * t618 + t134 * t625,
-                t341 * t641 - t130 * t646 + t134 * t652,
-                t341 * t672 - t130 * t678 + t134 * t685,
-                t341 * t700 - t130 * t704 + t134 * t709,
-                t341 * t726 - t130 * t730,
-                t341 * t742 - t130 * t746,
-                t341 * t757 - t130 * t761,
+                ::overact::math::sign(actuator_velocities[2]), 1.0, t477,
+                minus_s_distal_leg3 * (t467 + t468)
+                    - c_distal_leg3 * (t470 + t470 - t485) + t475 * t480,
+                -(c_distal_leg3 * (t460 + rate_dot_distal_leg3)
+                    + minus_s_distal_leg3 * (t501 - t478) + t475 * t466),
+                actuator_accelerations[2] - t477,
+                minus_s_distal_leg3 * (t460 - rate_dot_distal_leg3)
+                    - c_distal_leg3 * (t479 - t501) - t475 * t485,
+                t475 * rate_dot_distal_leg3,
+                -(t475 * t520),
+                t475 * t524,
+                t388 * t554 + t183 * t560 + t179 * t567,
+                t388 * t595 + t183 * t601 + t179 * t608,
+                t388 * t634 + t183 * t640 + t179 * t647,
+                t388 * t663 + t183 * t668 + t179 * t674,
+                t388 * t694 + t183 * t700 + t179 * t707,
+                t388 * t722 + t183 * t726 + t179 * t731,
+                t388 * t746 + t183 * t750,
+                t388 * t761 + t183 * t765,
+                t388 * t776 + t183 * t780,
             ],
         ])
     }
@@ -2587,7 +3602,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 40.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 517 operations (187 additions, 327 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 427 intermediates.
+    /// 542 operations (192 additions, 344 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 443 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2596,8 +3611,303 @@ impl Spherical3Rrr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 40]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_platform_base_from_joints(pose, joints, twist, acceleration)
+        let t0 = 2.0 * pose[2];
+        let t1 = pose[2] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = 1.0 - t1 - t4;
+        let t7 = 2.0 * pose[1];
+        let t8 = pose[2] * t7;
+        let t9 = pose[0] * t3;
+        let t10 = t8 + t9;
+        let t13 = pose[3] * t7;
+        let t14 = pose[0] * t0;
+        let minus_s_distal_leg3 = t13 - t14;
+        let t17 = t5 * acceleration[0] + t10 * acceleration[1]
+            + minus_s_distal_leg3 * acceleration[2];
+        let minus_s_distal_leg1 = t8 - t9;
+        let t24 = t5 * twist[0] + t10 * twist[1] + minus_s_distal_leg3 * twist[2];
+        let t25 = t13 + t14;
+        let t27 = pose[3] * t0;
+        let t28 = pose[0] * t7;
+        let minus_s_distal_leg2 = t27 - t28;
+        let t33 = 1.0 - pose[1] * t7;
+        let t34 = t33 - t1;
+        let t36 = t25 * twist[0] + minus_s_distal_leg2 * twist[1] + t34 * twist[2];
+        let t37 = t24 * t36;
+        let t38 = minus_s_distal_leg1 * t37;
+        let t41 = t33 - t4;
+        let t44 = t27 + t28;
+        let t46 = minus_s_distal_leg1 * twist[0] + t41 * twist[1] + t44 * twist[2];
+        let t47 = t24 * t46;
+        let t48 = t25 * t47;
+        let t51 = t41 * t37;
+        let t53 = minus_s_distal_leg2 * t47;
+        let t56 = t44 * t37;
+        let t58 = t34 * t47;
+        let t60 = t46 * t36;
+        let t61 = t60 + t17;
+        let t67 = minus_s_distal_leg1 * acceleration[0] + t41 * acceleration[1]
+            + t44 * acceleration[2];
+        let t68 = t37 - t67;
+        let t71 = t24 * t24;
+        let t72 = t46 * t46;
+        let t73 = t71 - t72;
+        let t90 = t25 * acceleration[0] + minus_s_distal_leg2 * acceleration[1]
+            + t34 * acceleration[2];
+        let t91 = t47 + t90;
+        let t93 = t36 * t36;
+        let t94 = t93 - t71;
+        let t97 = t60 - t17;
+        let t111 = t5 * t60;
+        let t115 = t10 * t60;
+        let t119 = minus_s_distal_leg3 * t60;
+        let t122 = t72 - t93;
+        let t124 = t47 - t90;
+        let t127 = t37 + t67;
+        let t149 = 9.81 * t44;
+        let t151 = 9.81 * t34;
+        let t158 = 9.81 * minus_s_distal_leg3;
+        let t171 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t171, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t171);
+        let t174 = 1.0 / (t41 * c_distal_leg1);
+        let s_proximal_leg1 = t174 * (t41 * t44);
+        let c_proximal_leg1 = t174 * (t41 * t41);
+        let t181 = t41 * c_proximal_leg1 + t44 * s_proximal_leg1;
+        ::overact::guard::leg(t181, 1.0, "leg1")?;
+        let t182 = 1.0 / t181;
+        let gdistal_wz_leg1 = t41 * t182;
+        let minus_gdistal_wy_leg1 = t44 * t182;
+        let rate_distal_leg1 = gdistal_wz_leg1 * twist[2]
+            - minus_gdistal_wy_leg1 * twist[1];
+        let t188 = s_proximal_leg1 * rate_distal_leg1;
+        let gwrist_wy_leg1 = c_proximal_leg1 * t182;
+        let gwrist_wz_leg1 = s_proximal_leg1 * t182;
+        let rate_wrist_leg1 = gwrist_wy_leg1 * twist[1] + gwrist_wz_leg1 * twist[2];
+        let t194 = t44 * rate_wrist_leg1;
+        let t196 = c_proximal_leg1 * rate_distal_leg1;
+        let t197 = t41 * rate_wrist_leg1;
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
+        let t202 = minus_s_distal_leg1 * rate_wrist_leg1;
+        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
+        let rate_proximal_leg1 = twist[0] - minus_gproximal_wy_leg1 * twist[1]
+            - minus_gproximal_wz_leg1 * twist[2];
+        let t213 = acceleration[1]
+            - (t196 * t202 - rate_proximal_leg1 * t194 - rate_proximal_leg1 * t196);
+        let t221 = acceleration[2]
+            - (rate_proximal_leg1 * t197 + t188 * t202 - rate_proximal_leg1 * t188);
+        let rate_dot_proximal_leg1 = acceleration[0] + t188 * t194 + t196 * t197
+            - minus_gproximal_wy_leg1 * t213 - minus_gproximal_wz_leg1 * t221;
+        let t227 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t227, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t227);
+        let t230 = 1.0 / (t34 * c_distal_leg2);
+        let s_proximal_leg2 = t230 * (t25 * t34);
+        let c_proximal_leg2 = t230 * (t34 * t34);
+        let t237 = t25 * s_proximal_leg2 + t34 * c_proximal_leg2;
+        ::overact::guard::leg(t237, 1.0, "leg2")?;
+        let t238 = 1.0 / t237;
+        let gwrist_wx_leg2 = s_proximal_leg2 * t238;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
+        let gdistal_wx_leg2 = t34 * t238;
+        let minus_gdistal_wz_leg2 = t25 * t238;
+        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
+            - minus_gdistal_wz_leg2 * twist[2];
+        let t246 = s_proximal_leg2 * rate_distal_leg2;
+        let gwrist_wz_leg2 = c_proximal_leg2 * t238;
+        let rate_wrist_leg2 = gwrist_wx_leg2 * twist[0] + gwrist_wz_leg2 * twist[2];
+        let t251 = t25 * rate_wrist_leg2;
+        let t253 = c_proximal_leg2 * rate_distal_leg2;
+        let t254 = t34 * rate_wrist_leg2;
+        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
+        let rate_proximal_leg2 = twist[1] - minus_gproximal_wx_leg2 * twist[0]
+            - minus_gproximal_wz_leg2 * twist[2];
+        let t264 = minus_s_distal_leg2 * rate_wrist_leg2;
+        let t269 = acceleration[0]
+            - (rate_proximal_leg2 * t254 + t246 * t264 - rate_proximal_leg2 * t246);
+        let t277 = acceleration[2]
+            - (t253 * t264 - rate_proximal_leg2 * t251 - rate_proximal_leg2 * t253);
+        let rate_dot_proximal_leg2 = acceleration[1] + t246 * t251 + t253 * t254
+            - minus_gproximal_wx_leg2 * t269 - minus_gproximal_wz_leg2 * t277;
+        let t283 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t283, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t283);
+        let t286 = 1.0 / (t5 * c_distal_leg3);
+        let c_proximal_leg3 = t286 * (t5 * t5);
+        let s_proximal_leg3 = t286 * (t5 * t10);
+        let t293 = t5 * c_proximal_leg3 + t10 * s_proximal_leg3;
+        ::overact::guard::leg(t293, 1.0, "leg3")?;
+        let t294 = 1.0 / t293;
+        let gwrist_wx_leg3 = c_proximal_leg3 * t294;
+        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
+        let gdistal_wy_leg3 = t5 * t294;
+        let minus_gdistal_wx_leg3 = t10 * t294;
+        let rate_distal_leg3 = gdistal_wy_leg3 * twist[1]
+            - minus_gdistal_wx_leg3 * twist[0];
+        let t302 = s_proximal_leg3 * rate_distal_leg3;
+        let gwrist_wy_leg3 = s_proximal_leg3 * t294;
+        let rate_wrist_leg3 = gwrist_wx_leg3 * twist[0] + gwrist_wy_leg3 * twist[1];
+        let t307 = t10 * rate_wrist_leg3;
+        let t309 = c_proximal_leg3 * rate_distal_leg3;
+        let t310 = t5 * rate_wrist_leg3;
+        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
+        let t317 = minus_gproximal_wx_leg3 * twist[0]
+            + minus_gproximal_wy_leg3 * twist[1];
+        let rate_proximal_leg3 = twist[2] - t317;
+        let t324 = acceleration[0]
+            - (t317 * t309 - rate_proximal_leg3 * t307 - rate_proximal_leg3 * t309);
+        let t331 = acceleration[1]
+            - (rate_proximal_leg3 * t310 + t317 * t302 - rate_proximal_leg3 * t302);
+        let rate_dot_proximal_leg3 = acceleration[2] + t302 * t307 + t309 * t310
+            - (minus_gproximal_wx_leg3 * t324 + minus_gproximal_wy_leg3 * t331);
+        let t337 = 9.81 * c_proximal_leg1;
+        let t339 = minus_gproximal_wz_leg1 * t337;
+        let t340 = 9.81 * s_proximal_leg2;
+        let t342 = minus_gproximal_wz_leg2 * t340;
+        let t343 = 9.81 * s_proximal_leg1;
+        let t345 = 9.81 * c_proximal_leg2;
+        let t362 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t363 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t364 = rate_distal_leg1 * t363;
+        let t365 = t362 + t364;
+        let t367 = c_distal_leg1 * rate_proximal_leg1;
+        let t368 = rate_distal_leg1 * t367;
+        let t370 = c_distal_leg1 * t365 + minus_s_distal_leg1 * t368;
+        let t371 = t367 * t363;
+        let t378 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t379 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t380 = rate_distal_leg2 * t379;
+        let t381 = t378 + t380;
+        let t383 = c_distal_leg2 * rate_proximal_leg2;
+        let t384 = rate_distal_leg2 * t383;
+        let t386 = c_distal_leg2 * t381 + minus_s_distal_leg2 * t384;
+        let t388 = t383 * t379;
+        let t394 = c_distal_leg3 * rate_proximal_leg3;
+        let t395 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t396 = t394 * t395;
+        let t398 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t399 = rate_distal_leg3 * t395;
+        let t400 = t398 + t399;
+        let t402 = rate_distal_leg3 * t394;
+        let t404 = c_distal_leg3 * t400 + minus_s_distal_leg3 * t402;
+        let t412 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t416 = minus_s_distal_leg1 * (t364 + t365)
+            - c_distal_leg1 * (t368 + t368 - t412);
+        let t418 = t367 * t367;
+        let t419 = t363 * t363;
+        let t420 = t418 - t419;
+        let t426 = t383 * t383;
+        let t427 = t379 * t379;
+        let t428 = t426 - t427;
+        let t432 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t436 = minus_s_distal_leg2 * (t380 + t381)
+            - c_distal_leg2 * (t384 + t384 - t432);
+        let t444 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t448 = minus_s_distal_leg3 * (t399 + t400)
+            - c_distal_leg3 * (t402 + t402 - t444);
+        let t450 = t394 * t394;
+        let t451 = t395 * t395;
+        let t452 = t450 - t451;
+        let rate_dot_distal_leg1 = gdistal_wz_leg1 * t221 - minus_gdistal_wy_leg1 * t213;
+        let t463 = rate_distal_leg1 * rate_distal_leg1;
+        let t466 = c_distal_leg1 * (t371 + rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t463 - t418);
+        let rate_dot_distal_leg2 = gdistal_wx_leg2 * t269 - minus_gdistal_wz_leg2 * t277;
+        let t478 = rate_distal_leg2 * rate_distal_leg2;
+        let t481 = c_distal_leg2 * (t388 + rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t478 - t426);
+        let rate_dot_distal_leg3 = gdistal_wy_leg3 * t331 - minus_gdistal_wx_leg3 * t324;
+        let t493 = rate_distal_leg3 * rate_distal_leg3;
+        let t496 = c_distal_leg3 * (t396 + rate_dot_distal_leg3)
+            + minus_s_distal_leg3 * (t493 - t450);
+        let t507 = minus_s_distal_leg1 * (t371 - rate_dot_distal_leg1)
+            - c_distal_leg1 * (t419 - t463);
+        let t518 = minus_s_distal_leg2 * (t388 - rate_dot_distal_leg2)
+            - c_distal_leg2 * (t427 - t478);
+        let t530 = minus_s_distal_leg3 * (t396 - rate_dot_distal_leg3)
+            - c_distal_leg3 * (t451 - t493);
+        let t537 = 9.81 * (minus_s_distal_leg1 * c_proximal_leg1);
+        let t545 = 9.81 * (minus_s_distal_leg2 * s_proximal_leg2);
+        Ok([
+            [
+                t5 * t17 + t38 - t48, minus_s_distal_leg1 * t61 - t5 * t68 + t25 * t73,
+                t5 * t91 + minus_s_distal_leg1 * t94 - t25 * t97,
+                minus_s_distal_leg1 * t67 - t111 + t48,
+                t5 * t122 - minus_s_distal_leg1 * t124 + t25 * t127, t111 - t38 + t25 * t90,
+                t25 * t149 - minus_s_distal_leg1 * t151, t5 * t151 - t25 * t158,
+                minus_s_distal_leg1 * t158 - t5 * t149, rate_dot_proximal_leg1,
+                -(minus_gproximal_wx_leg2 * rate_dot_proximal_leg2),
+                -(minus_gproximal_wx_leg3 * rate_dot_proximal_leg3), -t337,
+                -(minus_gproximal_wx_leg2 * t340), t343, -t342, rate_proximal_leg1,
+                -(minus_gproximal_wx_leg2 * rate_proximal_leg2),
+                -(minus_gproximal_wx_leg3 * rate_proximal_leg3),
+                ::overact::math::sign(rate_proximal_leg1),
+                -::overact::math::signed(minus_gproximal_wx_leg2, rate_proximal_leg2),
+                -::overact::math::signed(minus_gproximal_wx_leg3, rate_proximal_leg3), 1.0,
+                -minus_gproximal_wx_leg2, -minus_gproximal_wx_leg3, t370,
+                -(minus_gproximal_wx_leg2 * t386 + gdistal_wx_leg2 * t388),
+                minus_gdistal_wx_leg3 * t396 - minus_gproximal_wx_leg3 * t404, t416,
+                gdistal_wx_leg2 * t428 - minus_gproximal_wx_leg2 * t436,
+                -(minus_gproximal_wx_leg3 * t448 + minus_gdistal_wx_leg3 * t452), -t466,
+                minus_gproximal_wx_leg2 * t481 - gdistal_wx_leg2 * t378,
+                minus_gproximal_wx_leg3 * t496 + minus_gdistal_wx_leg3 * t398, t507,
+                -(minus_gproximal_wx_leg2 * t518 + gdistal_wx_leg2 * t432),
+                minus_gdistal_wx_leg3 * t444 - minus_gproximal_wx_leg3 * t530, t537,
+                minus_gproximal_wx_leg2 * t545 - gdistal_wx_leg2 * t151,
+                minus_gdistal_wx_leg3 * t158,
+            ],
+            [
+                t10 * t17 + t51 - t53, t41 * t61 - t10 * t68 + minus_s_distal_leg2 * t73,
+                t10 * t91 + t41 * t94 - minus_s_distal_leg2 * t97, t41 * t67 - t115 + t53,
+                t10 * t122 - t41 * t124 + minus_s_distal_leg2 * t127,
+                t115 - t51 + minus_s_distal_leg2 * t90, minus_s_distal_leg2 * t149 - t41 * t151,
+                t10 * t151 - minus_s_distal_leg2 * t158, t41 * t158 - t10 * t149,
+                -(minus_gproximal_wy_leg1 * rate_dot_proximal_leg1), rate_dot_proximal_leg2,
+                -(minus_gproximal_wy_leg3 * rate_dot_proximal_leg3), minus_gproximal_wy_leg1 * t337,
+                t340, -t339, t345, -(minus_gproximal_wy_leg1 * rate_proximal_leg1),
+                rate_proximal_leg2, -(minus_gproximal_wy_leg3 * rate_proximal_leg3),
+                -::overact::math::signed(minus_gproximal_wy_leg1, rate_proximal_leg1),
+                ::overact::math::sign(rate_proximal_leg2),
+                -::overact::math::signed(minus_gproximal_wy_leg3, rate_proximal_leg3),
+                -minus_gproximal_wy_leg1, 1.0, -minus_gproximal_wy_leg3,
+                minus_gdistal_wy_leg1 * t371 - minus_gproximal_wy_leg1 * t370, t386,
+                -(minus_gproximal_wy_leg3 * t404 + gdistal_wy_leg3 * t396),
+                -(minus_gproximal_wy_leg1 * t416 + minus_gdistal_wy_leg1 * t420), t436,
+                gdistal_wy_leg3 * t452 - minus_gproximal_wy_leg3 * t448,
+                minus_gproximal_wy_leg1 * t466 + minus_gdistal_wy_leg1 * t362, -t481,
+                minus_gproximal_wy_leg3 * t496 - gdistal_wy_leg3 * t398,
+                minus_gdistal_wy_leg1 * t412 - minus_gproximal_wy_leg1 * t507, t518,
+                -(minus_gproximal_wy_leg3 * t530 + gdistal_wy_leg3 * t444),
+                minus_gdistal_wy_leg1 * t149 - minus_gproximal_wy_leg1 * t537, -t545,
+                -(gdistal_wy_leg3 * t158),
+            ],
+            [
+                minus_s_distal_leg3 * t17 + t56 - t58,
+                t44 * t61 - minus_s_distal_leg3 * t68 + t34 * t73,
+                minus_s_distal_leg3 * t91 + t44 * t94 - t34 * t97, t44 * t67 - t119 + t58,
+                minus_s_distal_leg3 * t122 - t44 * t124 + t34 * t127, t119 - t56 + t34 * t90, 0.0,
+                0.0, 0.0, -(minus_gproximal_wz_leg1 * rate_dot_proximal_leg1),
+                -(minus_gproximal_wz_leg2 * rate_dot_proximal_leg2), rate_dot_proximal_leg3, t339,
+                -t342, -(minus_gproximal_wz_leg1 * t343), -(minus_gproximal_wz_leg2 * t345),
+                -(minus_gproximal_wz_leg1 * rate_proximal_leg1),
+                -(minus_gproximal_wz_leg2 * rate_proximal_leg2), rate_proximal_leg3,
+                -::overact::math::signed(minus_gproximal_wz_leg1, rate_proximal_leg1),
+                -::overact::math::signed(minus_gproximal_wz_leg2, rate_proximal_leg2),
+                ::overact::math::sign(rate_proximal_leg3), -minus_gproximal_wz_leg1,
+                -minus_gproximal_wz_leg2, 1.0,
+                -(minus_gproximal_wz_leg1 * t370 + gdistal_wz_leg1 * t371),
+                minus_gdistal_wz_leg2 * t388 - minus_gproximal_wz_leg2 * t386, t404,
+                gdistal_wz_leg1 * t420 - minus_gproximal_wz_leg1 * t416,
+                -(minus_gproximal_wz_leg2 * t436 + minus_gdistal_wz_leg2 * t428), t448,
+                minus_gproximal_wz_leg1 * t466 - gdistal_wz_leg1 * t362,
+                minus_gproximal_wz_leg2 * t481 + minus_gdistal_wz_leg2 * t378, -t496,
+                -(minus_gproximal_wz_leg1 * t507 + gdistal_wz_leg1 * t412),
+                minus_gdistal_wz_leg2 * t432 - minus_gproximal_wz_leg2 * t518, t530,
+                -(minus_gproximal_wz_leg1 * t537 + gdistal_wz_leg1 * t149),
+                minus_gproximal_wz_leg2 * t545 + minus_gdistal_wz_leg2 * t151, 0.0,
+            ],
+        ])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -2906,7 +4216,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 40.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 591 operations (222 additions, 363 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 507 intermediates.
+    /// 616 operations (227 additions, 380 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 523 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2917,319 +4227,377 @@ impl Spherical3Rrr {
         start: &[f64; 4],
     ) -> Result<[[f64; 40]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
         let t0 = 2.0 * pose[2];
         let t1 = pose[2] * t0;
         let t3 = 2.0 * pose[3];
         let t4 = pose[3] * t3;
         let t5 = 1.0 - t1 - t4;
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let t10 = 1.0 / minus_s_distal_leg2;
-        let gwrist_wx_leg2 = minus_s_proximal_leg2 * t10;
-        let gproximal_wx_leg2 = c_distal_leg2 * gwrist_wx_leg2;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t19 = 1.0 / minus_s_distal_leg3;
-        let gwrist_wx_leg3 = minus_c_proximal_leg3 * t19;
-        let gproximal_wx_leg3 = c_distal_leg3 * gwrist_wx_leg3;
-        let t23 = 1.0 + gproximal_wx_leg2 * gproximal_wx_leg2
-            + gproximal_wx_leg3 * gproximal_wx_leg3;
-        ::overact::guard::platform(t23, 1.0, "actuators")?;
-        ::overact::guard::platform(t23, 1.0, "actuators")?;
-        let t24 = 1.0 / t23;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let t29 = 1.0 / minus_s_distal_leg1;
-        let gwrist_wz_leg1 = minus_s_proximal_leg1 * t29;
-        let gproximal_wz_leg1 = c_distal_leg1 * gwrist_wz_leg1;
-        let gwrist_wy_leg1 = minus_c_proximal_leg1 * t29;
-        let gproximal_wy_leg1 = c_distal_leg1 * gwrist_wy_leg1;
-        let gwrist_wy_leg3 = minus_s_proximal_leg3 * t19;
-        let gproximal_wy_leg3 = c_distal_leg3 * gwrist_wy_leg3;
-        let t43 = gproximal_wy_leg1 + gproximal_wx_leg2
-            + gproximal_wx_leg3 * gproximal_wy_leg3;
-        let t44 = t43 * t24;
-        let t46 = gproximal_wy_leg1 * gproximal_wy_leg1 + 1.0
-            + gproximal_wy_leg3 * gproximal_wy_leg3 - t43 * t44;
-        ::overact::guard::platform(t46, 1.0, "actuators")?;
-        ::overact::guard::platform(t46, 1.0, "actuators")?;
-        let t47 = 1.0 / t46;
-        let t48 = gproximal_wy_leg1 * actuator_velocities[0];
-        let t50 = gproximal_wy_leg3 * actuator_velocities[2];
-        let t52 = gproximal_wx_leg2 * actuator_velocities[1];
-        let t54 = gproximal_wx_leg3 * actuator_velocities[2];
-        let t55 = actuator_velocities[0] + t52 + t54;
-        let t57 = t48 + actuator_velocities[1] + t50 - t55 * t44;
-        let gwrist_wz_leg2 = minus_c_proximal_leg2 * t10;
-        let gproximal_wz_leg2 = c_distal_leg2 * gwrist_wz_leg2;
-        let t66 = gproximal_wz_leg1 + gproximal_wx_leg2 * gproximal_wz_leg2
-            + gproximal_wx_leg3;
-        let t67 = t66 * t24;
-        let t69 = gproximal_wy_leg1 * gproximal_wz_leg1 + gproximal_wz_leg2
-            + gproximal_wy_leg3 - t43 * t67;
-        let t70 = t69 * t47;
-        let t78 = gproximal_wz_leg1 * gproximal_wz_leg1
-            + gproximal_wz_leg2 * gproximal_wz_leg2 + 1.0 - t66 * t67 - t69 * t70;
-        ::overact::guard::platform(t78, 1.0, "actuators")?;
-        ::overact::guard::platform(t78, 1.0, "actuators")?;
-        let t79 = 1.0 / t78;
-        let t80 = gproximal_wz_leg1 * actuator_velocities[0];
-        let t81 = gproximal_wz_leg2 * actuator_velocities[1];
-        let t88 = t79 * (t80 + t81 + actuator_velocities[2] - t55 * t67 - t70 * t57);
-        let t90 = t47 * t57 - t70 * t88;
-        let rate_wrist_leg1 = gwrist_wy_leg1 * t90 + gwrist_wz_leg1 * t88;
-        let t94 = minus_c_proximal_leg1 * minus_s_distal_leg1 * rate_wrist_leg1;
-        let rate_distal_leg1 = minus_c_proximal_leg1 * t88 - minus_s_proximal_leg1 * t90;
-        let t99 = minus_s_proximal_leg1 * rate_distal_leg1;
-        let t100 = c_distal_leg1 * rate_wrist_leg1;
-        let t104 = actuator_velocities[0] * t94 - t99 * t100
-            - actuator_velocities[0] * t99;
-        let t106 = minus_s_proximal_leg1 * minus_s_distal_leg1;
-        let t107 = t106 * rate_wrist_leg1;
-        let t109 = minus_c_proximal_leg1 * rate_distal_leg1;
-        let t116 = actuator_velocities[0] * t109 + t109 * t100
-            + actuator_velocities[0] * t107;
-        let minus_rate_dot_proximal_leg1 = gproximal_wz_leg1 * t104
-            - (t99 * t107 + t109 * t94 + gproximal_wy_leg1 * t116);
-        let t120 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
-        let t121 = minus_c_proximal_leg2 * minus_s_distal_leg2;
-        let t126 = t55 * t24 - t44 * t90 - t67 * t88;
-        let rate_wrist_leg2 = gwrist_wx_leg2 * t126 + gwrist_wz_leg2 * t88;
-        let t130 = t121 * rate_wrist_leg2;
-        let rate_distal_leg2 = minus_c_proximal_leg2 * t126
-            - minus_s_proximal_leg2 * t88;
-        let t135 = minus_s_proximal_leg2 * rate_distal_leg2;
-        let t136 = c_distal_leg2 * rate_wrist_leg2;
-        let t140 = actuator_velocities[1] * t130 - t135 * t136
-            - actuator_velocities[1] * t135;
-        let t143 = minus_s_proximal_leg2 * minus_s_distal_leg2 * rate_wrist_leg2;
-        let t145 = minus_c_proximal_leg2 * rate_distal_leg2;
-        let t153 = actuator_velocities[1] * t145 + t145 * t136
-            + actuator_velocities[1] * t143;
-        let minus_rate_dot_proximal_leg2 = gproximal_wx_leg2 * t140
-            - (t135 * t143 + t145 * t130) - gproximal_wz_leg2 * t153;
-        let t156 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
-        let rate_wrist_leg3 = gwrist_wx_leg3 * t126 + gwrist_wy_leg3 * t90;
-        let t163 = minus_c_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let t167 = gproximal_wx_leg3 * t126 + gproximal_wy_leg3 * t90;
-        let rate_distal_leg3 = minus_c_proximal_leg3 * t90
-            - minus_s_proximal_leg3 * t126;
-        let t171 = minus_s_proximal_leg3 * rate_distal_leg3;
-        let t175 = actuator_velocities[2] * t163 - t167 * t171
-            - actuator_velocities[2] * t171;
-        let t177 = minus_c_proximal_leg3 * rate_distal_leg3;
-        let t181 = minus_s_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let t184 = actuator_velocities[2] * t177 + t167 * t177
-            + actuator_velocities[2] * t181;
-        let minus_rate_dot_proximal_leg3 = gproximal_wy_leg3 * t175
-            - gproximal_wx_leg3 * t184 - (t171 * t181 + t177 * t163);
-        let t191 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
-        let t193 = t120 + gproximal_wx_leg2 * t156 + gproximal_wx_leg3 * t191;
-        let t200 = gproximal_wy_leg1 * t120 + t156 + gproximal_wy_leg3 * t191
-            - t44 * t193;
-        let t210 = t79
-            * (gproximal_wz_leg1 * t120 + gproximal_wz_leg2 * t156 + t191 - t67 * t193
-                - t70 * t200);
-        let t212 = t47 * t200 - t70 * t210;
-        let t216 = t24 * t193 - t44 * t212 - t67 * t210;
-        let t218 = 2.0 * pose[1];
-        let t219 = pose[2] * t218;
-        let t220 = pose[0] * t3;
-        let t221 = t219 + t220;
-        let t224 = pose[3] * t218;
-        let t225 = pose[0] * t0;
-        let t226 = t224 - t225;
-        let t228 = t5 * t216 + t221 * t212 + t226 * t210;
-        let t230 = t219 - t220;
-        let t235 = t5 * t126 + t221 * t90 + t226 * t88;
-        let t236 = t224 + t225;
-        let t238 = pose[3] * t0;
-        let t239 = pose[0] * t218;
-        let t240 = t238 - t239;
-        let t244 = 1.0 - pose[1] * t218;
-        let t245 = t244 - t1;
-        let t247 = t236 * t126 + t240 * t90 + t245 * t88;
-        let t248 = t235 * t247;
-        let t249 = t230 * t248;
-        let t252 = t244 - t4;
-        let t255 = t238 + t239;
-        let t257 = t230 * t126 + t252 * t90 + t255 * t88;
-        let t258 = t235 * t257;
-        let t259 = t236 * t258;
-        let t262 = t252 * t248;
-        let t264 = t240 * t258;
-        let t267 = t255 * t248;
-        let t269 = t245 * t258;
-        let t271 = t257 * t247;
-        let t272 = t271 + t228;
-        let t278 = t230 * t216 + t252 * t212 + t255 * t210;
-        let t279 = t248 - t278;
-        let t282 = t235 * t235;
-        let t283 = t257 * t257;
-        let t284 = t282 - t283;
-        let t301 = t236 * t216 + t240 * t212 + t245 * t210;
-        let t302 = t258 + t301;
-        let t304 = t247 * t247;
-        let t305 = t304 - t282;
-        let t308 = t271 - t228;
-        let t322 = t5 * t271;
-        let t326 = t221 * t271;
-        let t330 = t226 * t271;
-        let t333 = t283 - t304;
-        let t335 = t258 - t301;
-        let t338 = t248 + t278;
-        let t360 = 9.81 * t255;
-        let t362 = 9.81 * t245;
-        let t369 = 9.81 * t226;
-        let t387 = 9.81 * minus_c_proximal_leg1;
-        let t389 = gproximal_wz_leg1 * t387;
-        let t390 = 9.81 * minus_s_proximal_leg2;
-        let t392 = gproximal_wz_leg2 * t390;
-        let t393 = 9.81 * minus_s_proximal_leg1;
-        let t395 = 9.81 * minus_c_proximal_leg2;
-        let t406 = c_distal_leg1 * actuator_velocities[0];
-        let t407 = rate_distal_leg1 * t406;
-        let t408 = minus_s_distal_leg1 * actuator_accelerations[0];
-        let t409 = t407 - t408;
-        let t411 = minus_s_distal_leg1 * actuator_velocities[0];
-        let t412 = rate_distal_leg1 * t411;
-        let t414 = minus_s_distal_leg1 * t409 + c_distal_leg1 * t412;
-        let t416 = t411 * t406;
-        let t422 = minus_s_distal_leg2 * actuator_velocities[1];
-        let t423 = c_distal_leg2 * actuator_velocities[1];
-        let t424 = t422 * t423;
-        let t426 = rate_distal_leg2 * t423;
-        let t427 = minus_s_distal_leg2 * actuator_accelerations[1];
-        let t428 = t426 - t427;
-        let t430 = rate_distal_leg2 * t422;
-        let t432 = minus_s_distal_leg2 * t428 + c_distal_leg2 * t430;
-        let t438 = c_distal_leg3 * actuator_velocities[2];
-        let t439 = rate_distal_leg3 * t438;
-        let t440 = minus_s_distal_leg3 * actuator_accelerations[2];
-        let t441 = t439 - t440;
-        let t443 = minus_s_distal_leg3 * actuator_velocities[2];
-        let t444 = rate_distal_leg3 * t443;
-        let t446 = minus_s_distal_leg3 * t441 + c_distal_leg3 * t444;
-        let t448 = t443 * t438;
-        let t456 = c_distal_leg1 * actuator_accelerations[0];
-        let t460 = c_distal_leg1 * (t407 + t409)
-            - minus_s_distal_leg1 * (t412 + t456 + t412);
-        let t462 = t411 * t411;
-        let t463 = t406 * t406;
-        let t464 = t462 - t463;
-        let t472 = c_distal_leg2 * actuator_accelerations[1];
-        let t476 = c_distal_leg2 * (t426 + t428)
-            - minus_s_distal_leg2 * (t430 + t472 + t430);
-        let t478 = t422 * t422;
-        let t479 = t423 * t423;
-        let t480 = t478 - t479;
-        let t488 = c_distal_leg3 * actuator_accelerations[2];
-        let t492 = c_distal_leg3 * (t439 + t441)
-            - minus_s_distal_leg3 * (t444 + t488 + t444);
-        let t494 = t443 * t443;
-        let t495 = t438 * t438;
+        let t6 = pose[3] * t0;
+        let t7 = 2.0 * pose[1];
+        let t8 = pose[0] * t7;
+        let minus_s_distal_leg2 = t6 - t8;
+        let t11 = 1.0 - pose[1] * t7;
+        let t12 = t11 - t1;
+        let t14 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t14, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t14);
+        let t17 = 1.0 / (t12 * c_distal_leg2);
+        let t18 = pose[3] * t7;
+        let t19 = pose[0] * t0;
+        let t20 = t18 + t19;
+        let s_proximal_leg2 = t17 * (t20 * t12);
+        let c_proximal_leg2 = t17 * (t12 * t12);
+        let t27 = t20 * s_proximal_leg2 + t12 * c_proximal_leg2;
+        ::overact::guard::leg(t27, 1.0, "leg2")?;
+        let t28 = 1.0 / t27;
+        let gwrist_wx_leg2 = s_proximal_leg2 * t28;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
+        let minus_s_distal_leg3 = t18 - t19;
+        let t35 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t35, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t35);
+        let t38 = 1.0 / (t5 * c_distal_leg3);
+        let c_proximal_leg3 = t38 * (t5 * t5);
+        let t42 = pose[2] * t7;
+        let t43 = pose[0] * t3;
+        let t44 = t42 + t43;
+        let s_proximal_leg3 = t38 * (t5 * t44);
+        let t48 = t5 * c_proximal_leg3 + t44 * s_proximal_leg3;
+        ::overact::guard::leg(t48, 1.0, "leg3")?;
+        let t49 = 1.0 / t48;
+        let gwrist_wx_leg3 = c_proximal_leg3 * t49;
+        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
+        let t53 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
+        ::overact::guard::platform(t53, 1.0, "actuators")?;
+        ::overact::guard::platform(t53, 1.0, "actuators")?;
+        let t54 = 1.0 / t53;
+        let t55 = t11 - t4;
+        let minus_s_distal_leg1 = t42 - t43;
+        let t58 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t58, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t58);
+        let t61 = 1.0 / (t55 * c_distal_leg1);
+        let t62 = t6 + t8;
+        let s_proximal_leg1 = t61 * (t55 * t62);
+        let c_proximal_leg1 = t61 * (t55 * t55);
+        let t69 = t55 * c_proximal_leg1 + t62 * s_proximal_leg1;
+        ::overact::guard::leg(t69, 1.0, "leg1")?;
+        let t70 = 1.0 / t69;
+        let gdistal_wz_leg1 = t55 * t70;
+        let gwrist_wz_leg1 = s_proximal_leg1 * t70;
+        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
+        let gwrist_wz_leg2 = c_proximal_leg2 * t28;
+        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
+        let t82 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
+        let t83 = t82 * t54;
+        let gwrist_wy_leg1 = c_proximal_leg1 * t70;
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
+        let gwrist_wy_leg3 = s_proximal_leg3 * t49;
+        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
+        let t95 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+            - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
+        let t97 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t95 * t83;
+        let t102 = t95 * t54;
+        let t104 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t95 * t102;
+        ::overact::guard::platform(t104, 1.0, "actuators")?;
+        ::overact::guard::platform(t104, 1.0, "actuators")?;
+        let t105 = 1.0 / t104;
+        let t106 = t97 * t105;
+        let t108 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t82 * t83
+            - t97 * t106;
+        ::overact::guard::platform(t108, 1.0, "actuators")?;
+        ::overact::guard::platform(t108, 1.0, "actuators")?;
+        let t109 = 1.0 / t108;
+        let t110 = minus_gproximal_wz_leg1 * actuator_velocities[0];
+        let t111 = minus_gproximal_wz_leg2 * actuator_velocities[1];
+        let t114 = minus_gproximal_wx_leg2 * actuator_velocities[1];
+        let t116 = minus_gproximal_wx_leg3 * actuator_velocities[2];
+        let t117 = actuator_velocities[0] - t114 - t116;
+        let t120 = minus_gproximal_wy_leg1 * actuator_velocities[0];
+        let t122 = minus_gproximal_wy_leg3 * actuator_velocities[2];
+        let t125 = actuator_velocities[1] - t120 - t122 - t117 * t102;
+        let t128 = t109
+            * (actuator_velocities[2] - (t110 + t111) - t117 * t83 - t106 * t125);
+        let minus_gdistal_wy_leg1 = t62 * t70;
+        let t133 = t105 * t125 - t106 * t128;
+        let rate_distal_leg1 = gdistal_wz_leg1 * t128 - minus_gdistal_wy_leg1 * t133;
+        let t136 = s_proximal_leg1 * rate_distal_leg1;
+        let rate_wrist_leg1 = gwrist_wy_leg1 * t133 + gwrist_wz_leg1 * t128;
+        let t140 = t62 * rate_wrist_leg1;
+        let t142 = c_proximal_leg1 * rate_distal_leg1;
+        let t143 = t55 * rate_wrist_leg1;
+        let t146 = minus_s_distal_leg1 * rate_wrist_leg1;
+        let t151 = t142 * t146 - actuator_velocities[0] * t140
+            - actuator_velocities[0] * t142;
+        let t158 = actuator_velocities[0] * t143 + t136 * t146
+            - actuator_velocities[0] * t136;
+        let rate_dot_proximal_leg1 = t136 * t140 + t142 * t143
+            + minus_gproximal_wy_leg1 * t151 + minus_gproximal_wz_leg1 * t158;
+        let t161 = actuator_accelerations[0] - rate_dot_proximal_leg1;
+        let t166 = t117 * t54 - t102 * t133 - t83 * t128;
+        let rate_wrist_leg2 = gwrist_wx_leg2 * t166 + gwrist_wz_leg2 * t128;
+        let t170 = t12 * rate_wrist_leg2;
+        let gdistal_wx_leg2 = t12 * t28;
+        let minus_gdistal_wz_leg2 = t20 * t28;
+        let rate_distal_leg2 = gdistal_wx_leg2 * t166 - minus_gdistal_wz_leg2 * t128;
+        let t177 = s_proximal_leg2 * rate_distal_leg2;
+        let t178 = minus_s_distal_leg2 * rate_wrist_leg2;
+        let t182 = actuator_velocities[1] * t170 + t177 * t178
+            - actuator_velocities[1] * t177;
+        let t184 = t20 * rate_wrist_leg2;
+        let t186 = c_proximal_leg2 * rate_distal_leg2;
+        let t194 = t186 * t178 - actuator_velocities[1] * t184
+            - actuator_velocities[1] * t186;
+        let rate_dot_proximal_leg2 = minus_gproximal_wx_leg2 * t182 + t177 * t184
+            + t186 * t170 + minus_gproximal_wz_leg2 * t194;
+        let t197 = actuator_accelerations[1] - rate_dot_proximal_leg2;
+        let t202 = minus_gproximal_wx_leg3 * t166 + minus_gproximal_wy_leg3 * t133;
+        let gdistal_wy_leg3 = t5 * t49;
+        let minus_gdistal_wx_leg3 = t44 * t49;
+        let rate_distal_leg3 = gdistal_wy_leg3 * t133 - minus_gdistal_wx_leg3 * t166;
+        let t208 = c_proximal_leg3 * rate_distal_leg3;
+        let rate_wrist_leg3 = gwrist_wx_leg3 * t166 + gwrist_wy_leg3 * t133;
+        let t213 = t44 * rate_wrist_leg3;
+        let t217 = t202 * t208 - actuator_velocities[2] * t213
+            - actuator_velocities[2] * t208;
+        let t219 = t5 * rate_wrist_leg3;
+        let t221 = s_proximal_leg3 * rate_distal_leg3;
+        let t225 = actuator_velocities[2] * t219 + t202 * t221
+            - actuator_velocities[2] * t221;
+        let rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t217
+            + minus_gproximal_wy_leg3 * t225 + t221 * t213 + t208 * t219;
+        let t232 = actuator_accelerations[2] - rate_dot_proximal_leg3;
+        let t234 = t161 - minus_gproximal_wx_leg2 * t197
+            - minus_gproximal_wx_leg3 * t232;
+        let t241 = t197 - minus_gproximal_wy_leg1 * t161 - minus_gproximal_wy_leg3 * t232
+            - t102 * t234;
+        let t251 = t109
+            * (t232 - (minus_gproximal_wz_leg1 * t161 + minus_gproximal_wz_leg2 * t197)
+                - t83 * t234 - t106 * t241);
+        let t253 = t105 * t241 - t106 * t251;
+        let t257 = t54 * t234 - t102 * t253 - t83 * t251;
+        let t262 = t5 * t257 + t44 * t253 + minus_s_distal_leg3 * t251;
+        let t268 = t5 * t166 + t44 * t133 + minus_s_distal_leg3 * t128;
+        let t273 = t20 * t166 + minus_s_distal_leg2 * t133 + t12 * t128;
+        let t274 = t268 * t273;
+        let t275 = minus_s_distal_leg1 * t274;
+        let t281 = minus_s_distal_leg1 * t166 + t55 * t133 + t62 * t128;
+        let t282 = t268 * t281;
+        let t283 = t20 * t282;
+        let t286 = t55 * t274;
+        let t288 = minus_s_distal_leg2 * t282;
+        let t291 = t62 * t274;
+        let t293 = t12 * t282;
+        let t295 = t281 * t273;
+        let t296 = t295 + t262;
+        let t302 = minus_s_distal_leg1 * t257 + t55 * t253 + t62 * t251;
+        let t303 = t274 - t302;
+        let t306 = t268 * t268;
+        let t307 = t281 * t281;
+        let t308 = t306 - t307;
+        let t325 = t20 * t257 + minus_s_distal_leg2 * t253 + t12 * t251;
+        let t326 = t282 + t325;
+        let t328 = t273 * t273;
+        let t329 = t328 - t306;
+        let t332 = t295 - t262;
+        let t346 = t5 * t295;
+        let t350 = t44 * t295;
+        let t354 = minus_s_distal_leg3 * t295;
+        let t357 = t307 - t328;
+        let t359 = t282 - t325;
+        let t362 = t274 + t302;
+        let t384 = 9.81 * t62;
+        let t386 = 9.81 * t12;
+        let t393 = 9.81 * minus_s_distal_leg3;
+        let t411 = 9.81 * c_proximal_leg1;
+        let t413 = minus_gproximal_wz_leg1 * t411;
+        let t414 = 9.81 * s_proximal_leg2;
+        let t416 = minus_gproximal_wz_leg2 * t414;
+        let t417 = 9.81 * s_proximal_leg1;
+        let t419 = 9.81 * c_proximal_leg2;
+        let t430 = c_distal_leg1 * actuator_accelerations[0];
+        let t431 = minus_s_distal_leg1 * actuator_velocities[0];
+        let t432 = rate_distal_leg1 * t431;
+        let t433 = t430 + t432;
+        let t435 = c_distal_leg1 * actuator_velocities[0];
+        let t436 = rate_distal_leg1 * t435;
+        let t438 = c_distal_leg1 * t433 + minus_s_distal_leg1 * t436;
+        let t439 = t435 * t431;
+        let t446 = c_distal_leg2 * actuator_accelerations[1];
+        let t447 = minus_s_distal_leg2 * actuator_velocities[1];
+        let t448 = rate_distal_leg2 * t447;
+        let t449 = t446 + t448;
+        let t451 = c_distal_leg2 * actuator_velocities[1];
+        let t452 = rate_distal_leg2 * t451;
+        let t454 = c_distal_leg2 * t449 + minus_s_distal_leg2 * t452;
+        let t456 = t451 * t447;
+        let t462 = c_distal_leg3 * actuator_velocities[2];
+        let t463 = minus_s_distal_leg3 * actuator_velocities[2];
+        let t464 = t462 * t463;
+        let t466 = c_distal_leg3 * actuator_accelerations[2];
+        let t467 = rate_distal_leg3 * t463;
+        let t468 = t466 + t467;
+        let t470 = rate_distal_leg3 * t462;
+        let t472 = c_distal_leg3 * t468 + minus_s_distal_leg3 * t470;
+        let t480 = minus_s_distal_leg1 * actuator_accelerations[0];
+        let t484 = minus_s_distal_leg1 * (t432 + t433)
+            - c_distal_leg1 * (t436 + t436 - t480);
+        let t486 = t435 * t435;
+        let t487 = t431 * t431;
+        let t488 = t486 - t487;
+        let t494 = t451 * t451;
+        let t495 = t447 * t447;
         let t496 = t494 - t495;
-        let t502 = rate_distal_leg1 * rate_distal_leg1;
-        let rate_dot_distal_leg1 = minus_c_proximal_leg1 * (t210 - t104)
-            - minus_s_proximal_leg1 * (t212 + t116);
-        let t512 = c_distal_leg1 * (t502 - t462)
-            - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t416);
-        let t519 = rate_distal_leg2 * rate_distal_leg2;
-        let rate_dot_distal_leg2 = minus_c_proximal_leg2 * (t216 - t140)
-            - minus_s_proximal_leg2 * (t210 + t153);
-        let t529 = c_distal_leg2 * (t519 - t478)
-            - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t424);
-        let t538 = t171 * t171 + t177 * t177;
-        let rate_dot_distal_leg3 = minus_c_proximal_leg3 * (t212 - t175)
-            - minus_s_proximal_leg3 * (t216 + t184);
-        let t548 = c_distal_leg3 * (t538 - t494)
-            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t448);
-        let t559 = c_distal_leg1 * (t416 + rate_dot_distal_leg1)
-            - minus_s_distal_leg1 * (t463 - t502);
-        let t570 = c_distal_leg2 * (t424 + rate_dot_distal_leg2)
-            - minus_s_distal_leg2 * (t479 - t519);
-        let t581 = c_distal_leg3 * (t448 + rate_dot_distal_leg3)
-            - minus_s_distal_leg3 * (t495 - t538);
-        let t589 = 9.81 * (minus_c_proximal_leg1 * c_distal_leg1);
-        let t599 = 9.81 * (minus_s_proximal_leg2 * c_distal_leg2);
+        let t500 = minus_s_distal_leg2 * actuator_accelerations[1];
+        let t504 = minus_s_distal_leg2 * (t448 + t449)
+            - c_distal_leg2 * (t452 + t452 - t500);
+        let t512 = minus_s_distal_leg3 * actuator_accelerations[2];
+        let t516 = minus_s_distal_leg3 * (t467 + t468)
+            - c_distal_leg3 * (t470 + t470 - t512);
+        let t518 = t462 * t462;
+        let t519 = t463 * t463;
+        let t520 = t518 - t519;
+        let rate_dot_distal_leg1 = gdistal_wz_leg1 * (t251 - t158)
+            - minus_gdistal_wy_leg1 * (t253 - t151);
+        let t533 = rate_distal_leg1 * rate_distal_leg1;
+        let t536 = c_distal_leg1 * (t439 + rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t533 - t486);
+        let rate_dot_distal_leg2 = gdistal_wx_leg2 * (t257 - t182)
+            - minus_gdistal_wz_leg2 * (t251 - t194);
+        let t550 = rate_distal_leg2 * rate_distal_leg2;
+        let t553 = c_distal_leg2 * (t456 + rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t550 - t494);
+        let rate_dot_distal_leg3 = gdistal_wy_leg3 * (t253 - t225)
+            - minus_gdistal_wx_leg3 * (t257 - t217);
+        let t567 = rate_distal_leg3 * rate_distal_leg3;
+        let t570 = c_distal_leg3 * (t464 + rate_dot_distal_leg3)
+            + minus_s_distal_leg3 * (t567 - t518);
+        let t581 = minus_s_distal_leg1 * (t439 - rate_dot_distal_leg1)
+            - c_distal_leg1 * (t487 - t533);
+        let t592 = minus_s_distal_leg2 * (t456 - rate_dot_distal_leg2)
+            - c_distal_leg2 * (t495 - t550);
+        let t604 = minus_s_distal_leg3 * (t464 - rate_dot_distal_leg3)
+            - c_distal_leg3 * (t519 - t567);
+        let t611 = 9.81 * (minus_s_distal_leg1 * c_proximal_leg1);
+        let t619 = 9.81 * (minus_s_distal_leg2 * s_proximal_leg2);
         Ok([
             [
-                t5 * t228 + t249 - t259, t230 * t272 - t5 * t279 + t236 * t284,
-                t5 * t302 + t230 * t305 - t236 * t308, t230 * t278 - t322 + t259,
-                t5 * t333 - t230 * t335 + t236 * t338, t322 - t249 + t236 * t301,
-                t236 * t360 - t230 * t362, t5 * t362 - t236 * t369, t230 * t369 - t5 * t360,
-                actuator_accelerations[0], gproximal_wx_leg2 * actuator_accelerations[1],
-                gproximal_wx_leg3 * actuator_accelerations[2], -t387, gproximal_wx_leg2 * t390,
-                t393, t392, actuator_velocities[0], t52, t54,
-                ::overact::math::sign(actuator_velocities[0]),
-                ::overact::math::signed(gproximal_wx_leg2, actuator_velocities[1]),
-                ::overact::math::signed(gproximal_wx_leg3, actuator_velocities[2]), 1.0,
-                gproximal_wx_leg2, gproximal_wx_leg3, -t414,
-                minus_c_proximal_leg2 * t424 - gproximal_wx_leg2 * t432,
-                -(gproximal_wx_leg3 * t446 + minus_s_proximal_leg3 * t448), t460,
-                gproximal_wx_leg2 * t476 + minus_c_proximal_leg2 * t480,
-                gproximal_wx_leg3 * t492 - minus_s_proximal_leg3 * t496, t512,
-                gproximal_wx_leg2 * t529 - minus_c_proximal_leg2 * t427,
-                gproximal_wx_leg3 * t548 + minus_s_proximal_leg3 * t440, t559,
-                gproximal_wx_leg2 * t570 + minus_c_proximal_leg2 * t472,
-                gproximal_wx_leg3 * t581 - minus_s_proximal_leg3 * t488, -t589,
-                gproximal_wx_leg2 * t599 - 9.81 * (minus_c_proximal_leg2 * t121),
-                -(9.81 * (minus_s_proximal_leg3 * c_distal_leg3)),
+                t5 * t262 + t275 - t283, minus_s_distal_leg1 * t296 - t5 * t303 + t20 * t308,
+                t5 * t326 + minus_s_distal_leg1 * t329 - t20 * t332,
+                minus_s_distal_leg1 * t302 - t346 + t283,
+                t5 * t357 - minus_s_distal_leg1 * t359 + t20 * t362, t346 - t275 + t20 * t325,
+                t20 * t384 - minus_s_distal_leg1 * t386, t5 * t386 - t20 * t393,
+                minus_s_distal_leg1 * t393 - t5 * t384, actuator_accelerations[0],
+                -(minus_gproximal_wx_leg2 * actuator_accelerations[1]),
+                -(minus_gproximal_wx_leg3 * actuator_accelerations[2]), -t411,
+                -(minus_gproximal_wx_leg2 * t414), t417, -t416, actuator_velocities[0], -t114,
+                -t116, ::overact::math::sign(actuator_velocities[0]),
+                -::overact::math::signed(
+                    minus_gproximal_wx_leg2,
+                    actuator_velocities[1],
+                ),
+                -::overact::math::signed(
+                    minus_gproximal_wx_leg3,
+                    actuator_velocities[2],
+                ),
+                1.0,
+                -minus_gproximal_wx_leg2,
+                -minus_gproximal_wx_leg3,
+                t438,
+                -(minus_gproximal_wx_leg2 * t454 + gdistal_wx_leg2 * t456),
+                minus_gdistal_wx_leg3 * t464 - minus_gproximal_wx_leg3 * t472,
+                t484,
+                gdistal_wx_leg2 * t496 - minus_gproximal_wx_leg2 * t504,
+                -(minus_gproximal_wx_leg3 * t516 + minus_gdistal_wx_leg3 * t520),
+                -t536,
+                minus_gproximal_wx_leg2 * t553 - gdistal_wx_leg2 * t446,
+                minus_gproximal_wx_leg3 * t570 + minus_gdistal_wx_leg3 * t466,
+                t581,
+                -(minus_gproximal_wx_leg2 * t592 + gdistal_wx_leg2 * t500),
+                minus_gdistal_wx_leg3 * t512 - minus_gproximal_wx_leg3 * t604,
+                t611,
+                minus_gproximal_wx_leg2 * t619 - gdistal_wx_leg2 * t386,
+                minus_gdistal_wx_leg3 * t393,
             ],
             [
-                t221 * t228 + t262 - t264, t252 * t272 - t221 * t279 + t240 * t284,
-                t221 * t302 + t252 * t305 - t240 * t308, t252 * t278 - t326 + t264,
-                t221 * t333 - t252 * t335 + t240 * t338, t326 - t262 + t240 * t301,
-                t240 * t360 - t252 * t362, t221 * t362 - t240 * t369, t252 * t369 - t221 * t360,
-                gproximal_wy_leg1 * actuator_accelerations[0], actuator_accelerations[1],
-                gproximal_wy_leg3 * actuator_accelerations[2], -(gproximal_wy_leg1 * t387), t390,
-                t389, t395, t48, actuator_velocities[1], t50,
-                ::overact::math::signed(gproximal_wy_leg1, actuator_velocities[0]),
+                t44 * t262 + t286 - t288, t55 * t296 - t44 * t303 + minus_s_distal_leg2 * t308,
+                t44 * t326 + t55 * t329 - minus_s_distal_leg2 * t332, t55 * t302 - t350 + t288,
+                t44 * t357 - t55 * t359 + minus_s_distal_leg2 * t362,
+                t350 - t286 + minus_s_distal_leg2 * t325, minus_s_distal_leg2 * t384 - t55 * t386,
+                t44 * t386 - minus_s_distal_leg2 * t393, t55 * t393 - t44 * t384,
+                -(minus_gproximal_wy_leg1 * actuator_accelerations[0]), actuator_accelerations[1],
+                -(minus_gproximal_wy_leg3 * actuator_accelerations[2]),
+                minus_gproximal_wy_leg1 * t411, t414, -t413, t419, -t120, actuator_velocities[1],
+                -t122,
+                -::overact::math::signed(
+                    minus_gproximal_wy_leg1,
+                    actuator_velocities[0],
+                ),
                 ::overact::math::sign(actuator_velocities[1]),
-                ::overact::math::signed(gproximal_wy_leg3, actuator_velocities[2]),
-                gproximal_wy_leg1, 1.0, gproximal_wy_leg3,
-                -(gproximal_wy_leg1 * t414 + minus_s_proximal_leg1 * t416), -t432,
-                minus_c_proximal_leg3 * t448 - gproximal_wy_leg3 * t446,
-                gproximal_wy_leg1 * t460 - minus_s_proximal_leg1 * t464, t476,
-                gproximal_wy_leg3 * t492 + minus_c_proximal_leg3 * t496,
-                gproximal_wy_leg1 * t512 + minus_s_proximal_leg1 * t408, t529,
-                gproximal_wy_leg3 * t548 - minus_c_proximal_leg3 * t440,
-                gproximal_wy_leg1 * t559 - minus_s_proximal_leg1 * t456, t570,
-                gproximal_wy_leg3 * t581 + minus_c_proximal_leg3 * t488,
-                9.81 * (minus_s_proximal_leg1 * t106) - gproximal_wy_leg1 * t589, t599,
-                9.81 * (minus_c_proximal_leg3 * c_distal_leg3),
+                -::overact::math::signed(
+                    minus_gproximal_wy_leg3,
+                    actuator_velocities[2],
+                ),
+                -minus_gproximal_wy_leg1,
+                1.0,
+                -minus_gproximal_wy_leg3,
+                minus_gdistal_wy_leg1 * t439 - minus_gproximal_wy_leg1 * t438,
+                t454,
+                -(minus_gproximal_wy_leg3 * t472 + gdistal_wy_leg3 * t464),
+                -(minus_gproximal_wy_leg1 * t484 + minus_gdistal_wy_leg1 * t488),
+                t504,
+                gdistal_wy_leg3 * t520 - minus_gproximal_wy_leg3 * t516,
+                minus_gproximal_wy_leg1 * t536 + minus_gdistal_wy_leg1 * t430,
+                -t553,
+                minus_gproximal_wy_leg3 * t570 - gdistal_wy_leg3 * t466,
+                minus_gdistal_wy_leg1 * t480 - minus_gproximal_wy_leg1 * t581,
+                t592,
+                -(minus_gproximal_wy_leg3 * t604 + gdistal_wy_leg3 * t512),
+                minus_gdistal_wy_leg1 * t384 - minus_gproximal_wy_leg1 * t611,
+                -t619,
+                -(gdistal_wy_leg3 * t393),
             ],
             [
-                t226 * t228 + t267 - t269, t255 * t272 - t226 * t279 + t245 * t284,
-                t226 * t302 + t255 * t305 - t245 * t308, t255 * t278 - t330 + t269,
-                t226 * t333 - t255 * t335 + t245 * t338, t330 - t267 + t245 * t301, 0.0, 0.0, 0.0,
-                gproximal_wz_leg1 * actuator_accelerations[0],
-                gproximal_wz_leg2 * actuator_accelerations[1], actuator_accelerations[2], -t389,
-                t392, gproximal_wz_leg1 * t393, gproximal_wz_leg2 * t395, t80, t81,
-                actuator_velocities[2],
-                ::overact::math::signed(gproximal_wz_leg1, actuator_velocities[0]),
-                ::overact::math::signed(gproximal_wz_leg2, actuator_velocities[1]),
-                ::overact::math::sign(actuator_velocities[2]), gproximal_wz_leg1, gproximal_wz_leg2,
-                1.0, minus_c_proximal_leg1 * t416 - gproximal_wz_leg1 * t414,
-                -(gproximal_wz_leg2 * t432 + minus_s_proximal_leg2 * t424), -t446,
-                gproximal_wz_leg1 * t460 + minus_c_proximal_leg1 * t464,
-                gproximal_wz_leg2 * t476 - minus_s_proximal_leg2 * t480, t492,
-                gproximal_wz_leg1 * t512 - minus_c_proximal_leg1 * t408,
-                gproximal_wz_leg2 * t529 + minus_s_proximal_leg2 * t427, t548,
-                gproximal_wz_leg1 * t559 + minus_c_proximal_leg1 * t456,
-                gproximal_wz_leg2 * t570 - minus_s_proximal_leg2 * t472, t581,
-                -(gproximal_wz_leg1 * t589 + minus_c_proximal_leg1 * (9.81 * t106)),
-                gproximal_wz_leg2 * t599 + minus_s_proximal_leg2 * (9.81 * t121), 0.0,
+                minus_s_distal_leg3 * t262 + t291 - t293,
+                t62 * t296 - minus_s_distal_leg3 * t303 + t12 * t308,
+                minus_s_distal_leg3 * t326 + t62 * t329 - t12 * t332, t62 * t302 - t354 + t293,
+                minus_s_distal_leg3 * t357 - t62 * t359 + t12 * t362, t354 - t291 + t12 * t325, 0.0,
+                0.0, 0.0, -(minus_gproximal_wz_leg1 * actuator_accelerations[0]),
+                -(minus_gproximal_wz_leg2 * actuator_accelerations[1]), actuator_accelerations[2],
+                t413, -t416, -(minus_gproximal_wz_leg1 * t417), -(minus_gproximal_wz_leg2 * t419),
+                -t110, -t111, actuator_velocities[2],
+                -::overact::math::signed(
+                    minus_gproximal_wz_leg1,
+                    actuator_velocities[0],
+                ),
+                -::overact::math::signed(
+                    minus_gproximal_wz_leg2,
+                    actuator_velocities[1],
+                ),
+                ::overact::math::sign(actuator_velocities[2]),
+                -minus_gproximal_wz_leg1,
+                -minus_gproximal_wz_leg2,
+                1.0,
+                -(minus_gproximal_wz_leg1 * t438 + gdistal_wz_leg1 * t439),
+                minus_gdistal_wz_leg2 * t456 - minus_gproximal_wz_leg2 * t454,
+                t472,
+                gdistal_wz_leg1 * t488 - minus_gproximal_wz_leg1 * t484,
+                -(minus_gproximal_wz_leg2 * t504 + minus_gdistal_wz_leg2 * t496),
+                t516,
+                minus_gproximal_wz_leg1 * t536 - gdistal_wz_leg1 * t430,
+                minus_gproximal_wz_leg2 * t553 + minus_gdistal_wz_leg2 * t446,
+                -t570,
+                -(minus_gproximal_wz_leg1 * t581 + gdistal_wz_leg1 * t480),
+                minus_gdistal_wz_leg2 * t500 - minus_gproximal_wz_leg2 * t592,
+                t604,
+                -(minus_gproximal_wz_leg1 * t611 + gdistal_wz_leg1 * t384),
+                minus_gproximal_wz_leg2 * t619 + minus_gdistal_wz_leg2 * t386,
+                0.0,
             ],
         ])
     }
@@ -3243,7 +4611,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 40.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 645 operations (238 additions, 403 multiplications, 4 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 575 intermediates.
+    /// 673 operations (243 additions, 423 multiplications, 7 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 594 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3252,8 +4620,327 @@ impl Spherical3Rrr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 40]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_actuators_base_from_joints(pose, joints, twist, acceleration)
+        let t0 = 2.0 * pose[2];
+        let t1 = pose[3] * t0;
+        let t2 = 2.0 * pose[1];
+        let t3 = pose[0] * t2;
+        let minus_s_distal_leg2 = t1 - t3;
+        let t6 = 1.0 - pose[1] * t2;
+        let t7 = pose[2] * t0;
+        let t8 = t6 - t7;
+        let t10 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t10, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t10);
+        let t13 = 1.0 / (t8 * c_distal_leg2);
+        let c_proximal_leg2 = t13 * (t8 * t8);
+        let t16 = pose[3] * t2;
+        let t17 = pose[0] * t0;
+        let t18 = t16 + t17;
+        let s_proximal_leg2 = t13 * (t18 * t8);
+        let t23 = t18 * s_proximal_leg2 + t8 * c_proximal_leg2;
+        ::overact::guard::leg(t23, 1.0, "leg2")?;
+        let t24 = 1.0 / t23;
+        let gwrist_wz_leg2 = c_proximal_leg2 * t24;
+        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
+        let minus_s_distal_leg3 = t16 - t17;
+        let t29 = 2.0 * pose[3];
+        let t30 = pose[3] * t29;
+        let t31 = 1.0 - t7 - t30;
+        let t33 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t33, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t33);
+        let t36 = 1.0 / (t31 * c_distal_leg3);
+        let t37 = pose[2] * t2;
+        let t38 = pose[0] * t29;
+        let t39 = t37 + t38;
+        let s_proximal_leg3 = t36 * (t31 * t39);
+        let c_proximal_leg3 = t36 * (t31 * t31);
+        let t46 = t31 * c_proximal_leg3 + t39 * s_proximal_leg3;
+        ::overact::guard::leg(t46, 1.0, "leg3")?;
+        let t47 = 1.0 / t46;
+        let gwrist_wy_leg3 = s_proximal_leg3 * t47;
+        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
+        let t51 = 1.0 - minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3;
+        let minus_s_distal_leg1 = t37 - t38;
+        let t53 = t6 - t30;
+        let t55 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t55, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t55);
+        let t58 = 1.0 / (t53 * c_distal_leg1);
+        let c_proximal_leg1 = t58 * (t53 * t53);
+        let t62 = t1 + t3;
+        let s_proximal_leg1 = t58 * (t53 * t62);
+        let t66 = t53 * c_proximal_leg1 + t62 * s_proximal_leg1;
+        ::overact::guard::leg(t66, 1.0, "leg1")?;
+        let t67 = 1.0 / t66;
+        let gwrist_wy_leg1 = c_proximal_leg1 * t67;
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
+        let gwrist_wx_leg2 = s_proximal_leg2 * t24;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
+        let gwrist_wx_leg3 = c_proximal_leg3 * t47;
+        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
+        let t75 = minus_gproximal_wx_leg2
+            + minus_gproximal_wz_leg2 * minus_gproximal_wx_leg3;
+        let gwrist_wz_leg1 = s_proximal_leg1 * t67;
+        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
+        let t81 = minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3
+            + minus_gproximal_wx_leg3;
+        let t83 = t51 - minus_gproximal_wy_leg1 * t75 - minus_gproximal_wz_leg1 * t81;
+        ::overact::guard::platform(t83, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t83, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t83, 1.0, "kept actuators")?;
+        let t84 = 1.0 / t83;
+        let t85 = t51 * t84;
+        let t90 = t31 * acceleration[0] + t39 * acceleration[1]
+            + minus_s_distal_leg3 * acceleration[2];
+        let t96 = t31 * twist[0] + t39 * twist[1] + minus_s_distal_leg3 * twist[2];
+        let t101 = t18 * twist[0] + minus_s_distal_leg2 * twist[1] + t8 * twist[2];
+        let t102 = t96 * t101;
+        let t103 = minus_s_distal_leg1 * t102;
+        let t109 = minus_s_distal_leg1 * twist[0] + t53 * twist[1] + t62 * twist[2];
+        let t110 = t96 * t109;
+        let t111 = t18 * t110;
+        let t112 = t31 * t90 + t103 - t111;
+        let t114 = t75 * t84;
+        let t116 = t53 * t102;
+        let t118 = minus_s_distal_leg2 * t110;
+        let t119 = t39 * t90 + t116 - t118;
+        let t122 = t81 * t84;
+        let t124 = t62 * t102;
+        let t126 = t8 * t110;
+        let t127 = minus_s_distal_leg3 * t90 + t124 - t126;
+        let t132 = (minus_gproximal_wy_leg1
+            + minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3) * t84;
+        let t136 = (1.0 - minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3) * t84;
+        let t141 = (minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t84;
+        let t146 = (minus_gproximal_wy_leg1 * minus_gproximal_wz_leg2
+            + minus_gproximal_wz_leg1) * t84;
+        let t150 = (minus_gproximal_wz_leg2
+            + minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2) * t84;
+        let t155 = (1.0 - minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2) * t84;
+        let t158 = t109 * t101;
+        let t159 = t158 + t90;
+        let t165 = minus_s_distal_leg1 * acceleration[0] + t53 * acceleration[1]
+            + t62 * acceleration[2];
+        let t166 = t102 - t165;
+        let t169 = t96 * t96;
+        let t170 = t109 * t109;
+        let t171 = t169 - t170;
+        let t173 = minus_s_distal_leg1 * t159 - t31 * t166 + t18 * t171;
+        let t179 = t53 * t159 - t39 * t166 + minus_s_distal_leg2 * t171;
+        let t186 = t62 * t159 - minus_s_distal_leg3 * t166 + t8 * t171;
+        let t203 = t18 * acceleration[0] + minus_s_distal_leg2 * acceleration[1]
+            + t8 * acceleration[2];
+        let t204 = t110 + t203;
+        let t206 = t101 * t101;
+        let t207 = t206 - t169;
+        let t210 = t158 - t90;
+        let t212 = t31 * t204 + minus_s_distal_leg1 * t207 - t18 * t210;
+        let t218 = t39 * t204 + t53 * t207 - minus_s_distal_leg2 * t210;
+        let t225 = minus_s_distal_leg3 * t204 + t62 * t207 - t8 * t210;
+        let t239 = t31 * t158;
+        let t241 = minus_s_distal_leg1 * t165 - t239 + t111;
+        let t244 = t39 * t158;
+        let t246 = t53 * t165 - t244 + t118;
+        let t250 = minus_s_distal_leg3 * t158;
+        let t252 = t62 * t165 - t250 + t126;
+        let t265 = t170 - t206;
+        let t267 = t110 - t203;
+        let t270 = t102 + t165;
+        let t272 = t31 * t265 - minus_s_distal_leg1 * t267 + t18 * t270;
+        let t278 = t39 * t265 - t53 * t267 + minus_s_distal_leg2 * t270;
+        let t285 = minus_s_distal_leg3 * t265 - t62 * t267 + t8 * t270;
+        let t300 = t239 - t103 + t18 * t203;
+        let t304 = t244 - t116 + minus_s_distal_leg2 * t203;
+        let t309 = t250 - t124 + t8 * t203;
+        let t322 = 9.81 * t62;
+        let t324 = 9.81 * t8;
+        let t326 = t18 * t322 - minus_s_distal_leg1 * t324;
+        let t330 = minus_s_distal_leg2 * t322 - t53 * t324;
+        let t340 = 9.81 * minus_s_distal_leg3;
+        let t342 = t31 * t324 - t18 * t340;
+        let t346 = t39 * t324 - minus_s_distal_leg2 * t340;
+        let t357 = minus_s_distal_leg1 * t340 - t31 * t322;
+        let t361 = t53 * t340 - t39 * t322;
+        let gdistal_wz_leg1 = t53 * t67;
+        let minus_gdistal_wy_leg1 = t62 * t67;
+        let rate_distal_leg1 = gdistal_wz_leg1 * twist[2]
+            - minus_gdistal_wy_leg1 * twist[1];
+        let t375 = s_proximal_leg1 * rate_distal_leg1;
+        let rate_wrist_leg1 = gwrist_wy_leg1 * twist[1] + gwrist_wz_leg1 * twist[2];
+        let t379 = t62 * rate_wrist_leg1;
+        let t381 = c_proximal_leg1 * rate_distal_leg1;
+        let t382 = t53 * rate_wrist_leg1;
+        let t386 = minus_s_distal_leg1 * rate_wrist_leg1;
+        let rate_proximal_leg1 = twist[0] - minus_gproximal_wy_leg1 * twist[1]
+            - minus_gproximal_wz_leg1 * twist[2];
+        let t396 = acceleration[1]
+            - (t381 * t386 - rate_proximal_leg1 * t379 - rate_proximal_leg1 * t381);
+        let t404 = acceleration[2]
+            - (rate_proximal_leg1 * t382 + t375 * t386 - rate_proximal_leg1 * t375);
+        let rate_dot_proximal_leg1 = acceleration[0] + t375 * t379 + t381 * t382
+            - minus_gproximal_wy_leg1 * t396 - minus_gproximal_wz_leg1 * t404;
+        let gdistal_wx_leg2 = t8 * t24;
+        let minus_gdistal_wz_leg2 = t18 * t24;
+        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
+            - minus_gdistal_wz_leg2 * twist[2];
+        let t412 = s_proximal_leg2 * rate_distal_leg2;
+        let rate_wrist_leg2 = gwrist_wx_leg2 * twist[0] + gwrist_wz_leg2 * twist[2];
+        let t416 = t18 * rate_wrist_leg2;
+        let t418 = c_proximal_leg2 * rate_distal_leg2;
+        let t419 = t8 * rate_wrist_leg2;
+        let rate_proximal_leg2 = twist[1] - minus_gproximal_wx_leg2 * twist[0]
+            - minus_gproximal_wz_leg2 * twist[2];
+        let t428 = minus_s_distal_leg2 * rate_wrist_leg2;
+        let t433 = acceleration[0]
+            - (rate_proximal_leg2 * t419 + t412 * t428 - rate_proximal_leg2 * t412);
+        let t441 = acceleration[2]
+            - (t418 * t428 - rate_proximal_leg2 * t416 - rate_proximal_leg2 * t418);
+        let rate_dot_proximal_leg2 = acceleration[1] + t412 * t416 + t418 * t419
+            - minus_gproximal_wx_leg2 * t433 - minus_gproximal_wz_leg2 * t441;
+        let gdistal_wy_leg3 = t31 * t47;
+        let minus_gdistal_wx_leg3 = t39 * t47;
+        let rate_distal_leg3 = gdistal_wy_leg3 * twist[1]
+            - minus_gdistal_wx_leg3 * twist[0];
+        let t449 = s_proximal_leg3 * rate_distal_leg3;
+        let rate_wrist_leg3 = gwrist_wx_leg3 * twist[0] + gwrist_wy_leg3 * twist[1];
+        let t453 = t39 * rate_wrist_leg3;
+        let t455 = c_proximal_leg3 * rate_distal_leg3;
+        let t456 = t31 * rate_wrist_leg3;
+        let t462 = minus_gproximal_wx_leg3 * twist[0]
+            + minus_gproximal_wy_leg3 * twist[1];
+        let rate_proximal_leg3 = twist[2] - t462;
+        let t469 = acceleration[0]
+            - (t462 * t455 - rate_proximal_leg3 * t453 - rate_proximal_leg3 * t455);
+        let t476 = acceleration[1]
+            - (rate_proximal_leg3 * t456 + t462 * t449 - rate_proximal_leg3 * t449);
+        let rate_dot_proximal_leg3 = acceleration[2] + t449 * t453 + t455 * t456
+            - (minus_gproximal_wx_leg3 * t469 + minus_gproximal_wy_leg3 * t476);
+        let t487 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t488 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t489 = rate_distal_leg1 * t488;
+        let t490 = t487 + t489;
+        let t492 = c_distal_leg1 * rate_proximal_leg1;
+        let t493 = rate_distal_leg1 * t492;
+        let t498 = gdistal_wz_leg1 * t122 - minus_gdistal_wy_leg1 * t114;
+        let t499 = t492 * t488;
+        let t504 = gdistal_wz_leg1 * t141 - minus_gdistal_wy_leg1 * t136;
+        let t508 = gdistal_wz_leg1 * t155 - minus_gdistal_wy_leg1 * t150;
+        let t512 = gdistal_wx_leg2 * t85 - minus_gdistal_wz_leg2 * t122;
+        let t513 = c_distal_leg2 * rate_proximal_leg2;
+        let t514 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t515 = t513 * t514;
+        let t517 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t518 = rate_distal_leg2 * t514;
+        let t519 = t517 + t518;
+        let t521 = rate_distal_leg2 * t513;
+        let t526 = gdistal_wx_leg2 * t132 - minus_gdistal_wz_leg2 * t141;
+        let t531 = gdistal_wx_leg2 * t146 - minus_gdistal_wz_leg2 * t155;
+        let t535 = gdistal_wy_leg3 * t114 - minus_gdistal_wx_leg3 * t85;
+        let t536 = c_distal_leg3 * rate_proximal_leg3;
+        let t537 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t538 = t536 * t537;
+        let t542 = gdistal_wy_leg3 * t136 - minus_gdistal_wx_leg3 * t132;
+        let t544 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t545 = rate_distal_leg3 * t537;
+        let t546 = t544 + t545;
+        let t548 = rate_distal_leg3 * t536;
+        let t553 = gdistal_wy_leg3 * t150 - minus_gdistal_wx_leg3 * t146;
+        let t558 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t563 = t492 * t492;
+        let t564 = t488 * t488;
+        let t565 = t563 - t564;
+        let t570 = t513 * t513;
+        let t571 = t514 * t514;
+        let t572 = t570 - t571;
+        let t576 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t584 = t536 * t536;
+        let t585 = t537 * t537;
+        let t586 = t584 - t585;
+        let t591 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let rate_dot_distal_leg1 = gdistal_wz_leg1 * t404 - minus_gdistal_wy_leg1 * t396;
+        let t603 = rate_distal_leg1 * rate_distal_leg1;
+        let rate_dot_distal_leg2 = gdistal_wx_leg2 * t433 - minus_gdistal_wz_leg2 * t441;
+        let t617 = rate_distal_leg2 * rate_distal_leg2;
+        let rate_dot_distal_leg3 = gdistal_wy_leg3 * t476 - minus_gdistal_wx_leg3 * t469;
+        let t631 = rate_distal_leg3 * rate_distal_leg3;
+        Ok([
+            [
+                t85 * t112 + t114 * t119 + t122 * t127, t85 * t173 + t114 * t179 + t122 * t186,
+                t85 * t212 + t114 * t218 + t122 * t225, t85 * t241 + t114 * t246 + t122 * t252,
+                t85 * t272 + t114 * t278 + t122 * t285, t85 * t300 + t114 * t304 + t122 * t309,
+                t85 * t326 + t114 * t330, t85 * t342 + t114 * t346, t85 * t357 + t114 * t361,
+                rate_dot_proximal_leg1, 0.0, 0.0, -(9.81 * c_proximal_leg1), 0.0,
+                9.81 * s_proximal_leg1, 0.0, rate_proximal_leg1, 0.0, 0.0,
+                ::overact::math::sign(rate_proximal_leg1), 0.0, 0.0, 1.0, 0.0, 0.0,
+                c_distal_leg1 * t490 + minus_s_distal_leg1 * t493 - t498 * t499, -(t512 * t515),
+                -(t535 * t538),
+                minus_s_distal_leg1 * (t489 + t490)
+                    - c_distal_leg1 * (t493 + t493 - t558) + t498 * t565,
+                t512 * t572,
+                t535 * t586,
+                -(c_distal_leg1 * (t499 + rate_dot_distal_leg1)
+                    + minus_s_distal_leg1 * (t603 - t563) + t498 * t487),
+                -(t512 * t517),
+                -(t535 * t544),
+                minus_s_distal_leg1 * (t499 - rate_dot_distal_leg1)
+                    - c_distal_leg1 * (t564 - t603) - t498 * t558,
+                -(t512 * t576),
+                -(t535 * t591),
+                9.81 * (minus_s_distal_leg1 * c_proximal_leg1) - t498 * t322,
+                -(t512 * t324),
+                -(t535 * t340),
+            ],
+            [
+                t132 * t112 + t136 * t119 + t141 * t127, t132 * t173 + t136 * t179 + t141 * t186,
+                t132 * t212 + t136 * t218 + t141 * t225, t132 * t241 + t136 * t246 + t141 * t252,
+                t132 * t272 + t136 * t278 + t141 * t285, t132 * t300 + t136 * t304 + t141 * t309,
+                t132 * t326 + t136 * t330, t132 * t342 + t136 * t346, t132 * t357 + t136 * t361,
+                0.0, rate_dot_proximal_leg2, 0.0, 0.0, 9.81 * s_proximal_leg2, 0.0,
+                9.81 * c_proximal_leg2, 0.0, rate_proximal_leg2, 0.0, 0.0,
+                ::overact::math::sign(rate_proximal_leg2), 0.0, 0.0, 1.0, 0.0, -(t504 * t499),
+                c_distal_leg2 * t519 + minus_s_distal_leg2 * t521 - t526 * t515, -(t542 * t538),
+                t504 * t565,
+                minus_s_distal_leg2 * (t518 + t519)
+                    - c_distal_leg2 * (t521 + t521 - t576) + t526 * t572,
+                t542 * t586,
+                -(t504 * t487),
+                -(c_distal_leg2 * (t515 + rate_dot_distal_leg2)
+                    + minus_s_distal_leg2 * (t617 - t570) + t526 * t517),
+                -(t542 * t544),
+                -(t504 * t558),
+                minus_s_distal_leg2 * (t515 - rate_dot_distal_leg2)
+                    - c_distal_leg2 * (t571 - t617) - t526 * t576,
+                -(t542 * t591),
+                -(t504 * t322),
+                -(9.81 * (minus_s_distal_leg2 * s_proximal_leg2) + t526 * t324),
+                -(t542 * t340),
+            ],
+            [
+                t146 * t112 + t150 * t119 + t155 * t127, t146 * t173 + t150 * t179 + t155 * t186,
+                t146 * t212 + t150 * t218 + t155 * t225, t146 * t241 + t150 * t246 + t155 * t252,
+                t146 * t272 + t150 * t278 + t155 * t285, t146 * t300 + t150 * t304 + t155 * t309,
+                t146 * t326 + t150 * t330, t146 * t342 + t150 * t346, t146 * t357 + t150 * t361,
+                0.0, 0.0, rate_dot_proximal_leg3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, rate_proximal_leg3,
+                0.0, 0.0, ::overact::math::sign(rate_proximal_leg3), 0.0, 0.0, 1.0, -(t508 * t499),
+                -(t531 * t515), c_distal_leg3 * t546 + minus_s_distal_leg3 * t548 - t553 * t538,
+                t508 * t565, t531 * t572,
+                minus_s_distal_leg3 * (t545 + t546)
+                    - c_distal_leg3 * (t548 + t548 - t591) + t553 * t586,
+                -(t508 * t487),
+                -(t531 * t517),
+                -(c_distal_leg3 * (t538 + rate_dot_distal_leg3)
+                    + minus_s_distal_leg3 * (t631 - t584) + t553 * t544),
+                -(t508 * t558),
+                -(t531 * t576),
+                minus_s_distal_leg3 * (t538 - rate_dot_distal_leg3)
+                    - c_distal_leg3 * (t585 - t631) - t553 * t591,
+                -(t508 * t322),
+                -(t531 * t324),
+                -(t553 * t340),
+            ],
+        ])
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -3592,7 +5279,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 40.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 725 operations (273 additions, 445 multiplications, 7 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 661 intermediates.
+    /// 753 operations (278 additions, 465 multiplications, 10 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 680 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3603,350 +5290,367 @@ impl Spherical3Rrr {
         start: &[f64; 4],
     ) -> Result<[[f64; 40]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let t4 = 1.0 / minus_s_distal_leg2;
-        let gwrist_wz_leg2 = minus_c_proximal_leg2 * t4;
-        let gproximal_wz_leg2 = c_distal_leg2 * gwrist_wz_leg2;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t11 = 1.0 / minus_s_distal_leg3;
-        let gwrist_wy_leg3 = minus_s_proximal_leg3 * t11;
-        let gproximal_wy_leg3 = c_distal_leg3 * gwrist_wy_leg3;
-        let t15 = 1.0 - gproximal_wz_leg2 * gproximal_wy_leg3;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let t20 = 1.0 / minus_s_distal_leg1;
-        let gwrist_wy_leg1 = minus_c_proximal_leg1 * t20;
-        let gproximal_wy_leg1 = c_distal_leg1 * gwrist_wy_leg1;
-        let gwrist_wx_leg2 = minus_s_proximal_leg2 * t4;
-        let gproximal_wx_leg2 = c_distal_leg2 * gwrist_wx_leg2;
-        let gwrist_wx_leg3 = minus_c_proximal_leg3 * t11;
-        let gproximal_wx_leg3 = c_distal_leg3 * gwrist_wx_leg3;
-        let t28 = gproximal_wx_leg2 - gproximal_wz_leg2 * gproximal_wx_leg3;
-        let gwrist_wz_leg1 = minus_s_proximal_leg1 * t20;
-        let gproximal_wz_leg1 = c_distal_leg1 * gwrist_wz_leg1;
-        let t34 = gproximal_wx_leg2 * gproximal_wy_leg3 - gproximal_wx_leg3;
-        let t36 = t15 - gproximal_wy_leg1 * t28 + gproximal_wz_leg1 * t34;
-        ::overact::guard::platform(t36, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t36, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t36, 1.0, "kept actuators")?;
-        let t37 = 1.0 / t36;
-        let t38 = t15 * t37;
-        let t39 = 2.0 * pose[2];
-        let t40 = pose[2] * t39;
-        let t42 = 2.0 * pose[3];
-        let t43 = pose[3] * t42;
-        let t44 = 1.0 - t40 - t43;
-        let t48 = 1.0 + gproximal_wx_leg2 * gproximal_wx_leg2
-            + gproximal_wx_leg3 * gproximal_wx_leg3;
-        ::overact::guard::platform(t48, 1.0, "actuators")?;
-        ::overact::guard::platform(t48, 1.0, "actuators")?;
-        let t49 = 1.0 / t48;
-        let t57 = gproximal_wy_leg1 + gproximal_wx_leg2
-            + gproximal_wx_leg3 * gproximal_wy_leg3;
-        let t58 = t57 * t49;
-        let t60 = gproximal_wy_leg1 * gproximal_wy_leg1 + 1.0
-            + gproximal_wy_leg3 * gproximal_wy_leg3 - t57 * t58;
-        ::overact::guard::platform(t60, 1.0, "actuators")?;
-        ::overact::guard::platform(t60, 1.0, "actuators")?;
-        let t61 = 1.0 / t60;
-        let t69 = actuator_velocities[0] + gproximal_wx_leg2 * actuator_velocities[1]
-            + gproximal_wx_leg3 * actuator_velocities[2];
-        let t71 = gproximal_wy_leg1 * actuator_velocities[0] + actuator_velocities[1]
-            + gproximal_wy_leg3 * actuator_velocities[2] - t69 * t58;
-        let t78 = gproximal_wz_leg1 + gproximal_wx_leg2 * gproximal_wz_leg2
-            + gproximal_wx_leg3;
-        let t79 = t78 * t49;
-        let t81 = gproximal_wy_leg1 * gproximal_wz_leg1 + gproximal_wz_leg2
-            + gproximal_wy_leg3 - t57 * t79;
-        let t82 = t81 * t61;
-        let t90 = gproximal_wz_leg1 * gproximal_wz_leg1
-            + gproximal_wz_leg2 * gproximal_wz_leg2 + 1.0 - t78 * t79 - t81 * t82;
-        ::overact::guard::platform(t90, 1.0, "actuators")?;
-        ::overact::guard::platform(t90, 1.0, "actuators")?;
-        let t91 = 1.0 / t90;
-        let t100 = t91
-            * (gproximal_wz_leg1 * actuator_velocities[0]
-                + gproximal_wz_leg2 * actuator_velocities[1] + actuator_velocities[2]
-                - t69 * t79 - t82 * t71);
-        let t102 = t61 * t71 - t82 * t100;
-        let rate_wrist_leg1 = gwrist_wy_leg1 * t102 + gwrist_wz_leg1 * t100;
-        let t106 = minus_c_proximal_leg1 * minus_s_distal_leg1 * rate_wrist_leg1;
-        let rate_distal_leg1 = minus_c_proximal_leg1 * t100
-            - minus_s_proximal_leg1 * t102;
-        let t111 = minus_s_proximal_leg1 * rate_distal_leg1;
-        let t112 = c_distal_leg1 * rate_wrist_leg1;
-        let t116 = actuator_velocities[0] * t106 - t111 * t112
-            - actuator_velocities[0] * t111;
-        let t118 = minus_s_proximal_leg1 * minus_s_distal_leg1;
-        let t119 = t118 * rate_wrist_leg1;
-        let t121 = minus_c_proximal_leg1 * rate_distal_leg1;
-        let t128 = actuator_velocities[0] * t121 + t121 * t112
-            + actuator_velocities[0] * t119;
-        let minus_rate_dot_proximal_leg1 = gproximal_wz_leg1 * t116
-            - (t111 * t119 + t121 * t106 + gproximal_wy_leg1 * t128);
-        let t132 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
-        let t133 = minus_c_proximal_leg2 * minus_s_distal_leg2;
-        let t138 = t69 * t49 - t58 * t102 - t79 * t100;
-        let rate_wrist_leg2 = gwrist_wx_leg2 * t138 + gwrist_wz_leg2 * t100;
-        let t142 = t133 * rate_wrist_leg2;
-        let rate_distal_leg2 = minus_c_proximal_leg2 * t138
-            - minus_s_proximal_leg2 * t100;
-        let t147 = minus_s_proximal_leg2 * rate_distal_leg2;
-        let t148 = c_distal_leg2 * rate_wrist_leg2;
-        let t152 = actuator_velocities[1] * t142 - t147 * t148
-            - actuator_velocities[1] * t147;
-        let t155 = minus_s_proximal_leg2 * minus_s_distal_leg2 * rate_wrist_leg2;
-        let t157 = minus_c_proximal_leg2 * rate_distal_leg2;
-        let t165 = actuator_velocities[1] * t157 + t157 * t148
-            + actuator_velocities[1] * t155;
-        let minus_rate_dot_proximal_leg2 = gproximal_wx_leg2 * t152
-            - (t147 * t155 + t157 * t142) - gproximal_wz_leg2 * t165;
-        let t168 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
-        let rate_wrist_leg3 = gwrist_wx_leg3 * t138 + gwrist_wy_leg3 * t102;
-        let t175 = minus_c_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let t179 = gproximal_wx_leg3 * t138 + gproximal_wy_leg3 * t102;
-        let rate_distal_leg3 = minus_c_proximal_leg3 * t102
-            - minus_s_proximal_leg3 * t138;
-        let t183 = minus_s_proximal_leg3 * rate_distal_leg3;
-        let t187 = actuator_velocities[2] * t175 - t179 * t183
-            - actuator_velocities[2] * t183;
-        let t189 = minus_c_proximal_leg3 * rate_distal_leg3;
-        let t193 = minus_s_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let t196 = actuator_velocities[2] * t189 + t179 * t189
-            + actuator_velocities[2] * t193;
-        let minus_rate_dot_proximal_leg3 = gproximal_wy_leg3 * t187
-            - gproximal_wx_leg3 * t196 - (t183 * t193 + t189 * t175);
-        let t203 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
-        let t205 = t132 + gproximal_wx_leg2 * t168 + gproximal_wx_leg3 * t203;
-        let t212 = gproximal_wy_leg1 * t132 + t168 + gproximal_wy_leg3 * t203
-            - t58 * t205;
-        let t222 = t91
-            * (gproximal_wz_leg1 * t132 + gproximal_wz_leg2 * t168 + t203 - t79 * t205
-                - t82 * t212);
-        let t224 = t61 * t212 - t82 * t222;
-        let t228 = t49 * t205 - t58 * t224 - t79 * t222;
-        let t230 = 2.0 * pose[1];
-        let t231 = pose[2] * t230;
-        let t232 = pose[0] * t42;
-        let t233 = t231 + t232;
-        let t236 = pose[3] * t230;
-        let t237 = pose[0] * t39;
-        let t238 = t236 - t237;
-        let t240 = t44 * t228 + t233 * t224 + t238 * t222;
-        let t242 = t231 - t232;
-        let t247 = t44 * t138 + t233 * t102 + t238 * t100;
-        let t248 = t236 + t237;
-        let t250 = pose[3] * t39;
-        let t251 = pose[0] * t230;
-        let t252 = t250 - t251;
-        let t256 = 1.0 - pose[1] * t230;
-        let t257 = t256 - t40;
-        let t259 = t248 * t138 + t252 * t102 + t257 * t100;
-        let t260 = t247 * t259;
-        let t261 = t242 * t260;
-        let t264 = t256 - t43;
-        let t267 = t250 + t251;
-        let t269 = t242 * t138 + t264 * t102 + t267 * t100;
-        let t270 = t247 * t269;
-        let t271 = t248 * t270;
-        let t272 = t44 * t240 + t261 - t271;
-        let t274 = t28 * t37;
-        let t276 = t264 * t260;
-        let t278 = t252 * t270;
-        let t279 = t233 * t240 + t276 - t278;
-        let t282 = t34 * t37;
-        let t284 = t267 * t260;
-        let t286 = t257 * t270;
-        let t287 = t238 * t240 + t284 - t286;
-        let t292 = (1.0 - gproximal_wz_leg1 * gproximal_wx_leg3) * t37;
-        let t296 = (gproximal_wy_leg1 - gproximal_wz_leg1 * gproximal_wy_leg3) * t37;
-        let t301 = (gproximal_wy_leg3 - gproximal_wy_leg1 * gproximal_wx_leg3) * t37;
-        let t306 = (gproximal_wy_leg1 * gproximal_wz_leg2 - gproximal_wz_leg1) * t37;
-        let t310 = (gproximal_wz_leg2 - gproximal_wz_leg1 * gproximal_wx_leg2) * t37;
-        let t315 = (1.0 - gproximal_wy_leg1 * gproximal_wx_leg2) * t37;
-        let t318 = t269 * t259;
-        let t319 = t318 + t240;
-        let t325 = t242 * t228 + t264 * t224 + t267 * t222;
-        let t326 = t260 - t325;
-        let t329 = t247 * t247;
-        let t330 = t269 * t269;
-        let t331 = t329 - t330;
-        let t333 = t242 * t319 - t44 * t326 + t248 * t331;
-        let t339 = t264 * t319 - t233 * t326 + t252 * t331;
-        let t346 = t267 * t319 - t238 * t326 + t257 * t331;
-        let t363 = t248 * t228 + t252 * t224 + t257 * t222;
-        let t364 = t270 + t363;
-        let t366 = t259 * t259;
-        let t367 = t366 - t329;
-        let t370 = t318 - t240;
-        let t372 = t44 * t364 + t242 * t367 - t248 * t370;
-        let t378 = t233 * t364 + t264 * t367 - t252 * t370;
-        let t385 = t238 * t364 + t267 * t367 - t257 * t370;
-        let t399 = t44 * t318;
-        let t401 = t242 * t325 - t399 + t271;
-        let t404 = t233 * t318;
-        let t406 = t264 * t325 - t404 + t278;
-        let t410 = t238 * t318;
-        let t412 = t267 * t325 - t410 + t286;
-        let t425 = t330 - t366;
-        let t427 = t270 - t363;
-        let t430 = t260 + t325;
-        let t432 = t44 * t425 - t242 * t427 + t248 * t430;
-        let t438 = t233 * t425 - t264 * t427 + t252 * t430;
-        let t445 = t238 * t425 - t267 * t427 + t257 * t430;
-        let t460 = t399 - t261 + t248 * t363;
-        let t464 = t404 - t276 + t252 * t363;
-        let t469 = t410 - t284 + t257 * t363;
-        let t482 = 9.81 * t267;
-        let t484 = 9.81 * t257;
-        let t486 = t248 * t482 - t242 * t484;
-        let t490 = t252 * t482 - t264 * t484;
-        let t500 = 9.81 * t238;
-        let t502 = t44 * t484 - t248 * t500;
-        let t506 = t233 * t484 - t252 * t500;
-        let t517 = t242 * t500 - t44 * t482;
-        let t521 = t264 * t500 - t233 * t482;
-        let t539 = minus_s_proximal_leg1 * t274 + minus_c_proximal_leg1 * t282;
-        let t540 = minus_s_distal_leg1 * actuator_velocities[0];
-        let t541 = c_distal_leg1 * actuator_velocities[0];
-        let t542 = t540 * t541;
-        let t544 = rate_distal_leg1 * t541;
-        let t545 = minus_s_distal_leg1 * actuator_accelerations[0];
-        let t546 = t544 - t545;
-        let t548 = rate_distal_leg1 * t540;
-        let t554 = minus_s_proximal_leg1 * t292 + minus_c_proximal_leg1 * t301;
-        let t558 = minus_s_proximal_leg1 * t310 + minus_c_proximal_leg1 * t315;
-        let t562 = minus_c_proximal_leg2 * t38 - minus_s_proximal_leg2 * t282;
-        let t563 = minus_s_distal_leg2 * actuator_velocities[1];
-        let t564 = c_distal_leg2 * actuator_velocities[1];
-        let t565 = t563 * t564;
-        let t569 = minus_s_proximal_leg2 * t301 - minus_c_proximal_leg2 * t296;
-        let t571 = rate_distal_leg2 * t564;
-        let t572 = minus_s_distal_leg2 * actuator_accelerations[1];
-        let t573 = t571 - t572;
-        let t575 = rate_distal_leg2 * t563;
-        let t581 = minus_c_proximal_leg2 * t306 - minus_s_proximal_leg2 * t315;
-        let t585 = minus_s_proximal_leg3 * t38 + minus_c_proximal_leg3 * t274;
-        let t586 = minus_s_distal_leg3 * actuator_velocities[2];
-        let t587 = c_distal_leg3 * actuator_velocities[2];
-        let t588 = t586 * t587;
-        let t592 = minus_s_proximal_leg3 * t296 + minus_c_proximal_leg3 * t292;
-        let t594 = rate_distal_leg3 * t587;
-        let t595 = minus_s_distal_leg3 * actuator_accelerations[2];
-        let t596 = t594 - t595;
-        let t598 = rate_distal_leg3 * t586;
-        let t603 = minus_s_proximal_leg3 * t306 + minus_c_proximal_leg3 * t310;
-        let t608 = c_distal_leg1 * actuator_accelerations[0];
-        let t613 = t540 * t540;
-        let t614 = t541 * t541;
-        let t615 = t613 - t614;
-        let t620 = t563 * t563;
-        let t621 = t564 * t564;
-        let t622 = t620 - t621;
-        let t626 = c_distal_leg2 * actuator_accelerations[1];
-        let t634 = t586 * t586;
-        let t635 = t587 * t587;
-        let t636 = t634 - t635;
-        let t641 = c_distal_leg3 * actuator_accelerations[2];
-        let t648 = rate_distal_leg1 * rate_distal_leg1;
-        let rate_dot_distal_leg1 = minus_c_proximal_leg1 * (t222 - t116)
-            - minus_s_proximal_leg1 * (t224 + t128);
-        let t664 = rate_distal_leg2 * rate_distal_leg2;
-        let rate_dot_distal_leg2 = minus_c_proximal_leg2 * (t228 - t152)
-            - minus_s_proximal_leg2 * (t222 + t165);
-        let t682 = t183 * t183 + t189 * t189;
-        let rate_dot_distal_leg3 = minus_c_proximal_leg3 * (t224 - t187)
-            - minus_s_proximal_leg3 * (t228 + t196);
-        let t724 = 9.81 * t118;
-        let t729 = 9.81 * t133;
-        let t736 = 9.81 * c_distal_leg3;
+        let t0 = 2.0 * pose[2];
+        let t1 = pose[3] * t0;
+        let t2 = 2.0 * pose[1];
+        let t3 = pose[0] * t2;
+        let minus_s_distal_leg2 = t1 - t3;
+        let t6 = 1.0 - pose[1] * t2;
+        let t7 = pose[2] * t0;
+        let t8 = t6 - t7;
+        let t10 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t10, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t10);
+        let t13 = 1.0 / (t8 * c_distal_leg2);
+        let c_proximal_leg2 = t13 * (t8 * t8);
+        let t16 = pose[3] * t2;
+        let t17 = pose[0] * t0;
+        let t18 = t16 + t17;
+        let s_proximal_leg2 = t13 * (t18 * t8);
+        let t23 = t18 * s_proximal_leg2 + t8 * c_proximal_leg2;
+        ::overact::guard::leg(t23, 1.0, "leg2")?;
+        let t24 = 1.0 / t23;
+        let gwrist_wz_leg2 = c_proximal_leg2 * t24;
+        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
+        let minus_s_distal_leg3 = t16 - t17;
+        let t29 = 2.0 * pose[3];
+        let t30 = pose[3] * t29;
+        let t31 = 1.0 - t7 - t30;
+        let t33 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t33, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t33);
+        let t36 = 1.0 / (t31 * c_distal_leg3);
+        let t37 = pose[2] * t2;
+        let t38 = pose[0] * t29;
+        let t39 = t37 + t38;
+        let s_proximal_leg3 = t36 * (t31 * t39);
+        let c_proximal_leg3 = t36 * (t31 * t31);
+        let t46 = t31 * c_proximal_leg3 + t39 * s_proximal_leg3;
+        ::overact::guard::leg(t46, 1.0, "leg3")?;
+        let t47 = 1.0 / t46;
+        let gwrist_wy_leg3 = s_proximal_leg3 * t47;
+        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
+        let t51 = 1.0 - minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3;
+        let minus_s_distal_leg1 = t37 - t38;
+        let t53 = t6 - t30;
+        let t55 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t55, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t55);
+        let t58 = 1.0 / (t53 * c_distal_leg1);
+        let c_proximal_leg1 = t58 * (t53 * t53);
+        let t62 = t1 + t3;
+        let s_proximal_leg1 = t58 * (t53 * t62);
+        let t66 = t53 * c_proximal_leg1 + t62 * s_proximal_leg1;
+        ::overact::guard::leg(t66, 1.0, "leg1")?;
+        let t67 = 1.0 / t66;
+        let gwrist_wy_leg1 = c_proximal_leg1 * t67;
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
+        let gwrist_wx_leg2 = s_proximal_leg2 * t24;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
+        let gwrist_wx_leg3 = c_proximal_leg3 * t47;
+        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
+        let t75 = minus_gproximal_wx_leg2
+            + minus_gproximal_wz_leg2 * minus_gproximal_wx_leg3;
+        let gwrist_wz_leg1 = s_proximal_leg1 * t67;
+        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
+        let t81 = minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3
+            + minus_gproximal_wx_leg3;
+        let t83 = t51 - minus_gproximal_wy_leg1 * t75 - minus_gproximal_wz_leg1 * t81;
+        ::overact::guard::platform(t83, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t83, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t83, 1.0, "kept actuators")?;
+        let t84 = 1.0 / t83;
+        let t85 = t51 * t84;
+        let t89 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
+        ::overact::guard::platform(t89, 1.0, "actuators")?;
+        ::overact::guard::platform(t89, 1.0, "actuators")?;
+        let t90 = 1.0 / t89;
+        let gdistal_wz_leg1 = t53 * t67;
+        let t98 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
+        let t99 = t98 * t90;
+        let t107 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+            - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
+        let t109 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t107 * t99;
+        let t114 = t107 * t90;
+        let t116 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t107 * t114;
+        ::overact::guard::platform(t116, 1.0, "actuators")?;
+        ::overact::guard::platform(t116, 1.0, "actuators")?;
+        let t117 = 1.0 / t116;
+        let t118 = t109 * t117;
+        let t120 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t98 * t99
+            - t109 * t118;
+        ::overact::guard::platform(t120, 1.0, "actuators")?;
+        ::overact::guard::platform(t120, 1.0, "actuators")?;
+        let t121 = 1.0 / t120;
+        let t129 = actuator_velocities[0]
+            - minus_gproximal_wx_leg2 * actuator_velocities[1]
+            - minus_gproximal_wx_leg3 * actuator_velocities[2];
+        let t137 = actuator_velocities[1]
+            - minus_gproximal_wy_leg1 * actuator_velocities[0]
+            - minus_gproximal_wy_leg3 * actuator_velocities[2] - t129 * t114;
+        let t140 = t121
+            * (actuator_velocities[2]
+                - (minus_gproximal_wz_leg1 * actuator_velocities[0]
+                    + minus_gproximal_wz_leg2 * actuator_velocities[1]) - t129 * t99
+                - t118 * t137);
+        let minus_gdistal_wy_leg1 = t62 * t67;
+        let t145 = t117 * t137 - t118 * t140;
+        let rate_distal_leg1 = gdistal_wz_leg1 * t140 - minus_gdistal_wy_leg1 * t145;
+        let t148 = s_proximal_leg1 * rate_distal_leg1;
+        let rate_wrist_leg1 = gwrist_wy_leg1 * t145 + gwrist_wz_leg1 * t140;
+        let t152 = t62 * rate_wrist_leg1;
+        let t154 = c_proximal_leg1 * rate_distal_leg1;
+        let t155 = t53 * rate_wrist_leg1;
+        let t158 = minus_s_distal_leg1 * rate_wrist_leg1;
+        let t163 = t154 * t158 - actuator_velocities[0] * t152
+            - actuator_velocities[0] * t154;
+        let t170 = actuator_velocities[0] * t155 + t148 * t158
+            - actuator_velocities[0] * t148;
+        let rate_dot_proximal_leg1 = t148 * t152 + t154 * t155
+            + minus_gproximal_wy_leg1 * t163 + minus_gproximal_wz_leg1 * t170;
+        let t173 = actuator_accelerations[0] - rate_dot_proximal_leg1;
+        let t178 = t129 * t90 - t114 * t145 - t99 * t140;
+        let rate_wrist_leg2 = gwrist_wx_leg2 * t178 + gwrist_wz_leg2 * t140;
+        let t182 = t8 * rate_wrist_leg2;
+        let gdistal_wx_leg2 = t8 * t24;
+        let minus_gdistal_wz_leg2 = t18 * t24;
+        let rate_distal_leg2 = gdistal_wx_leg2 * t178 - minus_gdistal_wz_leg2 * t140;
+        let t189 = s_proximal_leg2 * rate_distal_leg2;
+        let t190 = minus_s_distal_leg2 * rate_wrist_leg2;
+        let t194 = actuator_velocities[1] * t182 + t189 * t190
+            - actuator_velocities[1] * t189;
+        let t196 = t18 * rate_wrist_leg2;
+        let t198 = c_proximal_leg2 * rate_distal_leg2;
+        let t206 = t198 * t190 - actuator_velocities[1] * t196
+            - actuator_velocities[1] * t198;
+        let rate_dot_proximal_leg2 = minus_gproximal_wx_leg2 * t194 + t189 * t196
+            + t198 * t182 + minus_gproximal_wz_leg2 * t206;
+        let t209 = actuator_accelerations[1] - rate_dot_proximal_leg2;
+        let t214 = minus_gproximal_wx_leg3 * t178 + minus_gproximal_wy_leg3 * t145;
+        let gdistal_wy_leg3 = t31 * t47;
+        let minus_gdistal_wx_leg3 = t39 * t47;
+        let rate_distal_leg3 = gdistal_wy_leg3 * t145 - minus_gdistal_wx_leg3 * t178;
+        let t220 = c_proximal_leg3 * rate_distal_leg3;
+        let rate_wrist_leg3 = gwrist_wx_leg3 * t178 + gwrist_wy_leg3 * t145;
+        let t225 = t39 * rate_wrist_leg3;
+        let t229 = t214 * t220 - actuator_velocities[2] * t225
+            - actuator_velocities[2] * t220;
+        let t231 = t31 * rate_wrist_leg3;
+        let t233 = s_proximal_leg3 * rate_distal_leg3;
+        let t237 = actuator_velocities[2] * t231 + t214 * t233
+            - actuator_velocities[2] * t233;
+        let rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t229
+            + minus_gproximal_wy_leg3 * t237 + t233 * t225 + t220 * t231;
+        let t244 = actuator_accelerations[2] - rate_dot_proximal_leg3;
+        let t246 = t173 - minus_gproximal_wx_leg2 * t209
+            - minus_gproximal_wx_leg3 * t244;
+        let t253 = t209 - minus_gproximal_wy_leg1 * t173 - minus_gproximal_wy_leg3 * t244
+            - t114 * t246;
+        let t263 = t121
+            * (t244 - (minus_gproximal_wz_leg1 * t173 + minus_gproximal_wz_leg2 * t209)
+                - t99 * t246 - t118 * t253);
+        let t265 = t117 * t253 - t118 * t263;
+        let t269 = t90 * t246 - t114 * t265 - t99 * t263;
+        let t274 = t31 * t269 + t39 * t265 + minus_s_distal_leg3 * t263;
+        let t280 = t31 * t178 + t39 * t145 + minus_s_distal_leg3 * t140;
+        let t285 = t18 * t178 + minus_s_distal_leg2 * t145 + t8 * t140;
+        let t286 = t280 * t285;
+        let t287 = minus_s_distal_leg1 * t286;
+        let t293 = minus_s_distal_leg1 * t178 + t53 * t145 + t62 * t140;
+        let t294 = t280 * t293;
+        let t295 = t18 * t294;
+        let t296 = t31 * t274 + t287 - t295;
+        let t298 = t75 * t84;
+        let t300 = t53 * t286;
+        let t302 = minus_s_distal_leg2 * t294;
+        let t303 = t39 * t274 + t300 - t302;
+        let t306 = t81 * t84;
+        let t308 = t62 * t286;
+        let t310 = t8 * t294;
+        let t311 = minus_s_distal_leg3 * t274 + t308 - t310;
+        let t316 = (minus_gproximal_wy_leg1
+            + minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3) * t84;
+        let t320 = (1.0 - minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3) * t84;
+        let t325 = (minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t84;
+        let t330 = (minus_gproximal_wy_leg1 * minus_gproximal_wz_leg2
+            + minus_gproximal_wz_leg1) * t84;
+        let t334 = (minus_gproximal_wz_leg2
+            + minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2) * t84;
+        let t339 = (1.0 - minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2) * t84;
+        let t342 = t293 * t285;
+        let t343 = t342 + t274;
+        let t349 = minus_s_distal_leg1 * t269 + t53 * t265 + t62 * t263;
+        let t350 = t286 - t349;
+        let t353 = t280 * t280;
+        let t354 = t293 * t293;
+        let t355 = t353 - t354;
+        let t357 = minus_s_distal_leg1 * t343 - t31 * t350 + t18 * t355;
+        let t363 = t53 * t343 - t39 * t350 + minus_s_distal_leg2 * t355;
+        let t370 = t62 * t343 - minus_s_distal_leg3 * t350 + t8 * t355;
+        let t387 = t18 * t269 + minus_s_distal_leg2 * t265 + t8 * t263;
+        let t388 = t294 + t387;
+        let t390 = t285 * t285;
+        let t391 = t390 - t353;
+        let t394 = t342 - t274;
+        let t396 = t31 * t388 + minus_s_distal_leg1 * t391 - t18 * t394;
+        let t402 = t39 * t388 + t53 * t391 - minus_s_distal_leg2 * t394;
+        let t409 = minus_s_distal_leg3 * t388 + t62 * t391 - t8 * t394;
+        let t423 = t31 * t342;
+        let t425 = minus_s_distal_leg1 * t349 - t423 + t295;
+        let t428 = t39 * t342;
+        let t430 = t53 * t349 - t428 + t302;
+        let t434 = minus_s_distal_leg3 * t342;
+        let t436 = t62 * t349 - t434 + t310;
+        let t449 = t354 - t390;
+        let t451 = t294 - t387;
+        let t454 = t286 + t349;
+        let t456 = t31 * t449 - minus_s_distal_leg1 * t451 + t18 * t454;
+        let t462 = t39 * t449 - t53 * t451 + minus_s_distal_leg2 * t454;
+        let t469 = minus_s_distal_leg3 * t449 - t62 * t451 + t8 * t454;
+        let t484 = t423 - t287 + t18 * t387;
+        let t488 = t428 - t300 + minus_s_distal_leg2 * t387;
+        let t493 = t434 - t308 + t8 * t387;
+        let t506 = 9.81 * t62;
+        let t508 = 9.81 * t8;
+        let t510 = t18 * t506 - minus_s_distal_leg1 * t508;
+        let t514 = minus_s_distal_leg2 * t506 - t53 * t508;
+        let t524 = 9.81 * minus_s_distal_leg3;
+        let t526 = t31 * t508 - t18 * t524;
+        let t530 = t39 * t508 - minus_s_distal_leg2 * t524;
+        let t541 = minus_s_distal_leg1 * t524 - t31 * t506;
+        let t545 = t53 * t524 - t39 * t506;
+        let t561 = c_distal_leg1 * actuator_accelerations[0];
+        let t562 = minus_s_distal_leg1 * actuator_velocities[0];
+        let t563 = rate_distal_leg1 * t562;
+        let t564 = t561 + t563;
+        let t566 = c_distal_leg1 * actuator_velocities[0];
+        let t567 = rate_distal_leg1 * t566;
+        let t572 = gdistal_wz_leg1 * t306 - minus_gdistal_wy_leg1 * t298;
+        let t573 = t566 * t562;
+        let t578 = gdistal_wz_leg1 * t325 - minus_gdistal_wy_leg1 * t320;
+        let t582 = gdistal_wz_leg1 * t339 - minus_gdistal_wy_leg1 * t334;
+        let t586 = gdistal_wx_leg2 * t85 - minus_gdistal_wz_leg2 * t306;
+        let t587 = c_distal_leg2 * actuator_velocities[1];
+        let t588 = minus_s_distal_leg2 * actuator_velocities[1];
+        let t589 = t587 * t588;
+        let t591 = c_distal_leg2 * actuator_accelerations[1];
+        let t592 = rate_distal_leg2 * t588;
+        let t593 = t591 + t592;
+        let t595 = rate_distal_leg2 * t587;
+        let t600 = gdistal_wx_leg2 * t316 - minus_gdistal_wz_leg2 * t325;
+        let t605 = gdistal_wx_leg2 * t330 - minus_gdistal_wz_leg2 * t339;
+        let t609 = gdistal_wy_leg3 * t298 - minus_gdistal_wx_leg3 * t85;
+        let t610 = c_distal_leg3 * actuator_velocities[2];
+        let t611 = minus_s_distal_leg3 * actuator_velocities[2];
+        let t612 = t610 * t611;
+        let t616 = gdistal_wy_leg3 * t320 - minus_gdistal_wx_leg3 * t316;
+        let t618 = c_distal_leg3 * actuator_accelerations[2];
+        let t619 = rate_distal_leg3 * t611;
+        let t620 = t618 + t619;
+        let t622 = rate_distal_leg3 * t610;
+        let t627 = gdistal_wy_leg3 * t334 - minus_gdistal_wx_leg3 * t330;
+        let t632 = minus_s_distal_leg1 * actuator_accelerations[0];
+        let t637 = t566 * t566;
+        let t638 = t562 * t562;
+        let t639 = t637 - t638;
+        let t644 = t587 * t587;
+        let t645 = t588 * t588;
+        let t646 = t644 - t645;
+        let t650 = minus_s_distal_leg2 * actuator_accelerations[1];
+        let t658 = t610 * t610;
+        let t659 = t611 * t611;
+        let t660 = t658 - t659;
+        let t665 = minus_s_distal_leg3 * actuator_accelerations[2];
+        let rate_dot_distal_leg1 = gdistal_wz_leg1 * (t263 - t170)
+            - minus_gdistal_wy_leg1 * (t265 - t163);
+        let t679 = rate_distal_leg1 * rate_distal_leg1;
+        let rate_dot_distal_leg2 = gdistal_wx_leg2 * (t269 - t194)
+            - minus_gdistal_wz_leg2 * (t263 - t206);
+        let t695 = rate_distal_leg2 * rate_distal_leg2;
+        let rate_dot_distal_leg3 = gdistal_wy_leg3 * (t265 - t237)
+            - minus_gdistal_wx_leg3 * (t269 - t229);
+        let t711 = rate_distal_leg3 * rate_distal_leg3;
         Ok([
             [
-                t38 * t272 - t274 * t279 + t282 * t287, t38 * t333 - t274 * t339 + t282 * t346,
-                t38 * t372 - t274 * t378 + t282 * t385, t38 * t401 - t274 * t406 + t282 * t412,
-                t38 * t432 - t274 * t438 + t282 * t445, t38 * t460 - t274 * t464 + t282 * t469,
-                t38 * t486 - t274 * t490, t38 * t502 - t274 * t506, t38 * t517 - t274 * t521,
-                actuator_accelerations[0], 0.0, 0.0, -(9.81 * minus_c_proximal_leg1), 0.0,
-                9.81 * minus_s_proximal_leg1, 0.0, actuator_velocities[0], 0.0, 0.0,
+                t85 * t296 + t298 * t303 + t306 * t311, t85 * t357 + t298 * t363 + t306 * t370,
+                t85 * t396 + t298 * t402 + t306 * t409, t85 * t425 + t298 * t430 + t306 * t436,
+                t85 * t456 + t298 * t462 + t306 * t469, t85 * t484 + t298 * t488 + t306 * t493,
+                t85 * t510 + t298 * t514, t85 * t526 + t298 * t530, t85 * t541 + t298 * t545,
+                actuator_accelerations[0], 0.0, 0.0, -(9.81 * c_proximal_leg1), 0.0,
+                9.81 * s_proximal_leg1, 0.0, actuator_velocities[0], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[0]), 0.0, 0.0, 1.0, 0.0, 0.0,
-                t539 * t542 - (minus_s_distal_leg1 * t546 + c_distal_leg1 * t548), t562 * t565,
-                -(t585 * t588),
-                c_distal_leg1 * (t544 + t546)
-                    - minus_s_distal_leg1 * (t548 + t608 + t548) + t539 * t615,
-                t562 * t622,
-                -(t585 * t636),
-                c_distal_leg1 * (t648 - t613)
-                    - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t542) - t539 * t545,
-                -(t562 * t572),
-                t585 * t595,
-                c_distal_leg1 * (t542 + rate_dot_distal_leg1)
-                    - minus_s_distal_leg1 * (t614 - t648) + t539 * t608,
-                t562 * t626,
-                -(t585 * t641),
-                -(9.81 * (minus_c_proximal_leg1 * c_distal_leg1) + t539 * t724),
-                -(t562 * t729),
-                -(t585 * t736),
+                c_distal_leg1 * t564 + minus_s_distal_leg1 * t567 - t572 * t573, -(t586 * t589),
+                -(t609 * t612),
+                minus_s_distal_leg1 * (t563 + t564)
+                    - c_distal_leg1 * (t567 + t567 - t632) + t572 * t639,
+                t586 * t646,
+                t609 * t660,
+                -(c_distal_leg1 * (t573 + rate_dot_distal_leg1)
+                    + minus_s_distal_leg1 * (t679 - t637) + t572 * t561),
+                -(t586 * t591),
+                -(t609 * t618),
+                minus_s_distal_leg1 * (t573 - rate_dot_distal_leg1)
+                    - c_distal_leg1 * (t638 - t679) - t572 * t632,
+                -(t586 * t650),
+                -(t609 * t665),
+                9.81 * (minus_s_distal_leg1 * c_proximal_leg1) - t572 * t506,
+                -(t586 * t508),
+                -(t609 * t524),
             ],
             [
-                t292 * t279 - t296 * t272 - t301 * t287, t292 * t339 - t296 * t333 - t301 * t346,
-                t292 * t378 - t296 * t372 - t301 * t385, t292 * t406 - t296 * t401 - t301 * t412,
-                t292 * t438 - t296 * t432 - t301 * t445, t292 * t464 - t296 * t460 - t301 * t469,
-                t292 * t490 - t296 * t486, t292 * t506 - t296 * t502, t292 * t521 - t296 * t517,
-                0.0, actuator_accelerations[1], 0.0, 0.0, 9.81 * minus_s_proximal_leg2, 0.0,
-                9.81 * minus_c_proximal_leg2, 0.0, actuator_velocities[1], 0.0, 0.0,
-                ::overact::math::sign(actuator_velocities[1]), 0.0, 0.0, 1.0, 0.0, -(t554 * t542),
-                t569 * t565 - (minus_s_distal_leg2 * t573 + c_distal_leg2 * t575), t592 * t588,
-                -(t554 * t615),
-                c_distal_leg2 * (t571 + t573)
-                    - minus_s_distal_leg2 * (t575 + t626 + t575) + t569 * t622,
-                t592 * t636,
-                t554 * t545,
-                c_distal_leg2 * (t664 - t620)
-                    - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t565) - t569 * t572,
-                -(t592 * t595),
-                -(t554 * t608),
-                c_distal_leg2 * (t565 + rate_dot_distal_leg2)
-                    - minus_s_distal_leg2 * (t621 - t664) + t569 * t626,
-                t592 * t641,
-                t554 * t724,
-                9.81 * (minus_s_proximal_leg2 * c_distal_leg2) - t569 * t729,
-                t592 * t736,
+                t316 * t296 + t320 * t303 + t325 * t311, t316 * t357 + t320 * t363 + t325 * t370,
+                t316 * t396 + t320 * t402 + t325 * t409, t316 * t425 + t320 * t430 + t325 * t436,
+                t316 * t456 + t320 * t462 + t325 * t469, t316 * t484 + t320 * t488 + t325 * t493,
+                t316 * t510 + t320 * t514, t316 * t526 + t320 * t530, t316 * t541 + t320 * t545,
+                0.0, actuator_accelerations[1], 0.0, 0.0, 9.81 * s_proximal_leg2, 0.0,
+                9.81 * c_proximal_leg2, 0.0, actuator_velocities[1], 0.0, 0.0,
+                ::overact::math::sign(actuator_velocities[1]), 0.0, 0.0, 1.0, 0.0, -(t578 * t573),
+                c_distal_leg2 * t593 + minus_s_distal_leg2 * t595 - t600 * t589, -(t616 * t612),
+                t578 * t639,
+                minus_s_distal_leg2 * (t592 + t593)
+                    - c_distal_leg2 * (t595 + t595 - t650) + t600 * t646,
+                t616 * t660,
+                -(t578 * t561),
+                -(c_distal_leg2 * (t589 + rate_dot_distal_leg2)
+                    + minus_s_distal_leg2 * (t695 - t644) + t600 * t591),
+                -(t616 * t618),
+                -(t578 * t632),
+                minus_s_distal_leg2 * (t589 - rate_dot_distal_leg2)
+                    - c_distal_leg2 * (t645 - t695) - t600 * t650,
+                -(t616 * t665),
+                -(t578 * t506),
+                -(9.81 * (minus_s_distal_leg2 * s_proximal_leg2) + t600 * t508),
+                -(t616 * t524),
             ],
             [
-                t306 * t272 - t310 * t279 + t315 * t287, t306 * t333 - t310 * t339 + t315 * t346,
-                t306 * t372 - t310 * t378 + t315 * t385, t306 * t401 - t310 * t406 + t315 * t412,
-                t306 * t432 - t310 * t438 + t315 * t445, t306 * t460 - t310 * t464 + t315 * t469,
-                t306 * t486 - t310 * t490, t306 * t502 - t310 * t506, t306 * t517 - t310 * t521,
+                t330 * t296 + t334 * t303 + t339 * t311, t330 * t357 + t334 * t363 + t339 * t370,
+                t330 * t396 + t334 * t402 + t339 * t409, t330 * t425 + t334 * t430 + t339 * t436,
+                t330 * t456 + t334 * t462 + t339 * t469, t330 * t484 + t334 * t488 + t339 * t493,
+                t330 * t510 + t334 * t514, t330 * t526 + t334 * t530, t330 * t541 + t334 * t545,
                 0.0, 0.0, actuator_accelerations[2], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 actuator_velocities[2], 0.0, 0.0, ::overact::math::sign(actuator_velocities[2]),
-                0.0, 0.0, 1.0, t558 * t542, t581 * t565,
-                -(minus_s_distal_leg3 * t596 + c_distal_leg3 * t598 + t603 * t588), t558 * t615,
-                t581 * t622,
-                c_distal_leg3 * (t594 + t596)
-                    - minus_s_distal_leg3 * (t598 + t641 + t598) - t603 * t636,
-                -(t558 * t545),
-                -(t581 * t572),
-                c_distal_leg3 * (t682 - t634)
-                    - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t588) + t603 * t595,
-                t558 * t608,
-                t581 * t626,
-                c_distal_leg3 * (t588 + rate_dot_distal_leg3)
-                    - minus_s_distal_leg3 * (t635 - t682) - t603 * t641,
-                -(t558 * t724),
-                -(t581 * t729),
-                -(t603 * t736),
+                0.0, 0.0, 1.0, -(t582 * t573), -(t605 * t589),
+                c_distal_leg3 * t620 + minus_s_distal_leg3 * t622 - t627 * t612, t582 * t639,
+                t605 * t646,
+                minus_s_distal_leg3 * (t619 + t620)
+                    - c_distal_leg3 * (t622 + t622 - t665) + t627 * t660,
+                -(t582 * t561),
+                -(t605 * t591),
+                -(c_distal_leg3 * (t612 + rate_dot_distal_leg3)
+                    + minus_s_distal_leg3 * (t711 - t658) + t627 * t618),
+                -(t582 * t632),
+                -(t605 * t650),
+                minus_s_distal_leg3 * (t612 - rate_dot_distal_leg3)
+                    - c_distal_leg3 * (t659 - t711) - t627 * t665,
+                -(t582 * t506),
+                -(t605 * t508),
+                -(t627 * t524),
             ],
         ])
     }
@@ -3958,7 +5662,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 27 operations (6 additions, 18 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 36 intermediates.
+    /// 83 operations (23 additions, 54 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 83 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3966,41 +5670,74 @@ impl Spherical3Rrr {
         pose: &[f64; 4],
         torques: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let t4 = 1.0 / minus_s_distal_leg2;
-        let gwrist_wx_leg2 = minus_s_proximal_leg2 * t4;
-        let gproximal_wx_leg2 = c_distal_leg2 * gwrist_wx_leg2;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t13 = 1.0 / minus_s_distal_leg3;
-        let gwrist_wx_leg3 = minus_c_proximal_leg3 * t13;
-        let gproximal_wx_leg3 = c_distal_leg3 * gwrist_wx_leg3;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let t22 = 1.0 / minus_s_distal_leg1;
-        let gwrist_wy_leg1 = minus_c_proximal_leg1 * t22;
-        let gproximal_wy_leg1 = c_distal_leg1 * gwrist_wy_leg1;
-        let gwrist_wy_leg3 = minus_s_proximal_leg3 * t13;
-        let gproximal_wy_leg3 = c_distal_leg3 * gwrist_wy_leg3;
-        let gwrist_wz_leg1 = minus_s_proximal_leg1 * t22;
-        let gproximal_wz_leg1 = c_distal_leg1 * gwrist_wz_leg1;
-        let gwrist_wz_leg2 = minus_c_proximal_leg2 * t4;
-        let gproximal_wz_leg2 = c_distal_leg2 * gwrist_wz_leg2;
+        let t0 = 2.0 * pose[2];
+        let t1 = pose[3] * t0;
+        let t2 = 2.0 * pose[1];
+        let t3 = pose[0] * t2;
+        let minus_s_distal_leg2 = t1 - t3;
+        let t6 = 1.0 - pose[1] * t2;
+        let t7 = pose[2] * t0;
+        let t8 = t6 - t7;
+        let t10 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t10, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t10);
+        let t13 = 1.0 / (t8 * c_distal_leg2);
+        let t14 = pose[3] * t2;
+        let t15 = pose[0] * t0;
+        let t16 = t14 + t15;
+        let s_proximal_leg2 = t13 * (t16 * t8);
+        let c_proximal_leg2 = t13 * (t8 * t8);
+        let t23 = t16 * s_proximal_leg2 + t8 * c_proximal_leg2;
+        ::overact::guard::leg(t23, 1.0, "leg2")?;
+        let t24 = 1.0 / t23;
+        let gwrist_wx_leg2 = s_proximal_leg2 * t24;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
+        let minus_s_distal_leg3 = t14 - t15;
+        let t31 = 2.0 * pose[3];
+        let t32 = pose[3] * t31;
+        let t33 = 1.0 - t7 - t32;
+        let t35 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t35, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t35);
+        let t38 = 1.0 / (t33 * c_distal_leg3);
+        let c_proximal_leg3 = t38 * (t33 * t33);
+        let t42 = pose[2] * t2;
+        let t43 = pose[0] * t31;
+        let t44 = t42 + t43;
+        let s_proximal_leg3 = t38 * (t33 * t44);
+        let t48 = t33 * c_proximal_leg3 + t44 * s_proximal_leg3;
+        ::overact::guard::leg(t48, 1.0, "leg3")?;
+        let t49 = 1.0 / t48;
+        let gwrist_wx_leg3 = c_proximal_leg3 * t49;
+        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
+        let minus_s_distal_leg1 = t42 - t43;
+        let t55 = t6 - t32;
+        let t57 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t57, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t57);
+        let t60 = 1.0 / (t55 * c_distal_leg1);
+        let c_proximal_leg1 = t60 * (t55 * t55);
+        let t64 = t1 + t3;
+        let s_proximal_leg1 = t60 * (t55 * t64);
+        let t68 = t55 * c_proximal_leg1 + t64 * s_proximal_leg1;
+        ::overact::guard::leg(t68, 1.0, "leg1")?;
+        let t69 = 1.0 / t68;
+        let gwrist_wy_leg1 = c_proximal_leg1 * t69;
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
+        let gwrist_wy_leg3 = s_proximal_leg3 * t49;
+        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
+        let gwrist_wz_leg1 = s_proximal_leg1 * t69;
+        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
+        let gwrist_wz_leg2 = c_proximal_leg2 * t24;
+        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
         Ok([
-            torques[0] + gproximal_wx_leg2 * torques[1] + gproximal_wx_leg3 * torques[2],
-            gproximal_wy_leg1 * torques[0] + torques[1] + gproximal_wy_leg3 * torques[2],
-            gproximal_wz_leg1 * torques[0] + gproximal_wz_leg2 * torques[1] + torques[2],
+            torques[0] - minus_gproximal_wx_leg2 * torques[1]
+                - minus_gproximal_wx_leg3 * torques[2],
+            torques[1] - minus_gproximal_wy_leg1 * torques[0]
+                - minus_gproximal_wy_leg3 * torques[2],
+            torques[2]
+                - (minus_gproximal_wz_leg1 * torques[0]
+                    + minus_gproximal_wz_leg2 * torques[1]),
         ])
     }
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
@@ -4026,7 +5763,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 592 operations (256 additions, 330 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 604 intermediates.
+    /// 620 operations (261 additions, 350 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 623 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4036,8 +5773,296 @@ impl Spherical3Rrr {
         acceleration: &[f64; 3],
         parameters: &[f64; 54],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::inverse_dynamics_from_joints(pose, joints, twist, acceleration, parameters)
+        let t0 = 2.0 * pose[1];
+        let t2 = 1.0 - pose[1] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = t2 - t4;
+        let t6 = pose[2] * t0;
+        let t7 = pose[0] * t3;
+        let minus_s_distal_leg1 = t6 - t7;
+        let t10 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t10, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t10);
+        let t13 = 1.0 / (t5 * c_distal_leg1);
+        let t14 = 2.0 * pose[2];
+        let t15 = pose[3] * t14;
+        let t16 = pose[0] * t0;
+        let t17 = t15 + t16;
+        let s_proximal_leg1 = t13 * (t5 * t17);
+        let c_proximal_leg1 = t13 * (t5 * t5);
+        let t24 = t5 * c_proximal_leg1 + t17 * s_proximal_leg1;
+        ::overact::guard::leg(t24, 1.0, "leg1")?;
+        let t25 = 1.0 / t24;
+        let gdistal_wz_leg1 = t5 * t25;
+        let minus_gdistal_wy_leg1 = t17 * t25;
+        let rate_distal_leg1 = gdistal_wz_leg1 * twist[2]
+            - minus_gdistal_wy_leg1 * twist[1];
+        let t31 = s_proximal_leg1 * rate_distal_leg1;
+        let gwrist_wy_leg1 = c_proximal_leg1 * t25;
+        let gwrist_wz_leg1 = s_proximal_leg1 * t25;
+        let rate_wrist_leg1 = gwrist_wy_leg1 * twist[1] + gwrist_wz_leg1 * twist[2];
+        let t37 = t17 * rate_wrist_leg1;
+        let t39 = c_proximal_leg1 * rate_distal_leg1;
+        let t40 = t5 * rate_wrist_leg1;
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
+        let t45 = minus_s_distal_leg1 * rate_wrist_leg1;
+        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
+        let rate_proximal_leg1 = twist[0] - minus_gproximal_wy_leg1 * twist[1]
+            - minus_gproximal_wz_leg1 * twist[2];
+        let t56 = acceleration[1]
+            - (t39 * t45 - rate_proximal_leg1 * t37 - rate_proximal_leg1 * t39);
+        let t64 = acceleration[2]
+            - (rate_proximal_leg1 * t40 + t31 * t45 - rate_proximal_leg1 * t31);
+        let rate_dot_proximal_leg1 = acceleration[0] + t31 * t37 + t39 * t40
+            - minus_gproximal_wy_leg1 * t56 - minus_gproximal_wz_leg1 * t64;
+        let t68 = 9.81 * c_proximal_leg1;
+        let t80 = parameters[0] * rate_dot_proximal_leg1 - parameters[1] * t68
+            + parameters[2] * (9.81 * s_proximal_leg1)
+            + parameters[3] * rate_dot_proximal_leg1 + parameters[4] * rate_proximal_leg1
+            + ::overact::math::signed(parameters[5], rate_proximal_leg1) + parameters[6];
+        let t81 = c_distal_leg1 * rate_proximal_leg1;
+        let t82 = rate_distal_leg1 * t81;
+        let t83 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t84 = t82 - t83;
+        let t87 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t88 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t89 = rate_distal_leg1 * t88;
+        let t90 = t87 + t89;
+        let t93 = t81 * t88;
+        let rate_dot_distal_leg1 = gdistal_wz_leg1 * t64 - minus_gdistal_wy_leg1 * t56;
+        let t102 = t88 * t88;
+        let t103 = rate_distal_leg1 * rate_distal_leg1;
+        let t106 = parameters[8] * (t82 + t84) - parameters[7] * t90
+            + parameters[9] * (t93 + rate_dot_distal_leg1) + parameters[10] * t89
+            + parameters[11] * (t102 - t103);
+        let t111 = 9.81 * t17;
+        let t115 = t81 * t81;
+        let t127 = parameters[9] * (t103 - t115)
+            - (parameters[7] * t82 + parameters[8] * (t89 + t90)) + parameters[10] * t84
+            - parameters[11] * (t93 - rate_dot_distal_leg1);
+        let t133 = 9.81 * (minus_s_distal_leg1 * s_proximal_leg1);
+        let t137 = c_distal_leg1
+            * (t106 - parameters[12] * t89 + parameters[14] * t68
+                + parameters[15] * t111)
+            + minus_s_distal_leg1
+                * (t127 + parameters[12] * t82 - parameters[13] * t68
+                    + parameters[15] * t133);
+        let t138 = t80 - t137;
+        let t139 = pose[2] * t14;
+        let t140 = t2 - t139;
+        let t141 = pose[3] * t0;
+        let t142 = pose[0] * t14;
+        let t143 = t141 + t142;
+        let minus_s_distal_leg2 = t15 - t16;
+        let t146 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t146, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t146);
+        let t149 = 1.0 / (t140 * c_distal_leg2);
+        let s_proximal_leg2 = t149 * (t143 * t140);
+        let c_proximal_leg2 = t149 * (t140 * t140);
+        let t156 = t143 * s_proximal_leg2 + t140 * c_proximal_leg2;
+        ::overact::guard::leg(t156, 1.0, "leg2")?;
+        let t157 = 1.0 / t156;
+        let gdistal_wx_leg2 = t140 * t157;
+        let gwrist_wx_leg2 = s_proximal_leg2 * t157;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
+        let gwrist_wz_leg2 = c_proximal_leg2 * t157;
+        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
+        let rate_proximal_leg2 = twist[1] - minus_gproximal_wx_leg2 * twist[0]
+            - minus_gproximal_wz_leg2 * twist[2];
+        let t167 = c_distal_leg2 * rate_proximal_leg2;
+        let t168 = t167 * t167;
+        let t169 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t170 = t169 * t169;
+        let t173 = t167 * t169;
+        let minus_gdistal_wz_leg2 = t143 * t157;
+        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
+            - minus_gdistal_wz_leg2 * twist[2];
+        let t180 = s_proximal_leg2 * rate_distal_leg2;
+        let rate_wrist_leg2 = gwrist_wx_leg2 * twist[0] + gwrist_wz_leg2 * twist[2];
+        let t184 = t143 * rate_wrist_leg2;
+        let t186 = c_proximal_leg2 * rate_distal_leg2;
+        let t187 = t140 * rate_wrist_leg2;
+        let t192 = minus_s_distal_leg2 * rate_wrist_leg2;
+        let t197 = acceleration[0]
+            - (rate_proximal_leg2 * t187 + t180 * t192 - rate_proximal_leg2 * t180);
+        let t205 = acceleration[2]
+            - (t186 * t192 - rate_proximal_leg2 * t184 - rate_proximal_leg2 * t186);
+        let rate_dot_proximal_leg2 = acceleration[1] + t180 * t184 + t186 * t187
+            - minus_gproximal_wx_leg2 * t197 - minus_gproximal_wz_leg2 * t205;
+        let t208 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t213 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t215 = parameters[24] * (t168 - t170) - parameters[23] * t173
+            - parameters[25] * t208 + parameters[26] * t173 - parameters[27] * t213;
+        let rate_dot_distal_leg2 = gdistal_wx_leg2 * t197 - minus_gdistal_wz_leg2 * t205;
+        let t221 = 9.81 * t140;
+        let t225 = 9.81 * (minus_s_distal_leg2 * c_proximal_leg2);
+        let t227 = t215 + parameters[28] * rate_dot_distal_leg2 - parameters[29] * t221
+            - parameters[30] * t225;
+        let t230 = 9.81 * s_proximal_leg2;
+        let t242 = parameters[16] * rate_dot_proximal_leg2 + parameters[17] * t230
+            + parameters[18] * (9.81 * c_proximal_leg2)
+            + parameters[19] * rate_dot_proximal_leg2
+            + parameters[20] * rate_proximal_leg2
+            + ::overact::math::signed(parameters[21], rate_proximal_leg2)
+            + parameters[22];
+        let t243 = rate_distal_leg2 * t167;
+        let t244 = t243 - t213;
+        let t247 = rate_distal_leg2 * t169;
+        let t248 = t208 + t247;
+        let t256 = rate_distal_leg2 * rate_distal_leg2;
+        let t259 = parameters[24] * (t243 + t244) - parameters[23] * t248
+            + parameters[25] * (t173 + rate_dot_distal_leg2) + parameters[26] * t247
+            + parameters[27] * (t170 - t256);
+        let t278 = parameters[25] * (t256 - t168)
+            - (parameters[23] * t243 + parameters[24] * (t247 + t248))
+            + parameters[26] * t244 - parameters[27] * (t173 - rate_dot_distal_leg2);
+        let t286 = c_distal_leg2
+            * (t259 - parameters[28] * t247 - parameters[30] * t230
+                + parameters[31] * t221)
+            + minus_s_distal_leg2
+                * (t278 + parameters[28] * t243 + parameters[29] * t230
+                    + parameters[31] * t225);
+        let t287 = t242 - t286;
+        let minus_s_distal_leg3 = t141 - t142;
+        let t293 = 1.0 - t139 - t4;
+        let t295 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t295, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t295);
+        let t298 = 1.0 / (t293 * c_distal_leg3);
+        let c_proximal_leg3 = t298 * (t293 * t293);
+        let t302 = t6 + t7;
+        let s_proximal_leg3 = t298 * (t293 * t302);
+        let t306 = t293 * c_proximal_leg3 + t302 * s_proximal_leg3;
+        ::overact::guard::leg(t306, 1.0, "leg3")?;
+        let t307 = 1.0 / t306;
+        let gwrist_wx_leg3 = c_proximal_leg3 * t307;
+        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
+        let gdistal_wy_leg3 = t293 * t307;
+        let minus_gdistal_wx_leg3 = t302 * t307;
+        let rate_distal_leg3 = gdistal_wy_leg3 * twist[1]
+            - minus_gdistal_wx_leg3 * twist[0];
+        let t315 = s_proximal_leg3 * rate_distal_leg3;
+        let gwrist_wy_leg3 = s_proximal_leg3 * t307;
+        let rate_wrist_leg3 = gwrist_wx_leg3 * twist[0] + gwrist_wy_leg3 * twist[1];
+        let t320 = t302 * rate_wrist_leg3;
+        let t322 = c_proximal_leg3 * rate_distal_leg3;
+        let t323 = t293 * rate_wrist_leg3;
+        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
+        let t330 = minus_gproximal_wx_leg3 * twist[0]
+            + minus_gproximal_wy_leg3 * twist[1];
+        let rate_proximal_leg3 = twist[2] - t330;
+        let t337 = acceleration[0]
+            - (t330 * t322 - rate_proximal_leg3 * t320 - rate_proximal_leg3 * t322);
+        let t344 = acceleration[1]
+            - (rate_proximal_leg3 * t323 + t330 * t315 - rate_proximal_leg3 * t315);
+        let rate_dot_proximal_leg3 = acceleration[2] + t315 * t320 + t322 * t323
+            - (minus_gproximal_wx_leg3 * t337 + minus_gproximal_wy_leg3 * t344);
+        let t356 = c_distal_leg3 * rate_proximal_leg3;
+        let t357 = rate_distal_leg3 * t356;
+        let t358 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t359 = t357 - t358;
+        let t362 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t363 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t364 = rate_distal_leg3 * t363;
+        let t365 = t362 + t364;
+        let t368 = t356 * t363;
+        let rate_dot_distal_leg3 = gdistal_wy_leg3 * t344 - minus_gdistal_wx_leg3 * t337;
+        let t377 = t363 * t363;
+        let t378 = rate_distal_leg3 * rate_distal_leg3;
+        let t381 = parameters[38] * (t357 + t359) - parameters[37] * t365
+            + parameters[39] * (t368 + rate_dot_distal_leg3) + parameters[40] * t364
+            + parameters[41] * (t377 - t378);
+        let t385 = t356 * t356;
+        let t397 = parameters[39] * (t378 - t385)
+            - (parameters[37] * t357 + parameters[38] * (t364 + t365))
+            + parameters[40] * t359 - parameters[41] * (t368 - rate_dot_distal_leg3);
+        let t402 = parameters[32] * rate_dot_proximal_leg3
+            + parameters[33] * rate_dot_proximal_leg3
+            + parameters[34] * rate_proximal_leg3
+            + ::overact::math::signed(parameters[35], rate_proximal_leg3)
+            + parameters[36]
+            - (c_distal_leg3 * (t381 - parameters[42] * t364)
+                + minus_s_distal_leg3 * (t397 + parameters[42] * t357));
+        let t413 = parameters[38] * (t385 - t377) - parameters[37] * t368
+            - parameters[39] * t362 + parameters[40] * t368 - parameters[41] * t358;
+        let t416 = 9.81 * minus_s_distal_leg3;
+        let t421 = t413 + parameters[42] * rate_dot_distal_leg3 - parameters[43] * t416
+            + parameters[44] * (9.81 * c_distal_leg3);
+        let t429 = t293 * acceleration[0] + t302 * acceleration[1]
+            + minus_s_distal_leg3 * acceleration[2];
+        let t435 = t293 * twist[0] + t302 * twist[1] + minus_s_distal_leg3 * twist[2];
+        let t440 = t143 * twist[0] + minus_s_distal_leg2 * twist[1] + t140 * twist[2];
+        let t441 = t435 * t440;
+        let t446 = minus_s_distal_leg1 * acceleration[0] + t5 * acceleration[1]
+            + t17 * acceleration[2];
+        let t454 = minus_s_distal_leg1 * twist[0] + t5 * twist[1] + t17 * twist[2];
+        let t455 = t435 * t454;
+        let t460 = t143 * acceleration[0] + minus_s_distal_leg2 * acceleration[1]
+            + t140 * acceleration[2];
+        let t464 = t454 * t440;
+        let t467 = t454 * t454;
+        let t468 = t440 * t440;
+        let t471 = parameters[45] * t429 - parameters[46] * (t441 - t446)
+            + parameters[47] * (t455 + t460) - parameters[48] * t464
+            + parameters[49] * (t467 - t468);
+        let t477 = t471 + parameters[50] * t464 + parameters[52] * t221
+            - parameters[53] * t111;
+        let t483 = t435 * t435;
+        let t491 = parameters[45] * t441 + parameters[46] * (t464 + t429)
+            + parameters[47] * (t468 - t483) + parameters[48] * t446
+            - parameters[49] * (t455 - t460);
+        let t497 = t491 - parameters[50] * t441 - parameters[51] * t221
+            + parameters[53] * t416;
+        let t511 = parameters[46] * (t483 - t467) - parameters[45] * t455
+            - parameters[47] * (t464 - t429) + parameters[48] * t455
+            + parameters[49] * (t441 + t446);
+        let t517 = t511 + parameters[50] * t460 + parameters[51] * t111
+            - parameters[52] * t416;
+        let t520 = t138 + gdistal_wx_leg2 * t227 - minus_gproximal_wx_leg2 * t287
+            - (minus_gproximal_wx_leg3 * t402 + minus_gdistal_wx_leg3 * t421)
+            + t293 * t477 + minus_s_distal_leg1 * t497 + t143 * t517;
+        let t524 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
+        ::overact::guard::platform(t524, 1.0, "actuators")?;
+        let t525 = 1.0 / t524;
+        let t529 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+            - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
+        let t530 = t529 * t525;
+        let t536 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t529 * t530;
+        ::overact::guard::platform(t536, 1.0, "actuators")?;
+        let t537 = 1.0 / t536;
+        let t548 = parameters[8] * (t115 - t102) - parameters[7] * t93
+            - parameters[9] * t87 + parameters[10] * t93 - parameters[11] * t83;
+        let t554 = t548 + parameters[12] * rate_dot_distal_leg1 - parameters[13] * t111
+            - parameters[14] * t133;
+        let t567 = t287 - (minus_gproximal_wy_leg1 * t138 + minus_gdistal_wy_leg1 * t554)
+            + gdistal_wy_leg3 * t421 - minus_gproximal_wy_leg3 * t402 + t302 * t477
+            + t5 * t497 + minus_s_distal_leg2 * t517;
+        let t569 = t567 - t520 * t530;
+        let t576 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
+        let t577 = t576 * t525;
+        let t579 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t529 * t577;
+        let t580 = t579 * t537;
+        let t588 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t576 * t577
+            - t579 * t580;
+        ::overact::guard::platform(t588, 1.0, "actuators")?;
+        let t602 = gdistal_wz_leg1 * t554 - minus_gproximal_wz_leg1 * t138
+            - (minus_gproximal_wz_leg2 * t287 + minus_gdistal_wz_leg2 * t227) + t402
+            + minus_s_distal_leg3 * t477 + t17 * t497 + t140 * t517;
+        let t607 = (t602 - t520 * t577 - t580 * t569) / t588;
+        let t609 = t537 * t569 - t580 * t607;
+        let t613 = t520 * t525 - t530 * t609 - t577 * t607;
+        Ok([
+            t613 - minus_gproximal_wy_leg1 * t609 - minus_gproximal_wz_leg1 * t607,
+            t609 - minus_gproximal_wx_leg2 * t613 - minus_gproximal_wz_leg2 * t607,
+            t607 - (minus_gproximal_wx_leg3 * t613 + minus_gproximal_wy_leg3 * t609),
+        ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -4352,7 +6377,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 638 operations (275 additions, 357 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 650 intermediates.
+    /// 666 operations (280 additions, 377 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 669 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4364,307 +6389,320 @@ impl Spherical3Rrr {
         start: &[f64; 4],
     ) -> Result<[f64; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let t4 = 1.0 / minus_s_distal_leg2;
-        let gwrist_wx_leg2 = minus_s_proximal_leg2 * t4;
-        let gproximal_wx_leg2 = c_distal_leg2 * gwrist_wx_leg2;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t13 = 1.0 / minus_s_distal_leg3;
-        let gwrist_wx_leg3 = minus_c_proximal_leg3 * t13;
-        let gproximal_wx_leg3 = c_distal_leg3 * gwrist_wx_leg3;
-        let t17 = 1.0 + gproximal_wx_leg2 * gproximal_wx_leg2
-            + gproximal_wx_leg3 * gproximal_wx_leg3;
-        ::overact::guard::platform(t17, 1.0, "actuators")?;
-        ::overact::guard::platform(t17, 1.0, "actuators")?;
-        ::overact::guard::platform(t17, 1.0, "actuators")?;
-        let t18 = 1.0 / t17;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let t22 = 9.81 * minus_c_proximal_leg1;
-        let t34 = actuator_accelerations[0] * parameters[0] - t22 * parameters[1]
-            + 9.81 * minus_s_proximal_leg1 * parameters[2]
+        let t0 = 2.0 * pose[2];
+        let t1 = pose[3] * t0;
+        let t2 = 2.0 * pose[1];
+        let t3 = pose[0] * t2;
+        let minus_s_distal_leg2 = t1 - t3;
+        let t6 = 1.0 - pose[1] * t2;
+        let t7 = pose[2] * t0;
+        let t8 = t6 - t7;
+        let t10 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t10, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t10);
+        let t13 = 1.0 / (t8 * c_distal_leg2);
+        let t14 = pose[3] * t2;
+        let t15 = pose[0] * t0;
+        let t16 = t14 + t15;
+        let s_proximal_leg2 = t13 * (t16 * t8);
+        let c_proximal_leg2 = t13 * (t8 * t8);
+        let t23 = t16 * s_proximal_leg2 + t8 * c_proximal_leg2;
+        ::overact::guard::leg(t23, 1.0, "leg2")?;
+        let t24 = 1.0 / t23;
+        let gwrist_wx_leg2 = s_proximal_leg2 * t24;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
+        let minus_s_distal_leg3 = t14 - t15;
+        let t31 = 2.0 * pose[3];
+        let t32 = pose[3] * t31;
+        let t33 = 1.0 - t7 - t32;
+        let t35 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t35, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t35);
+        let t38 = 1.0 / (t33 * c_distal_leg3);
+        let c_proximal_leg3 = t38 * (t33 * t33);
+        let t42 = pose[2] * t2;
+        let t43 = pose[0] * t31;
+        let t44 = t42 + t43;
+        let s_proximal_leg3 = t38 * (t33 * t44);
+        let t48 = t33 * c_proximal_leg3 + t44 * s_proximal_leg3;
+        ::overact::guard::leg(t48, 1.0, "leg3")?;
+        let t49 = 1.0 / t48;
+        let gwrist_wx_leg3 = c_proximal_leg3 * t49;
+        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
+        let t53 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
+        ::overact::guard::platform(t53, 1.0, "actuators")?;
+        ::overact::guard::platform(t53, 1.0, "actuators")?;
+        ::overact::guard::platform(t53, 1.0, "actuators")?;
+        let t54 = 1.0 / t53;
+        let t56 = t6 - t32;
+        let minus_s_distal_leg1 = t42 - t43;
+        let t59 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t59, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t59);
+        let t62 = 1.0 / (t56 * c_distal_leg1);
+        let c_proximal_leg1 = t62 * (t56 * t56);
+        let t65 = 9.81 * c_proximal_leg1;
+        let t68 = t1 + t3;
+        let s_proximal_leg1 = t62 * (t56 * t68);
+        let t80 = actuator_accelerations[0] * parameters[0] - t65 * parameters[1]
+            + 9.81 * s_proximal_leg1 * parameters[2]
             + actuator_accelerations[0] * parameters[3]
             + actuator_velocities[0] * parameters[4]
             + ::overact::math::signed(parameters[5], actuator_velocities[0])
             + parameters[6];
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t37 = 1.0 / minus_s_distal_leg1;
-        let gwrist_wz_leg1 = minus_s_proximal_leg1 * t37;
-        let gproximal_wz_leg1 = c_distal_leg1 * gwrist_wz_leg1;
-        let gwrist_wz_leg2 = minus_c_proximal_leg2 * t4;
-        let gproximal_wz_leg2 = c_distal_leg2 * gwrist_wz_leg2;
-        let t48 = gproximal_wz_leg1 + gproximal_wx_leg2 * gproximal_wz_leg2
-            + gproximal_wx_leg3;
-        let t49 = t48 * t18;
-        let gwrist_wy_leg1 = minus_c_proximal_leg1 * t37;
-        let gproximal_wy_leg1 = c_distal_leg1 * gwrist_wy_leg1;
-        let gwrist_wy_leg3 = minus_s_proximal_leg3 * t13;
-        let gproximal_wy_leg3 = c_distal_leg3 * gwrist_wy_leg3;
-        let t61 = gproximal_wy_leg1 + gproximal_wx_leg2
-            + gproximal_wx_leg3 * gproximal_wy_leg3;
-        let t63 = gproximal_wy_leg1 * gproximal_wz_leg1 + gproximal_wz_leg2
-            + gproximal_wy_leg3 - t61 * t49;
-        let t68 = t61 * t18;
-        let t70 = gproximal_wy_leg1 * gproximal_wy_leg1 + 1.0
-            + gproximal_wy_leg3 * gproximal_wy_leg3 - t61 * t68;
-        ::overact::guard::platform(t70, 1.0, "actuators")?;
-        ::overact::guard::platform(t70, 1.0, "actuators")?;
-        ::overact::guard::platform(t70, 1.0, "actuators")?;
-        let t71 = 1.0 / t70;
-        let t72 = t63 * t71;
-        let t74 = gproximal_wz_leg1 * gproximal_wz_leg1
-            + gproximal_wz_leg2 * gproximal_wz_leg2 + 1.0 - t48 * t49 - t63 * t72;
-        ::overact::guard::platform(t74, 1.0, "actuators")?;
-        ::overact::guard::platform(t74, 1.0, "actuators")?;
-        ::overact::guard::platform(t74, 1.0, "actuators")?;
-        let t75 = 1.0 / t74;
-        let t83 = actuator_velocities[0] + gproximal_wx_leg2 * actuator_velocities[1]
-            + gproximal_wx_leg3 * actuator_velocities[2];
-        let t91 = gproximal_wy_leg1 * actuator_velocities[0] + actuator_velocities[1]
-            + gproximal_wy_leg3 * actuator_velocities[2] - t83 * t68;
-        let t94 = t75
-            * (gproximal_wz_leg1 * actuator_velocities[0]
-                + gproximal_wz_leg2 * actuator_velocities[1] + actuator_velocities[2]
-                - t83 * t49 - t72 * t91);
-        let t98 = t71 * t91 - t72 * t94;
-        let rate_distal_leg1 = minus_c_proximal_leg1 * t94 - minus_s_proximal_leg1 * t98;
-        let t101 = c_distal_leg1 * actuator_velocities[0];
-        let t102 = rate_distal_leg1 * t101;
-        let t103 = minus_s_distal_leg1 * actuator_accelerations[0];
-        let t104 = t102 - t103;
-        let t107 = minus_s_distal_leg1 * actuator_velocities[0];
-        let t108 = rate_distal_leg1 * t107;
-        let t111 = rate_distal_leg1 * rate_distal_leg1;
-        let t112 = t107 * t107;
-        let t116 = c_distal_leg1 * actuator_accelerations[0];
-        let t117 = t116 + t108;
-        let t120 = t107 * t101;
-        let rate_wrist_leg1 = gwrist_wy_leg1 * t98 + gwrist_wz_leg1 * t94;
-        let t125 = minus_c_proximal_leg1 * minus_s_distal_leg1 * rate_wrist_leg1;
-        let t127 = minus_s_proximal_leg1 * rate_distal_leg1;
-        let t128 = c_distal_leg1 * rate_wrist_leg1;
-        let t132 = actuator_velocities[0] * t125 - t127 * t128
-            - actuator_velocities[0] * t127;
-        let t134 = minus_s_proximal_leg1 * minus_s_distal_leg1;
-        let t135 = t134 * rate_wrist_leg1;
-        let t137 = minus_c_proximal_leg1 * rate_distal_leg1;
-        let t144 = actuator_velocities[0] * t137 + t137 * t128
-            + actuator_velocities[0] * t135;
-        let minus_rate_dot_proximal_leg1 = gproximal_wz_leg1 * t132
-            - (t127 * t135 + t137 * t125 + gproximal_wy_leg1 * t144);
-        let t148 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
-        let t150 = minus_c_proximal_leg2 * minus_s_distal_leg2;
-        let t155 = t83 * t18 - t68 * t98 - t49 * t94;
-        let rate_wrist_leg2 = gwrist_wx_leg2 * t155 + gwrist_wz_leg2 * t94;
-        let t159 = t150 * rate_wrist_leg2;
-        let rate_distal_leg2 = minus_c_proximal_leg2 * t155
-            - minus_s_proximal_leg2 * t94;
-        let t164 = minus_s_proximal_leg2 * rate_distal_leg2;
-        let t165 = c_distal_leg2 * rate_wrist_leg2;
-        let t169 = actuator_velocities[1] * t159 - t164 * t165
-            - actuator_velocities[1] * t164;
-        let t172 = minus_s_proximal_leg2 * minus_s_distal_leg2 * rate_wrist_leg2;
-        let t174 = minus_c_proximal_leg2 * rate_distal_leg2;
-        let t182 = actuator_velocities[1] * t174 + t174 * t165
-            + actuator_velocities[1] * t172;
-        let minus_rate_dot_proximal_leg2 = gproximal_wx_leg2 * t169
-            - (t164 * t172 + t174 * t159) - gproximal_wz_leg2 * t182;
-        let t185 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
-        let rate_wrist_leg3 = gwrist_wx_leg3 * t155 + gwrist_wy_leg3 * t98;
-        let t192 = minus_c_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let t196 = gproximal_wx_leg3 * t155 + gproximal_wy_leg3 * t98;
-        let rate_distal_leg3 = minus_c_proximal_leg3 * t98
-            - minus_s_proximal_leg3 * t155;
-        let t200 = minus_s_proximal_leg3 * rate_distal_leg3;
-        let t204 = actuator_velocities[2] * t192 - t196 * t200
-            - actuator_velocities[2] * t200;
-        let t206 = minus_c_proximal_leg3 * rate_distal_leg3;
-        let t210 = minus_s_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let t213 = actuator_velocities[2] * t206 + t196 * t206
-            + actuator_velocities[2] * t210;
-        let minus_rate_dot_proximal_leg3 = gproximal_wy_leg3 * t204
-            - gproximal_wx_leg3 * t213 - (t200 * t210 + t206 * t192);
-        let t220 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
-        let t225 = t148 + gproximal_wx_leg2 * t185 + gproximal_wx_leg3 * t220;
-        let t233 = gproximal_wy_leg1 * t148 + t185 + gproximal_wy_leg3 * t220
-            - t68 * t225;
-        let t236 = t75
-            * (gproximal_wz_leg1 * t148 + gproximal_wz_leg2 * t185 + t220 - t49 * t225
-                - t72 * t233);
-        let t241 = t71 * t233 - t72 * t236;
-        let rate_dot_distal_leg1 = minus_c_proximal_leg1 * (t236 - t132)
-            - minus_s_proximal_leg1 * (t241 + t144);
-        let t247 = parameters[8] * (t102 + t104) - t108 * parameters[7]
-            + parameters[9] * (t111 - t112) + parameters[10] * t117
-            + parameters[11] * (t120 + rate_dot_distal_leg1);
-        let t253 = 9.81 * (minus_s_proximal_leg1 * c_distal_leg1);
-        let t266 = t101 * t101;
-        let t269 = parameters[7] * t104 + parameters[8] * (t108 + t117)
-            + parameters[9] * (rate_dot_distal_leg1 - t120) - t102 * parameters[10]
-            + parameters[11] * (t266 - t111);
-        let t274 = 9.81 * t134;
-        let t278 = c_distal_leg1
-            * (t247 + t108 * parameters[12] - t22 * parameters[13]
-                - t253 * parameters[15])
-            - minus_s_distal_leg1
-                * (t269 + t102 * parameters[12] + t22 * parameters[14]
-                    + t274 * parameters[15]);
-        let t279 = t34 + t278;
-        let t281 = 9.81 * minus_s_proximal_leg2;
-        let t293 = actuator_accelerations[1] * parameters[16] + t281 * parameters[17]
-            + 9.81 * minus_c_proximal_leg2 * parameters[18]
+        let t83 = t56 * c_proximal_leg1 + t68 * s_proximal_leg1;
+        ::overact::guard::leg(t83, 1.0, "leg1")?;
+        let t84 = 1.0 / t83;
+        let gdistal_wz_leg1 = t56 * t84;
+        let gwrist_wz_leg1 = s_proximal_leg1 * t84;
+        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
+        let gwrist_wz_leg2 = c_proximal_leg2 * t24;
+        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
+        let t96 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
+        let t97 = t96 * t54;
+        let gwrist_wy_leg1 = c_proximal_leg1 * t84;
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
+        let gwrist_wy_leg3 = s_proximal_leg3 * t49;
+        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
+        let t109 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+            - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
+        let t111 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t109 * t97;
+        let t116 = t109 * t54;
+        let t118 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t109 * t116;
+        ::overact::guard::platform(t118, 1.0, "actuators")?;
+        ::overact::guard::platform(t118, 1.0, "actuators")?;
+        ::overact::guard::platform(t118, 1.0, "actuators")?;
+        let t119 = 1.0 / t118;
+        let t120 = t111 * t119;
+        let t122 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t96 * t97
+            - t111 * t120;
+        ::overact::guard::platform(t122, 1.0, "actuators")?;
+        ::overact::guard::platform(t122, 1.0, "actuators")?;
+        ::overact::guard::platform(t122, 1.0, "actuators")?;
+        let t123 = 1.0 / t122;
+        let t131 = actuator_velocities[0]
+            - minus_gproximal_wx_leg2 * actuator_velocities[1]
+            - minus_gproximal_wx_leg3 * actuator_velocities[2];
+        let t139 = actuator_velocities[1]
+            - minus_gproximal_wy_leg1 * actuator_velocities[0]
+            - minus_gproximal_wy_leg3 * actuator_velocities[2] - t131 * t116;
+        let t142 = t123
+            * (actuator_velocities[2]
+                - (minus_gproximal_wz_leg1 * actuator_velocities[0]
+                    + minus_gproximal_wz_leg2 * actuator_velocities[1]) - t131 * t97
+                - t120 * t139);
+        let minus_gdistal_wy_leg1 = t68 * t84;
+        let t147 = t119 * t139 - t120 * t142;
+        let rate_distal_leg1 = gdistal_wz_leg1 * t142 - minus_gdistal_wy_leg1 * t147;
+        let t150 = c_distal_leg1 * actuator_velocities[0];
+        let t151 = rate_distal_leg1 * t150;
+        let t152 = minus_s_distal_leg1 * actuator_accelerations[0];
+        let t153 = t151 - t152;
+        let t156 = c_distal_leg1 * actuator_accelerations[0];
+        let t157 = minus_s_distal_leg1 * actuator_velocities[0];
+        let t158 = rate_distal_leg1 * t157;
+        let t159 = t156 + t158;
+        let t162 = t150 * t157;
+        let t167 = t131 * t54 - t116 * t147 - t97 * t142;
+        let t170 = minus_gproximal_wx_leg3 * t167 + minus_gproximal_wy_leg3 * t147;
+        let gdistal_wy_leg3 = t33 * t49;
+        let minus_gdistal_wx_leg3 = t44 * t49;
+        let rate_distal_leg3 = gdistal_wy_leg3 * t147 - minus_gdistal_wx_leg3 * t167;
+        let t176 = c_proximal_leg3 * rate_distal_leg3;
+        let rate_wrist_leg3 = gwrist_wx_leg3 * t167 + gwrist_wy_leg3 * t147;
+        let t181 = t44 * rate_wrist_leg3;
+        let t185 = t170 * t176 - actuator_velocities[2] * t181
+            - actuator_velocities[2] * t176;
+        let t187 = t33 * rate_wrist_leg3;
+        let t189 = s_proximal_leg3 * rate_distal_leg3;
+        let t193 = actuator_velocities[2] * t187 + t170 * t189
+            - actuator_velocities[2] * t189;
+        let rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t185
+            + minus_gproximal_wy_leg3 * t193 + t189 * t181 + t176 * t187;
+        let t200 = actuator_accelerations[2] - rate_dot_proximal_leg3;
+        let t201 = s_proximal_leg1 * rate_distal_leg1;
+        let rate_wrist_leg1 = gwrist_wy_leg1 * t147 + gwrist_wz_leg1 * t142;
+        let t205 = t68 * rate_wrist_leg1;
+        let t207 = c_proximal_leg1 * rate_distal_leg1;
+        let t208 = t56 * rate_wrist_leg1;
+        let t211 = minus_s_distal_leg1 * rate_wrist_leg1;
+        let t216 = t207 * t211 - actuator_velocities[0] * t205
+            - actuator_velocities[0] * t207;
+        let t223 = actuator_velocities[0] * t208 + t201 * t211
+            - actuator_velocities[0] * t201;
+        let rate_dot_proximal_leg1 = t201 * t205 + t207 * t208
+            + minus_gproximal_wy_leg1 * t216 + minus_gproximal_wz_leg1 * t223;
+        let t226 = actuator_accelerations[0] - rate_dot_proximal_leg1;
+        let rate_wrist_leg2 = gwrist_wx_leg2 * t167 + gwrist_wz_leg2 * t142;
+        let t231 = t8 * rate_wrist_leg2;
+        let gdistal_wx_leg2 = t8 * t24;
+        let minus_gdistal_wz_leg2 = t16 * t24;
+        let rate_distal_leg2 = gdistal_wx_leg2 * t167 - minus_gdistal_wz_leg2 * t142;
+        let t238 = s_proximal_leg2 * rate_distal_leg2;
+        let t239 = minus_s_distal_leg2 * rate_wrist_leg2;
+        let t243 = actuator_velocities[1] * t231 + t238 * t239
+            - actuator_velocities[1] * t238;
+        let t245 = t16 * rate_wrist_leg2;
+        let t247 = c_proximal_leg2 * rate_distal_leg2;
+        let t255 = t247 * t239 - actuator_velocities[1] * t245
+            - actuator_velocities[1] * t247;
+        let rate_dot_proximal_leg2 = minus_gproximal_wx_leg2 * t243 + t238 * t245
+            + t247 * t231 + minus_gproximal_wz_leg2 * t255;
+        let t258 = actuator_accelerations[1] - rate_dot_proximal_leg2;
+        let t265 = t226 - minus_gproximal_wx_leg2 * t258
+            - minus_gproximal_wx_leg3 * t200;
+        let t273 = t258 - minus_gproximal_wy_leg1 * t226 - minus_gproximal_wy_leg3 * t200
+            - t116 * t265;
+        let t276 = t123
+            * (t200 - (minus_gproximal_wz_leg1 * t226 + minus_gproximal_wz_leg2 * t258)
+                - t97 * t265 - t120 * t273);
+        let t281 = t119 * t273 - t120 * t276;
+        let rate_dot_distal_leg1 = gdistal_wz_leg1 * (t276 - t223)
+            - minus_gdistal_wy_leg1 * (t281 - t216);
+        let t290 = t157 * t157;
+        let t291 = rate_distal_leg1 * rate_distal_leg1;
+        let t294 = parameters[8] * (t151 + t153) - parameters[7] * t159
+            + parameters[9] * (t162 + rate_dot_distal_leg1) + t158 * parameters[10]
+            + parameters[11] * (t290 - t291);
+        let t299 = 9.81 * t68;
+        let t303 = t150 * t150;
+        let t315 = parameters[9] * (t291 - t303)
+            - (t151 * parameters[7] + parameters[8] * (t158 + t159))
+            + parameters[10] * t153 - parameters[11] * (t162 - rate_dot_distal_leg1);
+        let t321 = 9.81 * (minus_s_distal_leg1 * s_proximal_leg1);
+        let t325 = c_distal_leg1
+            * (t294 - t158 * parameters[12] + t65 * parameters[14]
+                + t299 * parameters[15])
+            + minus_s_distal_leg1
+                * (t315 + t151 * parameters[12] - t65 * parameters[13]
+                    + t321 * parameters[15]);
+        let t326 = t80 - t325;
+        let t327 = c_distal_leg2 * actuator_velocities[1];
+        let t328 = t327 * t327;
+        let t329 = minus_s_distal_leg2 * actuator_velocities[1];
+        let t330 = t329 * t329;
+        let t333 = t327 * t329;
+        let t336 = c_distal_leg2 * actuator_accelerations[1];
+        let t341 = minus_s_distal_leg2 * actuator_accelerations[1];
+        let t343 = parameters[24] * (t328 - t330) - t333 * parameters[23]
+            - parameters[25] * t336 + t333 * parameters[26] - parameters[27] * t341;
+        let t348 = t54 * t265 - t116 * t281 - t97 * t276;
+        let rate_dot_distal_leg2 = gdistal_wx_leg2 * (t348 - t243)
+            - minus_gdistal_wz_leg2 * (t276 - t255);
+        let t356 = 9.81 * t8;
+        let t360 = 9.81 * (minus_s_distal_leg2 * c_proximal_leg2);
+        let t362 = t343 + parameters[28] * rate_dot_distal_leg2 - t356 * parameters[29]
+            - t360 * parameters[30];
+        let t365 = 9.81 * s_proximal_leg2;
+        let t377 = actuator_accelerations[1] * parameters[16] + t365 * parameters[17]
+            + 9.81 * c_proximal_leg2 * parameters[18]
             + actuator_accelerations[1] * parameters[19]
             + actuator_velocities[1] * parameters[20]
             + ::overact::math::signed(parameters[21], actuator_velocities[1])
             + parameters[22];
-        let t294 = c_distal_leg2 * actuator_velocities[1];
-        let t295 = rate_distal_leg2 * t294;
-        let t296 = minus_s_distal_leg2 * actuator_accelerations[1];
-        let t297 = t295 - t296;
-        let t300 = minus_s_distal_leg2 * actuator_velocities[1];
-        let t301 = rate_distal_leg2 * t300;
-        let t304 = rate_distal_leg2 * rate_distal_leg2;
-        let t305 = t300 * t300;
-        let t309 = c_distal_leg2 * actuator_accelerations[1];
-        let t310 = t309 + t301;
-        let t313 = t300 * t294;
-        let t318 = t18 * t225 - t68 * t241 - t49 * t236;
-        let rate_dot_distal_leg2 = minus_c_proximal_leg2 * (t318 - t169)
-            - minus_s_proximal_leg2 * (t236 + t182);
-        let t326 = parameters[24] * (t295 + t297) - t301 * parameters[23]
-            + parameters[25] * (t304 - t305) + parameters[26] * t310
-            + parameters[27] * (t313 + rate_dot_distal_leg2);
-        let t332 = 9.81 * (minus_c_proximal_leg2 * c_distal_leg2);
-        let t345 = t294 * t294;
-        let t348 = parameters[23] * t297 + parameters[24] * (t301 + t310)
-            + parameters[25] * (rate_dot_distal_leg2 - t313) - t295 * parameters[26]
-            + parameters[27] * (t345 - t304);
-        let t353 = 9.81 * t150;
-        let t357 = c_distal_leg2
-            * (t326 + t301 * parameters[28] + t281 * parameters[29]
-                - t332 * parameters[31])
-            - minus_s_distal_leg2
-                * (t348 + t295 * parameters[28] - t281 * parameters[30]
-                    + t353 * parameters[31]);
-        let t358 = t293 + t357;
-        let t369 = t313 * parameters[23] + parameters[24] * (t305 - t345)
-            - parameters[25] * t296 - t313 * parameters[26] + parameters[27] * t309;
-        let t375 = t369 + parameters[28] * rate_dot_distal_leg2 - t353 * parameters[29]
-            + t332 * parameters[30];
-        let t387 = c_distal_leg3 * actuator_velocities[2];
-        let t388 = rate_distal_leg3 * t387;
-        let t389 = minus_s_distal_leg3 * actuator_accelerations[2];
-        let t390 = t388 - t389;
-        let t393 = minus_s_distal_leg3 * actuator_velocities[2];
-        let t394 = rate_distal_leg3 * t393;
-        let t399 = t200 * t200 + t206 * t206;
-        let t400 = t393 * t393;
-        let t404 = c_distal_leg3 * actuator_accelerations[2];
-        let t405 = t404 + t394;
-        let t408 = t393 * t387;
-        let rate_dot_distal_leg3 = minus_c_proximal_leg3 * (t241 - t204)
-            - minus_s_proximal_leg3 * (t318 + t213);
-        let t416 = parameters[38] * (t388 + t390) - t394 * parameters[37]
-            + parameters[39] * (t399 - t400) + parameters[40] * t405
-            + parameters[41] * (t408 + rate_dot_distal_leg3);
-        let t429 = t387 * t387;
-        let t432 = parameters[37] * t390 + parameters[38] * (t394 + t405)
-            + parameters[39] * (rate_dot_distal_leg3 - t408) - t388 * parameters[40]
-            + parameters[41] * (t429 - t399);
-        let t437 = actuator_accelerations[2] * parameters[32]
+        let t378 = rate_distal_leg2 * t327;
+        let t379 = t378 - t341;
+        let t382 = rate_distal_leg2 * t329;
+        let t383 = t336 + t382;
+        let t391 = rate_distal_leg2 * rate_distal_leg2;
+        let t394 = parameters[24] * (t378 + t379) - parameters[23] * t383
+            + parameters[25] * (t333 + rate_dot_distal_leg2) + t382 * parameters[26]
+            + parameters[27] * (t330 - t391);
+        let t413 = parameters[25] * (t391 - t328)
+            - (t378 * parameters[23] + parameters[24] * (t382 + t383))
+            + parameters[26] * t379 - parameters[27] * (t333 - rate_dot_distal_leg2);
+        let t421 = c_distal_leg2
+            * (t394 - t382 * parameters[28] - t365 * parameters[30]
+                + t356 * parameters[31])
+            + minus_s_distal_leg2
+                * (t413 + t378 * parameters[28] + t365 * parameters[29]
+                    + t360 * parameters[31]);
+        let t422 = t377 - t421;
+        let t434 = c_distal_leg3 * actuator_velocities[2];
+        let t435 = rate_distal_leg3 * t434;
+        let t436 = minus_s_distal_leg3 * actuator_accelerations[2];
+        let t437 = t435 - t436;
+        let t440 = c_distal_leg3 * actuator_accelerations[2];
+        let t441 = minus_s_distal_leg3 * actuator_velocities[2];
+        let t442 = rate_distal_leg3 * t441;
+        let t443 = t440 + t442;
+        let t446 = t434 * t441;
+        let rate_dot_distal_leg3 = gdistal_wy_leg3 * (t281 - t193)
+            - minus_gdistal_wx_leg3 * (t348 - t185);
+        let t457 = t441 * t441;
+        let t458 = rate_distal_leg3 * rate_distal_leg3;
+        let t461 = parameters[38] * (t435 + t437) - parameters[37] * t443
+            + parameters[39] * (t446 + rate_dot_distal_leg3) + t442 * parameters[40]
+            + parameters[41] * (t457 - t458);
+        let t465 = t434 * t434;
+        let t477 = parameters[39] * (t458 - t465)
+            - (t435 * parameters[37] + parameters[38] * (t442 + t443))
+            + parameters[40] * t437 - parameters[41] * (t446 - rate_dot_distal_leg3);
+        let t482 = actuator_accelerations[2] * parameters[32]
             + actuator_accelerations[2] * parameters[33]
             + actuator_velocities[2] * parameters[34]
             + ::overact::math::signed(parameters[35], actuator_velocities[2])
-            + parameters[36] + c_distal_leg3 * (t416 + t394 * parameters[42])
-            - minus_s_distal_leg3 * (t432 + t388 * parameters[42]);
-        let t448 = t408 * parameters[37] + parameters[38] * (t400 - t429)
-            - parameters[39] * t389 - t408 * parameters[40] + parameters[41] * t404;
-        let t456 = t448 + parameters[42] * rate_dot_distal_leg3
-            + 9.81 * c_distal_leg3 * parameters[43]
-            + 9.81 * minus_s_distal_leg3 * parameters[44];
-        let t460 = 2.0 * pose[2];
-        let t461 = pose[2] * t460;
-        let t463 = 2.0 * pose[3];
-        let t464 = pose[3] * t463;
-        let t465 = 1.0 - t461 - t464;
-        let t467 = 2.0 * pose[1];
-        let t468 = pose[2] * t467;
-        let t469 = pose[0] * t463;
-        let t470 = t468 + t469;
-        let t473 = pose[3] * t467;
-        let t474 = pose[0] * t460;
-        let t475 = t473 - t474;
-        let t477 = t465 * t318 + t470 * t241 + t475 * t236;
-        let t483 = t465 * t155 + t470 * t98 + t475 * t94;
-        let t484 = t473 + t474;
-        let t486 = pose[3] * t460;
-        let t487 = pose[0] * t467;
-        let t488 = t486 - t487;
-        let t492 = 1.0 - pose[1] * t467;
-        let t493 = t492 - t461;
-        let t495 = t484 * t155 + t488 * t98 + t493 * t94;
-        let t496 = t483 * t495;
-        let t497 = t468 - t469;
-        let t499 = t492 - t464;
-        let t502 = t486 + t487;
-        let t504 = t497 * t318 + t499 * t241 + t502 * t236;
-        let t512 = t497 * t155 + t499 * t98 + t502 * t94;
-        let t513 = t483 * t512;
-        let t518 = t484 * t318 + t488 * t241 + t493 * t236;
-        let t522 = t512 * t495;
-        let t525 = t512 * t512;
-        let t526 = t495 * t495;
-        let t529 = parameters[45] * t477 - parameters[46] * (t496 - t504)
-            + parameters[47] * (t513 + t518) - t522 * parameters[48]
-            + parameters[49] * (t525 - t526);
-        let t532 = 9.81 * t493;
-        let t535 = 9.81 * t502;
-        let t537 = t529 + t522 * parameters[50] + t532 * parameters[52]
-            - t535 * parameters[53];
-        let t543 = t483 * t483;
-        let t551 = t496 * parameters[45] + parameters[46] * (t522 + t477)
-            + parameters[47] * (t526 - t543) + parameters[48] * t504
-            - parameters[49] * (t513 - t518);
-        let t556 = 9.81 * t475;
-        let t558 = t551 - t496 * parameters[50] - t532 * parameters[51]
-            + t556 * parameters[53];
-        let t572 = parameters[46] * (t543 - t525) - t513 * parameters[45]
-            - parameters[47] * (t522 - t477) + t513 * parameters[48]
-            + parameters[49] * (t496 + t504);
-        let t578 = t572 + parameters[50] * t518 + t535 * parameters[51]
-            - t556 * parameters[52];
-        let t581 = t279 + gproximal_wx_leg2 * t358 + minus_c_proximal_leg2 * t375
-            + gproximal_wx_leg3 * t437 - minus_s_proximal_leg3 * t456 + t465 * t537
-            + t497 * t558 + t484 * t578;
-        let t593 = t120 * parameters[7] + parameters[8] * (t112 - t266)
-            - parameters[9] * t103 - t120 * parameters[10] + parameters[11] * t116;
-        let t599 = t593 + parameters[12] * rate_dot_distal_leg1 - t274 * parameters[13]
-            + t253 * parameters[14];
-        let t612 = gproximal_wy_leg1 * t279 - minus_s_proximal_leg1 * t599 + t358
-            + gproximal_wy_leg3 * t437 + minus_c_proximal_leg3 * t456 + t470 * t537
-            + t499 * t558 + t488 * t578;
-        let t614 = t612 - t68 * t581;
-        let t629 = gproximal_wz_leg1 * t279 + minus_c_proximal_leg1 * t599
-            + gproximal_wz_leg2 * t358 - minus_s_proximal_leg2 * t375 + t437
-            + t475 * t537 + t502 * t558 + t493 * t578;
-        let t634 = t75 * (t629 - t49 * t581 - t72 * t614);
-        let t636 = t71 * t614 - t72 * t634;
-        let t640 = t18 * t581 - t68 * t636 - t49 * t634;
+            + parameters[36]
+            - (c_distal_leg3 * (t461 - t442 * parameters[42])
+                + minus_s_distal_leg3 * (t477 + t435 * parameters[42]));
+        let t493 = parameters[38] * (t465 - t457) - t446 * parameters[37]
+            - parameters[39] * t440 + t446 * parameters[40] - parameters[41] * t436;
+        let t496 = 9.81 * minus_s_distal_leg3;
+        let t501 = t493 + parameters[42] * rate_dot_distal_leg3 - t496 * parameters[43]
+            + 9.81 * c_distal_leg3 * parameters[44];
+        let t509 = t33 * t348 + t44 * t281 + minus_s_distal_leg3 * t276;
+        let t515 = t33 * t167 + t44 * t147 + minus_s_distal_leg3 * t142;
+        let t520 = t16 * t167 + minus_s_distal_leg2 * t147 + t8 * t142;
+        let t521 = t515 * t520;
+        let t526 = minus_s_distal_leg1 * t348 + t56 * t281 + t68 * t276;
+        let t534 = minus_s_distal_leg1 * t167 + t56 * t147 + t68 * t142;
+        let t535 = t515 * t534;
+        let t540 = t16 * t348 + minus_s_distal_leg2 * t281 + t8 * t276;
+        let t544 = t534 * t520;
+        let t547 = t534 * t534;
+        let t548 = t520 * t520;
+        let t551 = parameters[45] * t509 - parameters[46] * (t521 - t526)
+            + parameters[47] * (t535 + t540) - t544 * parameters[48]
+            + parameters[49] * (t547 - t548);
+        let t557 = t551 + t544 * parameters[50] + t356 * parameters[52]
+            - t299 * parameters[53];
+        let t563 = t515 * t515;
+        let t571 = t521 * parameters[45] + parameters[46] * (t544 + t509)
+            + parameters[47] * (t548 - t563) + parameters[48] * t526
+            - parameters[49] * (t535 - t540);
+        let t577 = t571 - t521 * parameters[50] - t356 * parameters[51]
+            + t496 * parameters[53];
+        let t591 = parameters[46] * (t563 - t547) - t535 * parameters[45]
+            - parameters[47] * (t544 - t509) + t535 * parameters[48]
+            + parameters[49] * (t521 + t526);
+        let t597 = t591 + parameters[50] * t540 + t299 * parameters[51]
+            - t496 * parameters[52];
+        let t600 = t326 + gdistal_wx_leg2 * t362 - minus_gproximal_wx_leg2 * t422
+            - (minus_gproximal_wx_leg3 * t482 + minus_gdistal_wx_leg3 * t501)
+            + t33 * t557 + minus_s_distal_leg1 * t577 + t16 * t597;
+        let t612 = parameters[8] * (t303 - t290) - t162 * parameters[7]
+            - parameters[9] * t156 + t162 * parameters[10] - parameters[11] * t152;
+        let t618 = t612 + parameters[12] * rate_dot_distal_leg1 - t299 * parameters[13]
+            - t321 * parameters[14];
+        let t631 = t422 - (minus_gproximal_wy_leg1 * t326 + minus_gdistal_wy_leg1 * t618)
+            + gdistal_wy_leg3 * t501 - minus_gproximal_wy_leg3 * t482 + t44 * t557
+            + t56 * t577 + minus_s_distal_leg2 * t597;
+        let t633 = t631 - t116 * t600;
+        let t648 = gdistal_wz_leg1 * t618 - minus_gproximal_wz_leg1 * t326
+            - (minus_gproximal_wz_leg2 * t422 + minus_gdistal_wz_leg2 * t362) + t482
+            + minus_s_distal_leg3 * t557 + t68 * t577 + t8 * t597;
+        let t653 = t123 * (t648 - t97 * t600 - t120 * t633);
+        let t655 = t119 * t633 - t120 * t653;
+        let t659 = t54 * t600 - t116 * t655 - t97 * t653;
         Ok([
-            t640 + gproximal_wy_leg1 * t636 + gproximal_wz_leg1 * t634,
-            gproximal_wx_leg2 * t640 + t636 + gproximal_wz_leg2 * t634,
-            gproximal_wx_leg3 * t640 + gproximal_wy_leg3 * t636 + t634,
+            t659 - minus_gproximal_wy_leg1 * t655 - minus_gproximal_wz_leg1 * t653,
+            t655 - minus_gproximal_wx_leg2 * t659 - minus_gproximal_wz_leg2 * t653,
+            t653 - (minus_gproximal_wx_leg3 * t659 + minus_gproximal_wy_leg3 * t655),
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -4675,7 +6713,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 335 operations (137 additions, 195 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 341 intermediates.
+    /// 374 operations (143 additions, 225 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 371 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4683,182 +6721,209 @@ impl Spherical3Rrr {
         pose: &[f64; 4],
         parameters: &[f64; 54],
     ) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t12 = parameters[0] + parameters[3]
+        let t1 = 2.0 * pose[1];
+        let t2 = pose[2] * t1;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[0] * t3;
+        let minus_s_distal_leg1 = t2 - t4;
+        let t7 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t7, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t7);
+        let t18 = parameters[0] + parameters[3]
             + c_distal_leg1
-                * (c_distal_leg1 * parameters[10] - minus_s_distal_leg1 * parameters[8])
-            - minus_s_distal_leg1
-                * (c_distal_leg1 * parameters[8] - minus_s_distal_leg1 * parameters[7]);
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let t17 = 1.0 / minus_s_distal_leg2;
-        let gwrist_wx_leg2 = minus_s_proximal_leg2 * t17;
-        let gproximal_wx_leg2 = c_distal_leg2 * gwrist_wx_leg2;
-        let t23 = c_distal_leg2 * gproximal_wx_leg2;
-        let t25 = minus_s_proximal_leg2 * c_distal_leg2;
-        let t37 = c_distal_leg2
-            * (parameters[26] * t23 - t25 * parameters[24]
-                + minus_c_proximal_leg2 * parameters[27])
-            - minus_s_distal_leg2
-                * (parameters[24] * t23 - t25 * parameters[23]
-                    + minus_c_proximal_leg2 * parameters[25]);
-        let t38 = gproximal_wx_leg2 * parameters[16] + gproximal_wx_leg2 * parameters[19]
-            + t37;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t52 = 1.0 / minus_s_distal_leg3;
-        let gwrist_wx_leg3 = minus_c_proximal_leg3 * t52;
-        let gproximal_wx_leg3 = c_distal_leg3 * gwrist_wx_leg3;
-        let t58 = c_distal_leg3 * gproximal_wx_leg3;
-        let t60 = minus_c_proximal_leg3 * c_distal_leg3;
-        let t72 = c_distal_leg3
-            * (parameters[40] * t58 - t60 * parameters[38]
-                - minus_s_proximal_leg3 * parameters[41])
-            - minus_s_distal_leg3
-                * (parameters[38] * t58 - t60 * parameters[37]
-                    - minus_s_proximal_leg3 * parameters[39]);
-        let t73 = gproximal_wx_leg3 * parameters[32] + gproximal_wx_leg3 * parameters[33]
-            + t72;
-        let t82 = t12 + gproximal_wx_leg2 * t38
-            + minus_c_proximal_leg2
-                * (parameters[27] * t23 - t25 * parameters[25]
-                    + minus_c_proximal_leg2 * parameters[28]) + gproximal_wx_leg3 * t73
-            - minus_s_proximal_leg3
-                * (parameters[41] * t58 - t60 * parameters[39]
-                    - minus_s_proximal_leg3 * parameters[42]);
-        let t83 = 2.0 * pose[2];
-        let t84 = pose[2] * t83;
-        let t86 = 2.0 * pose[3];
-        let t87 = pose[3] * t86;
-        let t88 = 1.0 - t84 - t87;
-        let t90 = 2.0 * pose[1];
-        let t91 = pose[2] * t90;
-        let t92 = pose[0] * t86;
-        let t93 = t91 - t92;
-        let t96 = pose[3] * t90;
-        let t97 = pose[0] * t83;
-        let t98 = t96 + t97;
-        let t108 = t88
-            * (t88 * parameters[45] + t93 * parameters[46] + t98 * parameters[47])
-            + t93 * (t88 * parameters[46] + t93 * parameters[48] + t98 * parameters[49]);
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let t119 = 1.0 / minus_s_distal_leg1;
-        let gwrist_wy_leg1 = minus_c_proximal_leg1 * t119;
-        let gproximal_wy_leg1 = c_distal_leg1 * gwrist_wy_leg1;
-        let t125 = c_distal_leg1 * gproximal_wy_leg1;
-        let t127 = minus_c_proximal_leg1 * c_distal_leg1;
-        let t139 = c_distal_leg1
-            * (parameters[10] * t125 - t127 * parameters[8]
-                - minus_s_proximal_leg1 * parameters[11])
-            - minus_s_distal_leg1
-                * (parameters[8] * t125 - t127 * parameters[7]
-                    - minus_s_proximal_leg1 * parameters[9]);
-        let t140 = gproximal_wy_leg1 * parameters[0] + gproximal_wy_leg1 * parameters[3]
-            + t139;
-        let gwrist_wy_leg3 = minus_s_proximal_leg3 * t52;
-        let gproximal_wy_leg3 = c_distal_leg3 * gwrist_wy_leg3;
-        let t147 = c_distal_leg3 * gproximal_wy_leg3;
-        let t149 = minus_s_proximal_leg3 * c_distal_leg3;
-        let t161 = c_distal_leg3
-            * (parameters[40] * t147 - t149 * parameters[38]
-                + minus_c_proximal_leg3 * parameters[41])
-            - minus_s_distal_leg3
-                * (parameters[38] * t147 - t149 * parameters[37]
-                    + minus_c_proximal_leg3 * parameters[39]);
-        let t162 = gproximal_wy_leg3 * parameters[32]
-            + gproximal_wy_leg3 * parameters[33] + t161;
-        let t168 = parameters[41] * t147 - t149 * parameters[39]
-            + minus_c_proximal_leg3 * parameters[42];
-        let t172 = t91 + t92;
-        let t175 = 1.0 - pose[1] * t90;
-        let t176 = t175 - t87;
-        let t179 = pose[3] * t83;
-        let t180 = pose[0] * t90;
-        let t181 = t179 - t180;
-        let t183 = t172 * parameters[45] + t176 * parameters[46] + t181 * parameters[47];
-        let t189 = t172 * parameters[46] + t176 * parameters[48] + t181 * parameters[49];
-        let t196 = t172 * parameters[47] + t176 * parameters[49] + t181 * parameters[50];
-        let t199 = t140 + t38 + gproximal_wx_leg3 * t162 - minus_s_proximal_leg3 * t168
-            + t88 * t183 + t93 * t189 + t98 * t196;
-        let gwrist_wz_leg1 = minus_s_proximal_leg1 * t119;
-        let gproximal_wz_leg1 = c_distal_leg1 * gwrist_wz_leg1;
-        let t205 = c_distal_leg1 * gproximal_wz_leg1;
-        let t207 = minus_s_proximal_leg1 * c_distal_leg1;
-        let t219 = c_distal_leg1
-            * (parameters[10] * t205 - t207 * parameters[8]
-                + minus_c_proximal_leg1 * parameters[11])
-            - minus_s_distal_leg1
-                * (parameters[8] * t205 - t207 * parameters[7]
-                    + minus_c_proximal_leg1 * parameters[9]);
-        let t220 = gproximal_wz_leg1 * parameters[0] + gproximal_wz_leg1 * parameters[3]
-            + t219;
-        let gwrist_wz_leg2 = minus_c_proximal_leg2 * t17;
-        let gproximal_wz_leg2 = c_distal_leg2 * gwrist_wz_leg2;
-        let t226 = c_distal_leg2 * gproximal_wz_leg2;
-        let t228 = minus_c_proximal_leg2 * c_distal_leg2;
-        let t240 = c_distal_leg2
-            * (parameters[26] * t226 - t228 * parameters[24]
-                - minus_s_proximal_leg2 * parameters[27])
-            - minus_s_distal_leg2
-                * (parameters[24] * t226 - t228 * parameters[23]
-                    - minus_s_proximal_leg2 * parameters[25]);
-        let t241 = gproximal_wz_leg2 * parameters[16]
-            + gproximal_wz_leg2 * parameters[19] + t240;
-        let t247 = parameters[27] * t226 - t228 * parameters[25]
-            - minus_s_proximal_leg2 * parameters[28];
-        let t252 = t96 - t97;
-        let t254 = t179 + t180;
-        let t257 = t175 - t84;
-        let t259 = t252 * parameters[45] + t254 * parameters[46] + t257 * parameters[47];
-        let t265 = t252 * parameters[46] + t254 * parameters[48] + t257 * parameters[49];
-        let t272 = t252 * parameters[47] + t254 * parameters[49] + t257 * parameters[50];
-        let t275 = t220 + gproximal_wx_leg2 * t241 + minus_c_proximal_leg2 * t247 + t73
-            + t88 * t259 + t93 * t265 + t98 * t272;
-        let t294 = parameters[16] + parameters[19]
+                * (c_distal_leg1 * parameters[7] + minus_s_distal_leg1 * parameters[8])
+            + minus_s_distal_leg1
+                * (c_distal_leg1 * parameters[8] + minus_s_distal_leg1 * parameters[10]);
+        let t20 = 1.0 - pose[1] * t1;
+        let t21 = 2.0 * pose[2];
+        let t22 = pose[2] * t21;
+        let t23 = t20 - t22;
+        let t24 = pose[3] * t1;
+        let t25 = pose[0] * t21;
+        let t26 = t24 + t25;
+        let t27 = pose[3] * t21;
+        let t28 = pose[0] * t1;
+        let minus_s_distal_leg2 = t27 - t28;
+        let t31 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t31, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t31);
+        let t34 = 1.0 / (t23 * c_distal_leg2);
+        let s_proximal_leg2 = t34 * (t26 * t23);
+        let c_proximal_leg2 = t34 * (t23 * t23);
+        let t41 = t26 * s_proximal_leg2 + t23 * c_proximal_leg2;
+        ::overact::guard::leg(t41, 1.0, "leg2")?;
+        let t42 = 1.0 / t41;
+        let gdistal_wx_leg2 = t23 * t42;
+        let gwrist_wx_leg2 = s_proximal_leg2 * t42;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
+        let t47 = c_distal_leg2 * minus_gproximal_wx_leg2;
+        let t49 = minus_s_distal_leg2 * minus_gproximal_wx_leg2;
+        let t69 = c_distal_leg2
+            * (gdistal_wx_leg2 * parameters[25] + parameters[23] * t47
+                + parameters[24] * t49)
+            + minus_s_distal_leg2
+                * (gdistal_wx_leg2 * parameters[27] + parameters[24] * t47
+                    + parameters[26] * t49);
+        let t70 = minus_gproximal_wx_leg2 * parameters[16]
+            + minus_gproximal_wx_leg2 * parameters[19] + t69;
+        let t74 = t2 + t4;
+        let t76 = pose[3] * t3;
+        let t77 = 1.0 - t22 - t76;
+        let minus_s_distal_leg3 = t24 - t25;
+        let t80 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t80, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t80);
+        let t83 = 1.0 / (t77 * c_distal_leg3);
+        let c_proximal_leg3 = t83 * (t77 * t77);
+        let s_proximal_leg3 = t83 * (t77 * t74);
+        let t90 = t77 * c_proximal_leg3 + t74 * s_proximal_leg3;
+        ::overact::guard::leg(t90, 1.0, "leg3")?;
+        let t91 = 1.0 / t90;
+        let minus_gdistal_wx_leg3 = t74 * t91;
+        let gwrist_wx_leg3 = c_proximal_leg3 * t91;
+        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
+        let t95 = c_distal_leg3 * minus_gproximal_wx_leg3;
+        let t97 = minus_s_distal_leg3 * minus_gproximal_wx_leg3;
+        let t118 = c_distal_leg3
+            * (parameters[37] * t95 + parameters[38] * t97
+                - minus_gdistal_wx_leg3 * parameters[39])
+            + minus_s_distal_leg3
+                * (parameters[38] * t95 + parameters[40] * t97
+                    - minus_gdistal_wx_leg3 * parameters[41]);
+        let t119 = minus_gproximal_wx_leg3 * parameters[32]
+            + minus_gproximal_wx_leg3 * parameters[33] + t118;
+        let t122 = t18
+            + gdistal_wx_leg2
+                * (gdistal_wx_leg2 * parameters[28] + parameters[25] * t47
+                    + parameters[27] * t49) + minus_gproximal_wx_leg2 * t70
+            - (minus_gdistal_wx_leg3
+                * (parameters[39] * t95 + parameters[41] * t97
+                    - minus_gdistal_wx_leg3 * parameters[42])
+                - minus_gproximal_wx_leg3 * t119);
+        let t135 = t77
+            * (t77 * parameters[45] + minus_s_distal_leg1 * parameters[46]
+                + t26 * parameters[47])
+            + minus_s_distal_leg1
+                * (t77 * parameters[46] + minus_s_distal_leg1 * parameters[48]
+                    + t26 * parameters[49]);
+        let t145 = t20 - t76;
+        let t149 = t74 * parameters[45] + t145 * parameters[46]
+            + minus_s_distal_leg2 * parameters[47];
+        let t155 = t74 * parameters[46] + t145 * parameters[48]
+            + minus_s_distal_leg2 * parameters[49];
+        let t162 = t74 * parameters[47] + t145 * parameters[49]
+            + minus_s_distal_leg2 * parameters[50];
+        let t166 = 1.0 / (t145 * c_distal_leg1);
+        let c_proximal_leg1 = t166 * (t145 * t145);
+        let t170 = t27 + t28;
+        let s_proximal_leg1 = t166 * (t145 * t170);
+        let t174 = t145 * c_proximal_leg1 + t170 * s_proximal_leg1;
+        ::overact::guard::leg(t174, 1.0, "leg1")?;
+        let t175 = 1.0 / t174;
+        let gwrist_wy_leg1 = c_proximal_leg1 * t175;
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
+        let t181 = c_distal_leg1 * minus_gproximal_wy_leg1;
+        let t183 = minus_s_distal_leg1 * minus_gproximal_wy_leg1;
+        let minus_gdistal_wy_leg1 = t170 * t175;
+        let t196 = c_distal_leg1
+            * (parameters[7] * t181 + parameters[8] * t183
+                - minus_gdistal_wy_leg1 * parameters[9])
+            + minus_s_distal_leg1
+                * (parameters[8] * t181 + parameters[10] * t183
+                    - minus_gdistal_wy_leg1 * parameters[11]);
+        let t197 = minus_gproximal_wy_leg1 * parameters[0]
+            + minus_gproximal_wy_leg1 * parameters[3] + t196;
+        let gdistal_wy_leg3 = t77 * t91;
+        let gwrist_wy_leg3 = s_proximal_leg3 * t91;
+        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
+        let t203 = c_distal_leg3 * minus_gproximal_wy_leg3;
+        let t205 = minus_s_distal_leg3 * minus_gproximal_wy_leg3;
+        let t208 = gdistal_wy_leg3 * parameters[42] + parameters[39] * t203
+            + parameters[41] * t205;
+        let t225 = c_distal_leg3
+            * (gdistal_wy_leg3 * parameters[39] + parameters[37] * t203
+                + parameters[38] * t205)
+            + minus_s_distal_leg3
+                * (gdistal_wy_leg3 * parameters[41] + parameters[38] * t203
+                    + parameters[40] * t205);
+        let t226 = minus_gproximal_wy_leg3 * parameters[32]
+            + minus_gproximal_wy_leg3 * parameters[33] + t225;
+        let t230 = t77 * t149 + minus_s_distal_leg1 * t155 + t26 * t162
+            - (t197 + t70 + minus_gdistal_wx_leg3 * t208
+                - minus_gproximal_wx_leg3 * t226);
+        let gwrist_wz_leg2 = c_proximal_leg2 * t42;
+        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
+        let t233 = c_distal_leg2 * minus_gproximal_wz_leg2;
+        let t235 = minus_s_distal_leg2 * minus_gproximal_wz_leg2;
+        let minus_gdistal_wz_leg2 = t26 * t42;
+        let t240 = parameters[25] * t233 + parameters[27] * t235
+            - minus_gdistal_wz_leg2 * parameters[28];
+        let t257 = c_distal_leg2
+            * (parameters[23] * t233 + parameters[24] * t235
+                - minus_gdistal_wz_leg2 * parameters[25])
+            + minus_s_distal_leg2
+                * (parameters[24] * t233 + parameters[26] * t235
+                    - minus_gdistal_wz_leg2 * parameters[27]);
+        let t258 = minus_gproximal_wz_leg2 * parameters[16]
+            + minus_gproximal_wz_leg2 * parameters[19] + t257;
+        let gwrist_wz_leg1 = s_proximal_leg1 * t175;
+        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
+        let gdistal_wz_leg1 = t145 * t175;
+        let t268 = c_distal_leg1 * minus_gproximal_wz_leg1;
+        let t270 = minus_s_distal_leg1 * minus_gproximal_wz_leg1;
+        let t281 = c_distal_leg1
+            * (gdistal_wz_leg1 * parameters[9] + parameters[7] * t268
+                + parameters[8] * t270)
+            + minus_s_distal_leg1
+                * (gdistal_wz_leg1 * parameters[11] + parameters[8] * t268
+                    + parameters[10] * t270);
+        let t282 = minus_gproximal_wz_leg1 * parameters[0]
+            + minus_gproximal_wz_leg1 * parameters[3] + t281;
+        let t289 = minus_s_distal_leg3 * parameters[45] + t170 * parameters[46]
+            + t23 * parameters[47];
+        let t295 = minus_s_distal_leg3 * parameters[46] + t170 * parameters[48]
+            + t23 * parameters[49];
+        let t302 = minus_s_distal_leg3 * parameters[47] + t170 * parameters[49]
+            + t23 * parameters[50];
+        let t305 = gdistal_wx_leg2 * t240 + minus_gproximal_wx_leg2 * t258 - t282 - t119
+            + t77 * t289 + minus_s_distal_leg1 * t295 + t26 * t302;
+        let t316 = parameters[16] + parameters[19]
             + c_distal_leg2
-                * (c_distal_leg2 * parameters[26] - minus_s_distal_leg2 * parameters[24])
-            - minus_s_distal_leg2
+                * (c_distal_leg2 * parameters[23] + minus_s_distal_leg2 * parameters[24])
+            + minus_s_distal_leg2
                 * (c_distal_leg2 * parameters[24]
-                    - minus_s_distal_leg2 * parameters[23]);
-        let t299 = gproximal_wy_leg1 * t140
-            - minus_s_proximal_leg1
-                * (parameters[11] * t125 - t127 * parameters[9]
-                    - minus_s_proximal_leg1 * parameters[12]) + t294
-            + gproximal_wy_leg3 * t162 + minus_c_proximal_leg3 * t168;
-        let t311 = parameters[11] * t205 - t207 * parameters[9]
-            + minus_c_proximal_leg1 * parameters[12];
-        let t321 = gproximal_wy_leg1 * t220 - minus_s_proximal_leg1 * t311 + t241 + t162
-            + t172 * t259 + t176 * t265 + t181 * t272;
-        let t339 = parameters[32] + parameters[33]
+                    + minus_s_distal_leg2 * parameters[26]);
+        let t329 = t316
+            - (minus_gdistal_wy_leg1
+                * (parameters[9] * t181 + parameters[11] * t183
+                    - minus_gdistal_wy_leg1 * parameters[12])
+                - minus_gproximal_wy_leg1 * t197) + gdistal_wy_leg3 * t208
+            + minus_gproximal_wy_leg3 * t226;
+        let t345 = gdistal_wz_leg1 * parameters[12] + parameters[9] * t268
+            + parameters[11] * t270;
+        let t351 = t74 * t289 + t145 * t295 + minus_s_distal_leg2 * t302
+            - (t258 + minus_gdistal_wy_leg1 * t345 - minus_gproximal_wy_leg1 * t282
+                + t226);
+        let t369 = parameters[32] + parameters[33]
             + c_distal_leg3
-                * (c_distal_leg3 * parameters[40] - minus_s_distal_leg3 * parameters[38])
-            - minus_s_distal_leg3
+                * (c_distal_leg3 * parameters[37] + minus_s_distal_leg3 * parameters[38])
+            + minus_s_distal_leg3
                 * (c_distal_leg3 * parameters[38]
-                    - minus_s_distal_leg3 * parameters[37]);
-        let t346 = gproximal_wz_leg1 * t220 + minus_c_proximal_leg1 * t311
-            + gproximal_wz_leg2 * t241 - minus_s_proximal_leg2 * t247 + t339
-            + t252 * t259 + t254 * t265 + t257 * t272;
+                    + minus_s_distal_leg3 * parameters[40]);
+        let t376 = gdistal_wz_leg1 * t345 + minus_gproximal_wz_leg1 * t282
+            - (minus_gdistal_wz_leg2 * t240 - minus_gproximal_wz_leg2 * t258) + t369
+            + minus_s_distal_leg3 * t289 + t170 * t295 + t23 * t302;
         Ok([
             [
-                t82 + t108
-                    + t98
-                        * (t88 * parameters[47] + t93 * parameters[49]
-                            + t98 * parameters[50]),
-                t199,
-                t275,
+                t122 + t135
+                    + t26
+                        * (t77 * parameters[47] + minus_s_distal_leg1 * parameters[49]
+                            + t26 * parameters[50]),
+                t230,
+                t305,
             ],
-            [t199, t299 + t172 * t183 + t176 * t189 + t181 * t196, t321],
-            [t275, t321, t346],
+            [t230, t329 + t74 * t149 + t145 * t155 + minus_s_distal_leg2 * t162, t351],
+            [t305, t351, t376],
         ])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -4870,7 +6935,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 501 operations (204 additions, 294 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 513 intermediates.
+    /// 523 operations (209 additions, 308 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 526 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4879,242 +6944,250 @@ impl Spherical3Rrr {
         twist: &[f64; 3],
         parameters: &[f64; 54],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t6 = 1.0 / minus_s_distal_leg1;
-        let gwrist_wz_leg1 = minus_s_proximal_leg1 * t6;
-        let gproximal_wz_leg1 = c_distal_leg1 * gwrist_wz_leg1;
-        let gwrist_wy_leg1 = minus_c_proximal_leg1 * t6;
-        let gproximal_wy_leg1 = c_distal_leg1 * gwrist_wy_leg1;
-        let rate_proximal_leg1 = twist[0] + gproximal_wy_leg1 * twist[1]
-            + gproximal_wz_leg1 * twist[2];
+        let t0 = 2.0 * pose[1];
+        let t2 = 1.0 - pose[1] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = t2 - t4;
+        let t6 = pose[2] * t0;
+        let t7 = pose[0] * t3;
+        let minus_s_distal_leg1 = t6 - t7;
+        let t10 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t10, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t10);
+        let t13 = 1.0 / (t5 * c_distal_leg1);
+        let t14 = 2.0 * pose[2];
+        let t15 = pose[3] * t14;
+        let t16 = pose[0] * t0;
+        let t17 = t15 + t16;
+        let s_proximal_leg1 = t13 * (t5 * t17);
+        let c_proximal_leg1 = t13 * (t5 * t5);
+        let t24 = t5 * c_proximal_leg1 + t17 * s_proximal_leg1;
+        ::overact::guard::leg(t24, 1.0, "leg1")?;
+        let t25 = 1.0 / t24;
+        let gdistal_wz_leg1 = t5 * t25;
+        let minus_gdistal_wy_leg1 = t17 * t25;
+        let rate_distal_leg1 = gdistal_wz_leg1 * twist[2]
+            - minus_gdistal_wy_leg1 * twist[1];
+        let t31 = s_proximal_leg1 * rate_distal_leg1;
+        let gwrist_wy_leg1 = c_proximal_leg1 * t25;
+        let gwrist_wz_leg1 = s_proximal_leg1 * t25;
         let rate_wrist_leg1 = gwrist_wy_leg1 * twist[1] + gwrist_wz_leg1 * twist[2];
-        let t19 = minus_c_proximal_leg1 * minus_s_distal_leg1 * rate_wrist_leg1;
-        let rate_distal_leg1 = minus_c_proximal_leg1 * twist[2]
-            - minus_s_proximal_leg1 * twist[1];
-        let t24 = minus_s_proximal_leg1 * rate_distal_leg1;
-        let t25 = c_distal_leg1 * rate_wrist_leg1;
-        let t29 = rate_proximal_leg1 * t19 - t24 * t25 - rate_proximal_leg1 * t24;
-        let t31 = minus_s_proximal_leg1 * minus_s_distal_leg1;
-        let t32 = t31 * rate_wrist_leg1;
-        let t34 = minus_c_proximal_leg1 * rate_distal_leg1;
-        let t41 = rate_proximal_leg1 * t34 + t34 * t25 + rate_proximal_leg1 * t32;
-        let minus_rate_dot_proximal_leg1 = gproximal_wz_leg1 * t29
-            - (t24 * t32 + t34 * t19 + gproximal_wy_leg1 * t41);
-        let t46 = 9.81 * minus_c_proximal_leg1;
-        let t56 = parameters[2] * (9.81 * minus_s_proximal_leg1)
-            - (parameters[0] * minus_rate_dot_proximal_leg1 + parameters[1] * t46)
-            + parameters[4] * rate_proximal_leg1
-            - parameters[3] * minus_rate_dot_proximal_leg1
+        let t37 = t17 * rate_wrist_leg1;
+        let t39 = c_proximal_leg1 * rate_distal_leg1;
+        let t40 = t5 * rate_wrist_leg1;
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
+        let t44 = minus_s_distal_leg1 * rate_wrist_leg1;
+        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
+        let rate_proximal_leg1 = twist[0] - minus_gproximal_wy_leg1 * twist[1]
+            - minus_gproximal_wz_leg1 * twist[2];
+        let t54 = t39 * t44 - rate_proximal_leg1 * t37 - rate_proximal_leg1 * t39;
+        let t61 = rate_proximal_leg1 * t40 + t31 * t44 - rate_proximal_leg1 * t31;
+        let rate_dot_proximal_leg1 = t31 * t37 + t39 * t40
+            + minus_gproximal_wy_leg1 * t54 + minus_gproximal_wz_leg1 * t61;
+        let t65 = 9.81 * c_proximal_leg1;
+        let t77 = parameters[0] * rate_dot_proximal_leg1 - parameters[1] * t65
+            + parameters[2] * (9.81 * s_proximal_leg1)
+            + parameters[3] * rate_dot_proximal_leg1 + parameters[4] * rate_proximal_leg1
             + ::overact::math::signed(parameters[5], rate_proximal_leg1) + parameters[6];
-        let t57 = c_distal_leg1 * rate_proximal_leg1;
-        let t58 = rate_distal_leg1 * t57;
-        let t59 = minus_s_distal_leg1 * minus_rate_dot_proximal_leg1;
-        let t60 = t59 + t58;
-        let t63 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t64 = rate_distal_leg1 * t63;
-        let t67 = rate_distal_leg1 * rate_distal_leg1;
-        let t68 = t63 * t63;
-        let rate_dot_wrist_leg1 = gwrist_wy_leg1 * t41 - gwrist_wz_leg1 * t29;
-        let minus_rate_dot_distal_leg1 = minus_s_proximal_leg1 * t41
-            + minus_c_proximal_leg1 * t29;
-        let t80 = t63 * t57;
-        let t83 = parameters[8] * (t58 + t60) - parameters[7] * t64
-            + parameters[9] * (t67 - t68) + parameters[10] * rate_dot_wrist_leg1
-            - parameters[11] * (minus_rate_dot_distal_leg1 - t80);
-        let t89 = 9.81 * (minus_s_proximal_leg1 * c_distal_leg1);
-        let t102 = t57 * t57;
-        let t105 = parameters[7] * t60 + parameters[8] * (t64 + rate_dot_wrist_leg1)
-            - parameters[9] * (t80 + minus_rate_dot_distal_leg1) - parameters[10] * t58
-            + parameters[11] * (t102 - t67);
-        let t110 = 9.81 * t31;
-        let t114 = c_distal_leg1
-            * (t83 + parameters[12] * t64 - parameters[13] * t46 - parameters[15] * t89)
-            - minus_s_distal_leg1
-                * (t105 + parameters[12] * t58 + parameters[14] * t46
-                    + parameters[15] * t110);
-        let t115 = t56 + t114;
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let t120 = 1.0 / minus_s_distal_leg2;
-        let gwrist_wx_leg2 = minus_s_proximal_leg2 * t120;
-        let gproximal_wx_leg2 = c_distal_leg2 * gwrist_wx_leg2;
-        let t123 = 9.81 * minus_s_proximal_leg2;
-        let gwrist_wz_leg2 = minus_c_proximal_leg2 * t120;
-        let gproximal_wz_leg2 = c_distal_leg2 * gwrist_wz_leg2;
-        let rate_proximal_leg2 = gproximal_wx_leg2 * twist[0] + twist[1]
-            + gproximal_wz_leg2 * twist[2];
-        let t131 = minus_c_proximal_leg2 * minus_s_distal_leg2;
+        let t78 = c_distal_leg1 * rate_proximal_leg1;
+        let t79 = rate_distal_leg1 * t78;
+        let t80 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t81 = t79 - t80;
+        let t84 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t85 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t86 = rate_distal_leg1 * t85;
+        let t87 = t84 + t86;
+        let t90 = t78 * t85;
+        let rate_dot_distal_leg1 = minus_gdistal_wy_leg1 * t54 - gdistal_wz_leg1 * t61;
+        let t99 = t85 * t85;
+        let t100 = rate_distal_leg1 * rate_distal_leg1;
+        let t103 = parameters[8] * (t79 + t81) - parameters[7] * t87
+            + parameters[9] * (t90 + rate_dot_distal_leg1) + parameters[10] * t86
+            + parameters[11] * (t99 - t100);
+        let t108 = 9.81 * t17;
+        let t112 = t78 * t78;
+        let t124 = parameters[9] * (t100 - t112)
+            - (parameters[7] * t79 + parameters[8] * (t86 + t87)) + parameters[10] * t81
+            - parameters[11] * (t90 - rate_dot_distal_leg1);
+        let t130 = 9.81 * (minus_s_distal_leg1 * s_proximal_leg1);
+        let t134 = c_distal_leg1
+            * (t103 - parameters[12] * t86 + parameters[14] * t65
+                + parameters[15] * t108)
+            + minus_s_distal_leg1
+                * (t124 + parameters[12] * t79 - parameters[13] * t65
+                    + parameters[15] * t130);
+        let t135 = t77 - t134;
+        let t136 = pose[2] * t14;
+        let t137 = t2 - t136;
+        let t138 = pose[3] * t0;
+        let t139 = pose[0] * t14;
+        let t140 = t138 + t139;
+        let minus_s_distal_leg2 = t15 - t16;
+        let t143 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t143, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t143);
+        let t146 = 1.0 / (t137 * c_distal_leg2);
+        let s_proximal_leg2 = t146 * (t140 * t137);
+        let c_proximal_leg2 = t146 * (t137 * t137);
+        let t153 = t140 * s_proximal_leg2 + t137 * c_proximal_leg2;
+        ::overact::guard::leg(t153, 1.0, "leg2")?;
+        let t154 = 1.0 / t153;
+        let gdistal_wx_leg2 = t137 * t154;
+        let gwrist_wx_leg2 = s_proximal_leg2 * t154;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
+        let gwrist_wz_leg2 = c_proximal_leg2 * t154;
+        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
+        let rate_proximal_leg2 = twist[1] - minus_gproximal_wx_leg2 * twist[0]
+            - minus_gproximal_wz_leg2 * twist[2];
+        let t164 = c_distal_leg2 * rate_proximal_leg2;
+        let t165 = t164 * t164;
+        let t166 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t167 = t166 * t166;
+        let t170 = t164 * t166;
         let rate_wrist_leg2 = gwrist_wx_leg2 * twist[0] + gwrist_wz_leg2 * twist[2];
-        let t135 = t131 * rate_wrist_leg2;
-        let rate_distal_leg2 = minus_c_proximal_leg2 * twist[0]
-            - minus_s_proximal_leg2 * twist[2];
-        let t140 = minus_s_proximal_leg2 * rate_distal_leg2;
-        let t141 = c_distal_leg2 * rate_wrist_leg2;
-        let t145 = rate_proximal_leg2 * t135 - t140 * t141 - rate_proximal_leg2 * t140;
-        let t148 = minus_s_proximal_leg2 * minus_s_distal_leg2 * rate_wrist_leg2;
-        let t150 = minus_c_proximal_leg2 * rate_distal_leg2;
-        let t158 = rate_proximal_leg2 * t150 + t150 * t141 + rate_proximal_leg2 * t148;
-        let minus_rate_dot_proximal_leg2 = gproximal_wx_leg2 * t145
-            - (t140 * t148 + t150 * t135) - gproximal_wz_leg2 * t158;
-        let t172 = parameters[17] * t123 - parameters[16] * minus_rate_dot_proximal_leg2
-            + parameters[18] * (9.81 * minus_c_proximal_leg2)
+        let t176 = t137 * rate_wrist_leg2;
+        let minus_gdistal_wz_leg2 = t140 * t154;
+        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
+            - minus_gdistal_wz_leg2 * twist[2];
+        let t182 = s_proximal_leg2 * rate_distal_leg2;
+        let t183 = minus_s_distal_leg2 * rate_wrist_leg2;
+        let t187 = rate_proximal_leg2 * t176 + t182 * t183 - rate_proximal_leg2 * t182;
+        let t189 = t140 * rate_wrist_leg2;
+        let t191 = c_proximal_leg2 * rate_distal_leg2;
+        let t199 = t191 * t183 - rate_proximal_leg2 * t189 - rate_proximal_leg2 * t191;
+        let rate_dot_proximal_leg2 = minus_gproximal_wx_leg2 * t187 + t182 * t189
+            + t191 * t176 + minus_gproximal_wz_leg2 * t199;
+        let t202 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t207 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t209 = parameters[24] * (t165 - t167) - parameters[23] * t170
+            - parameters[25] * t202 + parameters[26] * t170 - parameters[27] * t207;
+        let rate_dot_distal_leg2 = minus_gdistal_wz_leg2 * t199 - gdistal_wx_leg2 * t187;
+        let t215 = 9.81 * t137;
+        let t219 = 9.81 * (minus_s_distal_leg2 * c_proximal_leg2);
+        let t221 = t209 + parameters[28] * rate_dot_distal_leg2 - parameters[29] * t215
+            - parameters[30] * t219;
+        let t224 = 9.81 * s_proximal_leg2;
+        let t236 = parameters[16] * rate_dot_proximal_leg2 + parameters[17] * t224
+            + parameters[18] * (9.81 * c_proximal_leg2)
+            + parameters[19] * rate_dot_proximal_leg2
             + parameters[20] * rate_proximal_leg2
-            - parameters[19] * minus_rate_dot_proximal_leg2
             + ::overact::math::signed(parameters[21], rate_proximal_leg2)
             + parameters[22];
-        let t173 = c_distal_leg2 * rate_proximal_leg2;
-        let t174 = rate_distal_leg2 * t173;
-        let t175 = minus_s_distal_leg2 * minus_rate_dot_proximal_leg2;
-        let t176 = t175 + t174;
-        let t179 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t180 = rate_distal_leg2 * t179;
-        let t183 = rate_distal_leg2 * rate_distal_leg2;
-        let t184 = t179 * t179;
-        let rate_dot_wrist_leg2 = gwrist_wz_leg2 * t158 - gwrist_wx_leg2 * t145;
-        let minus_rate_dot_distal_leg2 = minus_c_proximal_leg2 * t145
-            + minus_s_proximal_leg2 * t158;
-        let t196 = t179 * t173;
-        let t199 = parameters[24] * (t174 + t176) - parameters[23] * t180
-            + parameters[25] * (t183 - t184) + parameters[26] * rate_dot_wrist_leg2
-            - parameters[27] * (minus_rate_dot_distal_leg2 - t196);
-        let t205 = 9.81 * (minus_c_proximal_leg2 * c_distal_leg2);
-        let t218 = t173 * t173;
-        let t221 = parameters[23] * t176 + parameters[24] * (t180 + rate_dot_wrist_leg2)
-            - parameters[25] * (t196 + minus_rate_dot_distal_leg2)
-            - parameters[26] * t174 + parameters[27] * (t218 - t183);
-        let t226 = 9.81 * t131;
-        let t230 = c_distal_leg2
-            * (t199 + parameters[28] * t180 + parameters[29] * t123
-                - parameters[31] * t205)
-            - minus_s_distal_leg2
-                * (t221 + parameters[28] * t174 - parameters[30] * t123
-                    + parameters[31] * t226);
-        let t231 = t172 + t230;
-        let t243 = parameters[23] * t196 + parameters[24] * (t184 - t218)
-            + parameters[25] * t175 - parameters[26] * t196
-            - parameters[27] * (c_distal_leg2 * minus_rate_dot_proximal_leg2);
-        let t249 = t243 - parameters[28] * minus_rate_dot_distal_leg2
-            - parameters[29] * t226 + parameters[30] * t205;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t257 = 1.0 / minus_s_distal_leg3;
-        let gwrist_wx_leg3 = minus_c_proximal_leg3 * t257;
-        let gproximal_wx_leg3 = c_distal_leg3 * gwrist_wx_leg3;
-        let gwrist_wy_leg3 = minus_s_proximal_leg3 * t257;
-        let gproximal_wy_leg3 = c_distal_leg3 * gwrist_wy_leg3;
-        let t264 = gproximal_wx_leg3 * twist[0] + gproximal_wy_leg3 * twist[1];
-        let rate_proximal_leg3 = t264 + twist[2];
+        let t237 = rate_distal_leg2 * t164;
+        let t238 = t237 - t207;
+        let t241 = rate_distal_leg2 * t166;
+        let t242 = t202 + t241;
+        let t250 = rate_distal_leg2 * rate_distal_leg2;
+        let t253 = parameters[24] * (t237 + t238) - parameters[23] * t242
+            + parameters[25] * (t170 + rate_dot_distal_leg2) + parameters[26] * t241
+            + parameters[27] * (t167 - t250);
+        let t272 = parameters[25] * (t250 - t165)
+            - (parameters[23] * t237 + parameters[24] * (t241 + t242))
+            + parameters[26] * t238 - parameters[27] * (t170 - rate_dot_distal_leg2);
+        let t280 = c_distal_leg2
+            * (t253 - parameters[28] * t241 - parameters[30] * t224
+                + parameters[31] * t215)
+            + minus_s_distal_leg2
+                * (t272 + parameters[28] * t237 + parameters[29] * t224
+                    + parameters[31] * t219);
+        let t281 = t236 - t280;
+        let minus_s_distal_leg3 = t138 - t139;
+        let t287 = 1.0 - t136 - t4;
+        let t289 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t289, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t289);
+        let t292 = 1.0 / (t287 * c_distal_leg3);
+        let c_proximal_leg3 = t292 * (t287 * t287);
+        let t296 = t6 + t7;
+        let s_proximal_leg3 = t292 * (t287 * t296);
+        let t300 = t287 * c_proximal_leg3 + t296 * s_proximal_leg3;
+        ::overact::guard::leg(t300, 1.0, "leg3")?;
+        let t301 = 1.0 / t300;
+        let gwrist_wx_leg3 = c_proximal_leg3 * t301;
+        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
+        let gwrist_wy_leg3 = s_proximal_leg3 * t301;
+        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
+        let t308 = minus_gproximal_wx_leg3 * twist[0]
+            + minus_gproximal_wy_leg3 * twist[1];
+        let gdistal_wy_leg3 = t287 * t301;
+        let minus_gdistal_wx_leg3 = t296 * t301;
+        let rate_distal_leg3 = gdistal_wy_leg3 * twist[1]
+            - minus_gdistal_wx_leg3 * twist[0];
+        let t314 = c_proximal_leg3 * rate_distal_leg3;
+        let rate_proximal_leg3 = twist[2] - t308;
         let rate_wrist_leg3 = gwrist_wx_leg3 * twist[0] + gwrist_wy_leg3 * twist[1];
-        let t271 = minus_c_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let rate_distal_leg3 = minus_c_proximal_leg3 * twist[1]
-            - minus_s_proximal_leg3 * twist[0];
-        let t276 = minus_s_proximal_leg3 * rate_distal_leg3;
-        let t280 = rate_proximal_leg3 * t271 - t264 * t276 - rate_proximal_leg3 * t276;
-        let t282 = minus_c_proximal_leg3 * rate_distal_leg3;
-        let t286 = minus_s_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let t289 = rate_proximal_leg3 * t282 + t264 * t282 + rate_proximal_leg3 * t286;
-        let minus_rate_dot_proximal_leg3 = gproximal_wy_leg3 * t280
-            - gproximal_wx_leg3 * t289 - (t276 * t286 + t282 * t271);
-        let t303 = c_distal_leg3 * rate_proximal_leg3;
-        let t304 = rate_distal_leg3 * t303;
-        let t305 = minus_s_distal_leg3 * minus_rate_dot_proximal_leg3;
-        let t306 = t305 + t304;
-        let t309 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t310 = rate_distal_leg3 * t309;
-        let t315 = t276 * t276 + t282 * t282;
-        let t316 = t309 * t309;
-        let rate_dot_wrist_leg3 = gwrist_wx_leg3 * t289 - gwrist_wy_leg3 * t280;
-        let minus_rate_dot_distal_leg3 = minus_s_proximal_leg3 * t289
-            + minus_c_proximal_leg3 * t280;
-        let t328 = t309 * t303;
-        let t331 = parameters[38] * (t304 + t306) - parameters[37] * t310
-            + parameters[39] * (t315 - t316) + parameters[40] * rate_dot_wrist_leg3
-            - parameters[41] * (minus_rate_dot_distal_leg3 - t328);
-        let t344 = t303 * t303;
-        let t347 = parameters[37] * t306 + parameters[38] * (t310 + rate_dot_wrist_leg3)
-            - parameters[39] * (t328 + minus_rate_dot_distal_leg3)
-            - parameters[40] * t304 + parameters[41] * (t344 - t315);
-        let t352 = parameters[34] * rate_proximal_leg3
-            - parameters[33] * minus_rate_dot_proximal_leg3
+        let t320 = t296 * rate_wrist_leg3;
+        let t324 = t308 * t314 - rate_proximal_leg3 * t320 - rate_proximal_leg3 * t314;
+        let t326 = t287 * rate_wrist_leg3;
+        let t328 = s_proximal_leg3 * rate_distal_leg3;
+        let t332 = rate_proximal_leg3 * t326 + t308 * t328 - rate_proximal_leg3 * t328;
+        let rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t324
+            + minus_gproximal_wy_leg3 * t332 + t328 * t320 + t314 * t326;
+        let t347 = c_distal_leg3 * rate_proximal_leg3;
+        let t348 = rate_distal_leg3 * t347;
+        let t349 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t350 = t348 - t349;
+        let t353 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t354 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t355 = rate_distal_leg3 * t354;
+        let t356 = t353 + t355;
+        let t359 = t347 * t354;
+        let rate_dot_distal_leg3 = minus_gdistal_wx_leg3 * t324 - gdistal_wy_leg3 * t332;
+        let t368 = t354 * t354;
+        let t369 = rate_distal_leg3 * rate_distal_leg3;
+        let t372 = parameters[38] * (t348 + t350) - parameters[37] * t356
+            + parameters[39] * (t359 + rate_dot_distal_leg3) + parameters[40] * t355
+            + parameters[41] * (t368 - t369);
+        let t376 = t347 * t347;
+        let t388 = parameters[39] * (t369 - t376)
+            - (parameters[37] * t348 + parameters[38] * (t355 + t356))
+            + parameters[40] * t350 - parameters[41] * (t359 - rate_dot_distal_leg3);
+        let t393 = parameters[32] * rate_dot_proximal_leg3
+            + parameters[33] * rate_dot_proximal_leg3
+            + parameters[34] * rate_proximal_leg3
             + ::overact::math::signed(parameters[35], rate_proximal_leg3)
-            + parameters[36] - parameters[32] * minus_rate_dot_proximal_leg3
-            + c_distal_leg3 * (t331 + parameters[42] * t310)
-            - minus_s_distal_leg3 * (t347 + parameters[42] * t304);
-        let t364 = parameters[37] * t328 + parameters[38] * (t316 - t344)
-            + parameters[39] * t305 - parameters[40] * t328
-            - parameters[41] * (c_distal_leg3 * minus_rate_dot_proximal_leg3);
-        let t372 = t364 - parameters[42] * minus_rate_dot_distal_leg3
-            + parameters[43] * (9.81 * c_distal_leg3)
-            + parameters[44] * (9.81 * minus_s_distal_leg3);
-        let t376 = 2.0 * pose[2];
-        let t377 = pose[2] * t376;
-        let t379 = 2.0 * pose[3];
-        let t380 = pose[3] * t379;
-        let t381 = 1.0 - t377 - t380;
-        let t383 = 2.0 * pose[1];
-        let t384 = pose[2] * t383;
-        let t385 = pose[0] * t379;
-        let t386 = t384 + t385;
-        let t389 = pose[3] * t383;
-        let t390 = pose[0] * t376;
-        let t391 = t389 - t390;
-        let t393 = t381 * twist[0] + t386 * twist[1] + t391 * twist[2];
-        let t394 = t384 - t385;
-        let t397 = 1.0 - pose[1] * t383;
-        let t398 = t397 - t380;
-        let t401 = pose[3] * t376;
-        let t402 = pose[0] * t383;
-        let t403 = t401 + t402;
-        let t405 = t394 * twist[0] + t398 * twist[1] + t403 * twist[2];
-        let t406 = t393 * t405;
-        let t408 = t389 + t390;
-        let t410 = t401 - t402;
-        let t413 = t397 - t377;
-        let t415 = t408 * twist[0] + t410 * twist[1] + t413 * twist[2];
-        let t416 = t393 * t415;
-        let t419 = t405 * t415;
-        let t422 = t405 * t405;
-        let t423 = t415 * t415;
-        let t428 = parameters[47] * t406 - parameters[46] * t416 - parameters[48] * t419
-            + parameters[49] * (t422 - t423) + parameters[50] * t419;
-        let t429 = 9.81 * t413;
-        let t432 = 9.81 * t403;
-        let t434 = t428 + parameters[52] * t429 - parameters[53] * t432;
-        let t439 = t393 * t393;
-        let t446 = parameters[45] * t416 + parameters[46] * t419
-            + parameters[47] * (t423 - t439) - parameters[49] * t406
-            - parameters[50] * t416;
-        let t449 = 9.81 * t391;
-        let t451 = t446 - parameters[51] * t429 + parameters[53] * t449;
-        let t463 = parameters[46] * (t439 - t422) - parameters[45] * t406
-            - parameters[47] * t419 + parameters[48] * t406 + parameters[49] * t416;
-        let t467 = t463 + parameters[51] * t432 - parameters[52] * t449;
-        let t470 = t115 + gproximal_wx_leg2 * t231 + minus_c_proximal_leg2 * t249
-            + gproximal_wx_leg3 * t352 - minus_s_proximal_leg3 * t372 + t381 * t434
-            + t394 * t451 + t408 * t467;
-        let t482 = parameters[7] * t80 + parameters[8] * (t68 - t102)
-            + parameters[9] * t59 - parameters[10] * t80
-            - parameters[11] * (c_distal_leg1 * minus_rate_dot_proximal_leg1);
-        let t488 = t482 - parameters[12] * minus_rate_dot_distal_leg1
-            - parameters[13] * t110 + parameters[14] * t89;
-        let t501 = gproximal_wy_leg1 * t115 - minus_s_proximal_leg1 * t488 + t231
-            + gproximal_wy_leg3 * t352 + minus_c_proximal_leg3 * t372 + t386 * t434
-            + t398 * t451 + t410 * t467;
-        let t515 = gproximal_wz_leg1 * t115 + minus_c_proximal_leg1 * t488
-            + gproximal_wz_leg2 * t231 - minus_s_proximal_leg2 * t249 + t352
-            + t391 * t434 + t403 * t451 + t413 * t467;
-        Ok([t470, t501, t515])
+            + parameters[36]
+            - (c_distal_leg3 * (t372 - parameters[42] * t355)
+                + minus_s_distal_leg3 * (t388 + parameters[42] * t348));
+        let t404 = parameters[38] * (t376 - t368) - parameters[37] * t359
+            - parameters[39] * t353 + parameters[40] * t359 - parameters[41] * t349;
+        let t407 = 9.81 * minus_s_distal_leg3;
+        let t412 = t404 + parameters[42] * rate_dot_distal_leg3 - parameters[43] * t407
+            + parameters[44] * (9.81 * c_distal_leg3);
+        let t420 = t287 * twist[0] + t296 * twist[1] + minus_s_distal_leg3 * twist[2];
+        let t425 = minus_s_distal_leg1 * twist[0] + t5 * twist[1] + t17 * twist[2];
+        let t426 = t420 * t425;
+        let t432 = t140 * twist[0] + minus_s_distal_leg2 * twist[1] + t137 * twist[2];
+        let t433 = t420 * t432;
+        let t436 = t425 * t432;
+        let t439 = t425 * t425;
+        let t440 = t432 * t432;
+        let t445 = parameters[47] * t426 - parameters[46] * t433 - parameters[48] * t436
+            + parameters[49] * (t439 - t440) + parameters[50] * t436;
+        let t449 = t445 + parameters[52] * t215 - parameters[53] * t108;
+        let t454 = t420 * t420;
+        let t461 = parameters[45] * t433 + parameters[46] * t436
+            + parameters[47] * (t440 - t454) - parameters[49] * t426
+            - parameters[50] * t433;
+        let t465 = t461 - parameters[51] * t215 + parameters[53] * t407;
+        let t477 = parameters[46] * (t454 - t439) - parameters[45] * t426
+            - parameters[47] * t436 + parameters[48] * t426 + parameters[49] * t433;
+        let t481 = t477 + parameters[51] * t108 - parameters[52] * t407;
+        let t484 = t135 + gdistal_wx_leg2 * t221 - minus_gproximal_wx_leg2 * t281
+            - (minus_gproximal_wx_leg3 * t393 + minus_gdistal_wx_leg3 * t412)
+            + t287 * t449 + minus_s_distal_leg1 * t465 + t140 * t481;
+        let t495 = parameters[8] * (t112 - t99) - parameters[7] * t90
+            - parameters[9] * t84 + parameters[10] * t90 - parameters[11] * t80;
+        let t501 = t495 + parameters[12] * rate_dot_distal_leg1 - parameters[13] * t108
+            - parameters[14] * t130;
+        let t514 = t281 - (minus_gproximal_wy_leg1 * t135 + minus_gdistal_wy_leg1 * t501)
+            + gdistal_wy_leg3 * t412 - minus_gproximal_wy_leg3 * t393 + t296 * t449
+            + t5 * t465 + minus_s_distal_leg2 * t481;
+        let t528 = gdistal_wz_leg1 * t501 - minus_gproximal_wz_leg1 * t135
+            - (minus_gproximal_wz_leg2 * t281 + minus_gdistal_wz_leg2 * t221) + t393
+            + minus_s_distal_leg3 * t449 + t17 * t465 + t137 * t481;
+        Ok([t484, t514, t528])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
     ///
@@ -5126,26 +7199,27 @@ impl Spherical3Rrr {
     ) -> Result<[f64; Self::POSE], ::overact::Error> {
         let mut pose = *start;
         ::overact::forward::gauss_newton(
-            ::overact::forward::Measured {
-                positions: actuators,
-                is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
-            },
-            &mut pose,
-            ::overact::forward::Workspace {
-                actuators: &mut [0.0; Self::ACTUATORS],
-                inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
-                normal: &mut [0.0; Self::DOF * Self::DOF],
-                step: &mut [0.0; Self::DOF],
-            },
-            |pose, positions, jacobian| {
-                let pose = ::overact::block::array(pose)?;
-                positions.copy_from_slice(&Self::actuator_positions(pose)?);
-                jacobian.copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
-                Ok(())
-            },
-            ::overact::forward::displace_quaternion,
-        )?;
-        Ok(pose)
+                ::overact::forward::Measured {
+                    positions: actuators,
+                    is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
+                },
+                &mut pose,
+                ::overact::forward::Workspace {
+                    actuators: &mut [0.0; Self::ACTUATORS],
+                    inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
+                    normal: &mut [0.0; Self::DOF * Self::DOF],
+                    step: &mut [0.0; Self::DOF],
+                },
+                |pose, positions, jacobian| {
+                    let pose = ::overact::block::array(pose)?;
+                    positions.copy_from_slice(&Self::actuator_positions(pose)?);
+                    jacobian
+                        .copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
+                    Ok(())
+                },
+                ::overact::forward::displace_quaternion,
+            )
+            .map(|()| pose)
     }
 }
 impl ::overact::Model for Spherical3Rrr {

@@ -287,46 +287,105 @@ impl Spherical4Rrr {
             BaseParameter::new("mx_distal_leg4", "mx_distal_leg4", &[]),
         ]
     };
-    /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration; by Newton's method.
+    /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
+    ///
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
+    ///
+    /// Output: 12.
+    ///
+    /// 123 operations (43 additions, 68 multiplications, 12 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 132 intermediates.
     ///
     /// # Errors
-    /// A pose out of reach, or a singular configuration on the way from home.
-    pub fn joints(
-        pose: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::JOINTS], ::overact::Error> {
-        let mut joints = Self::HOME_JOINTS;
-        ::overact::inverse::solve(
-            ::overact::inverse::Legs {
-                names: &Self::LEGS,
-                joints: &[3, 3, 3, 3],
-                home_pose: &Self::HOME_POSE,
-                home_joints: &Self::HOME_JOINTS,
-                has_quaternion: true,
-            },
-            pose,
-            &mut joints,
-            ::overact::inverse::Workspace {
-                error: &mut [0.0; Self::JOINTS],
-                jacobian: &mut [0.0; Self::JOINTS * Self::JOINTS],
-                pose: &mut [0.0; Self::POSE],
-            },
-            |pose, joints, error, jacobian| {
-                let (pose, joints) = (
-                    ::overact::block::array(pose)?,
-                    ::overact::block::array(joints)?,
-                );
-                ::overact::block::write(
-                    &Self::closure_error_from_joints(pose, joints),
-                    error,
-                );
-                ::overact::block::write(
-                    &Self::legs_jacobian_from_joints(pose, joints),
-                    jacobian,
-                );
-                Ok(())
-            },
-        )?;
-        Ok(joints)
+    /// A pose out of reach, or a singular configuration.
+    pub fn joints(pose: &[f64; 4]) -> Result<[f64; 12], ::overact::Error> {
+        let t0 = 2.0 * pose[2];
+        let t1 = pose[2] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = 1.0 - t1 - t4;
+        let t6 = 2.0 * pose[1];
+        let t7 = pose[3] * t6;
+        let t8 = pose[0] * t0;
+        let t9 = t7 + t8;
+        let t10 = t5 - t9;
+        let t11 = t7 - t8;
+        let t13 = 1.0 - pose[1] * t6;
+        let t14 = t13 - t1;
+        let t15 = t11 - t14;
+        let t16 = t10 + t15;
+        let t19 = 1.0 - 0.25 * (t16 * t16);
+        ::overact::guard::reach(t19, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t19);
+        let t25 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
+        let t26 = pose[2] * t6;
+        let t27 = pose[0] * t3;
+        let t28 = t26 + t27;
+        let t29 = pose[3] * t0;
+        let t30 = pose[0] * t6;
+        let t31 = t29 - t30;
+        let t33 = t10 - t15;
+        let s_proximal_leg1 = t25 * (0.35355339059327373 * ((t28 - t31) * t33));
+        let c_proximal_leg1 = t25 * (0.25 * (t33 * t33));
+        let minus_s_distal_leg1 = 0.5 * t16;
+        let t44 = t26 - t27;
+        let t45 = t29 + t30;
+        let s_wrist_leg1 = 0.7071067811865475 * (t44 + t45) / c_distal_leg1;
+        let t49 = t5 + t9;
+        let t50 = t11 + t14;
+        let t51 = t49 + t50;
+        let c_wrist_leg1 = 0.5 * t51 / c_distal_leg1;
+        let t55 = t13 - t4;
+        let t56 = t55 - t31;
+        let t57 = t45 - t14;
+        let t58 = t56 + t57;
+        let t61 = 1.0 - 0.25 * (t58 * t58);
+        ::overact::guard::reach(t61, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t61);
+        let t67 = 1.0 / (0.5 * (t56 * c_distal_leg2 - t57 * c_distal_leg2));
+        let t69 = t56 - t57;
+        let minus_s_proximal_leg2 = t67 * (0.35355339059327373 * ((t44 - t9) * t69));
+        let c_proximal_leg2 = t67 * (0.25 * (t69 * t69));
+        let minus_s_distal_leg2 = 0.5 * t58;
+        let minus_s_wrist_leg2 = 0.7071067811865475 * (t28 + t11) / c_distal_leg2;
+        let t85 = t55 + t31;
+        let t86 = t45 + t14;
+        let t87 = t85 + t86;
+        let c_wrist_leg2 = 0.5 * t87 / c_distal_leg2;
+        let t91 = t50 - t49;
+        let t94 = 1.0 - 0.25 * (t91 * t91);
+        ::overact::guard::reach(t94, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t94);
+        let t100 = 1.0 / (0.5 * (t49 * c_distal_leg3 + t50 * c_distal_leg3));
+        let s_proximal_leg3 = t100 * (0.35355339059327373 * ((t28 + t31) * t51));
+        let c_proximal_leg3 = t100 * (0.25 * (t51 * t51));
+        let s_distal_leg3 = 0.5 * t91;
+        let s_wrist_leg3 = 0.7071067811865475 * (t44 - t45) / c_distal_leg3;
+        let c_wrist_leg3 = 0.5 * t33 / c_distal_leg3;
+        let t117 = t86 - t85;
+        let t120 = 1.0 - 0.25 * (t117 * t117);
+        ::overact::guard::reach(t120, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t120);
+        let t126 = 1.0 / (0.5 * (t85 * c_distal_leg4 + t86 * c_distal_leg4));
+        let minus_s_proximal_leg4 = t126 * (0.35355339059327373 * ((t44 + t9) * t87));
+        let c_proximal_leg4 = t126 * (0.25 * (t87 * t87));
+        let s_distal_leg4 = 0.5 * t117;
+        let s_wrist_leg4 = 0.7071067811865475 * (t11 - t28) / c_distal_leg4;
+        let c_wrist_leg4 = 0.5 * t69 / c_distal_leg4;
+        Ok([
+            ::overact::math::atan2(s_proximal_leg1, c_proximal_leg1),
+            ::overact::math::atan2(-minus_s_distal_leg1, c_distal_leg1),
+            ::overact::math::atan2(s_wrist_leg1, c_wrist_leg1),
+            ::overact::math::atan2(-minus_s_proximal_leg2, c_proximal_leg2),
+            ::overact::math::atan2(-minus_s_distal_leg2, c_distal_leg2),
+            ::overact::math::atan2(-minus_s_wrist_leg2, c_wrist_leg2),
+            ::overact::math::atan2(s_proximal_leg3, c_proximal_leg3),
+            ::overact::math::atan2(s_distal_leg3, c_distal_leg3),
+            ::overact::math::atan2(s_wrist_leg3, c_wrist_leg3),
+            ::overact::math::atan2(-minus_s_proximal_leg4, c_proximal_leg4),
+            ::overact::math::atan2(s_distal_leg4, c_distal_leg4),
+            ::overact::math::atan2(s_wrist_leg4, c_wrist_leg4),
+        ])
     }
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
@@ -335,13 +394,78 @@ impl Spherical4Rrr {
     ///
     /// Output: 4.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    /// 99 operations (39 additions, 56 multiplications, 4 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 105 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn actuator_positions(pose: &[f64; 4]) -> Result<[f64; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Ok([joints[0], joints[3], joints[6], joints[9]])
+        let t0 = 2.0 * pose[2];
+        let t1 = pose[2] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = 1.0 - t1 - t4;
+        let t6 = 2.0 * pose[1];
+        let t7 = pose[3] * t6;
+        let t8 = pose[0] * t0;
+        let t9 = t7 + t8;
+        let t10 = t5 - t9;
+        let t11 = t7 - t8;
+        let t13 = 1.0 - pose[1] * t6;
+        let t14 = t13 - t1;
+        let t15 = t11 - t14;
+        let t16 = t10 + t15;
+        let t19 = 1.0 - 0.25 * (t16 * t16);
+        ::overact::guard::reach(t19, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t19);
+        let t25 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
+        let t26 = pose[2] * t6;
+        let t27 = pose[0] * t3;
+        let t28 = t26 + t27;
+        let t29 = pose[3] * t0;
+        let t30 = pose[0] * t6;
+        let t31 = t29 - t30;
+        let t33 = t10 - t15;
+        let s_proximal_leg1 = t25 * (0.35355339059327373 * ((t28 - t31) * t33));
+        let c_proximal_leg1 = t25 * (0.25 * (t33 * t33));
+        let t41 = t13 - t4;
+        let t42 = t41 - t31;
+        let t43 = t29 + t30;
+        let t44 = t43 - t14;
+        let t45 = t42 + t44;
+        let t48 = 1.0 - 0.25 * (t45 * t45);
+        ::overact::guard::reach(t48, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t48);
+        let t54 = 1.0 / (0.5 * (t42 * c_distal_leg2 - t44 * c_distal_leg2));
+        let t55 = t26 - t27;
+        let t57 = t42 - t44;
+        let minus_s_proximal_leg2 = t54 * (0.35355339059327373 * ((t55 - t9) * t57));
+        let c_proximal_leg2 = t54 * (0.25 * (t57 * t57));
+        let t66 = t5 + t9;
+        let t67 = t11 + t14;
+        let t68 = t67 - t66;
+        let t71 = 1.0 - 0.25 * (t68 * t68);
+        ::overact::guard::reach(t71, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t71);
+        let t77 = 1.0 / (0.5 * (t66 * c_distal_leg3 + t67 * c_distal_leg3));
+        let t79 = t66 + t67;
+        let s_proximal_leg3 = t77 * (0.35355339059327373 * ((t28 + t31) * t79));
+        let c_proximal_leg3 = t77 * (0.25 * (t79 * t79));
+        let t87 = t41 + t31;
+        let t88 = t43 + t14;
+        let t89 = t88 - t87;
+        let t92 = 1.0 - 0.25 * (t89 * t89);
+        ::overact::guard::reach(t92, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t92);
+        let t98 = 1.0 / (0.5 * (t87 * c_distal_leg4 + t88 * c_distal_leg4));
+        let t100 = t87 + t88;
+        let minus_s_proximal_leg4 = t98 * (0.35355339059327373 * ((t55 + t9) * t100));
+        let c_proximal_leg4 = t98 * (0.25 * (t100 * t100));
+        Ok([
+            ::overact::math::atan2(s_proximal_leg1, c_proximal_leg1),
+            ::overact::math::atan2(-minus_s_proximal_leg2, c_proximal_leg2),
+            ::overact::math::atan2(s_proximal_leg3, c_proximal_leg3),
+            ::overact::math::atan2(-minus_s_proximal_leg4, c_proximal_leg4),
+        ])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -350,13 +474,128 @@ impl Spherical4Rrr {
     ///
     /// Output: 4 x 3.
     ///
-    /// 40 operations (8 additions, 28 multiplications, 4 divisions), 0 square roots, 8 trigonometric pairs, 0 signs, 44 intermediates.
+    /// 187 operations (55 additions, 124 multiplications, 8 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 179 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian(pose: &[f64; 4]) -> Result<[[f64; 3]; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::inverse_jacobian_from_joints(pose, joints)
+        let t0 = 2.0 * pose[1];
+        let t1 = pose[2] * t0;
+        let t2 = 2.0 * pose[3];
+        let t3 = pose[0] * t2;
+        let t4 = t1 + t3;
+        let t5 = 2.0 * pose[2];
+        let t6 = pose[3] * t5;
+        let t7 = pose[0] * t0;
+        let t8 = t6 - t7;
+        let t9 = t4 - t8;
+        let t10 = pose[2] * t5;
+        let t12 = pose[3] * t2;
+        let t13 = 1.0 - t10 - t12;
+        let t14 = pose[3] * t0;
+        let t15 = pose[0] * t5;
+        let t16 = t14 + t15;
+        let t17 = t13 - t16;
+        let t18 = t14 - t15;
+        let t20 = 1.0 - pose[1] * t0;
+        let t21 = t20 - t10;
+        let t22 = t18 - t21;
+        let t23 = t17 + t22;
+        let t26 = 1.0 - 0.25 * (t23 * t23);
+        ::overact::guard::reach(t26, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t26);
+        let t32 = 1.0 / (0.5 * (t17 * c_distal_leg1 - t22 * c_distal_leg1));
+        let t33 = t17 - t22;
+        let s_proximal_leg1 = t32 * (0.35355339059327373 * (t9 * t33));
+        let t38 = 0.5 * (t9 * s_proximal_leg1);
+        let c_proximal_leg1 = t32 * (0.25 * (t33 * t33));
+        let t52 = 0.5 * (t22 * c_proximal_leg1)
+            - (0.5 * (t17 * c_proximal_leg1)
+                + 0.7071067811865475 * t9 * s_proximal_leg1);
+        ::overact::guard::leg(t52, 1.0, "leg1")?;
+        let t53 = 1.0 / t52;
+        let minus_gproximal_wx_leg1 = (t38 - 0.7071067811865475 * t22 * c_proximal_leg1)
+            * t53;
+        let t55 = t20 - t12;
+        let t56 = t55 - t8;
+        let t57 = t6 + t7;
+        let t58 = t57 - t21;
+        let t59 = t56 + t58;
+        let minus_s_distal_leg2 = 0.5 * t59;
+        let t63 = 1.0 - 0.25 * (t59 * t59);
+        ::overact::guard::reach(t63, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t63);
+        let t69 = 1.0 / (0.5 * (t56 * c_distal_leg2 - t58 * c_distal_leg2));
+        let t70 = t1 - t3;
+        let t71 = t70 - t16;
+        let t72 = t56 - t58;
+        let minus_s_proximal_leg2 = t69 * (0.35355339059327373 * (t71 * t72));
+        let c_proximal_leg2 = t69 * (0.25 * (t72 * t72));
+        let t87 = 0.5 * (t58 * c_proximal_leg2)
+            - (0.7071067811865475 * t71 * minus_s_proximal_leg2
+                + 0.5 * (t56 * c_proximal_leg2));
+        ::overact::guard::leg(t87, 1.0, "leg2")?;
+        let t88 = 1.0 / t87;
+        let gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t88;
+        let t90 = t4 + t8;
+        let t91 = t13 + t16;
+        let t92 = t18 + t21;
+        let t93 = t92 - t91;
+        let t96 = 1.0 - 0.25 * (t93 * t93);
+        ::overact::guard::reach(t96, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t96);
+        let t102 = 1.0 / (0.5 * (t91 * c_distal_leg3 + t92 * c_distal_leg3));
+        let t103 = t91 + t92;
+        let s_proximal_leg3 = t102 * (0.35355339059327373 * (t90 * t103));
+        let t108 = 0.5 * (t90 * s_proximal_leg3);
+        let c_proximal_leg3 = t102 * (0.25 * (t103 * t103));
+        let t122 = 0.5 * (t91 * c_proximal_leg3)
+            + 0.7071067811865475 * t90 * s_proximal_leg3 + 0.5 * (t92 * c_proximal_leg3);
+        ::overact::guard::leg(t122, 1.0, "leg3")?;
+        let t123 = 1.0 / t122;
+        let minus_gproximal_wx_leg3 = (t108 + 0.7071067811865475 * t92 * c_proximal_leg3)
+            * t123;
+        let t125 = t57 + t21;
+        let t126 = t55 + t8;
+        let t127 = t125 - t126;
+        let s_distal_leg4 = 0.5 * t127;
+        let t131 = 1.0 - 0.25 * (t127 * t127);
+        ::overact::guard::reach(t131, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t131);
+        let t137 = 1.0 / (0.5 * (t126 * c_distal_leg4 + t125 * c_distal_leg4));
+        let t138 = t70 + t16;
+        let t139 = t126 + t125;
+        let minus_s_proximal_leg4 = t137 * (0.35355339059327373 * (t138 * t139));
+        let c_proximal_leg4 = t137 * (0.25 * (t139 * t139));
+        let t154 = 0.7071067811865475 * t138 * minus_s_proximal_leg4
+            + 0.5 * (t126 * c_proximal_leg4) + 0.5 * (t125 * c_proximal_leg4);
+        ::overact::guard::leg(t154, 1.0, "leg4")?;
+        let t155 = 1.0 / t154;
+        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t155;
+        let minus_s_distal_leg1 = 0.5 * t23;
+        let gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t53;
+        let t163 = 0.5 * (t71 * minus_s_proximal_leg2);
+        let gproximal_wy_leg2 = (0.7071067811865475 * t58 * c_proximal_leg2 - t163)
+            * t88;
+        let s_distal_leg3 = 0.5 * t93;
+        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t123;
+        let t170 = 0.5 * (t138 * minus_s_proximal_leg4);
+        let minus_gproximal_wy_leg4 = (t170
+            + 0.7071067811865475 * t125 * c_proximal_leg4) * t155;
+        let minus_gproximal_wz_leg1 = (0.7071067811865475 * t17 * c_proximal_leg1 + t38)
+            * t53;
+        let minus_gproximal_wz_leg2 = (0.7071067811865475 * t56 * c_proximal_leg2 + t163)
+            * t88;
+        let gproximal_wz_leg3 = (0.7071067811865475 * t91 * c_proximal_leg3 + t108)
+            * t123;
+        let gproximal_wz_leg4 = (0.7071067811865475 * t126 * c_proximal_leg4 + t170)
+            * t155;
+        Ok([
+            [-minus_gproximal_wx_leg1, gproximal_wy_leg1, -minus_gproximal_wz_leg1],
+            [gproximal_wx_leg2, gproximal_wy_leg2, -minus_gproximal_wz_leg2],
+            [-minus_gproximal_wx_leg3, -minus_gproximal_wy_leg3, gproximal_wz_leg3],
+            [-minus_gproximal_wx_leg4, -minus_gproximal_wy_leg4, gproximal_wz_leg4],
+        ])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -434,115 +673,180 @@ impl Spherical4Rrr {
     ///
     /// Output: 3 x 4.
     ///
-    /// 156 operations (54 additions, 95 multiplications, 7 divisions), 0 square roots, 8 trigonometric pairs, 0 signs, 160 intermediates.
+    /// 303 operations (101 additions, 191 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 295 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn jacobian(pose: &[f64; 4]) -> Result<[[f64; 4]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t5 = 0.7071067811865476 * minus_c_proximal_leg1 * c_distal_leg1;
-        let t6 = 0.7071067811865476 * minus_s_distal_leg1;
-        let t8 = 1.0 / minus_s_distal_leg1;
-        let gproximal_wx_leg1 = (t5 + t6) * t8;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let t16 = 1.0 / minus_s_distal_leg2;
-        let minus_gproximal_wx_leg2 = minus_s_proximal_leg2 * c_distal_leg2 * t16;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let t25 = 0.7071067811865476 * minus_c_proximal_leg3 * c_distal_leg3;
-        let t26 = 0.7071067811865476 * minus_s_distal_leg3;
-        let t28 = 1.0 / minus_s_distal_leg3;
-        let minus_gproximal_wx_leg3 = (t25 + t26) * t28;
-        let (minus_s_proximal_leg4, minus_c_proximal_leg4) = ::overact::math::sin_cos(
-            joints[9],
-        );
-        let (c_distal_leg4, minus_s_distal_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(minus_s_distal_leg4, 1.0, "leg4")?;
-        let t37 = 1.0 / minus_s_distal_leg4;
-        let gproximal_wx_leg4 = minus_s_proximal_leg4 * c_distal_leg4 * t37;
-        let t40 = gproximal_wx_leg1 * gproximal_wx_leg1
-            + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+        let t0 = 2.0 * pose[1];
+        let t1 = pose[2] * t0;
+        let t2 = 2.0 * pose[3];
+        let t3 = pose[0] * t2;
+        let t4 = t1 + t3;
+        let t5 = 2.0 * pose[2];
+        let t6 = pose[3] * t5;
+        let t7 = pose[0] * t0;
+        let t8 = t6 - t7;
+        let t9 = t4 - t8;
+        let t10 = pose[2] * t5;
+        let t12 = pose[3] * t2;
+        let t13 = 1.0 - t10 - t12;
+        let t14 = pose[3] * t0;
+        let t15 = pose[0] * t5;
+        let t16 = t14 + t15;
+        let t17 = t13 - t16;
+        let t18 = t14 - t15;
+        let t20 = 1.0 - pose[1] * t0;
+        let t21 = t20 - t10;
+        let t22 = t18 - t21;
+        let t23 = t17 + t22;
+        let t26 = 1.0 - 0.25 * (t23 * t23);
+        ::overact::guard::reach(t26, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t26);
+        let t32 = 1.0 / (0.5 * (t17 * c_distal_leg1 - t22 * c_distal_leg1));
+        let t33 = t17 - t22;
+        let s_proximal_leg1 = t32 * (0.35355339059327373 * (t9 * t33));
+        let t38 = 0.5 * (t9 * s_proximal_leg1);
+        let c_proximal_leg1 = t32 * (0.25 * (t33 * t33));
+        let t52 = 0.5 * (t22 * c_proximal_leg1)
+            - (0.5 * (t17 * c_proximal_leg1)
+                + 0.7071067811865475 * t9 * s_proximal_leg1);
+        ::overact::guard::leg(t52, 1.0, "leg1")?;
+        let t53 = 1.0 / t52;
+        let minus_gproximal_wx_leg1 = (t38 - 0.7071067811865475 * t22 * c_proximal_leg1)
+            * t53;
+        let t56 = t20 - t12;
+        let t57 = t56 - t8;
+        let t58 = t6 + t7;
+        let t59 = t58 - t21;
+        let t60 = t57 + t59;
+        let minus_s_distal_leg2 = 0.5 * t60;
+        let t64 = 1.0 - 0.25 * (t60 * t60);
+        ::overact::guard::reach(t64, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t64);
+        let t70 = 1.0 / (0.5 * (t57 * c_distal_leg2 - t59 * c_distal_leg2));
+        let t71 = t1 - t3;
+        let t72 = t71 - t16;
+        let t73 = t57 - t59;
+        let minus_s_proximal_leg2 = t70 * (0.35355339059327373 * (t72 * t73));
+        let c_proximal_leg2 = t70 * (0.25 * (t73 * t73));
+        let t88 = 0.5 * (t59 * c_proximal_leg2)
+            - (0.7071067811865475 * t72 * minus_s_proximal_leg2
+                + 0.5 * (t57 * c_proximal_leg2));
+        ::overact::guard::leg(t88, 1.0, "leg2")?;
+        let t89 = 1.0 / t88;
+        let gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t89;
+        let t93 = t4 + t8;
+        let t94 = t13 + t16;
+        let t95 = t18 + t21;
+        let t96 = t95 - t94;
+        let t99 = 1.0 - 0.25 * (t96 * t96);
+        ::overact::guard::reach(t99, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t99);
+        let t105 = 1.0 / (0.5 * (t94 * c_distal_leg3 + t95 * c_distal_leg3));
+        let t106 = t94 + t95;
+        let s_proximal_leg3 = t105 * (0.35355339059327373 * (t93 * t106));
+        let t111 = 0.5 * (t93 * s_proximal_leg3);
+        let c_proximal_leg3 = t105 * (0.25 * (t106 * t106));
+        let t125 = 0.5 * (t94 * c_proximal_leg3)
+            + 0.7071067811865475 * t93 * s_proximal_leg3 + 0.5 * (t95 * c_proximal_leg3);
+        ::overact::guard::leg(t125, 1.0, "leg3")?;
+        let t126 = 1.0 / t125;
+        let minus_gproximal_wx_leg3 = (t111 + 0.7071067811865475 * t95 * c_proximal_leg3)
+            * t126;
+        let t130 = t58 + t21;
+        let t131 = t56 + t8;
+        let t132 = t130 - t131;
+        let s_distal_leg4 = 0.5 * t132;
+        let t136 = 1.0 - 0.25 * (t132 * t132);
+        ::overact::guard::reach(t136, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t136);
+        let t142 = 1.0 / (0.5 * (t131 * c_distal_leg4 + t130 * c_distal_leg4));
+        let t143 = t71 + t16;
+        let t144 = t131 + t130;
+        let minus_s_proximal_leg4 = t142 * (0.35355339059327373 * (t143 * t144));
+        let c_proximal_leg4 = t142 * (0.25 * (t144 * t144));
+        let t159 = 0.7071067811865475 * t143 * minus_s_proximal_leg4
+            + 0.5 * (t131 * c_proximal_leg4) + 0.5 * (t130 * c_proximal_leg4);
+        ::overact::guard::leg(t159, 1.0, "leg4")?;
+        let t160 = 1.0 / t159;
+        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t160;
+        let t163 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+            + gproximal_wx_leg2 * gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
-            + gproximal_wx_leg4 * gproximal_wx_leg4;
-        ::overact::guard::platform(t40, 1.0000000000000002, "actuators")?;
-        let t41 = 1.0 / t40;
-        let gproximal_wy_leg1 = minus_s_proximal_leg1 * c_distal_leg1 * t8;
-        let t47 = 0.7071067811865476 * minus_c_proximal_leg2 * c_distal_leg2;
-        let t48 = 0.7071067811865476 * minus_s_distal_leg2;
-        let gproximal_wy_leg2 = (t47 + t48) * t16;
-        let minus_gproximal_wy_leg3 = minus_s_proximal_leg3 * c_distal_leg3 * t28;
-        let t58 = 0.7071067811865476 * minus_c_proximal_leg4 * c_distal_leg4;
-        let t59 = 0.7071067811865476 * minus_s_distal_leg4;
-        let minus_gproximal_wy_leg4 = (t58 + t59) * t37;
-        let t63 = gproximal_wx_leg1 * gproximal_wy_leg1
-            - minus_gproximal_wx_leg2 * gproximal_wy_leg2
+            + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
+        ::overact::guard::platform(t163, 0.9999999999999998, "actuators")?;
+        let t164 = 1.0 / t163;
+        let t169 = 0.5 * (t72 * minus_s_proximal_leg2);
+        let gproximal_wy_leg2 = (0.7071067811865475 * t59 * c_proximal_leg2 - t169)
+            * t89;
+        let minus_s_distal_leg1 = 0.5 * t23;
+        let gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t53;
+        let s_distal_leg3 = 0.5 * t96;
+        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t126;
+        let t184 = 0.5 * (t143 * minus_s_proximal_leg4);
+        let minus_gproximal_wy_leg4 = (t184
+            + 0.7071067811865475 * t130 * c_proximal_leg4) * t160;
+        let t190 = gproximal_wx_leg2 * gproximal_wy_leg2
+            - minus_gproximal_wx_leg1 * gproximal_wy_leg1
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
-            - gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t64 = t63 * t41;
-        let t73 = gproximal_wy_leg1 * gproximal_wy_leg1
+            + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
+        let t191 = t190 * t164;
+        let t200 = gproximal_wy_leg1 * gproximal_wy_leg1
             + gproximal_wy_leg2 * gproximal_wy_leg2
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t63 * t64;
-        ::overact::guard::platform(t73, 1.0000000000000002, "actuators")?;
-        let t74 = 1.0 / t73;
-        let t76 = gproximal_wy_leg1 - gproximal_wx_leg1 * t64;
-        let minus_gproximal_wz_leg3 = (t25 - t26) * t28;
-        let minus_gproximal_wz_leg1 = (t5 - t6) * t8;
-        let minus_gproximal_wz_leg2 = (t47 - t48) * t16;
-        let minus_gproximal_wz_leg4 = (t58 - t59) * t37;
-        let t99 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
-            - gproximal_wx_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
-            - gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t100 = t99 * t41;
-        let t102 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
-            - (gproximal_wy_leg1 * minus_gproximal_wz_leg1
-                + gproximal_wy_leg2 * minus_gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t63 * t100;
-        let t103 = t102 * t74;
-        let t114 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t190 * t191;
+        ::overact::guard::platform(t200, 0.9999999999999998, "actuators")?;
+        let t201 = 1.0 / t200;
+        let t203 = gproximal_wy_leg1 + minus_gproximal_wx_leg1 * t191;
+        let minus_gproximal_wz_leg1 = (0.7071067811865475 * t17 * c_proximal_leg1 + t38)
+            * t53;
+        let minus_gproximal_wz_leg2 = (0.7071067811865475 * t57 * c_proximal_leg2 + t169)
+            * t89;
+        let gproximal_wz_leg3 = (0.7071067811865475 * t94 * c_proximal_leg3 + t111)
+            * t126;
+        let gproximal_wz_leg4 = (0.7071067811865475 * t131 * c_proximal_leg4 + t184)
+            * t160;
+        let t234 = minus_gproximal_wx_leg1 * minus_gproximal_wz_leg1
+            - gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wx_leg3 * gproximal_wz_leg3
+            - minus_gproximal_wx_leg4 * gproximal_wz_leg4;
+        let t235 = t234 * t164;
+        let t237 = gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            + gproximal_wy_leg2 * minus_gproximal_wz_leg2
+            + minus_gproximal_wy_leg3 * gproximal_wz_leg3
+            + minus_gproximal_wy_leg4 * gproximal_wz_leg4 + t190 * t235;
+        let t238 = t237 * t201;
+        let t249 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
             + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t99 * t100
-            - t102 * t103;
-        ::overact::guard::platform(t114, 2.0000000000000004, "actuators")?;
-        let t115 = 1.0 / t114;
-        let t120 = t115
-            * (minus_gproximal_wz_leg1 + gproximal_wx_leg1 * t100 + t103 * t76);
-        let t122 = t74 * t76 + t103 * t120;
-        let t129 = gproximal_wy_leg2 + minus_gproximal_wx_leg2 * t64;
-        let t135 = t115
-            * (minus_gproximal_wx_leg2 * t100 - minus_gproximal_wz_leg2 - t103 * t129);
-        let t137 = t74 * t129 - t103 * t135;
-        let t144 = minus_gproximal_wx_leg3 * t64 - minus_gproximal_wy_leg3;
-        let t150 = t115
-            * (minus_gproximal_wx_leg3 * t100 - minus_gproximal_wz_leg3 - t103 * t144);
-        let t152 = t74 * t144 - t103 * t150;
-        let t159 = minus_gproximal_wy_leg4 + gproximal_wx_leg4 * t64;
-        let t165 = t115
-            * (t103 * t159 - (minus_gproximal_wz_leg4 + gproximal_wx_leg4 * t100));
-        let t167 = t74 * t159 + t103 * t165;
+            + gproximal_wz_leg3 * gproximal_wz_leg3
+            + gproximal_wz_leg4 * gproximal_wz_leg4 - t234 * t235 - t237 * t238;
+        ::overact::guard::platform(t249, 1.9999999999999996, "actuators")?;
+        let t250 = 1.0 / t249;
+        let t255 = t250
+            * (minus_gproximal_wx_leg1 * t235 - minus_gproximal_wz_leg1 + t238 * t203);
+        let t257 = t201 * t203 + t238 * t255;
+        let t264 = gproximal_wy_leg2 - gproximal_wx_leg2 * t191;
+        let t270 = t250
+            * (t238 * t264 - (minus_gproximal_wz_leg2 + gproximal_wx_leg2 * t235));
+        let t272 = t201 * t264 + t238 * t270;
+        let t279 = minus_gproximal_wx_leg3 * t191 - minus_gproximal_wy_leg3;
+        let t285 = t250
+            * (gproximal_wz_leg3 + minus_gproximal_wx_leg3 * t235 + t238 * t279);
+        let t287 = t201 * t279 + t238 * t285;
+        let t294 = minus_gproximal_wx_leg4 * t191 - minus_gproximal_wy_leg4;
+        let t300 = t250
+            * (gproximal_wz_leg4 + minus_gproximal_wx_leg4 * t235 + t238 * t294);
+        let t302 = t201 * t294 + t238 * t300;
         Ok([
             [
-                gproximal_wx_leg1 * t41 - t64 * t122 + t100 * t120,
-                -(minus_gproximal_wx_leg2 * t41 + t64 * t137 + t100 * t135),
-                -(minus_gproximal_wx_leg3 * t41 + t64 * t152 + t100 * t150),
-                gproximal_wx_leg4 * t41 + t64 * t167 - t100 * t165,
+                -(minus_gproximal_wx_leg1 * t164 + t191 * t257 + t235 * t255),
+                gproximal_wx_leg2 * t164 - t191 * t272 - t235 * t270,
+                -(minus_gproximal_wx_leg3 * t164 + t191 * t287 + t235 * t285),
+                -(minus_gproximal_wx_leg4 * t164 + t191 * t302 + t235 * t300),
             ],
-            [t122, t137, t152, -t167],
-            [-t120, t135, t150, t165],
+            [t257, t272, t287, t302],
+            [t255, t270, t285, t300],
         ])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -726,177 +1030,6 @@ impl Spherical4Rrr {
             [0.0, 0.0, minus_s_distal_leg3, 0.0], [0.0, 0.0, 0.0, minus_s_distal_leg4],
         ]
     }
-    /// By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m, rad).
-    ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
-    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    ///
-    /// Output: 12.
-    ///
-    /// 303 operations (123 additions, 180 multiplications, 0 divisions), 0 square roots, 12 trigonometric pairs, 0 signs, 315 intermediates.
-    #[must_use]
-    pub fn closure_error_from_joints(pose: &[f64; 4], joints: &[f64; 12]) -> [f64; 12] {
-        let t0 = 2.0 * pose[2];
-        let t1 = pose[3] * t0;
-        let t2 = 2.0 * pose[1];
-        let t3 = pose[0] * t2;
-        let t4 = t1 + t3;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        let t9 = minus_s_proximal_leg1 * c_distal_leg1;
-        let (s_wrist_leg1, c_wrist_leg1) = ::overact::math::sin_cos(joints[2]);
-        let t14 = t9 * s_wrist_leg1 + minus_c_proximal_leg1 * c_wrist_leg1;
-        let t18 = minus_c_proximal_leg1 * s_wrist_leg1 - t9 * c_wrist_leg1;
-        let t19 = pose[3] * t2;
-        let t20 = pose[0] * t0;
-        let t21 = t19 - t20;
-        let t23 = 1.0 - pose[1] * t2;
-        let t24 = pose[2] * t0;
-        let t25 = t23 - t24;
-        let t27 = 0.7071067811865476 * (t21 + t25);
-        let t30 = minus_s_proximal_leg1 * minus_s_distal_leg1;
-        let t32 = 0.7071067811865476 * (t21 - t25);
-        let t35 = 2.0 * pose[3];
-        let t36 = pose[3] * t35;
-        let t37 = t23 - t36;
-        let minus_gdistal_wx_leg1 = 0.7071067811865476 * minus_s_proximal_leg1;
-        let t39 = minus_gdistal_wx_leg1 * c_wrist_leg1;
-        let t40 = 0.7071067811865476 * minus_c_proximal_leg1;
-        let t41 = t40 * c_distal_leg1;
-        let t42 = 0.7071067811865476 * minus_s_distal_leg1;
-        let t43 = t41 - t42;
-        let t45 = t39 - t43 * s_wrist_leg1;
-        let t48 = minus_gdistal_wx_leg1 * s_wrist_leg1;
-        let t49 = t43 * c_wrist_leg1 + t48;
-        let t50 = pose[2] * t2;
-        let t51 = pose[0] * t35;
-        let t52 = t50 + t51;
-        let t53 = t1 - t3;
-        let t55 = 0.7071067811865476 * (t52 + t53);
-        let t58 = t40 * minus_s_distal_leg1;
-        let t59 = 0.7071067811865476 * c_distal_leg1;
-        let t60 = t58 + t59;
-        let t62 = 0.7071067811865476 * (t52 - t53);
-        let t65 = t4 * t14 - t18 * t27 + t30 * t32 - (t37 * t45 - t49 * t55 - t60 * t62);
-        let t67 = t50 - t51;
-        let t70 = 1.0 - t24 - t36;
-        let t71 = t19 + t20;
-        let t73 = 0.7071067811865476 * (t70 + t71);
-        let t77 = 0.7071067811865476 * (t70 - t71);
-        let t80 = t41 + t42;
-        let t82 = t80 * c_wrist_leg1 + t48;
-        let t85 = t80 * s_wrist_leg1 - t39;
-        let t88 = t59 - t58;
-        let t91 = t67 * t45 - t49 * t73 - t60 * t77 - (t82 * t27 + t4 * t85 - t88 * t32);
-        let t103 = t82 * t55 + t37 * t85 - t88 * t62
-            - (t67 * t14 - t18 * t73 + t30 * t77);
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let t107 = 0.7071067811865476 * minus_c_proximal_leg2;
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        let t110 = t107 * c_distal_leg2;
-        let t111 = 0.7071067811865476 * minus_s_distal_leg2;
-        let t112 = t110 + t111;
-        let (s_wrist_leg2, c_wrist_leg2) = ::overact::math::sin_cos(joints[5]);
-        let minus_gdistal_wy_leg2 = 0.7071067811865476 * minus_s_proximal_leg2;
-        let t117 = minus_gdistal_wy_leg2 * s_wrist_leg2;
-        let t118 = t112 * c_wrist_leg2 + t117;
-        let t120 = 0.7071067811865476 * (t4 + t25);
-        let t123 = minus_gdistal_wy_leg2 * c_wrist_leg2;
-        let t124 = t112 * s_wrist_leg2 - t123;
-        let t127 = 0.7071067811865476 * c_distal_leg2;
-        let t128 = t107 * minus_s_distal_leg2;
-        let t129 = t127 - t128;
-        let t131 = 0.7071067811865476 * (t4 - t25);
-        let t134 = t110 - t111;
-        let t136 = t134 * c_wrist_leg2 + t117;
-        let t138 = 0.7071067811865476 * (t37 + t53);
-        let t141 = t123 - t134 * s_wrist_leg2;
-        let t144 = t128 + t127;
-        let t146 = 0.7071067811865476 * (t37 - t53);
-        let t149 = t118 * t120 - t21 * t124 - t129 * t131 + t136 * t138 + t52 * t141
-            + t144 * t146;
-        let t152 = 0.7071067811865476 * (t67 + t71);
-        let t157 = 0.7071067811865476 * (t67 - t71);
-        let t160 = minus_s_proximal_leg2 * c_distal_leg2;
-        let t163 = t160 * s_wrist_leg2 + minus_c_proximal_leg2 * c_wrist_leg2;
-        let t167 = t160 * c_wrist_leg2 - minus_c_proximal_leg2 * s_wrist_leg2;
-        let t170 = minus_s_proximal_leg2 * minus_s_distal_leg2;
-        let t173 = t136 * t152 + t70 * t141 + t144 * t157 + t21 * t163 - t167 * t120
-            - t170 * t131;
-        let t185 = t52 * t163 - t167 * t138 - t170 * t146
-            - (t118 * t152 - t70 * t124 - t129 * t157);
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        let t191 = minus_s_proximal_leg3 * c_distal_leg3;
-        let (s_wrist_leg3, c_wrist_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t196 = t191 * c_wrist_leg3 - minus_c_proximal_leg3 * s_wrist_leg3;
-        let t200 = t191 * s_wrist_leg3 + minus_c_proximal_leg3 * c_wrist_leg3;
-        let t203 = minus_s_proximal_leg3 * minus_s_distal_leg3;
-        let t206 = 0.7071067811865476 * minus_c_proximal_leg3;
-        let t207 = t206 * c_distal_leg3;
-        let t208 = 0.7071067811865476 * minus_s_distal_leg3;
-        let t209 = t207 - t208;
-        let gdistal_wx_leg3 = 0.7071067811865476 * minus_s_proximal_leg3;
-        let t212 = gdistal_wx_leg3 * s_wrist_leg3;
-        let t213 = t209 * c_wrist_leg3 + t212;
-        let t215 = gdistal_wx_leg3 * c_wrist_leg3;
-        let t217 = t215 - t209 * s_wrist_leg3;
-        let t220 = t206 * minus_s_distal_leg3;
-        let t221 = 0.7071067811865476 * c_distal_leg3;
-        let t222 = t220 + t221;
-        let t225 = t196 * t32 + t4 * t200 + t203 * t27
-            - (t213 * t62 - t37 * t217 + t222 * t55);
-        let t232 = t207 + t208;
-        let t234 = t232 * c_wrist_leg3 + t212;
-        let t237 = t215 - t232 * s_wrist_leg3;
-        let t240 = t220 - t221;
-        let t243 = t213 * t77 - t67 * t217 + t222 * t73
-            - (t234 * t32 - t4 * t237 + t240 * t27);
-        let t255 = t234 * t62 - t37 * t237 + t240 * t55
-            - (t196 * t77 + t67 * t200 + t203 * t73);
-        let (minus_s_proximal_leg4, minus_c_proximal_leg4) = ::overact::math::sin_cos(
-            joints[9],
-        );
-        let t259 = 0.7071067811865476 * minus_c_proximal_leg4;
-        let (c_distal_leg4, minus_s_distal_leg4) = ::overact::math::sin_cos(joints[10]);
-        let t262 = t259 * c_distal_leg4;
-        let t263 = 0.7071067811865476 * minus_s_distal_leg4;
-        let t264 = t262 + t263;
-        let (s_wrist_leg4, c_wrist_leg4) = ::overact::math::sin_cos(joints[11]);
-        let gdistal_wy_leg4 = 0.7071067811865476 * minus_s_proximal_leg4;
-        let t269 = gdistal_wy_leg4 * s_wrist_leg4;
-        let t270 = t264 * c_wrist_leg4 + t269;
-        let t272 = gdistal_wy_leg4 * c_wrist_leg4;
-        let t274 = t272 - t264 * s_wrist_leg4;
-        let t277 = t259 * minus_s_distal_leg4;
-        let t278 = 0.7071067811865476 * c_distal_leg4;
-        let t279 = t277 - t278;
-        let t282 = t262 - t263;
-        let t284 = t282 * c_wrist_leg4 + t269;
-        let t287 = t272 - t282 * s_wrist_leg4;
-        let t290 = t277 + t278;
-        let t293 = t270 * t131 + t21 * t274 + t279 * t120
-            - (t284 * t146 + t52 * t287 + t290 * t138);
-        let t301 = minus_s_proximal_leg4 * c_distal_leg4;
-        let t303 = minus_c_proximal_leg4 * s_wrist_leg4 - t301 * c_wrist_leg4;
-        let t307 = t301 * s_wrist_leg4 + minus_c_proximal_leg4 * c_wrist_leg4;
-        let t310 = minus_s_proximal_leg4 * minus_s_distal_leg4;
-        let t313 = t284 * t157 + t70 * t287 + t290 * t152
-            - (t303 * t131 + t21 * t307 - t310 * t120);
-        let t325 = t303 * t146 + t52 * t307 - t310 * t138
-            - (t270 * t157 + t70 * t274 + t279 * t152);
-        [
-            0.5 * t65, 0.5 * t91, 0.5 * t103, 0.5 * t149, -(0.5 * t173), 0.5 * t185, 0.5 * t225,
-            0.5 * t243, 0.5 * t255, 0.5 * t293, 0.5 * t313, 0.5 * t325,
-        ]
-    }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
     /// From the platform's pose and motion.
@@ -905,7 +1038,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 12.
     ///
-    /// 112 operations (32 additions, 76 multiplications, 4 divisions), 0 square roots, 8 trigonometric pairs, 0 signs, 116 intermediates.
+    /// 271 operations (79 additions, 184 multiplications, 8 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 263 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -913,95 +1046,166 @@ impl Spherical4Rrr {
         pose: &[f64; 4],
         twist: &[f64; 3],
     ) -> Result<[f64; 12], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let t2 = 0.7071067811865476 * minus_c_proximal_leg1;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t5 = t2 * c_distal_leg1;
-        let t6 = 0.7071067811865476 * minus_s_distal_leg1;
-        let t8 = 1.0 / minus_s_distal_leg1;
-        let gproximal_wx_leg1 = (t5 + t6) * t8;
-        let gproximal_wy_leg1 = minus_s_proximal_leg1 * c_distal_leg1 * t8;
-        let minus_gproximal_wz_leg1 = (t5 - t6) * t8;
-        let rate_proximal_leg1 = gproximal_wx_leg1 * twist[0]
-            + gproximal_wy_leg1 * twist[1] - minus_gproximal_wz_leg1 * twist[2];
-        let minus_gdistal_wx_leg1 = 0.7071067811865476 * minus_s_proximal_leg1;
-        let rate_distal_leg1 = minus_c_proximal_leg1 * twist[1]
-            - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let gwrist_wx_leg1 = t2 * t8;
-        let gwrist_wy_leg1 = minus_s_proximal_leg1 * t8;
-        let rate_wrist_leg1 = gwrist_wx_leg1 * twist[0] + gwrist_wy_leg1 * twist[1]
-            - gwrist_wx_leg1 * twist[2];
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let t34 = 0.7071067811865476 * minus_c_proximal_leg2;
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let t37 = t34 * c_distal_leg2;
-        let t38 = 0.7071067811865476 * minus_s_distal_leg2;
-        let t40 = 1.0 / minus_s_distal_leg2;
-        let gproximal_wy_leg2 = (t37 + t38) * t40;
-        let minus_gproximal_wx_leg2 = minus_s_proximal_leg2 * c_distal_leg2 * t40;
-        let minus_gproximal_wz_leg2 = (t37 - t38) * t40;
-        let rate_proximal_leg2 = gproximal_wy_leg2 * twist[1]
-            - minus_gproximal_wx_leg2 * twist[0] - minus_gproximal_wz_leg2 * twist[2];
-        let minus_gdistal_wy_leg2 = 0.7071067811865476 * minus_s_proximal_leg2;
-        let rate_distal_leg2 = minus_gdistal_wy_leg2 * twist[2]
-            - (minus_c_proximal_leg2 * twist[0] + minus_gdistal_wy_leg2 * twist[1]);
-        let gwrist_wy_leg2 = t34 * t40;
-        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t40;
-        let rate_wrist_leg2 = gwrist_wy_leg2 * twist[1] - minus_gwrist_wx_leg2 * twist[0]
-            - gwrist_wy_leg2 * twist[2];
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t66 = 0.7071067811865476 * minus_c_proximal_leg3;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let t69 = t66 * c_distal_leg3;
-        let t70 = 0.7071067811865476 * minus_s_distal_leg3;
-        let t72 = 1.0 / minus_s_distal_leg3;
-        let minus_gproximal_wx_leg3 = (t69 + t70) * t72;
-        let minus_gproximal_wy_leg3 = minus_s_proximal_leg3 * c_distal_leg3 * t72;
-        let minus_gproximal_wz_leg3 = (t69 - t70) * t72;
-        let minus_rate_proximal_leg3 = minus_gproximal_wx_leg3 * twist[0]
-            + minus_gproximal_wy_leg3 * twist[1] + minus_gproximal_wz_leg3 * twist[2];
-        let gdistal_wx_leg3 = 0.7071067811865476 * minus_s_proximal_leg3;
+        let t0 = 2.0 * pose[2];
+        let t1 = pose[2] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = 1.0 - t1 - t4;
+        let t6 = 2.0 * pose[1];
+        let t7 = pose[3] * t6;
+        let t8 = pose[0] * t0;
+        let t9 = t7 + t8;
+        let t10 = t5 - t9;
+        let t11 = t7 - t8;
+        let t13 = 1.0 - pose[1] * t6;
+        let t14 = t13 - t1;
+        let t15 = t11 - t14;
+        let t16 = t10 + t15;
+        let minus_s_distal_leg1 = 0.5 * t16;
+        let t20 = 1.0 - 0.25 * (t16 * t16);
+        ::overact::guard::reach(t20, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t20);
+        let t26 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
+        let t27 = pose[2] * t6;
+        let t28 = pose[0] * t3;
+        let t29 = t27 + t28;
+        let t30 = pose[3] * t0;
+        let t31 = pose[0] * t6;
+        let t32 = t30 - t31;
+        let t33 = t29 - t32;
+        let t34 = t10 - t15;
+        let s_proximal_leg1 = t26 * (0.35355339059327373 * (t33 * t34));
+        let c_proximal_leg1 = t26 * (0.25 * (t34 * t34));
+        let t49 = 0.5 * (t15 * c_proximal_leg1)
+            - (0.5 * (t10 * c_proximal_leg1)
+                + 0.7071067811865475 * t33 * s_proximal_leg1);
+        ::overact::guard::leg(t49, 1.0, "leg1")?;
+        let t50 = 1.0 / t49;
+        let gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t50;
+        let t54 = 0.5 * (t33 * s_proximal_leg1);
+        let minus_gproximal_wx_leg1 = (t54 - 0.7071067811865475 * t15 * c_proximal_leg1)
+            * t50;
+        let minus_gproximal_wz_leg1 = (0.7071067811865475 * t10 * c_proximal_leg1 + t54)
+            * t50;
+        let rate_proximal_leg1 = gproximal_wy_leg1 * twist[1]
+            - minus_gproximal_wx_leg1 * twist[0] - minus_gproximal_wz_leg1 * twist[2];
+        let t67 = 0.5 * t50;
+        let gdistal_wx_leg1 = t33 * t67;
+        let minus_gdistal_wy_leg1 = t34 * t67;
+        let rate_distal_leg1 = gdistal_wx_leg1 * twist[0]
+            - minus_gdistal_wy_leg1 * twist[1] - gdistal_wx_leg1 * twist[2];
+        let minus_gwrist_wx_leg1 = 0.7071067811865475 * c_proximal_leg1 * t50;
+        let minus_gwrist_wy_leg1 = s_proximal_leg1 * t50;
+        let rate_wrist_leg1 = minus_gwrist_wx_leg1 * twist[2]
+            - (minus_gwrist_wx_leg1 * twist[0] + minus_gwrist_wy_leg1 * twist[1]);
+        let t83 = t13 - t4;
+        let t84 = t83 - t32;
+        let t85 = t30 + t31;
+        let t86 = t85 - t14;
+        let t87 = t84 + t86;
+        let minus_s_distal_leg2 = 0.5 * t87;
+        let t91 = 1.0 - 0.25 * (t87 * t87);
+        ::overact::guard::reach(t91, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t91);
+        let t97 = 1.0 / (0.5 * (t84 * c_distal_leg2 - t86 * c_distal_leg2));
+        let t98 = t27 - t28;
+        let t99 = t98 - t9;
+        let t100 = t84 - t86;
+        let minus_s_proximal_leg2 = t97 * (0.35355339059327373 * (t99 * t100));
+        let c_proximal_leg2 = t97 * (0.25 * (t100 * t100));
+        let t115 = 0.5 * (t86 * c_proximal_leg2)
+            - (0.7071067811865475 * t99 * minus_s_proximal_leg2
+                + 0.5 * (t84 * c_proximal_leg2));
+        ::overact::guard::leg(t115, 1.0, "leg2")?;
+        let t116 = 1.0 / t115;
+        let gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t116;
+        let t122 = 0.5 * (t99 * minus_s_proximal_leg2);
+        let gproximal_wy_leg2 = (0.7071067811865475 * t86 * c_proximal_leg2 - t122)
+            * t116;
+        let minus_gproximal_wz_leg2 = (0.7071067811865475 * t84 * c_proximal_leg2 + t122)
+            * t116;
+        let rate_proximal_leg2 = gproximal_wx_leg2 * twist[0]
+            + gproximal_wy_leg2 * twist[1] - minus_gproximal_wz_leg2 * twist[2];
+        let t133 = 0.5 * t116;
+        let gdistal_wx_leg2 = t100 * t133;
+        let minus_gdistal_wy_leg2 = t99 * t133;
+        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
+            - minus_gdistal_wy_leg2 * twist[1] + minus_gdistal_wy_leg2 * twist[2];
+        let minus_gwrist_wy_leg2 = 0.7071067811865475 * c_proximal_leg2 * t116;
+        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t116;
+        let rate_wrist_leg2 = minus_gwrist_wy_leg2 * twist[2]
+            - (minus_gwrist_wx_leg2 * twist[0] + minus_gwrist_wy_leg2 * twist[1]);
+        let t149 = t5 + t9;
+        let t151 = t11 + t14;
+        let t152 = t151 - t149;
+        let t155 = 1.0 - 0.25 * (t152 * t152);
+        ::overact::guard::reach(t155, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t155);
+        let t161 = 1.0 / (0.5 * (t149 * c_distal_leg3 + t151 * c_distal_leg3));
+        let t162 = t149 + t151;
+        let c_proximal_leg3 = t161 * (0.25 * (t162 * t162));
+        let t167 = t29 + t32;
+        let s_proximal_leg3 = t161 * (0.35355339059327373 * (t167 * t162));
+        let t172 = 0.5 * (t167 * s_proximal_leg3);
+        let t181 = 0.5 * (t149 * c_proximal_leg3)
+            + 0.7071067811865475 * t167 * s_proximal_leg3
+            + 0.5 * (t151 * c_proximal_leg3);
+        ::overact::guard::leg(t181, 1.0, "leg3")?;
+        let t182 = 1.0 / t181;
+        let gproximal_wz_leg3 = (0.7071067811865475 * t149 * c_proximal_leg3 + t172)
+            * t182;
+        let minus_gproximal_wx_leg3 = (t172
+            + 0.7071067811865475 * t151 * c_proximal_leg3) * t182;
+        let s_distal_leg3 = 0.5 * t152;
+        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t182;
+        let rate_proximal_leg3 = gproximal_wz_leg3 * twist[2]
+            - (minus_gproximal_wx_leg3 * twist[0] + minus_gproximal_wy_leg3 * twist[1]);
+        let t196 = 0.5 * t182;
+        let gdistal_wx_leg3 = t167 * t196;
+        let minus_gdistal_wy_leg3 = t162 * t196;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0]
-            - minus_c_proximal_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
-        let minus_gwrist_wx_leg3 = t66 * t72;
-        let minus_gwrist_wy_leg3 = minus_s_proximal_leg3 * t72;
+            - minus_gdistal_wy_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
+        let minus_gwrist_wx_leg3 = 0.7071067811865475 * c_proximal_leg3 * t182;
+        let minus_gwrist_wy_leg3 = s_proximal_leg3 * t182;
         let minus_rate_wrist_leg3 = minus_gwrist_wx_leg3 * twist[0]
             + minus_gwrist_wy_leg3 * twist[1] + minus_gwrist_wx_leg3 * twist[2];
-        let (minus_s_proximal_leg4, minus_c_proximal_leg4) = ::overact::math::sin_cos(
-            joints[9],
-        );
-        let (c_distal_leg4, minus_s_distal_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(minus_s_distal_leg4, 1.0, "leg4")?;
-        let t101 = 1.0 / minus_s_distal_leg4;
-        let gproximal_wx_leg4 = minus_s_proximal_leg4 * c_distal_leg4 * t101;
-        let t104 = 0.7071067811865476 * minus_c_proximal_leg4;
-        let t105 = t104 * c_distal_leg4;
-        let t106 = 0.7071067811865476 * minus_s_distal_leg4;
-        let minus_gproximal_wy_leg4 = (t105 + t106) * t101;
-        let minus_gproximal_wz_leg4 = (t105 - t106) * t101;
-        let rate_proximal_leg4 = gproximal_wx_leg4 * twist[0]
-            - minus_gproximal_wy_leg4 * twist[1] - minus_gproximal_wz_leg4 * twist[2];
-        let gdistal_wy_leg4 = 0.7071067811865476 * minus_s_proximal_leg4;
-        let rate_distal_leg4 = minus_c_proximal_leg4 * twist[0]
-            + gdistal_wy_leg4 * twist[1] + gdistal_wy_leg4 * twist[2];
-        let gwrist_wx_leg4 = minus_s_proximal_leg4 * t101;
-        let minus_gwrist_wy_leg4 = t104 * t101;
-        let rate_wrist_leg4 = gwrist_wx_leg4 * twist[0] - minus_gwrist_wy_leg4 * twist[1]
-            - minus_gwrist_wy_leg4 * twist[2];
+        let t212 = t83 + t32;
+        let t214 = t85 + t14;
+        let t215 = t214 - t212;
+        let t218 = 1.0 - 0.25 * (t215 * t215);
+        ::overact::guard::reach(t218, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t218);
+        let t224 = 1.0 / (0.5 * (t212 * c_distal_leg4 + t214 * c_distal_leg4));
+        let t225 = t212 + t214;
+        let c_proximal_leg4 = t224 * (0.25 * (t225 * t225));
+        let t230 = t98 + t9;
+        let minus_s_proximal_leg4 = t224 * (0.35355339059327373 * (t230 * t225));
+        let t235 = 0.5 * (t230 * minus_s_proximal_leg4);
+        let t244 = 0.7071067811865475 * t230 * minus_s_proximal_leg4
+            + 0.5 * (t212 * c_proximal_leg4) + 0.5 * (t214 * c_proximal_leg4);
+        ::overact::guard::leg(t244, 1.0, "leg4")?;
+        let t245 = 1.0 / t244;
+        let gproximal_wz_leg4 = (0.7071067811865475 * t212 * c_proximal_leg4 + t235)
+            * t245;
+        let s_distal_leg4 = 0.5 * t215;
+        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t245;
+        let minus_gproximal_wy_leg4 = (t235
+            + 0.7071067811865475 * t214 * c_proximal_leg4) * t245;
+        let rate_proximal_leg4 = gproximal_wz_leg4 * twist[2]
+            - (minus_gproximal_wx_leg4 * twist[0] + minus_gproximal_wy_leg4 * twist[1]);
+        let t259 = 0.5 * t245;
+        let gdistal_wx_leg4 = t225 * t259;
+        let minus_gdistal_wy_leg4 = t230 * t259;
+        let rate_distal_leg4 = gdistal_wx_leg4 * twist[0]
+            - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
+        let minus_gwrist_wx_leg4 = minus_s_proximal_leg4 * t245;
+        let minus_gwrist_wy_leg4 = 0.7071067811865475 * c_proximal_leg4 * t245;
+        let minus_rate_wrist_leg4 = minus_gwrist_wx_leg4 * twist[0]
+            + minus_gwrist_wy_leg4 * twist[1] + minus_gwrist_wy_leg4 * twist[2];
         Ok([
             rate_proximal_leg1, rate_distal_leg1, rate_wrist_leg1, rate_proximal_leg2,
-            rate_distal_leg2, rate_wrist_leg2, -minus_rate_proximal_leg3, rate_distal_leg3,
-            -minus_rate_wrist_leg3, rate_proximal_leg4, rate_distal_leg4, rate_wrist_leg4,
+            rate_distal_leg2, rate_wrist_leg2, rate_proximal_leg3, rate_distal_leg3,
+            -minus_rate_wrist_leg3, rate_proximal_leg4, rate_distal_leg4, -minus_rate_wrist_leg4,
         ])
     }
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
@@ -1013,7 +1217,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 12.
     ///
-    /// 296 operations (108 additions, 184 multiplications, 4 divisions), 0 square roots, 8 trigonometric pairs, 0 signs, 300 intermediates.
+    /// 439 operations (147 additions, 284 multiplications, 8 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 431 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1022,176 +1226,240 @@ impl Spherical4Rrr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[f64; 12], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let t2 = 0.7071067811865476 * minus_c_proximal_leg1;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t5 = t2 * c_distal_leg1;
-        let t6 = 0.7071067811865476 * minus_s_distal_leg1;
-        let t8 = 1.0 / minus_s_distal_leg1;
-        let gproximal_wx_leg1 = (t5 + t6) * t8;
-        let gproximal_wy_leg1 = minus_s_proximal_leg1 * c_distal_leg1 * t8;
-        let minus_gproximal_wz_leg1 = (t5 - t6) * t8;
-        let rate_proximal_leg1 = gproximal_wx_leg1 * twist[0]
-            + gproximal_wy_leg1 * twist[1] - minus_gproximal_wz_leg1 * twist[2];
-        let t19 = 0.7071067811865476 * rate_proximal_leg1;
-        let minus_gdistal_wx_leg1 = 0.7071067811865476 * minus_s_proximal_leg1;
-        let rate_distal_leg1 = minus_c_proximal_leg1 * twist[1]
-            - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let t26 = minus_c_proximal_leg1 * rate_distal_leg1;
-        let t27 = t19 * t26;
-        let t28 = t2 * minus_s_distal_leg1;
-        let t29 = 0.7071067811865476 * c_distal_leg1;
-        let gwrist_wx_leg1 = t2 * t8;
-        let gwrist_wy_leg1 = minus_s_proximal_leg1 * t8;
-        let rate_wrist_leg1 = gwrist_wx_leg1 * twist[0] + gwrist_wy_leg1 * twist[1]
-            - gwrist_wx_leg1 * twist[2];
-        let t38 = (t28 + t29) * rate_wrist_leg1;
-        let t40 = minus_gdistal_wx_leg1 * rate_distal_leg1;
-        let t41 = t19 + t40;
-        let t43 = minus_s_proximal_leg1 * minus_s_distal_leg1 * rate_wrist_leg1;
-        let t47 = acceleration[0] + t27 + t26 * t38 + t41 * t43;
-        let t49 = t19 - t40;
-        let t52 = (t29 - t28) * rate_wrist_leg1;
-        let t58 = acceleration[1] - (t49 * t38 - t41 * t52 - 2.0 * (t19 * t40));
-        let t65 = acceleration[2] - (t27 + t49 * t43 + t26 * t52);
-        let rate_dot_proximal_leg1 = gproximal_wx_leg1 * t47 + gproximal_wy_leg1 * t58
-            - minus_gproximal_wz_leg1 * t65;
-        let rate_dot_distal_leg1 = minus_c_proximal_leg1 * t58
-            - minus_gdistal_wx_leg1 * t47 + minus_gdistal_wx_leg1 * t65;
-        let rate_dot_wrist_leg1 = gwrist_wx_leg1 * t47 + gwrist_wy_leg1 * t58
-            - gwrist_wx_leg1 * t65;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let t80 = 0.7071067811865476 * minus_c_proximal_leg2;
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let t83 = t80 * c_distal_leg2;
-        let t84 = 0.7071067811865476 * minus_s_distal_leg2;
-        let t86 = 1.0 / minus_s_distal_leg2;
-        let gproximal_wy_leg2 = (t83 + t84) * t86;
-        let minus_gproximal_wx_leg2 = minus_s_proximal_leg2 * c_distal_leg2 * t86;
-        let minus_gproximal_wz_leg2 = (t83 - t84) * t86;
-        let rate_proximal_leg2 = gproximal_wy_leg2 * twist[1]
-            - minus_gproximal_wx_leg2 * twist[0] - minus_gproximal_wz_leg2 * twist[2];
-        let t97 = 0.7071067811865476 * rate_proximal_leg2;
-        let minus_gdistal_wy_leg2 = 0.7071067811865476 * minus_s_proximal_leg2;
-        let rate_distal_leg2 = minus_gdistal_wy_leg2 * twist[2]
-            - (minus_c_proximal_leg2 * twist[0] + minus_gdistal_wy_leg2 * twist[1]);
-        let t104 = minus_c_proximal_leg2 * rate_distal_leg2;
-        let t105 = t97 * t104;
-        let t106 = minus_gdistal_wy_leg2 * rate_distal_leg2;
-        let t107 = t97 + t106;
-        let gwrist_wy_leg2 = t80 * t86;
-        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t86;
-        let rate_wrist_leg2 = gwrist_wy_leg2 * twist[1] - minus_gwrist_wx_leg2 * twist[0]
-            - gwrist_wy_leg2 * twist[2];
-        let t116 = minus_s_proximal_leg2 * minus_s_distal_leg2 * rate_wrist_leg2;
-        let t118 = t80 * minus_s_distal_leg2;
-        let t119 = 0.7071067811865476 * c_distal_leg2;
-        let t121 = (t118 + t119) * rate_wrist_leg2;
-        let t125 = acceleration[1] + t105 + t107 * t116 + t104 * t121;
-        let t130 = (t119 - t118) * rate_wrist_leg2;
-        let t132 = t97 - t106;
-        let t136 = acceleration[0] - (2.0 * (t97 * t106) + t107 * t130 - t132 * t121);
-        let t143 = acceleration[2] - (t105 + t104 * t130 + t132 * t116);
-        let rate_dot_proximal_leg2 = gproximal_wy_leg2 * t125
-            - minus_gproximal_wx_leg2 * t136 - minus_gproximal_wz_leg2 * t143;
-        let rate_dot_distal_leg2 = minus_gdistal_wy_leg2 * t143
-            - (minus_c_proximal_leg2 * t136 + minus_gdistal_wy_leg2 * t125);
-        let rate_dot_wrist_leg2 = gwrist_wy_leg2 * t125 - minus_gwrist_wx_leg2 * t136
-            - gwrist_wy_leg2 * t143;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t158 = 0.7071067811865476 * minus_c_proximal_leg3;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let t161 = t158 * c_distal_leg3;
-        let t162 = 0.7071067811865476 * minus_s_distal_leg3;
-        let t164 = 1.0 / minus_s_distal_leg3;
-        let minus_gproximal_wx_leg3 = (t161 + t162) * t164;
-        let minus_gproximal_wy_leg3 = minus_s_proximal_leg3 * c_distal_leg3 * t164;
-        let minus_gproximal_wz_leg3 = (t161 - t162) * t164;
-        let minus_rate_proximal_leg3 = minus_gproximal_wx_leg3 * twist[0]
-            + minus_gproximal_wy_leg3 * twist[1] + minus_gproximal_wz_leg3 * twist[2];
-        let t175 = 0.7071067811865476 * minus_rate_proximal_leg3;
-        let gdistal_wx_leg3 = 0.7071067811865476 * minus_s_proximal_leg3;
+        let t0 = 2.0 * pose[2];
+        let t1 = pose[2] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = 1.0 - t1 - t4;
+        let t6 = 2.0 * pose[1];
+        let t7 = pose[3] * t6;
+        let t8 = pose[0] * t0;
+        let t9 = t7 + t8;
+        let t10 = t5 - t9;
+        let t11 = t7 - t8;
+        let t13 = 1.0 - pose[1] * t6;
+        let t14 = t13 - t1;
+        let t15 = t11 - t14;
+        let t16 = t10 + t15;
+        let minus_s_distal_leg1 = 0.5 * t16;
+        let t20 = 1.0 - 0.25 * (t16 * t16);
+        ::overact::guard::reach(t20, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t20);
+        let t26 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
+        let t27 = pose[2] * t6;
+        let t28 = pose[0] * t3;
+        let t29 = t27 + t28;
+        let t30 = pose[3] * t0;
+        let t31 = pose[0] * t6;
+        let t32 = t30 - t31;
+        let t33 = t29 - t32;
+        let t34 = t10 - t15;
+        let s_proximal_leg1 = t26 * (0.35355339059327373 * (t33 * t34));
+        let c_proximal_leg1 = t26 * (0.25 * (t34 * t34));
+        let t46 = 0.7071067811865475 * t33;
+        let t49 = 0.5 * (t15 * c_proximal_leg1)
+            - (0.5 * (t10 * c_proximal_leg1) + t46 * s_proximal_leg1);
+        ::overact::guard::leg(t49, 1.0, "leg1")?;
+        let t50 = 1.0 / t49;
+        let gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t50;
+        let t54 = 0.5 * (t33 * s_proximal_leg1);
+        let t55 = 0.7071067811865475 * t15;
+        let minus_gproximal_wx_leg1 = (t54 - t55 * c_proximal_leg1) * t50;
+        let t61 = 0.7071067811865475 * t10;
+        let minus_gproximal_wz_leg1 = (t61 * c_proximal_leg1 + t54) * t50;
+        let rate_proximal_leg1 = gproximal_wy_leg1 * twist[1]
+            - minus_gproximal_wx_leg1 * twist[0] - minus_gproximal_wz_leg1 * twist[2];
+        let t67 = 0.7071067811865475 * rate_proximal_leg1;
+        let t69 = 0.5 * t50;
+        let gdistal_wx_leg1 = t33 * t69;
+        let minus_gdistal_wy_leg1 = t34 * t69;
+        let rate_distal_leg1 = gdistal_wx_leg1 * twist[0]
+            - minus_gdistal_wy_leg1 * twist[1] - gdistal_wx_leg1 * twist[2];
+        let t77 = 0.7071067811865475 * s_proximal_leg1 * rate_distal_leg1;
+        let t78 = t67 + t77;
+        let minus_gwrist_wx_leg1 = 0.7071067811865475 * c_proximal_leg1 * t50;
+        let minus_gwrist_wy_leg1 = s_proximal_leg1 * t50;
+        let rate_wrist_leg1 = minus_gwrist_wx_leg1 * twist[2]
+            - (minus_gwrist_wx_leg1 * twist[0] + minus_gwrist_wy_leg1 * twist[1]);
+        let t87 = t61 * rate_wrist_leg1;
+        let t89 = t67 - t77;
+        let t90 = t55 * rate_wrist_leg1;
+        let t96 = acceleration[1] - (t78 * t87 - t89 * t90 - 2.0 * (t67 * t77));
+        let t98 = c_proximal_leg1 * rate_distal_leg1;
+        let t100 = t46 * rate_wrist_leg1;
+        let t103 = t67 * t98;
+        let t105 = acceleration[0] - (t98 * t90 - t78 * t100 - t103);
+        let t112 = acceleration[2] - (t103 + t89 * t100 - t98 * t87);
+        let rate_dot_proximal_leg1 = gproximal_wy_leg1 * t96
+            - minus_gproximal_wx_leg1 * t105 - minus_gproximal_wz_leg1 * t112;
+        let rate_dot_distal_leg1 = gdistal_wx_leg1 * t105 - minus_gdistal_wy_leg1 * t96
+            - gdistal_wx_leg1 * t112;
+        let rate_dot_wrist_leg1 = minus_gwrist_wx_leg1 * t112
+            - (minus_gwrist_wx_leg1 * t105 + minus_gwrist_wy_leg1 * t96);
+        let t125 = t13 - t4;
+        let t126 = t125 - t32;
+        let t127 = t30 + t31;
+        let t128 = t127 - t14;
+        let t129 = t126 + t128;
+        let minus_s_distal_leg2 = 0.5 * t129;
+        let t133 = 1.0 - 0.25 * (t129 * t129);
+        ::overact::guard::reach(t133, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t133);
+        let t139 = 1.0 / (0.5 * (t126 * c_distal_leg2 - t128 * c_distal_leg2));
+        let t140 = t27 - t28;
+        let t141 = t140 - t9;
+        let t142 = t126 - t128;
+        let minus_s_proximal_leg2 = t139 * (0.35355339059327373 * (t141 * t142));
+        let c_proximal_leg2 = t139 * (0.25 * (t142 * t142));
+        let t152 = 0.7071067811865475 * t141;
+        let t157 = 0.5 * (t128 * c_proximal_leg2)
+            - (t152 * minus_s_proximal_leg2 + 0.5 * (t126 * c_proximal_leg2));
+        ::overact::guard::leg(t157, 1.0, "leg2")?;
+        let t158 = 1.0 / t157;
+        let gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t158;
+        let t161 = 0.7071067811865475 * t128;
+        let t164 = 0.5 * (t141 * minus_s_proximal_leg2);
+        let gproximal_wy_leg2 = (t161 * c_proximal_leg2 - t164) * t158;
+        let t169 = 0.7071067811865475 * t126;
+        let minus_gproximal_wz_leg2 = (t169 * c_proximal_leg2 + t164) * t158;
+        let rate_proximal_leg2 = gproximal_wx_leg2 * twist[0]
+            + gproximal_wy_leg2 * twist[1] - minus_gproximal_wz_leg2 * twist[2];
+        let t175 = 0.7071067811865475 * rate_proximal_leg2;
+        let t177 = 0.5 * t158;
+        let gdistal_wx_leg2 = t142 * t177;
+        let minus_gdistal_wy_leg2 = t141 * t177;
+        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
+            - minus_gdistal_wy_leg2 * twist[1] + minus_gdistal_wy_leg2 * twist[2];
+        let t185 = 0.7071067811865475 * minus_s_proximal_leg2 * rate_distal_leg2;
+        let t186 = t175 + t185;
+        let minus_gwrist_wy_leg2 = 0.7071067811865475 * c_proximal_leg2 * t158;
+        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t158;
+        let rate_wrist_leg2 = minus_gwrist_wy_leg2 * twist[2]
+            - (minus_gwrist_wx_leg2 * twist[0] + minus_gwrist_wy_leg2 * twist[1]);
+        let t195 = t161 * rate_wrist_leg2;
+        let t197 = t175 - t185;
+        let t198 = t169 * rate_wrist_leg2;
+        let t204 = acceleration[0] - (t186 * t195 - t197 * t198 - 2.0 * (t175 * t185));
+        let t206 = t152 * rate_wrist_leg2;
+        let t208 = c_proximal_leg2 * rate_distal_leg2;
+        let t211 = t175 * t208;
+        let t213 = acceleration[1] - (t197 * t206 + t208 * t195 - t211);
+        let t220 = acceleration[2] - (t211 - (t208 * t198 + t186 * t206));
+        let rate_dot_proximal_leg2 = gproximal_wx_leg2 * t204 + gproximal_wy_leg2 * t213
+            - minus_gproximal_wz_leg2 * t220;
+        let rate_dot_distal_leg2 = gdistal_wx_leg2 * t204 - minus_gdistal_wy_leg2 * t213
+            + minus_gdistal_wy_leg2 * t220;
+        let rate_dot_wrist_leg2 = minus_gwrist_wy_leg2 * t220
+            - (minus_gwrist_wx_leg2 * t204 + minus_gwrist_wy_leg2 * t213);
+        let t233 = t5 + t9;
+        let t234 = 0.7071067811865475 * t233;
+        let t235 = t11 + t14;
+        let t236 = t235 - t233;
+        let t239 = 1.0 - 0.25 * (t236 * t236);
+        ::overact::guard::reach(t239, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t239);
+        let t245 = 1.0 / (0.5 * (t233 * c_distal_leg3 + t235 * c_distal_leg3));
+        let t246 = t233 + t235;
+        let c_proximal_leg3 = t245 * (0.25 * (t246 * t246));
+        let t251 = t29 + t32;
+        let s_proximal_leg3 = t245 * (0.35355339059327373 * (t251 * t246));
+        let t256 = 0.5 * (t251 * s_proximal_leg3);
+        let t260 = 0.7071067811865475 * t251;
+        let t265 = 0.5 * (t233 * c_proximal_leg3) + t260 * s_proximal_leg3
+            + 0.5 * (t235 * c_proximal_leg3);
+        ::overact::guard::leg(t265, 1.0, "leg3")?;
+        let t266 = 1.0 / t265;
+        let gproximal_wz_leg3 = (t234 * c_proximal_leg3 + t256) * t266;
+        let t269 = 0.7071067811865475 * t235;
+        let minus_gproximal_wx_leg3 = (t256 + t269 * c_proximal_leg3) * t266;
+        let s_distal_leg3 = 0.5 * t236;
+        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t266;
+        let rate_proximal_leg3 = gproximal_wz_leg3 * twist[2]
+            - (minus_gproximal_wx_leg3 * twist[0] + minus_gproximal_wy_leg3 * twist[1]);
+        let t280 = 0.7071067811865475 * rate_proximal_leg3;
+        let t281 = 0.5 * t266;
+        let gdistal_wx_leg3 = t251 * t281;
+        let minus_gdistal_wy_leg3 = t246 * t281;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0]
-            - minus_c_proximal_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
-        let t182 = minus_c_proximal_leg3 * rate_distal_leg3;
-        let t183 = t175 * t182;
-        let t184 = t158 * minus_s_distal_leg3;
-        let t185 = 0.7071067811865476 * c_distal_leg3;
-        let minus_gwrist_wx_leg3 = t158 * t164;
-        let minus_gwrist_wy_leg3 = minus_s_proximal_leg3 * t164;
+            - minus_gdistal_wy_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
+        let t289 = c_proximal_leg3 * rate_distal_leg3;
+        let t290 = t280 * t289;
+        let t292 = 0.7071067811865475 * s_proximal_leg3 * rate_distal_leg3;
+        let t293 = t292 - t280;
+        let minus_gwrist_wx_leg3 = 0.7071067811865475 * c_proximal_leg3 * t266;
+        let minus_gwrist_wy_leg3 = s_proximal_leg3 * t266;
         let minus_rate_wrist_leg3 = minus_gwrist_wx_leg3 * twist[0]
             + minus_gwrist_wy_leg3 * twist[1] + minus_gwrist_wx_leg3 * twist[2];
-        let t194 = (t184 + t185) * minus_rate_wrist_leg3;
-        let t196 = gdistal_wx_leg3 * rate_distal_leg3;
-        let t197 = t196 - t175;
-        let t199 = minus_s_proximal_leg3 * minus_s_distal_leg3 * minus_rate_wrist_leg3;
-        let t203 = acceleration[0] + t183 + t182 * t194 + t197 * t199;
-        let t206 = (t184 - t185) * minus_rate_wrist_leg3;
-        let t208 = t175 + t196;
-        let t214 = acceleration[1] - (t197 * t206 - t208 * t194 - 2.0 * (t175 * t196));
-        let t221 = acceleration[2] - (t208 * t199 + t182 * t206 - t183);
-        let minus_rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t203
-            + minus_gproximal_wy_leg3 * t214 + minus_gproximal_wz_leg3 * t221;
-        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t203 - minus_c_proximal_leg3 * t214
-            + gdistal_wx_leg3 * t221;
-        let minus_rate_dot_wrist_leg3 = minus_gwrist_wx_leg3 * t203
-            + minus_gwrist_wy_leg3 * t214 + minus_gwrist_wx_leg3 * t221;
-        let (minus_s_proximal_leg4, minus_c_proximal_leg4) = ::overact::math::sin_cos(
-            joints[9],
-        );
-        let (c_distal_leg4, minus_s_distal_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(minus_s_distal_leg4, 1.0, "leg4")?;
-        let t239 = 1.0 / minus_s_distal_leg4;
-        let gproximal_wx_leg4 = minus_s_proximal_leg4 * c_distal_leg4 * t239;
-        let t242 = 0.7071067811865476 * minus_c_proximal_leg4;
-        let t243 = t242 * c_distal_leg4;
-        let t244 = 0.7071067811865476 * minus_s_distal_leg4;
-        let minus_gproximal_wy_leg4 = (t243 + t244) * t239;
-        let minus_gproximal_wz_leg4 = (t243 - t244) * t239;
-        let rate_proximal_leg4 = gproximal_wx_leg4 * twist[0]
-            - minus_gproximal_wy_leg4 * twist[1] - minus_gproximal_wz_leg4 * twist[2];
-        let t253 = 0.7071067811865476 * rate_proximal_leg4;
-        let gdistal_wy_leg4 = 0.7071067811865476 * minus_s_proximal_leg4;
-        let rate_distal_leg4 = minus_c_proximal_leg4 * twist[0]
-            + gdistal_wy_leg4 * twist[1] + gdistal_wy_leg4 * twist[2];
-        let t260 = gdistal_wy_leg4 * rate_distal_leg4;
-        let t261 = t253 + t260;
-        let t262 = t242 * minus_s_distal_leg4;
-        let t263 = 0.7071067811865476 * c_distal_leg4;
-        let gwrist_wx_leg4 = minus_s_proximal_leg4 * t239;
-        let minus_gwrist_wy_leg4 = t242 * t239;
-        let rate_wrist_leg4 = gwrist_wx_leg4 * twist[0] - minus_gwrist_wy_leg4 * twist[1]
-            - minus_gwrist_wy_leg4 * twist[2];
-        let t272 = (t262 - t263) * rate_wrist_leg4;
-        let t274 = t260 - t253;
-        let t276 = (t262 + t263) * rate_wrist_leg4;
-        let t282 = acceleration[0] - (t261 * t272 - t274 * t276 - 2.0 * (t253 * t260));
-        let t284 = minus_c_proximal_leg4 * rate_distal_leg4;
-        let t285 = t253 * t284;
-        let t287 = minus_s_proximal_leg4 * minus_s_distal_leg4 * rate_wrist_leg4;
-        let t292 = acceleration[1] - (t285 + t261 * t287 + t284 * t276);
-        let t299 = acceleration[2] - (t285 - (t284 * t272 + t274 * t287));
-        let rate_dot_proximal_leg4 = gproximal_wx_leg4 * t282
-            - minus_gproximal_wy_leg4 * t292 - minus_gproximal_wz_leg4 * t299;
-        let rate_dot_distal_leg4 = minus_c_proximal_leg4 * t282 + gdistal_wy_leg4 * t292
-            + gdistal_wy_leg4 * t299;
-        let rate_dot_wrist_leg4 = gwrist_wx_leg4 * t282 - minus_gwrist_wy_leg4 * t292
-            - minus_gwrist_wy_leg4 * t299;
+        let t302 = t260 * minus_rate_wrist_leg3;
+        let t304 = t234 * minus_rate_wrist_leg3;
+        let t308 = acceleration[2] - (t290 + t293 * t302 + t289 * t304);
+        let t310 = t269 * minus_rate_wrist_leg3;
+        let t312 = t280 + t292;
+        let t316 = acceleration[0] - (t290 - (t289 * t310 + t312 * t302));
+        let t324 = acceleration[1] - (2.0 * (t280 * t292) + t312 * t304 - t293 * t310);
+        let rate_dot_proximal_leg3 = gproximal_wz_leg3 * t308
+            - (minus_gproximal_wx_leg3 * t316 + minus_gproximal_wy_leg3 * t324);
+        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t316 - minus_gdistal_wy_leg3 * t324
+            + gdistal_wx_leg3 * t308;
+        let minus_rate_dot_wrist_leg3 = minus_gwrist_wx_leg3 * t316
+            + minus_gwrist_wy_leg3 * t324 + minus_gwrist_wx_leg3 * t308;
+        let t338 = t125 + t32;
+        let t339 = 0.7071067811865475 * t338;
+        let t340 = t127 + t14;
+        let t341 = t340 - t338;
+        let t344 = 1.0 - 0.25 * (t341 * t341);
+        ::overact::guard::reach(t344, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t344);
+        let t350 = 1.0 / (0.5 * (t338 * c_distal_leg4 + t340 * c_distal_leg4));
+        let t351 = t338 + t340;
+        let c_proximal_leg4 = t350 * (0.25 * (t351 * t351));
+        let t356 = t140 + t9;
+        let minus_s_proximal_leg4 = t350 * (0.35355339059327373 * (t356 * t351));
+        let t361 = 0.5 * (t356 * minus_s_proximal_leg4);
+        let t363 = 0.7071067811865475 * t356;
+        let t370 = t363 * minus_s_proximal_leg4 + 0.5 * (t338 * c_proximal_leg4)
+            + 0.5 * (t340 * c_proximal_leg4);
+        ::overact::guard::leg(t370, 1.0, "leg4")?;
+        let t371 = 1.0 / t370;
+        let gproximal_wz_leg4 = (t339 * c_proximal_leg4 + t361) * t371;
+        let s_distal_leg4 = 0.5 * t341;
+        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t371;
+        let t378 = 0.7071067811865475 * t340;
+        let minus_gproximal_wy_leg4 = (t361 + t378 * c_proximal_leg4) * t371;
+        let rate_proximal_leg4 = gproximal_wz_leg4 * twist[2]
+            - (minus_gproximal_wx_leg4 * twist[0] + minus_gproximal_wy_leg4 * twist[1]);
+        let t385 = 0.7071067811865475 * rate_proximal_leg4;
+        let t386 = 0.5 * t371;
+        let gdistal_wx_leg4 = t351 * t386;
+        let minus_gdistal_wy_leg4 = t356 * t386;
+        let rate_distal_leg4 = gdistal_wx_leg4 * twist[0]
+            - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
+        let t394 = c_proximal_leg4 * rate_distal_leg4;
+        let t395 = t385 * t394;
+        let minus_gwrist_wx_leg4 = minus_s_proximal_leg4 * t371;
+        let minus_gwrist_wy_leg4 = 0.7071067811865475 * c_proximal_leg4 * t371;
+        let minus_rate_wrist_leg4 = minus_gwrist_wx_leg4 * twist[0]
+            + minus_gwrist_wy_leg4 * twist[1] + minus_gwrist_wy_leg4 * twist[2];
+        let t404 = t339 * minus_rate_wrist_leg4;
+        let t407 = 0.7071067811865475 * minus_s_proximal_leg4 * rate_distal_leg4;
+        let t408 = t385 + t407;
+        let t409 = t363 * minus_rate_wrist_leg4;
+        let t413 = acceleration[2] - (t395 + t394 * t404 + t408 * t409);
+        let t417 = t378 * minus_rate_wrist_leg4;
+        let t419 = t385 - t407;
+        let t423 = acceleration[0] - (2.0 * (t385 * t407) - (t408 * t417 + t419 * t404));
+        let t429 = acceleration[1] - (t395 + t419 * t409 - t394 * t417);
+        let rate_dot_proximal_leg4 = gproximal_wz_leg4 * t413
+            - (minus_gproximal_wx_leg4 * t423 + minus_gproximal_wy_leg4 * t429);
+        let rate_dot_distal_leg4 = gdistal_wx_leg4 * t423 - minus_gdistal_wy_leg4 * t429
+            - minus_gdistal_wy_leg4 * t413;
+        let minus_rate_dot_wrist_leg4 = minus_gwrist_wx_leg4 * t423
+            + minus_gwrist_wy_leg4 * t429 + minus_gwrist_wy_leg4 * t413;
         Ok([
             rate_dot_proximal_leg1, rate_dot_distal_leg1, rate_dot_wrist_leg1,
             rate_dot_proximal_leg2, rate_dot_distal_leg2, rate_dot_wrist_leg2,
-            -minus_rate_dot_proximal_leg3, rate_dot_distal_leg3, -minus_rate_dot_wrist_leg3,
-            rate_dot_proximal_leg4, rate_dot_distal_leg4, rate_dot_wrist_leg4,
+            rate_dot_proximal_leg3, rate_dot_distal_leg3, -minus_rate_dot_wrist_leg3,
+            rate_dot_proximal_leg4, rate_dot_distal_leg4, -minus_rate_dot_wrist_leg4,
         ])
     }
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
@@ -1202,7 +1470,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 3.
     ///
-    /// 131 operations (45 additions, 79 multiplications, 7 divisions), 0 square roots, 8 trigonometric pairs, 0 signs, 144 intermediates.
+    /// 278 operations (92 additions, 175 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 279 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1210,99 +1478,164 @@ impl Spherical4Rrr {
         pose: &[f64; 4],
         actuator_velocities: &[f64; 4],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t5 = 0.7071067811865476 * minus_c_proximal_leg1 * c_distal_leg1;
-        let t6 = 0.7071067811865476 * minus_s_distal_leg1;
-        let t8 = 1.0 / minus_s_distal_leg1;
-        let gproximal_wx_leg1 = (t5 + t6) * t8;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let t16 = 1.0 / minus_s_distal_leg2;
-        let minus_gproximal_wx_leg2 = minus_s_proximal_leg2 * c_distal_leg2 * t16;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let t25 = 0.7071067811865476 * minus_c_proximal_leg3 * c_distal_leg3;
-        let t26 = 0.7071067811865476 * minus_s_distal_leg3;
-        let t28 = 1.0 / minus_s_distal_leg3;
-        let minus_gproximal_wx_leg3 = (t25 + t26) * t28;
-        let (minus_s_proximal_leg4, minus_c_proximal_leg4) = ::overact::math::sin_cos(
-            joints[9],
-        );
-        let (c_distal_leg4, minus_s_distal_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(minus_s_distal_leg4, 1.0, "leg4")?;
-        let t37 = 1.0 / minus_s_distal_leg4;
-        let gproximal_wx_leg4 = minus_s_proximal_leg4 * c_distal_leg4 * t37;
-        let t40 = gproximal_wx_leg1 * actuator_velocities[0]
-            - minus_gproximal_wx_leg2 * actuator_velocities[1]
+        let t0 = 2.0 * pose[1];
+        let t2 = 1.0 - pose[1] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = t2 - t4;
+        let t6 = 2.0 * pose[2];
+        let t7 = pose[3] * t6;
+        let t8 = pose[0] * t0;
+        let t9 = t7 - t8;
+        let t10 = t5 - t9;
+        let t11 = t7 + t8;
+        let t12 = pose[2] * t6;
+        let t13 = t2 - t12;
+        let t14 = t11 - t13;
+        let t15 = t10 + t14;
+        let minus_s_distal_leg2 = 0.5 * t15;
+        let t19 = 1.0 - 0.25 * (t15 * t15);
+        ::overact::guard::reach(t19, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t19);
+        let t25 = 1.0 / (0.5 * (t10 * c_distal_leg2 - t14 * c_distal_leg2));
+        let t26 = pose[2] * t0;
+        let t27 = pose[0] * t3;
+        let t28 = t26 - t27;
+        let t29 = pose[3] * t0;
+        let t30 = pose[0] * t6;
+        let t31 = t29 + t30;
+        let t32 = t28 - t31;
+        let t33 = t10 - t14;
+        let minus_s_proximal_leg2 = t25 * (0.35355339059327373 * (t32 * t33));
+        let c_proximal_leg2 = t25 * (0.25 * (t33 * t33));
+        let t48 = 0.5 * (t14 * c_proximal_leg2)
+            - (0.7071067811865475 * t32 * minus_s_proximal_leg2
+                + 0.5 * (t10 * c_proximal_leg2));
+        ::overact::guard::leg(t48, 1.0, "leg2")?;
+        let t49 = 1.0 / t48;
+        let gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t49;
+        let t52 = t26 + t27;
+        let t53 = t52 - t9;
+        let t55 = 1.0 - t12 - t4;
+        let t56 = t55 - t31;
+        let t57 = t29 - t30;
+        let t58 = t57 - t13;
+        let t59 = t56 + t58;
+        let t62 = 1.0 - 0.25 * (t59 * t59);
+        ::overact::guard::reach(t62, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t62);
+        let t68 = 1.0 / (0.5 * (t56 * c_distal_leg1 - t58 * c_distal_leg1));
+        let t69 = t56 - t58;
+        let s_proximal_leg1 = t68 * (0.35355339059327373 * (t53 * t69));
+        let t74 = 0.5 * (t53 * s_proximal_leg1);
+        let c_proximal_leg1 = t68 * (0.25 * (t69 * t69));
+        let t88 = 0.5 * (t58 * c_proximal_leg1)
+            - (0.5 * (t56 * c_proximal_leg1)
+                + 0.7071067811865475 * t53 * s_proximal_leg1);
+        ::overact::guard::leg(t88, 1.0, "leg1")?;
+        let t89 = 1.0 / t88;
+        let minus_gproximal_wx_leg1 = (t74 - 0.7071067811865475 * t58 * c_proximal_leg1)
+            * t89;
+        let t93 = t52 + t9;
+        let t94 = t55 + t31;
+        let t95 = t57 + t13;
+        let t96 = t95 - t94;
+        let t99 = 1.0 - 0.25 * (t96 * t96);
+        ::overact::guard::reach(t99, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t99);
+        let t105 = 1.0 / (0.5 * (t94 * c_distal_leg3 + t95 * c_distal_leg3));
+        let t106 = t94 + t95;
+        let s_proximal_leg3 = t105 * (0.35355339059327373 * (t93 * t106));
+        let t111 = 0.5 * (t93 * s_proximal_leg3);
+        let c_proximal_leg3 = t105 * (0.25 * (t106 * t106));
+        let t125 = 0.5 * (t94 * c_proximal_leg3)
+            + 0.7071067811865475 * t93 * s_proximal_leg3 + 0.5 * (t95 * c_proximal_leg3);
+        ::overact::guard::leg(t125, 1.0, "leg3")?;
+        let t126 = 1.0 / t125;
+        let minus_gproximal_wx_leg3 = (t111 + 0.7071067811865475 * t95 * c_proximal_leg3)
+            * t126;
+        let t130 = t11 + t13;
+        let t131 = t5 + t9;
+        let t132 = t130 - t131;
+        let s_distal_leg4 = 0.5 * t132;
+        let t136 = 1.0 - 0.25 * (t132 * t132);
+        ::overact::guard::reach(t136, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t136);
+        let t142 = 1.0 / (0.5 * (t131 * c_distal_leg4 + t130 * c_distal_leg4));
+        let t143 = t28 + t31;
+        let t144 = t131 + t130;
+        let minus_s_proximal_leg4 = t142 * (0.35355339059327373 * (t143 * t144));
+        let c_proximal_leg4 = t142 * (0.25 * (t144 * t144));
+        let t159 = 0.7071067811865475 * t143 * minus_s_proximal_leg4
+            + 0.5 * (t131 * c_proximal_leg4) + 0.5 * (t130 * c_proximal_leg4);
+        ::overact::guard::leg(t159, 1.0, "leg4")?;
+        let t160 = 1.0 / t159;
+        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t160;
+        let t163 = gproximal_wx_leg2 * actuator_velocities[1]
+            - minus_gproximal_wx_leg1 * actuator_velocities[0]
             - minus_gproximal_wx_leg3 * actuator_velocities[2]
-            + gproximal_wx_leg4 * actuator_velocities[3];
-        let t47 = gproximal_wx_leg1 * gproximal_wx_leg1
-            + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+            - minus_gproximal_wx_leg4 * actuator_velocities[3];
+        let t170 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+            + gproximal_wx_leg2 * gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
-            + gproximal_wx_leg4 * gproximal_wx_leg4;
-        ::overact::guard::platform(t47, 1.0000000000000002, "actuators")?;
-        let t48 = 1.0 / t47;
-        let gproximal_wy_leg1 = minus_s_proximal_leg1 * c_distal_leg1 * t8;
-        let t54 = 0.7071067811865476 * minus_c_proximal_leg2 * c_distal_leg2;
-        let t55 = 0.7071067811865476 * minus_s_distal_leg2;
-        let gproximal_wy_leg2 = (t54 + t55) * t16;
-        let minus_gproximal_wy_leg3 = minus_s_proximal_leg3 * c_distal_leg3 * t28;
-        let t65 = 0.7071067811865476 * minus_c_proximal_leg4 * c_distal_leg4;
-        let t66 = 0.7071067811865476 * minus_s_distal_leg4;
-        let minus_gproximal_wy_leg4 = (t65 + t66) * t37;
-        let t70 = gproximal_wx_leg1 * gproximal_wy_leg1
-            - minus_gproximal_wx_leg2 * gproximal_wy_leg2
+            + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
+        ::overact::guard::platform(t170, 0.9999999999999998, "actuators")?;
+        let t171 = 1.0 / t170;
+        let t176 = 0.5 * (t32 * minus_s_proximal_leg2);
+        let gproximal_wy_leg2 = (0.7071067811865475 * t14 * c_proximal_leg2 - t176)
+            * t49;
+        let minus_s_distal_leg1 = 0.5 * t59;
+        let gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t89;
+        let s_distal_leg3 = 0.5 * t96;
+        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t126;
+        let t191 = 0.5 * (t143 * minus_s_proximal_leg4);
+        let minus_gproximal_wy_leg4 = (t191
+            + 0.7071067811865475 * t130 * c_proximal_leg4) * t160;
+        let t197 = gproximal_wx_leg2 * gproximal_wy_leg2
+            - minus_gproximal_wx_leg1 * gproximal_wy_leg1
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
-            - gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t71 = t70 * t48;
-        let t80 = gproximal_wy_leg1 * gproximal_wy_leg1
+            + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
+        let t198 = t197 * t171;
+        let t207 = gproximal_wy_leg1 * gproximal_wy_leg1
             + gproximal_wy_leg2 * gproximal_wy_leg2
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t70 * t71;
-        ::overact::guard::platform(t80, 1.0000000000000002, "actuators")?;
-        let t81 = 1.0 / t80;
-        let t90 = gproximal_wy_leg1 * actuator_velocities[0]
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t197 * t198;
+        ::overact::guard::platform(t207, 0.9999999999999998, "actuators")?;
+        let t208 = 1.0 / t207;
+        let t217 = gproximal_wy_leg1 * actuator_velocities[0]
             + gproximal_wy_leg2 * actuator_velocities[1]
             - minus_gproximal_wy_leg3 * actuator_velocities[2]
-            - minus_gproximal_wy_leg4 * actuator_velocities[3] - t40 * t71;
-        let minus_gproximal_wz_leg3 = (t25 - t26) * t28;
-        let minus_gproximal_wz_leg1 = (t5 - t6) * t8;
-        let minus_gproximal_wz_leg2 = (t54 - t55) * t16;
-        let minus_gproximal_wz_leg4 = (t65 - t66) * t37;
-        let t113 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
-            - gproximal_wx_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
-            - gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t114 = t113 * t48;
-        let t116 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
-            - (gproximal_wy_leg1 * minus_gproximal_wz_leg1
-                + gproximal_wy_leg2 * minus_gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t70 * t114;
-        let t117 = t116 * t81;
-        let t128 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wy_leg4 * actuator_velocities[3] - t163 * t198;
+        let minus_gproximal_wz_leg1 = (0.7071067811865475 * t56 * c_proximal_leg1 + t74)
+            * t89;
+        let minus_gproximal_wz_leg2 = (0.7071067811865475 * t10 * c_proximal_leg2 + t176)
+            * t49;
+        let gproximal_wz_leg3 = (0.7071067811865475 * t94 * c_proximal_leg3 + t111)
+            * t126;
+        let gproximal_wz_leg4 = (0.7071067811865475 * t131 * c_proximal_leg4 + t191)
+            * t160;
+        let t248 = minus_gproximal_wx_leg1 * minus_gproximal_wz_leg1
+            - gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wx_leg3 * gproximal_wz_leg3
+            - minus_gproximal_wx_leg4 * gproximal_wz_leg4;
+        let t249 = t248 * t171;
+        let t251 = gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            + gproximal_wy_leg2 * minus_gproximal_wz_leg2
+            + minus_gproximal_wy_leg3 * gproximal_wz_leg3
+            + minus_gproximal_wy_leg4 * gproximal_wz_leg4 + t197 * t249;
+        let t252 = t251 * t208;
+        let t263 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
             + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t113 * t114
-            - t116 * t117;
-        ::overact::guard::platform(t128, 2.0000000000000004, "actuators")?;
-        let t139 = minus_gproximal_wz_leg1 * actuator_velocities[0]
-            + minus_gproximal_wz_leg2 * actuator_velocities[1]
-            + minus_gproximal_wz_leg3 * actuator_velocities[2]
-            + minus_gproximal_wz_leg4 * actuator_velocities[3] + t40 * t114 + t117 * t90;
-        let t140 = t139 / t128;
-        let t142 = t81 * t90 + t117 * t140;
-        Ok([t40 * t48 - t71 * t142 + t114 * t140, t142, -t140])
+            + gproximal_wz_leg3 * gproximal_wz_leg3
+            + gproximal_wz_leg4 * gproximal_wz_leg4 - t248 * t249 - t251 * t252;
+        ::overact::guard::platform(t263, 1.9999999999999996, "actuators")?;
+        let t274 = gproximal_wz_leg3 * actuator_velocities[2]
+            - (minus_gproximal_wz_leg1 * actuator_velocities[0]
+                + minus_gproximal_wz_leg2 * actuator_velocities[1])
+            + gproximal_wz_leg4 * actuator_velocities[3] - t163 * t249 + t252 * t217;
+        let t275 = t274 / t263;
+        let t277 = t208 * t217 + t252 * t275;
+        Ok([t163 * t171 - t198 * t277 - t249 * t275, t277, t275])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1313,7 +1646,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 3.
     ///
-    /// 339 operations (121 additions, 211 multiplications, 7 divisions), 0 square roots, 8 trigonometric pairs, 0 signs, 352 intermediates.
+    /// 482 operations (160 additions, 311 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 483 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1322,201 +1655,264 @@ impl Spherical4Rrr {
         twist: &[f64; 3],
         actuator_accelerations: &[f64; 4],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let t2 = 0.7071067811865476 * minus_c_proximal_leg1;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t5 = t2 * c_distal_leg1;
-        let t6 = 0.7071067811865476 * minus_s_distal_leg1;
-        let t8 = 1.0 / minus_s_distal_leg1;
-        let gproximal_wx_leg1 = (t5 + t6) * t8;
-        let gproximal_wy_leg1 = minus_s_proximal_leg1 * c_distal_leg1 * t8;
-        let minus_gproximal_wz_leg1 = (t5 - t6) * t8;
-        let rate_proximal_leg1 = gproximal_wx_leg1 * twist[0]
-            + gproximal_wy_leg1 * twist[1] - minus_gproximal_wz_leg1 * twist[2];
-        let t19 = 0.7071067811865476 * rate_proximal_leg1;
-        let minus_gdistal_wx_leg1 = 0.7071067811865476 * minus_s_proximal_leg1;
-        let rate_distal_leg1 = minus_c_proximal_leg1 * twist[1]
-            - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let t26 = minus_c_proximal_leg1 * rate_distal_leg1;
-        let t27 = t19 * t26;
-        let t28 = t2 * minus_s_distal_leg1;
-        let t29 = 0.7071067811865476 * c_distal_leg1;
-        let gwrist_wx_leg1 = t2 * t8;
-        let gwrist_wy_leg1 = minus_s_proximal_leg1 * t8;
-        let rate_wrist_leg1 = gwrist_wx_leg1 * twist[0] + gwrist_wy_leg1 * twist[1]
-            - gwrist_wx_leg1 * twist[2];
-        let t38 = (t28 + t29) * rate_wrist_leg1;
-        let t40 = minus_gdistal_wx_leg1 * rate_distal_leg1;
-        let t41 = t19 + t40;
-        let t43 = minus_s_proximal_leg1 * minus_s_distal_leg1 * rate_wrist_leg1;
-        let t48 = t19 - t40;
-        let t51 = (t29 - t28) * rate_wrist_leg1;
-        let t58 = gproximal_wx_leg1 * (t27 + t26 * t38 + t41 * t43)
-            - gproximal_wy_leg1 * (t48 * t38 - t41 * t51 - 2.0 * (t19 * t40));
-        let rate_dot_proximal_leg1 = t58
-            + minus_gproximal_wz_leg1 * (t27 + t48 * t43 + t26 * t51);
-        let t65 = actuator_accelerations[0] - rate_dot_proximal_leg1;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let t72 = 1.0 / minus_s_distal_leg2;
-        let minus_gproximal_wx_leg2 = minus_s_proximal_leg2 * c_distal_leg2 * t72;
-        let t74 = 0.7071067811865476 * minus_c_proximal_leg2;
-        let t75 = t74 * c_distal_leg2;
-        let t76 = 0.7071067811865476 * minus_s_distal_leg2;
-        let gproximal_wy_leg2 = (t75 + t76) * t72;
-        let minus_gproximal_wz_leg2 = (t75 - t76) * t72;
-        let rate_proximal_leg2 = gproximal_wy_leg2 * twist[1]
-            - minus_gproximal_wx_leg2 * twist[0] - minus_gproximal_wz_leg2 * twist[2];
-        let t86 = 0.7071067811865476 * rate_proximal_leg2;
-        let minus_gdistal_wy_leg2 = 0.7071067811865476 * minus_s_proximal_leg2;
-        let rate_distal_leg2 = minus_gdistal_wy_leg2 * twist[2]
-            - (minus_c_proximal_leg2 * twist[0] + minus_gdistal_wy_leg2 * twist[1]);
-        let t93 = minus_gdistal_wy_leg2 * rate_distal_leg2;
-        let t96 = t86 + t93;
-        let t97 = 0.7071067811865476 * c_distal_leg2;
-        let t98 = t74 * minus_s_distal_leg2;
-        let gwrist_wy_leg2 = t74 * t72;
-        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t72;
-        let rate_wrist_leg2 = gwrist_wy_leg2 * twist[1] - minus_gwrist_wx_leg2 * twist[0]
-            - gwrist_wy_leg2 * twist[2];
-        let t107 = (t97 - t98) * rate_wrist_leg2;
-        let t109 = t86 - t93;
-        let t111 = (t98 + t97) * rate_wrist_leg2;
-        let t116 = minus_c_proximal_leg2 * rate_distal_leg2;
-        let t117 = t86 * t116;
-        let t119 = minus_s_proximal_leg2 * minus_s_distal_leg2 * rate_wrist_leg2;
-        let t125 = minus_gproximal_wx_leg2
-            * (2.0 * (t86 * t93) + t96 * t107 - t109 * t111)
-            + gproximal_wy_leg2 * (t117 + t96 * t119 + t116 * t111);
-        let rate_dot_proximal_leg2 = t125
-            + minus_gproximal_wz_leg2 * (t117 + t116 * t107 + t109 * t119);
-        let t132 = actuator_accelerations[1] - rate_dot_proximal_leg2;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t137 = 0.7071067811865476 * minus_c_proximal_leg3;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let t140 = t137 * c_distal_leg3;
-        let t141 = 0.7071067811865476 * minus_s_distal_leg3;
-        let t143 = 1.0 / minus_s_distal_leg3;
-        let minus_gproximal_wx_leg3 = (t140 + t141) * t143;
-        let minus_gproximal_wy_leg3 = minus_s_proximal_leg3 * c_distal_leg3 * t143;
-        let gdistal_wx_leg3 = 0.7071067811865476 * minus_s_proximal_leg3;
+        let t0 = 2.0 * pose[1];
+        let t2 = 1.0 - pose[1] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = t2 - t4;
+        let t6 = 2.0 * pose[2];
+        let t7 = pose[3] * t6;
+        let t8 = pose[0] * t0;
+        let t9 = t7 - t8;
+        let t10 = t5 - t9;
+        let t11 = t7 + t8;
+        let t12 = pose[2] * t6;
+        let t13 = t2 - t12;
+        let t14 = t11 - t13;
+        let t15 = t10 + t14;
+        let minus_s_distal_leg2 = 0.5 * t15;
+        let t19 = 1.0 - 0.25 * (t15 * t15);
+        ::overact::guard::reach(t19, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t19);
+        let t25 = 1.0 / (0.5 * (t10 * c_distal_leg2 - t14 * c_distal_leg2));
+        let t26 = pose[2] * t0;
+        let t27 = pose[0] * t3;
+        let t28 = t26 - t27;
+        let t29 = pose[3] * t0;
+        let t30 = pose[0] * t6;
+        let t31 = t29 + t30;
+        let t32 = t28 - t31;
+        let t33 = t10 - t14;
+        let minus_s_proximal_leg2 = t25 * (0.35355339059327373 * (t32 * t33));
+        let c_proximal_leg2 = t25 * (0.25 * (t33 * t33));
+        let t43 = 0.7071067811865475 * t32;
+        let t48 = 0.5 * (t14 * c_proximal_leg2)
+            - (t43 * minus_s_proximal_leg2 + 0.5 * (t10 * c_proximal_leg2));
+        ::overact::guard::leg(t48, 1.0, "leg2")?;
+        let t49 = 1.0 / t48;
+        let gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t49;
+        let t51 = 0.7071067811865475 * t10;
+        let t54 = 0.5 * (t32 * minus_s_proximal_leg2);
+        let minus_gproximal_wz_leg2 = (t51 * c_proximal_leg2 + t54) * t49;
+        let t58 = 0.7071067811865475 * t14;
+        let gproximal_wy_leg2 = (t58 * c_proximal_leg2 - t54) * t49;
+        let rate_proximal_leg2 = gproximal_wx_leg2 * twist[0]
+            + gproximal_wy_leg2 * twist[1] - minus_gproximal_wz_leg2 * twist[2];
+        let t66 = 0.7071067811865475 * rate_proximal_leg2;
+        let t67 = 0.5 * t49;
+        let gdistal_wx_leg2 = t33 * t67;
+        let minus_gdistal_wy_leg2 = t32 * t67;
+        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
+            - minus_gdistal_wy_leg2 * twist[1] + minus_gdistal_wy_leg2 * twist[2];
+        let t75 = c_proximal_leg2 * rate_distal_leg2;
+        let t76 = t66 * t75;
+        let minus_gwrist_wy_leg2 = 0.7071067811865475 * c_proximal_leg2 * t49;
+        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t49;
+        let rate_wrist_leg2 = minus_gwrist_wy_leg2 * twist[2]
+            - (minus_gwrist_wx_leg2 * twist[0] + minus_gwrist_wy_leg2 * twist[1]);
+        let t85 = t51 * rate_wrist_leg2;
+        let t88 = 0.7071067811865475 * minus_s_proximal_leg2 * rate_distal_leg2;
+        let t89 = t66 + t88;
+        let t90 = t43 * rate_wrist_leg2;
+        let t95 = t58 * rate_wrist_leg2;
+        let t97 = t66 - t88;
+        let t109 = gproximal_wx_leg2 * (t89 * t95 - t97 * t85 - 2.0 * (t66 * t88))
+            + gproximal_wy_leg2 * (t97 * t90 + t75 * t95 - t76);
+        let rate_dot_proximal_leg2 = minus_gproximal_wz_leg2
+            * (t76 - (t75 * t85 + t89 * t90)) - t109;
+        let t111 = actuator_accelerations[1] - rate_dot_proximal_leg2;
+        let t113 = t26 + t27;
+        let t114 = t113 - t9;
+        let t116 = 1.0 - t12 - t4;
+        let t117 = t116 - t31;
+        let t118 = t29 - t30;
+        let t119 = t118 - t13;
+        let t120 = t117 + t119;
+        let t123 = 1.0 - 0.25 * (t120 * t120);
+        ::overact::guard::reach(t123, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t123);
+        let t129 = 1.0 / (0.5 * (t117 * c_distal_leg1 - t119 * c_distal_leg1));
+        let t130 = t117 - t119;
+        let s_proximal_leg1 = t129 * (0.35355339059327373 * (t114 * t130));
+        let t135 = 0.5 * (t114 * s_proximal_leg1);
+        let t136 = 0.7071067811865475 * t119;
+        let c_proximal_leg1 = t129 * (0.25 * (t130 * t130));
+        let t146 = 0.7071067811865475 * t114;
+        let t149 = 0.5 * (t119 * c_proximal_leg1)
+            - (0.5 * (t117 * c_proximal_leg1) + t146 * s_proximal_leg1);
+        ::overact::guard::leg(t149, 1.0, "leg1")?;
+        let t150 = 1.0 / t149;
+        let minus_gproximal_wx_leg1 = (t135 - t136 * c_proximal_leg1) * t150;
+        let t152 = 0.5 * t150;
+        let gdistal_wx_leg1 = t114 * t152;
+        let minus_gdistal_wy_leg1 = t130 * t152;
+        let rate_distal_leg1 = gdistal_wx_leg1 * twist[0]
+            - minus_gdistal_wy_leg1 * twist[1] - gdistal_wx_leg1 * twist[2];
+        let t160 = c_proximal_leg1 * rate_distal_leg1;
+        let minus_gwrist_wx_leg1 = 0.7071067811865475 * c_proximal_leg1 * t150;
+        let minus_gwrist_wy_leg1 = s_proximal_leg1 * t150;
+        let rate_wrist_leg1 = minus_gwrist_wx_leg1 * twist[2]
+            - (minus_gwrist_wx_leg1 * twist[0] + minus_gwrist_wy_leg1 * twist[1]);
+        let t169 = t136 * rate_wrist_leg1;
+        let minus_s_distal_leg1 = 0.5 * t120;
+        let gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t150;
+        let t177 = 0.7071067811865475 * t117;
+        let minus_gproximal_wz_leg1 = (t177 * c_proximal_leg1 + t135) * t150;
+        let rate_proximal_leg1 = gproximal_wy_leg1 * twist[1]
+            - minus_gproximal_wx_leg1 * twist[0] - minus_gproximal_wz_leg1 * twist[2];
+        let t183 = 0.7071067811865475 * rate_proximal_leg1;
+        let t185 = 0.7071067811865475 * s_proximal_leg1 * rate_distal_leg1;
+        let t186 = t183 + t185;
+        let t187 = t146 * rate_wrist_leg1;
+        let t190 = t183 * t160;
+        let t193 = t177 * rate_wrist_leg1;
+        let t195 = t183 - t185;
+        let t202 = minus_gproximal_wx_leg1 * (t160 * t169 - t186 * t187 - t190)
+            - gproximal_wy_leg1 * (t186 * t193 - t195 * t169 - 2.0 * (t183 * t185));
+        let rate_dot_proximal_leg1 = t202
+            + minus_gproximal_wz_leg1 * (t190 + t195 * t187 - t160 * t193);
+        let t209 = actuator_accelerations[0] - rate_dot_proximal_leg1;
+        let t212 = t113 + t9;
+        let t213 = t116 + t31;
+        let t214 = t118 + t13;
+        let t215 = t214 - t213;
+        let t218 = 1.0 - 0.25 * (t215 * t215);
+        ::overact::guard::reach(t218, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t218);
+        let t224 = 1.0 / (0.5 * (t213 * c_distal_leg3 + t214 * c_distal_leg3));
+        let t225 = t213 + t214;
+        let s_proximal_leg3 = t224 * (0.35355339059327373 * (t212 * t225));
+        let t230 = 0.5 * (t212 * s_proximal_leg3);
+        let t231 = 0.7071067811865475 * t214;
+        let c_proximal_leg3 = t224 * (0.25 * (t225 * t225));
+        let t239 = 0.7071067811865475 * t212;
+        let t244 = 0.5 * (t213 * c_proximal_leg3) + t239 * s_proximal_leg3
+            + 0.5 * (t214 * c_proximal_leg3);
+        ::overact::guard::leg(t244, 1.0, "leg3")?;
+        let t245 = 1.0 / t244;
+        let minus_gproximal_wx_leg3 = (t230 + t231 * c_proximal_leg3) * t245;
+        let t247 = 0.7071067811865475 * t213;
+        let gproximal_wz_leg3 = (t247 * c_proximal_leg3 + t230) * t245;
+        let s_distal_leg3 = 0.5 * t215;
+        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t245;
+        let rate_proximal_leg3 = gproximal_wz_leg3 * twist[2]
+            - (minus_gproximal_wx_leg3 * twist[0] + minus_gproximal_wy_leg3 * twist[1]);
+        let t259 = 0.7071067811865475 * rate_proximal_leg3;
+        let t260 = 0.5 * t245;
+        let gdistal_wx_leg3 = t212 * t260;
+        let minus_gdistal_wy_leg3 = t225 * t260;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0]
-            - minus_c_proximal_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
-        let t153 = gdistal_wx_leg3 * rate_distal_leg3;
-        let minus_gproximal_wz_leg3 = (t140 - t141) * t143;
-        let minus_rate_proximal_leg3 = minus_gproximal_wx_leg3 * twist[0]
-            + minus_gproximal_wy_leg3 * twist[1] + minus_gproximal_wz_leg3 * twist[2];
-        let t161 = 0.7071067811865476 * minus_rate_proximal_leg3;
-        let t162 = t153 - t161;
-        let t163 = t137 * minus_s_distal_leg3;
-        let t164 = 0.7071067811865476 * c_distal_leg3;
-        let minus_gwrist_wx_leg3 = t137 * t143;
-        let minus_gwrist_wy_leg3 = minus_s_proximal_leg3 * t143;
+            - minus_gdistal_wy_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
+        let t268 = c_proximal_leg3 * rate_distal_leg3;
+        let t269 = t259 * t268;
+        let minus_gwrist_wx_leg3 = 0.7071067811865475 * c_proximal_leg3 * t245;
+        let minus_gwrist_wy_leg3 = s_proximal_leg3 * t245;
         let minus_rate_wrist_leg3 = minus_gwrist_wx_leg3 * twist[0]
             + minus_gwrist_wy_leg3 * twist[1] + minus_gwrist_wx_leg3 * twist[2];
-        let t173 = (t163 - t164) * minus_rate_wrist_leg3;
-        let t175 = t161 + t153;
-        let t177 = (t163 + t164) * minus_rate_wrist_leg3;
-        let t184 = minus_c_proximal_leg3 * rate_distal_leg3;
-        let t185 = t161 * t184;
-        let t188 = minus_s_proximal_leg3 * minus_s_distal_leg3 * minus_rate_wrist_leg3;
-        let t193 = minus_gproximal_wy_leg3
-            * (t162 * t173 - t175 * t177 - 2.0 * (t161 * t153))
-            - minus_gproximal_wx_leg3 * (t185 + t184 * t177 + t162 * t188);
-        let rate_dot_proximal_leg3 = t193
-            + minus_gproximal_wz_leg3 * (t175 * t188 + t184 * t173 - t185);
-        let t200 = actuator_accelerations[2] - rate_dot_proximal_leg3;
-        let (minus_s_proximal_leg4, minus_c_proximal_leg4) = ::overact::math::sin_cos(
-            joints[9],
-        );
-        let (c_distal_leg4, minus_s_distal_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(minus_s_distal_leg4, 1.0, "leg4")?;
-        let t208 = 1.0 / minus_s_distal_leg4;
-        let gproximal_wx_leg4 = minus_s_proximal_leg4 * c_distal_leg4 * t208;
-        let t210 = 0.7071067811865476 * minus_c_proximal_leg4;
-        let t211 = t210 * c_distal_leg4;
-        let t212 = 0.7071067811865476 * minus_s_distal_leg4;
-        let minus_gproximal_wy_leg4 = (t211 + t212) * t208;
-        let minus_gproximal_wz_leg4 = (t211 - t212) * t208;
-        let rate_proximal_leg4 = gproximal_wx_leg4 * twist[0]
-            - minus_gproximal_wy_leg4 * twist[1] - minus_gproximal_wz_leg4 * twist[2];
-        let t222 = 0.7071067811865476 * rate_proximal_leg4;
-        let gdistal_wy_leg4 = 0.7071067811865476 * minus_s_proximal_leg4;
-        let rate_distal_leg4 = minus_c_proximal_leg4 * twist[0]
-            + gdistal_wy_leg4 * twist[1] + gdistal_wy_leg4 * twist[2];
-        let t229 = minus_c_proximal_leg4 * rate_distal_leg4;
-        let t230 = t222 * t229;
-        let t231 = gdistal_wy_leg4 * rate_distal_leg4;
-        let t232 = t222 + t231;
-        let gwrist_wx_leg4 = minus_s_proximal_leg4 * t208;
-        let minus_gwrist_wy_leg4 = t210 * t208;
-        let rate_wrist_leg4 = gwrist_wx_leg4 * twist[0] - minus_gwrist_wy_leg4 * twist[1]
-            - minus_gwrist_wy_leg4 * twist[2];
-        let t241 = minus_s_proximal_leg4 * minus_s_distal_leg4 * rate_wrist_leg4;
-        let t243 = t210 * minus_s_distal_leg4;
-        let t244 = 0.7071067811865476 * c_distal_leg4;
-        let t246 = (t243 + t244) * rate_wrist_leg4;
-        let t252 = (t243 - t244) * rate_wrist_leg4;
-        let t254 = t231 - t222;
-        let t261 = minus_gproximal_wy_leg4 * (t230 + t232 * t241 + t229 * t246)
-            - gproximal_wx_leg4 * (t232 * t252 - t254 * t246 - 2.0 * (t222 * t231));
-        let rate_dot_proximal_leg4 = t261
-            + minus_gproximal_wz_leg4 * (t230 - (t229 * t252 + t254 * t241));
-        let t268 = actuator_accelerations[3] - rate_dot_proximal_leg4;
-        let t270 = gproximal_wx_leg1 * t65 - minus_gproximal_wx_leg2 * t132
-            - minus_gproximal_wx_leg3 * t200 + gproximal_wx_leg4 * t268;
-        let t277 = gproximal_wx_leg1 * gproximal_wx_leg1
-            + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+        let t278 = t231 * minus_rate_wrist_leg3;
+        let t281 = 0.7071067811865475 * s_proximal_leg3 * rate_distal_leg3;
+        let t282 = t259 + t281;
+        let t283 = t239 * minus_rate_wrist_leg3;
+        let t290 = t247 * minus_rate_wrist_leg3;
+        let t292 = t281 - t259;
+        let t297 = minus_gproximal_wx_leg3 * (t269 - (t268 * t278 + t282 * t283))
+            + minus_gproximal_wy_leg3
+                * (2.0 * (t259 * t281) + t282 * t290 - t292 * t278);
+        let rate_dot_proximal_leg3 = t297
+            - gproximal_wz_leg3 * (t269 + t292 * t283 + t268 * t290);
+        let t304 = actuator_accelerations[2] - rate_dot_proximal_leg3;
+        let t307 = t11 + t13;
+        let t308 = t5 + t9;
+        let t309 = t307 - t308;
+        let s_distal_leg4 = 0.5 * t309;
+        let t313 = 1.0 - 0.25 * (t309 * t309);
+        ::overact::guard::reach(t313, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t313);
+        let t319 = 1.0 / (0.5 * (t308 * c_distal_leg4 + t307 * c_distal_leg4));
+        let t320 = t28 + t31;
+        let t321 = t308 + t307;
+        let minus_s_proximal_leg4 = t319 * (0.35355339059327373 * (t320 * t321));
+        let t326 = 0.7071067811865475 * t320;
+        let c_proximal_leg4 = t319 * (0.25 * (t321 * t321));
+        let t336 = t326 * minus_s_proximal_leg4 + 0.5 * (t308 * c_proximal_leg4)
+            + 0.5 * (t307 * c_proximal_leg4);
+        ::overact::guard::leg(t336, 1.0, "leg4")?;
+        let t337 = 1.0 / t336;
+        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t337;
+        let t339 = 0.7071067811865475 * t308;
+        let t342 = 0.5 * (t320 * minus_s_proximal_leg4);
+        let gproximal_wz_leg4 = (t339 * c_proximal_leg4 + t342) * t337;
+        let t347 = 0.7071067811865475 * t307;
+        let minus_gproximal_wy_leg4 = (t342 + t347 * c_proximal_leg4) * t337;
+        let rate_proximal_leg4 = gproximal_wz_leg4 * twist[2]
+            - (minus_gproximal_wx_leg4 * twist[0] + minus_gproximal_wy_leg4 * twist[1]);
+        let t354 = 0.7071067811865475 * rate_proximal_leg4;
+        let t356 = 0.5 * t337;
+        let gdistal_wx_leg4 = t321 * t356;
+        let minus_gdistal_wy_leg4 = t320 * t356;
+        let rate_distal_leg4 = gdistal_wx_leg4 * twist[0]
+            - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
+        let t364 = 0.7071067811865475 * minus_s_proximal_leg4 * rate_distal_leg4;
+        let t367 = t354 + t364;
+        let minus_gwrist_wx_leg4 = minus_s_proximal_leg4 * t337;
+        let minus_gwrist_wy_leg4 = 0.7071067811865475 * c_proximal_leg4 * t337;
+        let minus_rate_wrist_leg4 = minus_gwrist_wx_leg4 * twist[0]
+            + minus_gwrist_wy_leg4 * twist[1] + minus_gwrist_wy_leg4 * twist[2];
+        let t376 = t347 * minus_rate_wrist_leg4;
+        let t378 = t354 - t364;
+        let t379 = t339 * minus_rate_wrist_leg4;
+        let t384 = c_proximal_leg4 * rate_distal_leg4;
+        let t385 = t354 * t384;
+        let t386 = t326 * minus_rate_wrist_leg4;
+        let t392 = minus_gproximal_wx_leg4
+            * (2.0 * (t354 * t364) - (t367 * t376 + t378 * t379))
+            + minus_gproximal_wy_leg4 * (t385 + t378 * t386 - t384 * t376);
+        let rate_dot_proximal_leg4 = t392
+            - gproximal_wz_leg4 * (t385 + t384 * t379 + t367 * t386);
+        let t399 = actuator_accelerations[3] - rate_dot_proximal_leg4;
+        let t401 = gproximal_wx_leg2 * t111 - minus_gproximal_wx_leg1 * t209
+            - minus_gproximal_wx_leg3 * t304 - minus_gproximal_wx_leg4 * t399;
+        let t408 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+            + gproximal_wx_leg2 * gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
-            + gproximal_wx_leg4 * gproximal_wx_leg4;
-        ::overact::guard::platform(t277, 1.0000000000000002, "actuators")?;
-        let t278 = 1.0 / t277;
-        let t286 = gproximal_wx_leg1 * gproximal_wy_leg1
-            - minus_gproximal_wx_leg2 * gproximal_wy_leg2
+            + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
+        ::overact::guard::platform(t408, 0.9999999999999998, "actuators")?;
+        let t409 = 1.0 / t408;
+        let t417 = gproximal_wx_leg2 * gproximal_wy_leg2
+            - minus_gproximal_wx_leg1 * gproximal_wy_leg1
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
-            - gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t287 = t286 * t278;
-        let t296 = gproximal_wy_leg1 * gproximal_wy_leg1
+            + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
+        let t418 = t417 * t409;
+        let t427 = gproximal_wy_leg1 * gproximal_wy_leg1
             + gproximal_wy_leg2 * gproximal_wy_leg2
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t286 * t287;
-        ::overact::guard::platform(t296, 1.0000000000000002, "actuators")?;
-        let t297 = 1.0 / t296;
-        let t306 = gproximal_wy_leg1 * t65 + gproximal_wy_leg2 * t132
-            - minus_gproximal_wy_leg3 * t200 - minus_gproximal_wy_leg4 * t268
-            - t270 * t287;
-        let t321 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
-            - gproximal_wx_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
-            - gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t322 = t321 * t278;
-        let t324 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
-            - (gproximal_wy_leg1 * minus_gproximal_wz_leg1
-                + gproximal_wy_leg2 * minus_gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t286 * t322;
-        let t325 = t324 * t297;
-        let t336 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t417 * t418;
+        ::overact::guard::platform(t427, 0.9999999999999998, "actuators")?;
+        let t428 = 1.0 / t427;
+        let t437 = gproximal_wy_leg1 * t209 + gproximal_wy_leg2 * t111
+            - minus_gproximal_wy_leg3 * t304 - minus_gproximal_wy_leg4 * t399
+            - t401 * t418;
+        let t452 = minus_gproximal_wx_leg1 * minus_gproximal_wz_leg1
+            - gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wx_leg3 * gproximal_wz_leg3
+            - minus_gproximal_wx_leg4 * gproximal_wz_leg4;
+        let t453 = t452 * t409;
+        let t455 = gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            + gproximal_wy_leg2 * minus_gproximal_wz_leg2
+            + minus_gproximal_wy_leg3 * gproximal_wz_leg3
+            + minus_gproximal_wy_leg4 * gproximal_wz_leg4 + t417 * t453;
+        let t456 = t455 * t428;
+        let t467 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
             + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t321 * t322
-            - t324 * t325;
-        ::overact::guard::platform(t336, 2.0000000000000004, "actuators")?;
-        let t347 = minus_gproximal_wz_leg1 * t65 + minus_gproximal_wz_leg2 * t132
-            + minus_gproximal_wz_leg3 * t200 + minus_gproximal_wz_leg4 * t268
-            + t270 * t322 + t325 * t306;
-        let t348 = t347 / t336;
-        let t350 = t297 * t306 + t325 * t348;
-        Ok([t270 * t278 - t287 * t350 + t322 * t348, t350, -t348])
+            + gproximal_wz_leg3 * gproximal_wz_leg3
+            + gproximal_wz_leg4 * gproximal_wz_leg4 - t452 * t453 - t455 * t456;
+        ::overact::guard::platform(t467, 1.9999999999999996, "actuators")?;
+        let t478 = gproximal_wz_leg3 * t304
+            - (minus_gproximal_wz_leg1 * t209 + minus_gproximal_wz_leg2 * t111)
+            + gproximal_wz_leg4 * t399 - t401 * t453 + t456 * t437;
+        let t479 = t478 / t467;
+        let t481 = t428 * t437 + t456 * t479;
+        Ok([t401 * t409 - t418 * t481 - t453 * t479, t481, t479])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1528,7 +1924,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 73.
     /// Columns: `PARAMETERS`.
     ///
-    /// 826 operations (298 additions, 524 multiplications, 4 divisions), 0 square roots, 8 trigonometric pairs, 12 signs, 670 intermediates.
+    /// 990 operations (346 additions, 636 multiplications, 8 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 818 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1537,8 +1933,535 @@ impl Spherical4Rrr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 73]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_platform_from_joints(pose, joints, twist, acceleration)
+        let t0 = 2.0 * pose[1];
+        let t1 = pose[2] * t0;
+        let t2 = 2.0 * pose[3];
+        let t3 = pose[0] * t2;
+        let t4 = t1 + t3;
+        let t5 = 2.0 * pose[2];
+        let t6 = pose[3] * t5;
+        let t7 = pose[0] * t0;
+        let t8 = t6 - t7;
+        let t9 = t4 - t8;
+        let t10 = pose[2] * t5;
+        let t12 = pose[3] * t2;
+        let t13 = 1.0 - t10 - t12;
+        let t14 = pose[3] * t0;
+        let t15 = pose[0] * t5;
+        let t16 = t14 + t15;
+        let t17 = t13 - t16;
+        let t18 = t14 - t15;
+        let t20 = 1.0 - pose[1] * t0;
+        let t21 = t20 - t10;
+        let t22 = t18 - t21;
+        let t23 = t17 + t22;
+        let t26 = 1.0 - 0.25 * (t23 * t23);
+        ::overact::guard::reach(t26, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t26);
+        let t32 = 1.0 / (0.5 * (t17 * c_distal_leg1 - t22 * c_distal_leg1));
+        let t33 = t17 - t22;
+        let s_proximal_leg1 = t32 * (0.35355339059327373 * (t9 * t33));
+        let t38 = 0.5 * (t9 * s_proximal_leg1);
+        let t39 = 0.7071067811865475 * t22;
+        let c_proximal_leg1 = t32 * (0.25 * (t33 * t33));
+        let t49 = 0.7071067811865475 * t9;
+        let t52 = 0.5 * (t22 * c_proximal_leg1)
+            - (0.5 * (t17 * c_proximal_leg1) + t49 * s_proximal_leg1);
+        ::overact::guard::leg(t52, 1.0, "leg1")?;
+        let t53 = 1.0 / t52;
+        let minus_gproximal_wx_leg1 = (t38 - t39 * c_proximal_leg1) * t53;
+        let minus_s_distal_leg1 = 0.5 * t23;
+        let t56 = minus_s_distal_leg1 * s_proximal_leg1;
+        let gproximal_wy_leg1 = t56 * t53;
+        let t61 = 0.7071067811865475 * t17;
+        let minus_gproximal_wz_leg1 = (t61 * c_proximal_leg1 + t38) * t53;
+        let rate_proximal_leg1 = gproximal_wy_leg1 * twist[1]
+            - minus_gproximal_wx_leg1 * twist[0] - minus_gproximal_wz_leg1 * twist[2];
+        let t67 = 0.7071067811865475 * rate_proximal_leg1;
+        let t69 = 0.5 * t53;
+        let gdistal_wx_leg1 = t9 * t69;
+        let minus_gdistal_wy_leg1 = t33 * t69;
+        let rate_distal_leg1 = gdistal_wx_leg1 * twist[0]
+            - minus_gdistal_wy_leg1 * twist[1] - gdistal_wx_leg1 * twist[2];
+        let t77 = 0.7071067811865475 * s_proximal_leg1 * rate_distal_leg1;
+        let t78 = t67 + t77;
+        let minus_gwrist_wx_leg1 = 0.7071067811865475 * c_proximal_leg1 * t53;
+        let minus_gwrist_wy_leg1 = s_proximal_leg1 * t53;
+        let rate_wrist_leg1 = minus_gwrist_wx_leg1 * twist[2]
+            - (minus_gwrist_wx_leg1 * twist[0] + minus_gwrist_wy_leg1 * twist[1]);
+        let t87 = t61 * rate_wrist_leg1;
+        let t89 = t67 - t77;
+        let t90 = t39 * rate_wrist_leg1;
+        let t96 = acceleration[1] - (t78 * t87 - t89 * t90 - 2.0 * (t67 * t77));
+        let t98 = c_proximal_leg1 * rate_distal_leg1;
+        let t100 = t49 * rate_wrist_leg1;
+        let t103 = t67 * t98;
+        let t105 = acceleration[0] - (t98 * t90 - t78 * t100 - t103);
+        let t112 = acceleration[2] - (t103 + t89 * t100 - t98 * t87);
+        let rate_dot_proximal_leg1 = gproximal_wy_leg1 * t96
+            - minus_gproximal_wx_leg1 * t105 - minus_gproximal_wz_leg1 * t112;
+        let t115 = minus_gproximal_wx_leg1 * rate_dot_proximal_leg1;
+        let t116 = gproximal_wy_leg1 * rate_dot_proximal_leg1;
+        let t117 = minus_gproximal_wz_leg1 * rate_dot_proximal_leg1;
+        let t118 = 6.936717523440031 * s_proximal_leg1;
+        let t122 = 6.936717523440031 * c_proximal_leg1;
+        let t123 = minus_gproximal_wx_leg1 * t122;
+        let t124 = gproximal_wy_leg1 * t122;
+        let t125 = minus_gproximal_wz_leg1 * t122;
+        let t132 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t133 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t134 = rate_distal_leg1 * t133;
+        let t135 = t132 + t134;
+        let t137 = c_distal_leg1 * rate_proximal_leg1;
+        let t138 = rate_distal_leg1 * t137;
+        let t140 = c_distal_leg1 * t135 + minus_s_distal_leg1 * t138;
+        let t142 = t137 * t133;
+        let t143 = gdistal_wx_leg1 * t142;
+        let t144 = minus_gproximal_wx_leg1 * t140 + t143;
+        let t147 = gproximal_wy_leg1 * t140 + minus_gdistal_wy_leg1 * t142;
+        let t149 = t143 - minus_gproximal_wz_leg1 * t140;
+        let t150 = t137 * t137;
+        let t151 = t133 * t133;
+        let t152 = t150 - t151;
+        let t153 = gdistal_wx_leg1 * t152;
+        let t156 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t160 = minus_s_distal_leg1 * (t134 + t135)
+            - c_distal_leg1 * (t138 + t138 - t156);
+        let rate_dot_distal_leg1 = gdistal_wx_leg1 * t105 - minus_gdistal_wy_leg1 * t96
+            - gdistal_wx_leg1 * t112;
+        let t175 = rate_distal_leg1 * rate_distal_leg1;
+        let t178 = c_distal_leg1 * (t142 + rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t175 - t150);
+        let t180 = gdistal_wx_leg1 * t132;
+        let t194 = minus_s_distal_leg1 * (t142 - rate_dot_distal_leg1)
+            - c_distal_leg1 * (t151 - t175);
+        let t196 = gdistal_wx_leg1 * t156;
+        let t203 = gdistal_wx_leg1 * rate_dot_distal_leg1;
+        let t207 = c_distal_leg1 * t122 - 3.4683587617200153 * t23;
+        let t208 = gdistal_wx_leg1 * t207;
+        let t209 = 6.936717523440031 * t56;
+        let t217 = 4.905 * t9;
+        let t221 = 6.936717523440031
+            * (minus_s_distal_leg1 * c_proximal_leg1 + c_distal_leg1);
+        let t222 = gdistal_wx_leg1 * t221;
+        let t229 = t20 - t12;
+        let t230 = t229 - t8;
+        let t231 = t6 + t7;
+        let t232 = t231 - t21;
+        let t233 = t230 + t232;
+        let minus_s_distal_leg2 = 0.5 * t233;
+        let t237 = 1.0 - 0.25 * (t233 * t233);
+        ::overact::guard::reach(t237, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t237);
+        let t243 = 1.0 / (0.5 * (t230 * c_distal_leg2 - t232 * c_distal_leg2));
+        let t244 = t1 - t3;
+        let t245 = t244 - t16;
+        let t246 = t230 - t232;
+        let minus_s_proximal_leg2 = t243 * (0.35355339059327373 * (t245 * t246));
+        let t250 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let c_proximal_leg2 = t243 * (0.25 * (t246 * t246));
+        let t256 = 0.7071067811865475 * t245;
+        let t261 = 0.5 * (t232 * c_proximal_leg2)
+            - (t256 * minus_s_proximal_leg2 + 0.5 * (t230 * c_proximal_leg2));
+        ::overact::guard::leg(t261, 1.0, "leg2")?;
+        let t262 = 1.0 / t261;
+        let gproximal_wx_leg2 = t250 * t262;
+        let t265 = 0.7071067811865475 * t232;
+        let t268 = 0.5 * (t245 * minus_s_proximal_leg2);
+        let gproximal_wy_leg2 = (t265 * c_proximal_leg2 - t268) * t262;
+        let t273 = 0.7071067811865475 * t230;
+        let minus_gproximal_wz_leg2 = (t273 * c_proximal_leg2 + t268) * t262;
+        let rate_proximal_leg2 = gproximal_wx_leg2 * twist[0]
+            + gproximal_wy_leg2 * twist[1] - minus_gproximal_wz_leg2 * twist[2];
+        let t279 = 0.7071067811865475 * rate_proximal_leg2;
+        let t281 = 0.5 * t262;
+        let gdistal_wx_leg2 = t246 * t281;
+        let minus_gdistal_wy_leg2 = t245 * t281;
+        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
+            - minus_gdistal_wy_leg2 * twist[1] + minus_gdistal_wy_leg2 * twist[2];
+        let t289 = 0.7071067811865475 * minus_s_proximal_leg2 * rate_distal_leg2;
+        let t290 = t279 + t289;
+        let minus_gwrist_wy_leg2 = 0.7071067811865475 * c_proximal_leg2 * t262;
+        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t262;
+        let rate_wrist_leg2 = minus_gwrist_wy_leg2 * twist[2]
+            - (minus_gwrist_wx_leg2 * twist[0] + minus_gwrist_wy_leg2 * twist[1]);
+        let t299 = t265 * rate_wrist_leg2;
+        let t301 = t279 - t289;
+        let t302 = t273 * rate_wrist_leg2;
+        let t308 = acceleration[0] - (t290 * t299 - t301 * t302 - 2.0 * (t279 * t289));
+        let t310 = t256 * rate_wrist_leg2;
+        let t312 = c_proximal_leg2 * rate_distal_leg2;
+        let t315 = t279 * t312;
+        let t317 = acceleration[1] - (t301 * t310 + t312 * t299 - t315);
+        let t324 = acceleration[2] - (t315 - (t312 * t302 + t290 * t310));
+        let rate_dot_proximal_leg2 = gproximal_wx_leg2 * t308 + gproximal_wy_leg2 * t317
+            - minus_gproximal_wz_leg2 * t324;
+        let t327 = gproximal_wx_leg2 * rate_dot_proximal_leg2;
+        let t328 = gproximal_wy_leg2 * rate_dot_proximal_leg2;
+        let t329 = minus_gproximal_wz_leg2 * rate_dot_proximal_leg2;
+        let t330 = 6.936717523440031 * minus_s_proximal_leg2;
+        let t334 = 6.936717523440031 * c_proximal_leg2;
+        let t335 = gproximal_wx_leg2 * t334;
+        let t336 = gproximal_wy_leg2 * t334;
+        let t337 = minus_gproximal_wz_leg2 * t334;
+        let t344 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t345 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t346 = rate_distal_leg2 * t345;
+        let t347 = t344 + t346;
+        let t349 = c_distal_leg2 * rate_proximal_leg2;
+        let t350 = rate_distal_leg2 * t349;
+        let t352 = c_distal_leg2 * t347 + minus_s_distal_leg2 * t350;
+        let t354 = t349 * t345;
+        let t356 = gproximal_wx_leg2 * t352 - gdistal_wx_leg2 * t354;
+        let t358 = minus_gdistal_wy_leg2 * t354;
+        let t359 = gproximal_wy_leg2 * t352 + t358;
+        let t361 = minus_gproximal_wz_leg2 * t352 + t358;
+        let t364 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t368 = minus_s_distal_leg2 * (t346 + t347)
+            - c_distal_leg2 * (t350 + t350 - t364);
+        let t370 = t349 * t349;
+        let t371 = t345 * t345;
+        let t372 = t370 - t371;
+        let t376 = minus_gdistal_wy_leg2 * t372;
+        let rate_dot_distal_leg2 = gdistal_wx_leg2 * t308 - minus_gdistal_wy_leg2 * t317
+            + minus_gdistal_wy_leg2 * t324;
+        let t387 = rate_distal_leg2 * rate_distal_leg2;
+        let t390 = c_distal_leg2 * (t354 + rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t387 - t370);
+        let t394 = minus_gdistal_wy_leg2 * t344;
+        let t406 = minus_s_distal_leg2 * (t354 - rate_dot_distal_leg2)
+            - c_distal_leg2 * (t371 - t387);
+        let t411 = minus_gdistal_wy_leg2 * t364;
+        let t416 = minus_gdistal_wy_leg2 * rate_dot_distal_leg2;
+        let t419 = c_distal_leg2 * t334 - 3.4683587617200153 * t233;
+        let t421 = 6.936717523440031 * t250;
+        let t425 = minus_gdistal_wy_leg2 * t419;
+        let t429 = 4.905 * t245;
+        let t433 = 6.936717523440031
+            * (minus_s_distal_leg2 * c_proximal_leg2 + c_distal_leg2);
+        let t437 = minus_gdistal_wy_leg2 * t433;
+        let t441 = t4 + t8;
+        let t442 = t13 + t16;
+        let t443 = t18 + t21;
+        let t444 = t443 - t442;
+        let t447 = 1.0 - 0.25 * (t444 * t444);
+        ::overact::guard::reach(t447, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t447);
+        let t453 = 1.0 / (0.5 * (t442 * c_distal_leg3 + t443 * c_distal_leg3));
+        let t454 = t442 + t443;
+        let s_proximal_leg3 = t453 * (0.35355339059327373 * (t441 * t454));
+        let t459 = 0.5 * (t441 * s_proximal_leg3);
+        let t460 = 0.7071067811865475 * t443;
+        let c_proximal_leg3 = t453 * (0.25 * (t454 * t454));
+        let t468 = 0.7071067811865475 * t441;
+        let t473 = 0.5 * (t442 * c_proximal_leg3) + t468 * s_proximal_leg3
+            + 0.5 * (t443 * c_proximal_leg3);
+        ::overact::guard::leg(t473, 1.0, "leg3")?;
+        let t474 = 1.0 / t473;
+        let minus_gproximal_wx_leg3 = (t459 + t460 * c_proximal_leg3) * t474;
+        let t476 = 0.7071067811865475 * t442;
+        let gproximal_wz_leg3 = (t476 * c_proximal_leg3 + t459) * t474;
+        let s_distal_leg3 = 0.5 * t444;
+        let t483 = s_distal_leg3 * s_proximal_leg3;
+        let minus_gproximal_wy_leg3 = t483 * t474;
+        let rate_proximal_leg3 = gproximal_wz_leg3 * twist[2]
+            - (minus_gproximal_wx_leg3 * twist[0] + minus_gproximal_wy_leg3 * twist[1]);
+        let t488 = 0.7071067811865475 * rate_proximal_leg3;
+        let t489 = 0.5 * t474;
+        let gdistal_wx_leg3 = t441 * t489;
+        let minus_gdistal_wy_leg3 = t454 * t489;
+        let rate_distal_leg3 = gdistal_wx_leg3 * twist[0]
+            - minus_gdistal_wy_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
+        let t497 = c_proximal_leg3 * rate_distal_leg3;
+        let t498 = t488 * t497;
+        let t500 = 0.7071067811865475 * s_proximal_leg3 * rate_distal_leg3;
+        let t501 = t500 - t488;
+        let minus_gwrist_wx_leg3 = 0.7071067811865475 * c_proximal_leg3 * t474;
+        let minus_gwrist_wy_leg3 = s_proximal_leg3 * t474;
+        let minus_rate_wrist_leg3 = minus_gwrist_wx_leg3 * twist[0]
+            + minus_gwrist_wy_leg3 * twist[1] + minus_gwrist_wx_leg3 * twist[2];
+        let t510 = t468 * minus_rate_wrist_leg3;
+        let t512 = t476 * minus_rate_wrist_leg3;
+        let t516 = acceleration[2] - (t498 + t501 * t510 + t497 * t512);
+        let t518 = t460 * minus_rate_wrist_leg3;
+        let t520 = t488 + t500;
+        let t524 = acceleration[0] - (t498 - (t497 * t518 + t520 * t510));
+        let t532 = acceleration[1] - (2.0 * (t488 * t500) + t520 * t512 - t501 * t518);
+        let rate_dot_proximal_leg3 = gproximal_wz_leg3 * t516
+            - (minus_gproximal_wx_leg3 * t524 + minus_gproximal_wy_leg3 * t532);
+        let t536 = minus_gproximal_wx_leg3 * rate_dot_proximal_leg3;
+        let t537 = minus_gproximal_wy_leg3 * rate_dot_proximal_leg3;
+        let t538 = gproximal_wz_leg3 * rate_dot_proximal_leg3;
+        let t539 = 6.936717523440031 * s_proximal_leg3;
+        let t543 = 6.936717523440031 * c_proximal_leg3;
+        let t544 = minus_gproximal_wx_leg3 * t543;
+        let t545 = minus_gproximal_wy_leg3 * t543;
+        let t546 = gproximal_wz_leg3 * t543;
+        let t553 = s_distal_leg3 * rate_proximal_leg3;
+        let t554 = rate_distal_leg3 * t553;
+        let t555 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t556 = t554 - t555;
+        let t558 = c_distal_leg3 * rate_proximal_leg3;
+        let t559 = rate_distal_leg3 * t558;
+        let t561 = c_distal_leg3 * t556 + s_distal_leg3 * t559;
+        let t563 = t558 * t553;
+        let t564 = gdistal_wx_leg3 * t563;
+        let t565 = minus_gproximal_wx_leg3 * t561 + t564;
+        let t568 = minus_gproximal_wy_leg3 * t561 - minus_gdistal_wy_leg3 * t563;
+        let t570 = t564 - gproximal_wz_leg3 * t561;
+        let t571 = t558 * t558;
+        let t572 = t553 * t553;
+        let t573 = t571 - t572;
+        let t574 = gdistal_wx_leg3 * t573;
+        let t577 = s_distal_leg3 * rate_dot_proximal_leg3;
+        let t581 = s_distal_leg3 * (t554 + t556) - c_distal_leg3 * (t559 + t577 + t559);
+        let t589 = rate_distal_leg3 * rate_distal_leg3;
+        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t524 - minus_gdistal_wy_leg3 * t532
+            + gdistal_wx_leg3 * t516;
+        let t599 = s_distal_leg3 * (t589 - t571)
+            - c_distal_leg3 * (rate_dot_distal_leg3 - t563);
+        let t601 = gdistal_wx_leg3 * t555;
+        let t611 = gdistal_wx_leg3 * t577;
+        let t616 = s_distal_leg3 * (t563 + rate_dot_distal_leg3)
+            - c_distal_leg3 * (t572 - t589);
+        let t624 = gdistal_wx_leg3 * rate_dot_distal_leg3;
+        let t626 = 6.936717523440031 * t483;
+        let t630 = c_distal_leg3 * t543 + 3.4683587617200153 * t444;
+        let t631 = gdistal_wx_leg3 * t630;
+        let t638 = 4.905 * t441;
+        let t642 = 6.936717523440031 * (s_distal_leg3 * c_proximal_leg3 - c_distal_leg3);
+        let t643 = gdistal_wx_leg3 * t642;
+        let t650 = t231 + t21;
+        let t651 = t229 + t8;
+        let t652 = t650 - t651;
+        let s_distal_leg4 = 0.5 * t652;
+        let t656 = 1.0 - 0.25 * (t652 * t652);
+        ::overact::guard::reach(t656, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t656);
+        let t662 = 1.0 / (0.5 * (t651 * c_distal_leg4 + t650 * c_distal_leg4));
+        let t663 = t244 + t16;
+        let t664 = t651 + t650;
+        let minus_s_proximal_leg4 = t662 * (0.35355339059327373 * (t663 * t664));
+        let t668 = s_distal_leg4 * minus_s_proximal_leg4;
+        let t669 = 0.7071067811865475 * t663;
+        let c_proximal_leg4 = t662 * (0.25 * (t664 * t664));
+        let t679 = t669 * minus_s_proximal_leg4 + 0.5 * (t651 * c_proximal_leg4)
+            + 0.5 * (t650 * c_proximal_leg4);
+        ::overact::guard::leg(t679, 1.0, "leg4")?;
+        let t680 = 1.0 / t679;
+        let minus_gproximal_wx_leg4 = t668 * t680;
+        let t682 = 0.7071067811865475 * t651;
+        let t685 = 0.5 * (t663 * minus_s_proximal_leg4);
+        let gproximal_wz_leg4 = (t682 * c_proximal_leg4 + t685) * t680;
+        let t690 = 0.7071067811865475 * t650;
+        let minus_gproximal_wy_leg4 = (t685 + t690 * c_proximal_leg4) * t680;
+        let rate_proximal_leg4 = gproximal_wz_leg4 * twist[2]
+            - (minus_gproximal_wx_leg4 * twist[0] + minus_gproximal_wy_leg4 * twist[1]);
+        let t697 = 0.7071067811865475 * rate_proximal_leg4;
+        let t698 = 0.5 * t680;
+        let gdistal_wx_leg4 = t664 * t698;
+        let minus_gdistal_wy_leg4 = t663 * t698;
+        let rate_distal_leg4 = gdistal_wx_leg4 * twist[0]
+            - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
+        let t706 = c_proximal_leg4 * rate_distal_leg4;
+        let t707 = t697 * t706;
+        let minus_gwrist_wx_leg4 = minus_s_proximal_leg4 * t680;
+        let minus_gwrist_wy_leg4 = 0.7071067811865475 * c_proximal_leg4 * t680;
+        let minus_rate_wrist_leg4 = minus_gwrist_wx_leg4 * twist[0]
+            + minus_gwrist_wy_leg4 * twist[1] + minus_gwrist_wy_leg4 * twist[2];
+        let t716 = t682 * minus_rate_wrist_leg4;
+        let t719 = 0.7071067811865475 * minus_s_proximal_leg4 * rate_distal_leg4;
+        let t720 = t697 + t719;
+        let t721 = t669 * minus_rate_wrist_leg4;
+        let t725 = acceleration[2] - (t707 + t706 * t716 + t720 * t721);
+        let t729 = t690 * minus_rate_wrist_leg4;
+        let t731 = t697 - t719;
+        let t735 = acceleration[0] - (2.0 * (t697 * t719) - (t720 * t729 + t731 * t716));
+        let t741 = acceleration[1] - (t707 + t731 * t721 - t706 * t729);
+        let rate_dot_proximal_leg4 = gproximal_wz_leg4 * t725
+            - (minus_gproximal_wx_leg4 * t735 + minus_gproximal_wy_leg4 * t741);
+        let t745 = minus_gproximal_wx_leg4 * rate_dot_proximal_leg4;
+        let t746 = minus_gproximal_wy_leg4 * rate_dot_proximal_leg4;
+        let t747 = gproximal_wz_leg4 * rate_dot_proximal_leg4;
+        let t748 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t752 = 6.936717523440031 * c_proximal_leg4;
+        let t753 = minus_gproximal_wx_leg4 * t752;
+        let t754 = minus_gproximal_wy_leg4 * t752;
+        let t755 = gproximal_wz_leg4 * t752;
+        let t762 = s_distal_leg4 * rate_proximal_leg4;
+        let t763 = rate_distal_leg4 * t762;
+        let t764 = c_distal_leg4 * rate_dot_proximal_leg4;
+        let t765 = t763 - t764;
+        let t767 = c_distal_leg4 * rate_proximal_leg4;
+        let t768 = rate_distal_leg4 * t767;
+        let t770 = c_distal_leg4 * t765 + s_distal_leg4 * t768;
+        let t772 = t767 * t762;
+        let t774 = minus_gproximal_wx_leg4 * t770 + gdistal_wx_leg4 * t772;
+        let t776 = minus_gdistal_wy_leg4 * t772;
+        let t777 = minus_gproximal_wy_leg4 * t770 - t776;
+        let t779 = gproximal_wz_leg4 * t770 + t776;
+        let t780 = t767 * t767;
+        let t781 = t762 * t762;
+        let t782 = t780 - t781;
+        let t786 = s_distal_leg4 * rate_dot_proximal_leg4;
+        let t790 = s_distal_leg4 * (t763 + t765) - c_distal_leg4 * (t768 + t786 + t768);
+        let t794 = minus_gdistal_wy_leg4 * t782;
+        let t798 = rate_distal_leg4 * rate_distal_leg4;
+        let rate_dot_distal_leg4 = gdistal_wx_leg4 * t735 - minus_gdistal_wy_leg4 * t741
+            - minus_gdistal_wy_leg4 * t725;
+        let t808 = s_distal_leg4 * (t798 - t780)
+            - c_distal_leg4 * (rate_dot_distal_leg4 - t772);
+        let t812 = minus_gdistal_wy_leg4 * t764;
+        let t825 = s_distal_leg4 * (t772 + rate_dot_distal_leg4)
+            - c_distal_leg4 * (t781 - t798);
+        let t829 = minus_gdistal_wy_leg4 * t786;
+        let t834 = minus_gdistal_wy_leg4 * rate_dot_distal_leg4;
+        let t837 = c_distal_leg4 * t752 + 3.4683587617200153 * t652;
+        let t839 = 6.936717523440031 * t668;
+        let t843 = minus_gdistal_wy_leg4 * t837;
+        let t847 = 4.905 * t663;
+        let t851 = 6.936717523440031 * (s_distal_leg4 * c_proximal_leg4 - c_distal_leg4);
+        let t854 = minus_gdistal_wy_leg4 * t851;
+        let t863 = t13 * acceleration[0] + t4 * acceleration[1] + t18 * acceleration[2];
+        let t869 = t13 * twist[0] + t4 * twist[1] + t18 * twist[2];
+        let t874 = t16 * twist[0] + t8 * twist[1] + t21 * twist[2];
+        let t875 = t869 * t874;
+        let t876 = t244 * t875;
+        let t882 = t244 * twist[0] + t229 * twist[1] + t231 * twist[2];
+        let t883 = t869 * t882;
+        let t884 = t16 * t883;
+        let t887 = t229 * t875;
+        let t889 = t8 * t883;
+        let t892 = t231 * t875;
+        let t894 = t21 * t883;
+        let t896 = t882 * t874;
+        let t897 = t896 + t863;
+        let t903 = t244 * acceleration[0] + t229 * acceleration[1]
+            + t231 * acceleration[2];
+        let t904 = t875 - t903;
+        let t907 = t869 * t869;
+        let t908 = t882 * t882;
+        let t909 = t907 - t908;
+        let t926 = t16 * acceleration[0] + t8 * acceleration[1] + t21 * acceleration[2];
+        let t927 = t883 + t926;
+        let t929 = t874 * t874;
+        let t930 = t929 - t907;
+        let t933 = t896 - t863;
+        let t947 = t13 * t896;
+        let t951 = t4 * t896;
+        let t955 = t18 * t896;
+        let t958 = t908 - t929;
+        let t960 = t883 - t926;
+        let t963 = t875 + t903;
+        let t985 = 9.81 * t231;
+        let t987 = 9.81 * t21;
+        let t994 = 9.81 * t18;
+        Ok([
+            [
+                -t115, minus_gproximal_wx_leg1 * t118, t123, -t115,
+                -(minus_gproximal_wx_leg1 * rate_proximal_leg1),
+                -::overact::math::signed(minus_gproximal_wx_leg1, rate_proximal_leg1),
+                -minus_gproximal_wx_leg1, -t144, t153 - minus_gproximal_wx_leg1 * t160,
+                minus_gproximal_wx_leg1 * t178 - t180, t144 - t115,
+                -(minus_gproximal_wx_leg1 * t194 + t196), t203,
+                t208 - minus_gproximal_wx_leg1 * t209, minus_gproximal_wx_leg1 * t217 + t222, -t123,
+                t327, gproximal_wx_leg2 * t330, -t335, t327, gproximal_wx_leg2 * rate_proximal_leg2,
+                ::overact::math::signed(gproximal_wx_leg2, rate_proximal_leg2), gproximal_wx_leg2,
+                t356, gproximal_wx_leg2 * t368 + gdistal_wx_leg2 * t372,
+                -(gproximal_wx_leg2 * t390 + gdistal_wx_leg2 * t344), t327 - t356,
+                gproximal_wx_leg2 * t406 - gdistal_wx_leg2 * t364,
+                gdistal_wx_leg2 * rate_dot_distal_leg2,
+                gdistal_wx_leg2 * t419 - gproximal_wx_leg2 * t421,
+                gproximal_wx_leg2 * t429 + gdistal_wx_leg2 * t433, t335, -t536,
+                minus_gproximal_wx_leg3 * t539, t544, -t536,
+                -(minus_gproximal_wx_leg3 * rate_proximal_leg3),
+                -::overact::math::signed(minus_gproximal_wx_leg3, rate_proximal_leg3),
+                -minus_gproximal_wx_leg3, t565, t574 - minus_gproximal_wx_leg3 * t581,
+                -(minus_gproximal_wx_leg3 * t599 + t601), -(t536 + t565),
+                t611 - minus_gproximal_wx_leg3 * t616, t624, minus_gproximal_wx_leg3 * t626 + t631,
+                minus_gproximal_wx_leg3 * t638 - t643, -t544, -t745,
+                -(minus_gproximal_wx_leg4 * t748), t753, -t745,
+                -(minus_gproximal_wx_leg4 * rate_proximal_leg4),
+                -::overact::math::signed(minus_gproximal_wx_leg4, rate_proximal_leg4),
+                -minus_gproximal_wx_leg4, t774,
+                gdistal_wx_leg4 * t782 - minus_gproximal_wx_leg4 * t790,
+                -(minus_gproximal_wx_leg4 * t808 + gdistal_wx_leg4 * t764), -(t745 + t774),
+                gdistal_wx_leg4 * t786 - minus_gproximal_wx_leg4 * t825,
+                gdistal_wx_leg4 * rate_dot_distal_leg4,
+                gdistal_wx_leg4 * t837 - minus_gproximal_wx_leg4 * t839,
+                -(minus_gproximal_wx_leg4 * t847 + gdistal_wx_leg4 * t851), -t753,
+                t13 * t863 + t876 - t884, t244 * t897 - t13 * t904 + t16 * t909,
+                t13 * t927 + t244 * t930 - t16 * t933, t244 * t903 - t947 + t884,
+                t13 * t958 - t244 * t960 + t16 * t963, t947 - t876 + t16 * t926,
+                t16 * t985 - t244 * t987, t13 * t987 - t16 * t994, t244 * t994 - t13 * t985,
+            ],
+            [
+                t116, -(gproximal_wy_leg1 * t118), -t124, t116,
+                gproximal_wy_leg1 * rate_proximal_leg1,
+                ::overact::math::signed(gproximal_wy_leg1, rate_proximal_leg1), gproximal_wy_leg1,
+                t147, gproximal_wy_leg1 * t160 - minus_gdistal_wy_leg1 * t152,
+                minus_gdistal_wy_leg1 * t132 - gproximal_wy_leg1 * t178, t116 - t147,
+                gproximal_wy_leg1 * t194 + minus_gdistal_wy_leg1 * t156,
+                -(minus_gdistal_wy_leg1 * rate_dot_distal_leg1),
+                gproximal_wy_leg1 * t209 - minus_gdistal_wy_leg1 * t207,
+                -(gproximal_wy_leg1 * t217 + minus_gdistal_wy_leg1 * t221), t124, t328,
+                gproximal_wy_leg2 * t330, -t336, t328, gproximal_wy_leg2 * rate_proximal_leg2,
+                ::overact::math::signed(gproximal_wy_leg2, rate_proximal_leg2), gproximal_wy_leg2,
+                t359, gproximal_wy_leg2 * t368 - t376, t394 - gproximal_wy_leg2 * t390, t328 - t359,
+                gproximal_wy_leg2 * t406 + t411, -t416, -(gproximal_wy_leg2 * t421 + t425),
+                gproximal_wy_leg2 * t429 - t437, t336, -t537, minus_gproximal_wy_leg3 * t539, t545,
+                -t537, -(minus_gproximal_wy_leg3 * rate_proximal_leg3),
+                -::overact::math::signed(minus_gproximal_wy_leg3, rate_proximal_leg3),
+                -minus_gproximal_wy_leg3, t568,
+                -(minus_gproximal_wy_leg3 * t581 + minus_gdistal_wy_leg3 * t573),
+                minus_gdistal_wy_leg3 * t555 - minus_gproximal_wy_leg3 * t599, -(t537 + t568),
+                -(minus_gproximal_wy_leg3 * t616 + minus_gdistal_wy_leg3 * t577),
+                -(minus_gdistal_wy_leg3 * rate_dot_distal_leg3),
+                minus_gproximal_wy_leg3 * t626 - minus_gdistal_wy_leg3 * t630,
+                minus_gproximal_wy_leg3 * t638 + minus_gdistal_wy_leg3 * t642, -t545, -t746,
+                -(minus_gproximal_wy_leg4 * t748), t754, -t746,
+                -(minus_gproximal_wy_leg4 * rate_proximal_leg4),
+                -::overact::math::signed(minus_gproximal_wy_leg4, rate_proximal_leg4),
+                -minus_gproximal_wy_leg4, t777, -(minus_gproximal_wy_leg4 * t790 + t794),
+                t812 - minus_gproximal_wy_leg4 * t808, -(t746 + t777),
+                -(minus_gproximal_wy_leg4 * t825 + t829), -t834,
+                -(minus_gproximal_wy_leg4 * t839 + t843), t854 - minus_gproximal_wy_leg4 * t847,
+                -t754, t4 * t863 + t887 - t889, t229 * t897 - t4 * t904 + t8 * t909,
+                t4 * t927 + t229 * t930 - t8 * t933, t229 * t903 - t951 + t889,
+                t4 * t958 - t229 * t960 + t8 * t963, t951 - t887 + t8 * t926,
+                t8 * t985 - t229 * t987, t4 * t987 - t8 * t994, t229 * t994 - t4 * t985,
+            ],
+            [
+                -t117, minus_gproximal_wz_leg1 * t118, t125, -t117,
+                -(minus_gproximal_wz_leg1 * rate_proximal_leg1),
+                -::overact::math::signed(minus_gproximal_wz_leg1, rate_proximal_leg1),
+                -minus_gproximal_wz_leg1, t149, -(minus_gproximal_wz_leg1 * t160 + t153),
+                minus_gproximal_wz_leg1 * t178 + t180, -(t117 + t149),
+                t196 - minus_gproximal_wz_leg1 * t194, -t203,
+                -(minus_gproximal_wz_leg1 * t209 + t208), minus_gproximal_wz_leg1 * t217 - t222,
+                -t125, -t329, -(minus_gproximal_wz_leg2 * t330), t337, -t329,
+                -(minus_gproximal_wz_leg2 * rate_proximal_leg2),
+                -::overact::math::signed(minus_gproximal_wz_leg2, rate_proximal_leg2),
+                -minus_gproximal_wz_leg2, -t361, t376 - minus_gproximal_wz_leg2 * t368,
+                minus_gproximal_wz_leg2 * t390 - t394, t361 - t329,
+                -(minus_gproximal_wz_leg2 * t406 + t411), t416,
+                minus_gproximal_wz_leg2 * t421 + t425, t437 - minus_gproximal_wz_leg2 * t429, -t337,
+                t538, -(gproximal_wz_leg3 * t539), -t546, t538,
+                gproximal_wz_leg3 * rate_proximal_leg3,
+                ::overact::math::signed(gproximal_wz_leg3, rate_proximal_leg3), gproximal_wz_leg3,
+                t570, gproximal_wz_leg3 * t581 + t574, gproximal_wz_leg3 * t599 - t601, t538 - t570,
+                gproximal_wz_leg3 * t616 + t611, t624, t631 - gproximal_wz_leg3 * t626,
+                -(gproximal_wz_leg3 * t638 + t643), t546, t747, gproximal_wz_leg4 * t748, -t755,
+                t747, gproximal_wz_leg4 * rate_proximal_leg4,
+                ::overact::math::signed(gproximal_wz_leg4, rate_proximal_leg4), gproximal_wz_leg4,
+                -t779, gproximal_wz_leg4 * t790 - t794, gproximal_wz_leg4 * t808 + t812,
+                t747 + t779, gproximal_wz_leg4 * t825 - t829, -t834,
+                gproximal_wz_leg4 * t839 - t843, gproximal_wz_leg4 * t847 + t854, t755,
+                t18 * t863 + t892 - t894, t231 * t897 - t18 * t904 + t21 * t909,
+                t18 * t927 + t231 * t930 - t21 * t933, t231 * t903 - t955 + t894,
+                t18 * t958 - t231 * t960 + t21 * t963, t955 - t892 + t21 * t926, 0.0, 0.0, 0.0,
+            ],
+        ])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -2115,7 +3038,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 73.
     /// Columns: `PARAMETERS`.
     ///
-    /// 978 operations (362 additions, 609 multiplications, 7 divisions), 0 square roots, 8 trigonometric pairs, 12 signs, 822 intermediates.
+    /// 1142 operations (410 additions, 721 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 970 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2126,563 +3049,619 @@ impl Spherical4Rrr {
         start: &[f64; 4],
     ) -> Result<[[f64; 73]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let t2 = 0.7071067811865476 * minus_c_proximal_leg1;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t5 = t2 * c_distal_leg1;
-        let t6 = 0.7071067811865476 * minus_s_distal_leg1;
-        let t8 = 1.0 / minus_s_distal_leg1;
-        let gproximal_wx_leg1 = (t5 + t6) * t8;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let t16 = 1.0 / minus_s_distal_leg2;
-        let minus_gproximal_wx_leg2 = minus_s_proximal_leg2 * c_distal_leg2 * t16;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t22 = 0.7071067811865476 * minus_c_proximal_leg3;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let t25 = t22 * c_distal_leg3;
-        let t26 = 0.7071067811865476 * minus_s_distal_leg3;
-        let t28 = 1.0 / minus_s_distal_leg3;
-        let minus_gproximal_wx_leg3 = (t25 + t26) * t28;
-        let (minus_s_proximal_leg4, minus_c_proximal_leg4) = ::overact::math::sin_cos(
-            joints[9],
-        );
-        let (c_distal_leg4, minus_s_distal_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(minus_s_distal_leg4, 1.0, "leg4")?;
-        let t37 = 1.0 / minus_s_distal_leg4;
-        let gproximal_wx_leg4 = minus_s_proximal_leg4 * c_distal_leg4 * t37;
-        let t40 = gproximal_wx_leg1 * gproximal_wx_leg1
-            + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
-            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
-            + gproximal_wx_leg4 * gproximal_wx_leg4;
-        ::overact::guard::platform(t40, 1.0000000000000002, "actuators")?;
-        ::overact::guard::platform(t40, 1.0000000000000002, "actuators")?;
-        let t41 = 1.0 / t40;
-        let t48 = gproximal_wx_leg1 * actuator_velocities[0]
-            - minus_gproximal_wx_leg2 * actuator_velocities[1]
-            - minus_gproximal_wx_leg3 * actuator_velocities[2]
-            + gproximal_wx_leg4 * actuator_velocities[3];
-        let gproximal_wy_leg1 = minus_s_proximal_leg1 * c_distal_leg1 * t8;
-        let t53 = 0.7071067811865476 * minus_c_proximal_leg2;
-        let t54 = t53 * c_distal_leg2;
-        let t55 = 0.7071067811865476 * minus_s_distal_leg2;
-        let gproximal_wy_leg2 = (t54 + t55) * t16;
-        let minus_gproximal_wy_leg3 = minus_s_proximal_leg3 * c_distal_leg3 * t28;
-        let t64 = 0.7071067811865476 * minus_c_proximal_leg4;
-        let t65 = t64 * c_distal_leg4;
-        let t66 = 0.7071067811865476 * minus_s_distal_leg4;
-        let minus_gproximal_wy_leg4 = (t65 + t66) * t37;
-        let t70 = gproximal_wx_leg1 * gproximal_wy_leg1
-            - minus_gproximal_wx_leg2 * gproximal_wy_leg2
+        let t0 = 2.0 * pose[1];
+        let t1 = pose[2] * t0;
+        let t2 = 2.0 * pose[3];
+        let t3 = pose[0] * t2;
+        let t4 = t1 + t3;
+        let t5 = 2.0 * pose[2];
+        let t6 = pose[3] * t5;
+        let t7 = pose[0] * t0;
+        let t8 = t6 - t7;
+        let t9 = t4 - t8;
+        let t10 = pose[2] * t5;
+        let t12 = pose[3] * t2;
+        let t13 = 1.0 - t10 - t12;
+        let t14 = pose[3] * t0;
+        let t15 = pose[0] * t5;
+        let t16 = t14 + t15;
+        let t17 = t13 - t16;
+        let t18 = t14 - t15;
+        let t20 = 1.0 - pose[1] * t0;
+        let t21 = t20 - t10;
+        let t22 = t18 - t21;
+        let t23 = t17 + t22;
+        let t26 = 1.0 - 0.25 * (t23 * t23);
+        ::overact::guard::reach(t26, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t26);
+        let t32 = 1.0 / (0.5 * (t17 * c_distal_leg1 - t22 * c_distal_leg1));
+        let t33 = t17 - t22;
+        let s_proximal_leg1 = t32 * (0.35355339059327373 * (t9 * t33));
+        let t38 = 0.5 * (t9 * s_proximal_leg1);
+        let t39 = 0.7071067811865475 * t22;
+        let c_proximal_leg1 = t32 * (0.25 * (t33 * t33));
+        let t49 = 0.7071067811865475 * t9;
+        let t52 = 0.5 * (t22 * c_proximal_leg1)
+            - (0.5 * (t17 * c_proximal_leg1) + t49 * s_proximal_leg1);
+        ::overact::guard::leg(t52, 1.0, "leg1")?;
+        let t53 = 1.0 / t52;
+        let minus_gproximal_wx_leg1 = (t38 - t39 * c_proximal_leg1) * t53;
+        let minus_s_distal_leg1 = 0.5 * t23;
+        let t56 = minus_s_distal_leg1 * s_proximal_leg1;
+        let gproximal_wy_leg1 = t56 * t53;
+        let t59 = t6 + t7;
+        let t60 = t59 - t21;
+        let t61 = 0.7071067811865475 * t60;
+        let t62 = t20 - t12;
+        let t63 = t62 - t8;
+        let t64 = t63 + t60;
+        let t67 = 1.0 - 0.25 * (t64 * t64);
+        ::overact::guard::reach(t67, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t67);
+        let t73 = 1.0 / (0.5 * (t63 * c_distal_leg2 - t60 * c_distal_leg2));
+        let t74 = t63 - t60;
+        let c_proximal_leg2 = t73 * (0.25 * (t74 * t74));
+        let t79 = t1 - t3;
+        let t80 = t79 - t16;
+        let minus_s_proximal_leg2 = t73 * (0.35355339059327373 * (t80 * t74));
+        let t85 = 0.5 * (t80 * minus_s_proximal_leg2);
+        let t89 = 0.7071067811865475 * t80;
+        let t94 = 0.5 * (t60 * c_proximal_leg2)
+            - (t89 * minus_s_proximal_leg2 + 0.5 * (t63 * c_proximal_leg2));
+        ::overact::guard::leg(t94, 1.0, "leg2")?;
+        let t95 = 1.0 / t94;
+        let gproximal_wy_leg2 = (t61 * c_proximal_leg2 - t85) * t95;
+        let t99 = t18 + t21;
+        let t100 = t13 + t16;
+        let t101 = t99 - t100;
+        let s_distal_leg3 = 0.5 * t101;
+        let t105 = 1.0 - 0.25 * (t101 * t101);
+        ::overact::guard::reach(t105, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t105);
+        let t111 = 1.0 / (0.5 * (t100 * c_distal_leg3 + t99 * c_distal_leg3));
+        let t112 = t4 + t8;
+        let t113 = t100 + t99;
+        let s_proximal_leg3 = t111 * (0.35355339059327373 * (t112 * t113));
+        let t117 = s_distal_leg3 * s_proximal_leg3;
+        let c_proximal_leg3 = t111 * (0.25 * (t113 * t113));
+        let t123 = 0.7071067811865475 * t112;
+        let t128 = 0.5 * (t100 * c_proximal_leg3) + t123 * s_proximal_leg3
+            + 0.5 * (t99 * c_proximal_leg3);
+        ::overact::guard::leg(t128, 1.0, "leg3")?;
+        let t129 = 1.0 / t128;
+        let minus_gproximal_wy_leg3 = t117 * t129;
+        let t133 = t79 + t16;
+        let t134 = t62 + t8;
+        let t135 = t59 + t21;
+        let t136 = t135 - t134;
+        let t139 = 1.0 - 0.25 * (t136 * t136);
+        ::overact::guard::reach(t139, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t139);
+        let t145 = 1.0 / (0.5 * (t134 * c_distal_leg4 + t135 * c_distal_leg4));
+        let t146 = t134 + t135;
+        let minus_s_proximal_leg4 = t145 * (0.35355339059327373 * (t133 * t146));
+        let t151 = 0.5 * (t133 * minus_s_proximal_leg4);
+        let t152 = 0.7071067811865475 * t135;
+        let c_proximal_leg4 = t145 * (0.25 * (t146 * t146));
+        let t158 = 0.7071067811865475 * t133;
+        let t165 = t158 * minus_s_proximal_leg4 + 0.5 * (t134 * c_proximal_leg4)
+            + 0.5 * (t135 * c_proximal_leg4);
+        ::overact::guard::leg(t165, 1.0, "leg4")?;
+        let t166 = 1.0 / t165;
+        let minus_gproximal_wy_leg4 = (t151 + t152 * c_proximal_leg4) * t166;
+        let minus_s_distal_leg2 = 0.5 * t64;
+        let t171 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let gproximal_wx_leg2 = t171 * t95;
+        let t177 = 0.5 * (t112 * s_proximal_leg3);
+        let t178 = 0.7071067811865475 * t99;
+        let minus_gproximal_wx_leg3 = (t177 + t178 * c_proximal_leg3) * t129;
+        let s_distal_leg4 = 0.5 * t136;
+        let t185 = s_distal_leg4 * minus_s_proximal_leg4;
+        let minus_gproximal_wx_leg4 = t185 * t166;
+        let t188 = gproximal_wx_leg2 * gproximal_wy_leg2
+            - minus_gproximal_wx_leg1 * gproximal_wy_leg1
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
-            - gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t71 = t70 * t41;
-        let t80 = gproximal_wy_leg1 * gproximal_wy_leg1
+            + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
+        let t195 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+            + gproximal_wx_leg2 * gproximal_wx_leg2
+            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
+        ::overact::guard::platform(t195, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t195, 0.9999999999999998, "actuators")?;
+        let t196 = 1.0 / t195;
+        let t197 = t188 * t196;
+        let t199 = gproximal_wy_leg1 * gproximal_wy_leg1
             + gproximal_wy_leg2 * gproximal_wy_leg2
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t70 * t71;
-        ::overact::guard::platform(t80, 1.0000000000000002, "actuators")?;
-        ::overact::guard::platform(t80, 1.0000000000000002, "actuators")?;
-        let t81 = 1.0 / t80;
-        let t90 = gproximal_wy_leg1 * actuator_velocities[0]
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t188 * t197;
+        ::overact::guard::platform(t199, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t199, 0.9999999999999998, "actuators")?;
+        let t200 = 1.0 / t199;
+        let t201 = 0.5 * t53;
+        let gdistal_wx_leg1 = t9 * t201;
+        let t209 = gproximal_wx_leg2 * actuator_velocities[1]
+            - minus_gproximal_wx_leg1 * actuator_velocities[0]
+            - minus_gproximal_wx_leg3 * actuator_velocities[2]
+            - minus_gproximal_wx_leg4 * actuator_velocities[3];
+        let t219 = gproximal_wy_leg1 * actuator_velocities[0]
             + gproximal_wy_leg2 * actuator_velocities[1]
             - minus_gproximal_wy_leg3 * actuator_velocities[2]
-            - minus_gproximal_wy_leg4 * actuator_velocities[3] - t48 * t71;
-        let minus_gproximal_wz_leg3 = (t25 - t26) * t28;
-        let minus_gproximal_wz_leg1 = (t5 - t6) * t8;
-        let minus_gproximal_wz_leg2 = (t54 - t55) * t16;
-        let minus_gproximal_wz_leg4 = (t65 - t66) * t37;
-        let t113 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
-            - gproximal_wx_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
-            - gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t114 = t113 * t41;
-        let t116 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
-            - (gproximal_wy_leg1 * minus_gproximal_wz_leg1
-                + gproximal_wy_leg2 * minus_gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t70 * t114;
-        let t117 = t116 * t81;
-        let t128 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wy_leg4 * actuator_velocities[3] - t209 * t197;
+        let t221 = 0.7071067811865475 * t17;
+        let minus_gproximal_wz_leg1 = (t221 * c_proximal_leg1 + t38) * t53;
+        let t226 = 0.7071067811865475 * t63;
+        let minus_gproximal_wz_leg2 = (t226 * c_proximal_leg2 + t85) * t95;
+        let t232 = 0.7071067811865475 * t100;
+        let gproximal_wz_leg3 = (t232 * c_proximal_leg3 + t177) * t129;
+        let t238 = 0.7071067811865475 * t134;
+        let gproximal_wz_leg4 = (t238 * c_proximal_leg4 + t151) * t166;
+        let t250 = minus_gproximal_wx_leg1 * minus_gproximal_wz_leg1
+            - gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wx_leg3 * gproximal_wz_leg3
+            - minus_gproximal_wx_leg4 * gproximal_wz_leg4;
+        let t251 = t250 * t196;
+        let t253 = gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            + gproximal_wy_leg2 * minus_gproximal_wz_leg2
+            + minus_gproximal_wy_leg3 * gproximal_wz_leg3
+            + minus_gproximal_wy_leg4 * gproximal_wz_leg4 + t188 * t251;
+        let t254 = t253 * t200;
+        let t265 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
             + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t113 * t114
-            - t116 * t117;
-        ::overact::guard::platform(t128, 2.0000000000000004, "actuators")?;
-        ::overact::guard::platform(t128, 2.0000000000000004, "actuators")?;
-        let t129 = 1.0 / t128;
-        let t140 = minus_gproximal_wz_leg1 * actuator_velocities[0]
-            + minus_gproximal_wz_leg2 * actuator_velocities[1]
-            + minus_gproximal_wz_leg3 * actuator_velocities[2]
-            + minus_gproximal_wz_leg4 * actuator_velocities[3] + t48 * t114 + t117 * t90;
-        let t141 = t129 * t140;
-        let t143 = t81 * t90 + t117 * t141;
-        let t147 = t48 * t41 - t71 * t143 + t114 * t141;
-        let rate_proximal_leg1 = gproximal_wx_leg1 * t147 + gproximal_wy_leg1 * t143
-            + minus_gproximal_wz_leg1 * t141;
-        let t153 = 0.7071067811865476 * rate_proximal_leg1;
-        let minus_gdistal_wx_leg1 = 0.7071067811865476 * minus_s_proximal_leg1;
-        let rate_distal_leg1 = minus_c_proximal_leg1 * t143
-            - minus_gdistal_wx_leg1 * t147 - minus_gdistal_wx_leg1 * t141;
-        let t160 = minus_c_proximal_leg1 * rate_distal_leg1;
-        let t161 = t153 * t160;
-        let t162 = t2 * minus_s_distal_leg1;
-        let t163 = 0.7071067811865476 * c_distal_leg1;
-        let t164 = t162 + t163;
-        let gwrist_wx_leg1 = t2 * t8;
-        let gwrist_wy_leg1 = minus_s_proximal_leg1 * t8;
-        let rate_wrist_leg1 = gwrist_wx_leg1 * t147 + gwrist_wy_leg1 * t143
-            + gwrist_wx_leg1 * t141;
-        let t172 = t164 * rate_wrist_leg1;
-        let t174 = minus_gdistal_wx_leg1 * rate_distal_leg1;
-        let t175 = t153 + t174;
-        let t176 = minus_s_proximal_leg1 * minus_s_distal_leg1;
-        let t177 = t176 * rate_wrist_leg1;
-        let t180 = t161 + t160 * t172 + t175 * t177;
-        let t182 = t153 - t174;
-        let t184 = t163 - t162;
-        let t185 = t184 * rate_wrist_leg1;
-        let t190 = t182 * t172 - t175 * t185 - 2.0 * (t153 * t174);
-        let t196 = t161 + t182 * t177 + t160 * t185;
-        let rate_dot_proximal_leg1 = gproximal_wx_leg1 * t180 - gproximal_wy_leg1 * t190
-            + minus_gproximal_wz_leg1 * t196;
-        let t199 = actuator_accelerations[0] - rate_dot_proximal_leg1;
-        let rate_proximal_leg2 = gproximal_wy_leg2 * t143
-            - minus_gproximal_wx_leg2 * t147 + minus_gproximal_wz_leg2 * t141;
-        let t206 = 0.7071067811865476 * rate_proximal_leg2;
-        let minus_gdistal_wy_leg2 = 0.7071067811865476 * minus_s_proximal_leg2;
-        let minus_rate_distal_leg2 = minus_c_proximal_leg2 * t147
-            + minus_gdistal_wy_leg2 * t143 + minus_gdistal_wy_leg2 * t141;
-        let t213 = minus_gdistal_wy_leg2 * minus_rate_distal_leg2;
-        let t214 = t206 - t213;
-        let t215 = 0.7071067811865476 * c_distal_leg2;
-        let t216 = t53 * minus_s_distal_leg2;
-        let t217 = t215 - t216;
-        let gwrist_wy_leg2 = t53 * t16;
-        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t16;
-        let rate_wrist_leg2 = gwrist_wy_leg2 * t143 - minus_gwrist_wx_leg2 * t147
-            + gwrist_wy_leg2 * t141;
-        let t225 = t217 * rate_wrist_leg2;
-        let t227 = t206 + t213;
-        let t228 = t216 + t215;
-        let t229 = t228 * rate_wrist_leg2;
-        let t234 = t214 * t225 - t227 * t229 - 2.0 * (t206 * t213);
-        let t236 = minus_c_proximal_leg2 * minus_rate_distal_leg2;
-        let t237 = t206 * t236;
-        let t239 = minus_s_proximal_leg2 * minus_s_distal_leg2;
-        let t240 = t239 * rate_wrist_leg2;
-        let t243 = t237 + t236 * t229 - t214 * t240;
-        let t249 = t227 * t240 - t236 * t225 - t237;
-        let rate_dot_proximal_leg2 = minus_gproximal_wx_leg2 * t234
-            - gproximal_wy_leg2 * t243 + minus_gproximal_wz_leg2 * t249;
-        let t252 = actuator_accelerations[1] - rate_dot_proximal_leg2;
-        let rate_proximal_leg3 = minus_gproximal_wz_leg3 * t141
-            - (minus_gproximal_wx_leg3 * t147 + minus_gproximal_wy_leg3 * t143);
-        let t260 = 0.7071067811865476 * rate_proximal_leg3;
-        let gdistal_wx_leg3 = 0.7071067811865476 * minus_s_proximal_leg3;
-        let rate_distal_leg3 = gdistal_wx_leg3 * t147 - minus_c_proximal_leg3 * t143
-            - gdistal_wx_leg3 * t141;
-        let t267 = minus_c_proximal_leg3 * rate_distal_leg3;
-        let t268 = t260 * t267;
-        let t269 = t22 * minus_s_distal_leg3;
-        let t270 = 0.7071067811865476 * c_distal_leg3;
-        let t271 = t269 + t270;
-        let minus_gwrist_wx_leg3 = t22 * t28;
-        let minus_gwrist_wy_leg3 = minus_s_proximal_leg3 * t28;
-        let rate_wrist_leg3 = minus_gwrist_wx_leg3 * t141
-            - (minus_gwrist_wx_leg3 * t147 + minus_gwrist_wy_leg3 * t143);
-        let t279 = t271 * rate_wrist_leg3;
-        let t281 = gdistal_wx_leg3 * rate_distal_leg3;
-        let t282 = t260 + t281;
-        let t283 = minus_s_proximal_leg3 * minus_s_distal_leg3;
-        let t284 = t283 * rate_wrist_leg3;
-        let t287 = t268 + t267 * t279 + t282 * t284;
-        let t291 = t281 - t260;
-        let t293 = t269 - t270;
-        let t294 = t293 * rate_wrist_leg3;
-        let t297 = 2.0 * (t260 * t281) + t291 * t279 - t282 * t294;
-        let t303 = t268 - (t291 * t284 + t267 * t294);
-        let rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t287
-            + minus_gproximal_wy_leg3 * t297 + minus_gproximal_wz_leg3 * t303;
-        let t306 = actuator_accelerations[2] - rate_dot_proximal_leg3;
-        let rate_proximal_leg4 = gproximal_wx_leg4 * t147
-            - minus_gproximal_wy_leg4 * t143 + minus_gproximal_wz_leg4 * t141;
-        let t314 = 0.7071067811865476 * rate_proximal_leg4;
-        let gdistal_wy_leg4 = 0.7071067811865476 * minus_s_proximal_leg4;
-        let rate_distal_leg4 = minus_c_proximal_leg4 * t147 + gdistal_wy_leg4 * t143
-            - gdistal_wy_leg4 * t141;
-        let t321 = minus_c_proximal_leg4 * rate_distal_leg4;
-        let t322 = t314 * t321;
-        let t323 = gdistal_wy_leg4 * rate_distal_leg4;
-        let t324 = t314 + t323;
-        let t325 = minus_s_proximal_leg4 * minus_s_distal_leg4;
-        let gwrist_wx_leg4 = minus_s_proximal_leg4 * t37;
-        let minus_gwrist_wy_leg4 = t64 * t37;
-        let rate_wrist_leg4 = gwrist_wx_leg4 * t147 - minus_gwrist_wy_leg4 * t143
-            + minus_gwrist_wy_leg4 * t141;
-        let t333 = t325 * rate_wrist_leg4;
-        let t335 = t64 * minus_s_distal_leg4;
-        let t336 = 0.7071067811865476 * c_distal_leg4;
-        let t337 = t335 + t336;
-        let t338 = t337 * rate_wrist_leg4;
-        let t341 = t322 + t324 * t333 + t321 * t338;
-        let t343 = t335 - t336;
-        let t344 = t343 * rate_wrist_leg4;
-        let t346 = t323 - t314;
-        let t351 = t324 * t344 - t346 * t338 - 2.0 * (t314 * t323);
-        let t357 = t322 - (t321 * t344 + t346 * t333);
-        let rate_dot_proximal_leg4 = minus_gproximal_wy_leg4 * t341
-            - gproximal_wx_leg4 * t351 + minus_gproximal_wz_leg4 * t357;
-        let t360 = actuator_accelerations[3] - rate_dot_proximal_leg4;
-        let t362 = gproximal_wx_leg1 * t199 - minus_gproximal_wx_leg2 * t252
-            - minus_gproximal_wx_leg3 * t306 + gproximal_wx_leg4 * t360;
-        let t372 = gproximal_wy_leg1 * t199 + gproximal_wy_leg2 * t252
-            - minus_gproximal_wy_leg3 * t306 - minus_gproximal_wy_leg4 * t360
-            - t71 * t362;
-        let t384 = minus_gproximal_wz_leg1 * t199 + minus_gproximal_wz_leg2 * t252
-            + minus_gproximal_wz_leg3 * t306 + minus_gproximal_wz_leg4 * t360
-            + t114 * t362 + t117 * t372;
-        let t385 = t129 * t384;
-        let t387 = t81 * t372 + t117 * t385;
-        let t391 = t41 * t362 - t71 * t387 + t114 * t385;
-        let t392 = t391 + t180;
-        let t394 = t387 - t190;
-        let t397 = t385 + t196;
-        let rate_dot_proximal_leg1_2 = gproximal_wx_leg1 * t392
-            + gproximal_wy_leg1 * t394 + minus_gproximal_wz_leg1 * t397;
-        let t400 = gproximal_wx_leg1 * rate_dot_proximal_leg1_2;
-        let t401 = gproximal_wy_leg1 * rate_dot_proximal_leg1_2;
-        let t402 = minus_gproximal_wz_leg1 * rate_dot_proximal_leg1_2;
-        let t403 = 6.9367175234400325 * minus_s_proximal_leg1;
-        let t407 = 6.9367175234400325 * minus_c_proximal_leg1;
-        let t408 = gproximal_wx_leg1 * t407;
-        let t409 = gproximal_wy_leg1 * t407;
-        let t410 = minus_gproximal_wz_leg1 * t407;
-        let t417 = c_distal_leg1 * rate_proximal_leg1;
-        let t418 = rate_distal_leg1 * t417;
-        let t419 = minus_s_distal_leg1 * rate_dot_proximal_leg1_2;
-        let t420 = t418 - t419;
-        let t422 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t423 = rate_distal_leg1 * t422;
-        let t425 = minus_s_distal_leg1 * t420 + c_distal_leg1 * t423;
-        let t427 = t422 * t417;
-        let t428 = minus_gdistal_wx_leg1 * t427;
-        let t429 = gproximal_wx_leg1 * t425 + t428;
-        let t432 = minus_c_proximal_leg1 * t427 - gproximal_wy_leg1 * t425;
-        let t434 = minus_gproximal_wz_leg1 * t425 + t428;
-        let t437 = c_distal_leg1 * rate_dot_proximal_leg1_2;
-        let t441 = c_distal_leg1 * (t418 + t420)
-            - minus_s_distal_leg1 * (t423 + t437 + t423);
-        let t443 = t422 * t422;
-        let t444 = t417 * t417;
-        let t445 = t443 - t444;
-        let t446 = minus_gdistal_wx_leg1 * t445;
-        let t453 = rate_distal_leg1 * rate_distal_leg1;
-        let rate_dot_distal_leg1 = minus_c_proximal_leg1 * t394
-            - minus_gdistal_wx_leg1 * t392 - minus_gdistal_wx_leg1 * t397;
-        let t463 = c_distal_leg1 * (t453 - t443)
-            - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t427);
-        let t465 = minus_gdistal_wx_leg1 * t419;
-        let t479 = c_distal_leg1 * (t427 + rate_dot_distal_leg1)
-            - minus_s_distal_leg1 * (t444 - t453);
-        let t481 = minus_gdistal_wx_leg1 * t437;
-        let t488 = minus_gdistal_wx_leg1 * rate_dot_distal_leg1;
-        let t490 = c_distal_leg1 * t403;
-        let t493 = 6.9367175234400325 * (minus_s_proximal_leg1 * t164);
-        let t503 = t387 - t243;
-        let t505 = t391 - t234;
-        let t508 = t385 + t249;
-        let rate_dot_proximal_leg2_2 = gproximal_wy_leg2 * t503
-            - minus_gproximal_wx_leg2 * t505 + minus_gproximal_wz_leg2 * t508;
-        let t511 = minus_gproximal_wx_leg2 * rate_dot_proximal_leg2_2;
-        let t512 = gproximal_wy_leg2 * rate_dot_proximal_leg2_2;
-        let t513 = minus_gproximal_wz_leg2 * rate_dot_proximal_leg2_2;
-        let t514 = 6.9367175234400325 * minus_s_proximal_leg2;
-        let t518 = 6.9367175234400325 * minus_c_proximal_leg2;
-        let t519 = minus_gproximal_wx_leg2 * t518;
-        let t520 = gproximal_wy_leg2 * t518;
-        let t521 = minus_gproximal_wz_leg2 * t518;
-        let t528 = minus_s_distal_leg2 * rate_dot_proximal_leg2_2;
-        let t529 = c_distal_leg2 * rate_proximal_leg2;
-        let t530 = minus_rate_distal_leg2 * t529;
-        let t531 = t528 + t530;
-        let t533 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t534 = minus_rate_distal_leg2 * t533;
-        let t536 = minus_s_distal_leg2 * t531 + c_distal_leg2 * t534;
-        let t538 = t533 * t529;
-        let t540 = minus_gproximal_wx_leg2 * t536 + minus_c_proximal_leg2 * t538;
-        let t542 = minus_gdistal_wy_leg2 * t538;
-        let t543 = gproximal_wy_leg2 * t536 - t542;
-        let t545 = t542 - minus_gproximal_wz_leg2 * t536;
-        let t546 = c_distal_leg2 * rate_dot_proximal_leg2_2;
-        let t552 = minus_s_distal_leg2 * (t534 - (t546 - t534))
-            - c_distal_leg2 * (t530 + t531);
-        let t554 = t533 * t533;
-        let t555 = t529 * t529;
-        let t556 = t554 - t555;
-        let t560 = minus_gdistal_wy_leg2 * t556;
-        let minus_rate_dot_distal_leg2 = minus_c_proximal_leg2 * t505
-            + minus_gdistal_wy_leg2 * t503 + minus_gdistal_wy_leg2 * t508;
-        let t572 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t575 = minus_s_distal_leg2 * (t538 + minus_rate_dot_distal_leg2)
-            + c_distal_leg2 * (t572 - t554);
-        let t579 = minus_gdistal_wy_leg2 * t528;
-        let t590 = minus_s_distal_leg2 * (t555 - t572)
-            + c_distal_leg2 * (minus_rate_dot_distal_leg2 - t538);
-        let t595 = minus_gdistal_wy_leg2 * t546;
-        let t600 = minus_gdistal_wy_leg2 * minus_rate_dot_distal_leg2;
-        let t601 = c_distal_leg2 * t514;
-        let t608 = 6.9367175234400325 * (minus_s_proximal_leg2 * t228);
-        let t614 = t385 + t303;
-        let t616 = t391 - t287;
-        let t618 = t387 - t297;
-        let rate_dot_proximal_leg3_2 = minus_gproximal_wz_leg3 * t614
-            - (minus_gproximal_wx_leg3 * t616 + minus_gproximal_wy_leg3 * t618);
-        let t622 = minus_gproximal_wx_leg3 * rate_dot_proximal_leg3_2;
-        let t623 = minus_gproximal_wy_leg3 * rate_dot_proximal_leg3_2;
-        let t624 = minus_gproximal_wz_leg3 * rate_dot_proximal_leg3_2;
-        let t625 = 6.9367175234400325 * minus_s_proximal_leg3;
-        let t629 = 6.9367175234400325 * minus_c_proximal_leg3;
-        let t630 = minus_gproximal_wx_leg3 * t629;
-        let t631 = minus_gproximal_wy_leg3 * t629;
-        let t632 = minus_gproximal_wz_leg3 * t629;
-        let t639 = c_distal_leg3 * rate_proximal_leg3;
-        let t640 = rate_distal_leg3 * t639;
-        let t641 = minus_s_distal_leg3 * rate_dot_proximal_leg3_2;
-        let t642 = t640 - t641;
-        let t644 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t645 = rate_distal_leg3 * t644;
-        let t647 = minus_s_distal_leg3 * t642 + c_distal_leg3 * t645;
-        let t649 = t644 * t639;
-        let t650 = gdistal_wx_leg3 * t649;
-        let t651 = minus_gproximal_wx_leg3 * t647 + t650;
-        let t654 = minus_gproximal_wy_leg3 * t647 - minus_c_proximal_leg3 * t649;
-        let t656 = minus_gproximal_wz_leg3 * t647 + t650;
-        let t657 = t644 * t644;
-        let t658 = t639 * t639;
-        let t659 = t657 - t658;
-        let t660 = gdistal_wx_leg3 * t659;
-        let t663 = c_distal_leg3 * rate_dot_proximal_leg3_2;
-        let t667 = c_distal_leg3 * (t640 + t642)
-            - minus_s_distal_leg3 * (t645 + t663 + t645);
-        let t675 = rate_distal_leg3 * rate_distal_leg3;
-        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t616 - minus_c_proximal_leg3 * t618
-            - gdistal_wx_leg3 * t614;
-        let t685 = c_distal_leg3 * (t675 - t657)
-            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t649);
-        let t687 = gdistal_wx_leg3 * t641;
-        let t697 = gdistal_wx_leg3 * t663;
-        let t702 = c_distal_leg3 * (t649 + rate_dot_distal_leg3)
-            - minus_s_distal_leg3 * (t658 - t675);
-        let t710 = gdistal_wx_leg3 * rate_dot_distal_leg3;
-        let t712 = c_distal_leg3 * t625;
-        let t715 = 6.9367175234400325 * (minus_s_proximal_leg3 * t271);
-        let t725 = t391 - t351;
-        let t727 = t387 - t341;
-        let t730 = t385 + t357;
-        let rate_dot_proximal_leg4_2 = gproximal_wx_leg4 * t725
-            - minus_gproximal_wy_leg4 * t727 + minus_gproximal_wz_leg4 * t730;
-        let t733 = gproximal_wx_leg4 * rate_dot_proximal_leg4_2;
-        let t734 = minus_gproximal_wy_leg4 * rate_dot_proximal_leg4_2;
-        let t735 = minus_gproximal_wz_leg4 * rate_dot_proximal_leg4_2;
-        let t736 = 6.9367175234400325 * minus_s_proximal_leg4;
-        let t740 = 6.9367175234400325 * minus_c_proximal_leg4;
-        let t741 = gproximal_wx_leg4 * t740;
-        let t742 = minus_gproximal_wy_leg4 * t740;
-        let t743 = minus_gproximal_wz_leg4 * t740;
-        let t750 = minus_s_distal_leg4 * rate_proximal_leg4;
-        let t751 = c_distal_leg4 * rate_proximal_leg4;
-        let t752 = t750 * t751;
-        let t754 = rate_distal_leg4 * t751;
-        let t755 = minus_s_distal_leg4 * rate_dot_proximal_leg4_2;
-        let t756 = t754 - t755;
-        let t758 = rate_distal_leg4 * t750;
-        let t760 = minus_s_distal_leg4 * t756 + c_distal_leg4 * t758;
-        let t762 = minus_c_proximal_leg4 * t752 - gproximal_wx_leg4 * t760;
-        let t764 = gdistal_wy_leg4 * t752;
-        let t765 = minus_gproximal_wy_leg4 * t760 + t764;
-        let t767 = minus_gproximal_wz_leg4 * t760 + t764;
-        let t770 = c_distal_leg4 * rate_dot_proximal_leg4_2;
-        let t774 = c_distal_leg4 * (t754 + t756)
-            - minus_s_distal_leg4 * (t758 + t770 + t758);
-        let t776 = t750 * t750;
-        let t777 = t751 * t751;
-        let t778 = t776 - t777;
-        let t781 = gdistal_wy_leg4 * t778;
-        let t786 = rate_distal_leg4 * rate_distal_leg4;
-        let rate_dot_distal_leg4 = minus_c_proximal_leg4 * t725 + gdistal_wy_leg4 * t727
-            - gdistal_wy_leg4 * t730;
-        let t796 = c_distal_leg4 * (t786 - t776)
-            - minus_s_distal_leg4 * (rate_dot_distal_leg4 - t752);
-        let t801 = gdistal_wy_leg4 * t755;
-        let t812 = c_distal_leg4 * (t752 + rate_dot_distal_leg4)
-            - minus_s_distal_leg4 * (t777 - t786);
-        let t816 = gdistal_wy_leg4 * t770;
-        let t822 = gdistal_wy_leg4 * rate_dot_distal_leg4;
-        let t825 = c_distal_leg4 * t736;
-        let t830 = 6.9367175234400325 * (minus_s_proximal_leg4 * t337);
-        let t836 = 2.0 * pose[2];
-        let t837 = pose[2] * t836;
-        let t839 = 2.0 * pose[3];
-        let t840 = pose[3] * t839;
-        let t841 = 1.0 - t837 - t840;
-        let t843 = 2.0 * pose[1];
-        let t844 = pose[2] * t843;
-        let t845 = pose[0] * t839;
-        let t846 = t844 + t845;
-        let t849 = pose[3] * t843;
-        let t850 = pose[0] * t836;
-        let t851 = t849 - t850;
-        let t853 = t841 * t391 + t846 * t387 - t851 * t385;
-        let t855 = t844 - t845;
-        let t860 = t841 * t147 + t846 * t143 - t851 * t141;
-        let t861 = t849 + t850;
-        let t863 = pose[3] * t836;
-        let t864 = pose[0] * t843;
-        let t865 = t863 - t864;
-        let t869 = 1.0 - pose[1] * t843;
-        let t870 = t869 - t837;
-        let t872 = t861 * t147 + t865 * t143 - t870 * t141;
-        let t873 = t860 * t872;
-        let t874 = t855 * t873;
-        let t877 = t869 - t840;
-        let t880 = t863 + t864;
-        let t882 = t855 * t147 + t877 * t143 - t880 * t141;
-        let t883 = t860 * t882;
-        let t884 = t861 * t883;
-        let t887 = t877 * t873;
-        let t889 = t865 * t883;
-        let t892 = t880 * t873;
-        let t894 = t870 * t883;
-        let t896 = t882 * t872;
-        let t897 = t896 + t853;
-        let t903 = t855 * t391 + t877 * t387 - t880 * t385;
-        let t904 = t873 - t903;
-        let t907 = t860 * t860;
-        let t908 = t882 * t882;
-        let t909 = t907 - t908;
-        let t926 = t861 * t391 + t865 * t387 - t870 * t385;
-        let t927 = t883 + t926;
-        let t929 = t872 * t872;
-        let t930 = t929 - t907;
-        let t933 = t896 - t853;
-        let t947 = t841 * t896;
-        let t951 = t846 * t896;
-        let t955 = t851 * t896;
-        let t958 = t908 - t929;
-        let t960 = t883 - t926;
-        let t963 = t873 + t903;
-        let t985 = 9.81 * t880;
-        let t987 = 9.81 * t870;
-        let t994 = 9.81 * t851;
+            + gproximal_wz_leg3 * gproximal_wz_leg3
+            + gproximal_wz_leg4 * gproximal_wz_leg4 - t250 * t251 - t253 * t254;
+        ::overact::guard::platform(t265, 1.9999999999999996, "actuators")?;
+        ::overact::guard::platform(t265, 1.9999999999999996, "actuators")?;
+        let t266 = 1.0 / t265;
+        let t277 = gproximal_wz_leg3 * actuator_velocities[2]
+            - (minus_gproximal_wz_leg1 * actuator_velocities[0]
+                + minus_gproximal_wz_leg2 * actuator_velocities[1])
+            + gproximal_wz_leg4 * actuator_velocities[3] - t209 * t251 + t254 * t219;
+        let t278 = t266 * t277;
+        let t280 = t200 * t219 + t254 * t278;
+        let t284 = t209 * t196 - t197 * t280 - t251 * t278;
+        let minus_gdistal_wy_leg1 = t33 * t201;
+        let rate_distal_leg1 = gdistal_wx_leg1 * t284 - minus_gdistal_wy_leg1 * t280
+            - gdistal_wx_leg1 * t278;
+        let t291 = c_proximal_leg1 * rate_distal_leg1;
+        let minus_gwrist_wx_leg1 = 0.7071067811865475 * c_proximal_leg1 * t53;
+        let minus_gwrist_wy_leg1 = s_proximal_leg1 * t53;
+        let rate_wrist_leg1 = minus_gwrist_wx_leg1 * t278
+            - (minus_gwrist_wx_leg1 * t284 + minus_gwrist_wy_leg1 * t280);
+        let t300 = t39 * rate_wrist_leg1;
+        let rate_proximal_leg1 = gproximal_wy_leg1 * t280
+            - minus_gproximal_wx_leg1 * t284 - minus_gproximal_wz_leg1 * t278;
+        let t307 = 0.7071067811865475 * rate_proximal_leg1;
+        let t309 = 0.7071067811865475 * s_proximal_leg1 * rate_distal_leg1;
+        let t310 = t307 + t309;
+        let t311 = t49 * rate_wrist_leg1;
+        let t314 = t307 * t291;
+        let t315 = t291 * t300 - t310 * t311 - t314;
+        let t317 = t221 * rate_wrist_leg1;
+        let t319 = t307 - t309;
+        let t324 = t310 * t317 - t319 * t300 - 2.0 * (t307 * t309);
+        let t330 = t314 + t319 * t311 - t291 * t317;
+        let rate_dot_proximal_leg1 = minus_gproximal_wx_leg1 * t315
+            - gproximal_wy_leg1 * t324 + minus_gproximal_wz_leg1 * t330;
+        let t333 = actuator_accelerations[0] - rate_dot_proximal_leg1;
+        let rate_proximal_leg2 = gproximal_wx_leg2 * t284 + gproximal_wy_leg2 * t280
+            - minus_gproximal_wz_leg2 * t278;
+        let t340 = 0.7071067811865475 * rate_proximal_leg2;
+        let t341 = 0.5 * t95;
+        let gdistal_wx_leg2 = t74 * t341;
+        let minus_gdistal_wy_leg2 = t80 * t341;
+        let rate_distal_leg2 = gdistal_wx_leg2 * t284 - minus_gdistal_wy_leg2 * t280
+            + minus_gdistal_wy_leg2 * t278;
+        let t349 = c_proximal_leg2 * rate_distal_leg2;
+        let t350 = t340 * t349;
+        let minus_gwrist_wy_leg2 = 0.7071067811865475 * c_proximal_leg2 * t95;
+        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t95;
+        let rate_wrist_leg2 = minus_gwrist_wy_leg2 * t278
+            - (minus_gwrist_wx_leg2 * t284 + minus_gwrist_wy_leg2 * t280);
+        let t359 = t226 * rate_wrist_leg2;
+        let t362 = 0.7071067811865475 * minus_s_proximal_leg2 * rate_distal_leg2;
+        let t363 = t340 + t362;
+        let t364 = t89 * rate_wrist_leg2;
+        let t367 = t350 - (t349 * t359 + t363 * t364);
+        let t369 = t61 * rate_wrist_leg2;
+        let t371 = t340 - t362;
+        let t376 = t363 * t369 - t371 * t359 - 2.0 * (t340 * t362);
+        let t381 = t371 * t364 + t349 * t369 - t350;
+        let rate_dot_proximal_leg2 = minus_gproximal_wz_leg2 * t367
+            - (gproximal_wx_leg2 * t376 + gproximal_wy_leg2 * t381);
+        let t385 = actuator_accelerations[1] - rate_dot_proximal_leg2;
+        let rate_proximal_leg3 = gproximal_wz_leg3 * t278
+            - (minus_gproximal_wx_leg3 * t284 + minus_gproximal_wy_leg3 * t280);
+        let t393 = 0.7071067811865475 * rate_proximal_leg3;
+        let t394 = 0.5 * t129;
+        let gdistal_wx_leg3 = t112 * t394;
+        let minus_gdistal_wy_leg3 = t113 * t394;
+        let rate_distal_leg3 = gdistal_wx_leg3 * t284 - minus_gdistal_wy_leg3 * t280
+            + gdistal_wx_leg3 * t278;
+        let t402 = c_proximal_leg3 * rate_distal_leg3;
+        let t403 = t393 * t402;
+        let minus_gwrist_wx_leg3 = 0.7071067811865475 * c_proximal_leg3 * t129;
+        let minus_gwrist_wy_leg3 = s_proximal_leg3 * t129;
+        let minus_rate_wrist_leg3 = minus_gwrist_wx_leg3 * t284
+            + minus_gwrist_wy_leg3 * t280 + minus_gwrist_wx_leg3 * t278;
+        let t412 = t178 * minus_rate_wrist_leg3;
+        let t415 = 0.7071067811865475 * s_proximal_leg3 * rate_distal_leg3;
+        let t416 = t393 + t415;
+        let t417 = t123 * minus_rate_wrist_leg3;
+        let t420 = t403 - (t402 * t412 + t416 * t417);
+        let t424 = t232 * minus_rate_wrist_leg3;
+        let t426 = t415 - t393;
+        let t429 = 2.0 * (t393 * t415) + t416 * t424 - t426 * t412;
+        let t435 = t403 + t426 * t417 + t402 * t424;
+        let rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t420
+            + minus_gproximal_wy_leg3 * t429 - gproximal_wz_leg3 * t435;
+        let t438 = actuator_accelerations[2] - rate_dot_proximal_leg3;
+        let rate_proximal_leg4 = gproximal_wz_leg4 * t278
+            - (minus_gproximal_wx_leg4 * t284 + minus_gproximal_wy_leg4 * t280);
+        let t446 = 0.7071067811865475 * rate_proximal_leg4;
+        let t448 = 0.5 * t166;
+        let gdistal_wx_leg4 = t146 * t448;
+        let minus_gdistal_wy_leg4 = t133 * t448;
+        let rate_distal_leg4 = gdistal_wx_leg4 * t284 - minus_gdistal_wy_leg4 * t280
+            - minus_gdistal_wy_leg4 * t278;
+        let t456 = 0.7071067811865475 * minus_s_proximal_leg4 * rate_distal_leg4;
+        let t459 = t446 + t456;
+        let minus_gwrist_wx_leg4 = minus_s_proximal_leg4 * t166;
+        let minus_gwrist_wy_leg4 = 0.7071067811865475 * c_proximal_leg4 * t166;
+        let minus_rate_wrist_leg4 = minus_gwrist_wx_leg4 * t284
+            + minus_gwrist_wy_leg4 * t280 + minus_gwrist_wy_leg4 * t278;
+        let t468 = t152 * minus_rate_wrist_leg4;
+        let t470 = t446 - t456;
+        let t471 = t238 * minus_rate_wrist_leg4;
+        let t474 = 2.0 * (t446 * t456) - (t459 * t468 + t470 * t471);
+        let t476 = c_proximal_leg4 * rate_distal_leg4;
+        let t477 = t446 * t476;
+        let t478 = t158 * minus_rate_wrist_leg4;
+        let t482 = t477 + t470 * t478 - t476 * t468;
+        let t488 = t477 + t476 * t471 + t459 * t478;
+        let rate_dot_proximal_leg4 = minus_gproximal_wx_leg4 * t474
+            + minus_gproximal_wy_leg4 * t482 - gproximal_wz_leg4 * t488;
+        let t491 = actuator_accelerations[3] - rate_dot_proximal_leg4;
+        let t500 = gproximal_wx_leg2 * t385 - minus_gproximal_wx_leg1 * t333
+            - minus_gproximal_wx_leg3 * t438 - minus_gproximal_wx_leg4 * t491;
+        let t502 = gproximal_wy_leg1 * t333 + gproximal_wy_leg2 * t385
+            - minus_gproximal_wy_leg3 * t438 - minus_gproximal_wy_leg4 * t491
+            - t197 * t500;
+        let t514 = gproximal_wz_leg3 * t438
+            - (minus_gproximal_wz_leg1 * t333 + minus_gproximal_wz_leg2 * t385)
+            + gproximal_wz_leg4 * t491 - t251 * t500 + t254 * t502;
+        let t515 = t266 * t514;
+        let t517 = t200 * t502 + t254 * t515;
+        let t518 = t517 - t324;
+        let t524 = t196 * t500 - t197 * t517 - t251 * t515;
+        let t525 = t524 - t315;
+        let t528 = t515 - t330;
+        let rate_dot_proximal_leg1_2 = gproximal_wy_leg1 * t518
+            - minus_gproximal_wx_leg1 * t525 - minus_gproximal_wz_leg1 * t528;
+        let t531 = minus_gproximal_wx_leg1 * rate_dot_proximal_leg1_2;
+        let t532 = gproximal_wy_leg1 * rate_dot_proximal_leg1_2;
+        let t533 = minus_gproximal_wz_leg1 * rate_dot_proximal_leg1_2;
+        let t534 = 6.936717523440031 * s_proximal_leg1;
+        let t538 = 6.936717523440031 * c_proximal_leg1;
+        let t539 = minus_gproximal_wx_leg1 * t538;
+        let t540 = gproximal_wy_leg1 * t538;
+        let t541 = minus_gproximal_wz_leg1 * t538;
+        let t548 = c_distal_leg1 * rate_dot_proximal_leg1_2;
+        let t549 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t550 = rate_distal_leg1 * t549;
+        let t551 = t548 + t550;
+        let t553 = c_distal_leg1 * rate_proximal_leg1;
+        let t554 = rate_distal_leg1 * t553;
+        let t556 = c_distal_leg1 * t551 + minus_s_distal_leg1 * t554;
+        let t558 = t553 * t549;
+        let t559 = gdistal_wx_leg1 * t558;
+        let t560 = minus_gproximal_wx_leg1 * t556 + t559;
+        let t563 = gproximal_wy_leg1 * t556 + minus_gdistal_wy_leg1 * t558;
+        let t565 = t559 - minus_gproximal_wz_leg1 * t556;
+        let t566 = t553 * t553;
+        let t567 = t549 * t549;
+        let t568 = t566 - t567;
+        let t569 = gdistal_wx_leg1 * t568;
+        let t572 = minus_s_distal_leg1 * rate_dot_proximal_leg1_2;
+        let t576 = minus_s_distal_leg1 * (t550 + t551)
+            - c_distal_leg1 * (t554 + t554 - t572);
+        let rate_dot_distal_leg1 = gdistal_wx_leg1 * t525 - minus_gdistal_wy_leg1 * t518
+            - gdistal_wx_leg1 * t528;
+        let t591 = rate_distal_leg1 * rate_distal_leg1;
+        let t594 = c_distal_leg1 * (t558 + rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t591 - t566);
+        let t596 = gdistal_wx_leg1 * t548;
+        let t610 = minus_s_distal_leg1 * (t558 - rate_dot_distal_leg1)
+            - c_distal_leg1 * (t567 - t591);
+        let t612 = gdistal_wx_leg1 * t572;
+        let t619 = gdistal_wx_leg1 * rate_dot_distal_leg1;
+        let t623 = c_distal_leg1 * t538 - 3.4683587617200153 * t23;
+        let t624 = gdistal_wx_leg1 * t623;
+        let t625 = 6.936717523440031 * t56;
+        let t633 = 4.905 * t9;
+        let t637 = 6.936717523440031
+            * (minus_s_distal_leg1 * c_proximal_leg1 + c_distal_leg1);
+        let t638 = gdistal_wx_leg1 * t637;
+        let t645 = t524 - t376;
+        let t647 = t517 - t381;
+        let t650 = t515 - t367;
+        let rate_dot_proximal_leg2_2 = gproximal_wx_leg2 * t645
+            + gproximal_wy_leg2 * t647 - minus_gproximal_wz_leg2 * t650;
+        let t653 = gproximal_wx_leg2 * rate_dot_proximal_leg2_2;
+        let t654 = gproximal_wy_leg2 * rate_dot_proximal_leg2_2;
+        let t655 = minus_gproximal_wz_leg2 * rate_dot_proximal_leg2_2;
+        let t656 = 6.936717523440031 * minus_s_proximal_leg2;
+        let t660 = 6.936717523440031 * c_proximal_leg2;
+        let t661 = gproximal_wx_leg2 * t660;
+        let t662 = gproximal_wy_leg2 * t660;
+        let t663 = minus_gproximal_wz_leg2 * t660;
+        let t670 = c_distal_leg2 * rate_dot_proximal_leg2_2;
+        let t671 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t672 = rate_distal_leg2 * t671;
+        let t673 = t670 + t672;
+        let t675 = c_distal_leg2 * rate_proximal_leg2;
+        let t676 = rate_distal_leg2 * t675;
+        let t678 = c_distal_leg2 * t673 + minus_s_distal_leg2 * t676;
+        let t680 = t675 * t671;
+        let t682 = gproximal_wx_leg2 * t678 - gdistal_wx_leg2 * t680;
+        let t684 = minus_gdistal_wy_leg2 * t680;
+        let t685 = gproximal_wy_leg2 * t678 + t684;
+        let t687 = minus_gproximal_wz_leg2 * t678 + t684;
+        let t690 = minus_s_distal_leg2 * rate_dot_proximal_leg2_2;
+        let t694 = minus_s_distal_leg2 * (t672 + t673)
+            - c_distal_leg2 * (t676 + t676 - t690);
+        let t696 = t675 * t675;
+        let t697 = t671 * t671;
+        let t698 = t696 - t697;
+        let t702 = minus_gdistal_wy_leg2 * t698;
+        let rate_dot_distal_leg2 = gdistal_wx_leg2 * t645 - minus_gdistal_wy_leg2 * t647
+            + minus_gdistal_wy_leg2 * t650;
+        let t713 = rate_distal_leg2 * rate_distal_leg2;
+        let t716 = c_distal_leg2 * (t680 + rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t713 - t696);
+        let t720 = minus_gdistal_wy_leg2 * t670;
+        let t732 = minus_s_distal_leg2 * (t680 - rate_dot_distal_leg2)
+            - c_distal_leg2 * (t697 - t713);
+        let t737 = minus_gdistal_wy_leg2 * t690;
+        let t742 = minus_gdistal_wy_leg2 * rate_dot_distal_leg2;
+        let t745 = c_distal_leg2 * t660 - 3.4683587617200153 * t64;
+        let t747 = 6.936717523440031 * t171;
+        let t751 = minus_gdistal_wy_leg2 * t745;
+        let t755 = 4.905 * t80;
+        let t759 = 6.936717523440031
+            * (minus_s_distal_leg2 * c_proximal_leg2 + c_distal_leg2);
+        let t763 = minus_gdistal_wy_leg2 * t759;
+        let t767 = t515 - t435;
+        let t769 = t524 - t420;
+        let t771 = t517 - t429;
+        let rate_dot_proximal_leg3_2 = gproximal_wz_leg3 * t767
+            - (minus_gproximal_wx_leg3 * t769 + minus_gproximal_wy_leg3 * t771);
+        let t775 = minus_gproximal_wx_leg3 * rate_dot_proximal_leg3_2;
+        let t776 = minus_gproximal_wy_leg3 * rate_dot_proximal_leg3_2;
+        let t777 = gproximal_wz_leg3 * rate_dot_proximal_leg3_2;
+        let t778 = 6.936717523440031 * s_proximal_leg3;
+        let t782 = 6.936717523440031 * c_proximal_leg3;
+        let t783 = minus_gproximal_wx_leg3 * t782;
+        let t784 = minus_gproximal_wy_leg3 * t782;
+        let t785 = gproximal_wz_leg3 * t782;
+        let t792 = s_distal_leg3 * rate_proximal_leg3;
+        let t793 = rate_distal_leg3 * t792;
+        let t794 = c_distal_leg3 * rate_dot_proximal_leg3_2;
+        let t795 = t793 - t794;
+        let t797 = c_distal_leg3 * rate_proximal_leg3;
+        let t798 = rate_distal_leg3 * t797;
+        let t800 = c_distal_leg3 * t795 + s_distal_leg3 * t798;
+        let t802 = t797 * t792;
+        let t803 = gdistal_wx_leg3 * t802;
+        let t804 = minus_gproximal_wx_leg3 * t800 + t803;
+        let t807 = minus_gproximal_wy_leg3 * t800 - minus_gdistal_wy_leg3 * t802;
+        let t809 = t803 - gproximal_wz_leg3 * t800;
+        let t810 = t797 * t797;
+        let t811 = t792 * t792;
+        let t812 = t810 - t811;
+        let t813 = gdistal_wx_leg3 * t812;
+        let t816 = s_distal_leg3 * rate_dot_proximal_leg3_2;
+        let t820 = s_distal_leg3 * (t793 + t795) - c_distal_leg3 * (t798 + t816 + t798);
+        let t828 = rate_distal_leg3 * rate_distal_leg3;
+        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t769 - minus_gdistal_wy_leg3 * t771
+            + gdistal_wx_leg3 * t767;
+        let t838 = s_distal_leg3 * (t828 - t810)
+            - c_distal_leg3 * (rate_dot_distal_leg3 - t802);
+        let t840 = gdistal_wx_leg3 * t794;
+        let t850 = gdistal_wx_leg3 * t816;
+        let t855 = s_distal_leg3 * (t802 + rate_dot_distal_leg3)
+            - c_distal_leg3 * (t811 - t828);
+        let t863 = gdistal_wx_leg3 * rate_dot_distal_leg3;
+        let t865 = 6.936717523440031 * t117;
+        let t869 = c_distal_leg3 * t782 + 3.4683587617200153 * t101;
+        let t870 = gdistal_wx_leg3 * t869;
+        let t877 = 4.905 * t112;
+        let t881 = 6.936717523440031 * (s_distal_leg3 * c_proximal_leg3 - c_distal_leg3);
+        let t882 = gdistal_wx_leg3 * t881;
+        let t889 = t515 - t488;
+        let t891 = t524 - t474;
+        let t893 = t517 - t482;
+        let rate_dot_proximal_leg4_2 = gproximal_wz_leg4 * t889
+            - (minus_gproximal_wx_leg4 * t891 + minus_gproximal_wy_leg4 * t893);
+        let t897 = minus_gproximal_wx_leg4 * rate_dot_proximal_leg4_2;
+        let t898 = minus_gproximal_wy_leg4 * rate_dot_proximal_leg4_2;
+        let t899 = gproximal_wz_leg4 * rate_dot_proximal_leg4_2;
+        let t900 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t904 = 6.936717523440031 * c_proximal_leg4;
+        let t905 = minus_gproximal_wx_leg4 * t904;
+        let t906 = minus_gproximal_wy_leg4 * t904;
+        let t907 = gproximal_wz_leg4 * t904;
+        let t914 = s_distal_leg4 * rate_proximal_leg4;
+        let t915 = rate_distal_leg4 * t914;
+        let t916 = c_distal_leg4 * rate_dot_proximal_leg4_2;
+        let t917 = t915 - t916;
+        let t919 = c_distal_leg4 * rate_proximal_leg4;
+        let t920 = rate_distal_leg4 * t919;
+        let t922 = c_distal_leg4 * t917 + s_distal_leg4 * t920;
+        let t924 = t919 * t914;
+        let t926 = minus_gproximal_wx_leg4 * t922 + gdistal_wx_leg4 * t924;
+        let t928 = minus_gdistal_wy_leg4 * t924;
+        let t929 = minus_gproximal_wy_leg4 * t922 - t928;
+        let t931 = gproximal_wz_leg4 * t922 + t928;
+        let t932 = t919 * t919;
+        let t933 = t914 * t914;
+        let t934 = t932 - t933;
+        let t938 = s_distal_leg4 * rate_dot_proximal_leg4_2;
+        let t942 = s_distal_leg4 * (t915 + t917) - c_distal_leg4 * (t920 + t938 + t920);
+        let t946 = minus_gdistal_wy_leg4 * t934;
+        let t950 = rate_distal_leg4 * rate_distal_leg4;
+        let rate_dot_distal_leg4 = gdistal_wx_leg4 * t891 - minus_gdistal_wy_leg4 * t893
+            - minus_gdistal_wy_leg4 * t889;
+        let t960 = s_distal_leg4 * (t950 - t932)
+            - c_distal_leg4 * (rate_dot_distal_leg4 - t924);
+        let t964 = minus_gdistal_wy_leg4 * t916;
+        let t977 = s_distal_leg4 * (t924 + rate_dot_distal_leg4)
+            - c_distal_leg4 * (t933 - t950);
+        let t981 = minus_gdistal_wy_leg4 * t938;
+        let t986 = minus_gdistal_wy_leg4 * rate_dot_distal_leg4;
+        let t989 = c_distal_leg4 * t904 + 3.4683587617200153 * t136;
+        let t991 = 6.936717523440031 * t185;
+        let t995 = minus_gdistal_wy_leg4 * t989;
+        let t999 = 4.905 * t133;
+        let t1003 = 6.936717523440031
+            * (s_distal_leg4 * c_proximal_leg4 - c_distal_leg4);
+        let t1006 = minus_gdistal_wy_leg4 * t1003;
+        let t1015 = t13 * t524 + t4 * t517 + t18 * t515;
+        let t1021 = t13 * t284 + t4 * t280 + t18 * t278;
+        let t1026 = t16 * t284 + t8 * t280 + t21 * t278;
+        let t1027 = t1021 * t1026;
+        let t1028 = t79 * t1027;
+        let t1034 = t79 * t284 + t62 * t280 + t59 * t278;
+        let t1035 = t1021 * t1034;
+        let t1036 = t16 * t1035;
+        let t1039 = t62 * t1027;
+        let t1041 = t8 * t1035;
+        let t1044 = t59 * t1027;
+        let t1046 = t21 * t1035;
+        let t1048 = t1034 * t1026;
+        let t1049 = t1048 + t1015;
+        let t1055 = t79 * t524 + t62 * t517 + t59 * t515;
+        let t1056 = t1027 - t1055;
+        let t1059 = t1021 * t1021;
+        let t1060 = t1034 * t1034;
+        let t1061 = t1059 - t1060;
+        let t1078 = t16 * t524 + t8 * t517 + t21 * t515;
+        let t1079 = t1035 + t1078;
+        let t1081 = t1026 * t1026;
+        let t1082 = t1081 - t1059;
+        let t1085 = t1048 - t1015;
+        let t1099 = t13 * t1048;
+        let t1103 = t4 * t1048;
+        let t1107 = t18 * t1048;
+        let t1110 = t1060 - t1081;
+        let t1112 = t1035 - t1078;
+        let t1115 = t1027 + t1055;
+        let t1137 = 9.81 * t59;
+        let t1139 = 9.81 * t21;
+        let t1146 = 9.81 * t18;
         Ok([
             [
-                t400, -(gproximal_wx_leg1 * t403), -t408, t400,
-                gproximal_wx_leg1 * rate_proximal_leg1,
-                ::overact::math::signed(gproximal_wx_leg1, rate_proximal_leg1), gproximal_wx_leg1,
-                -t429, gproximal_wx_leg1 * t441 - t446, gproximal_wx_leg1 * t463 + t465,
-                t400 + t429, gproximal_wx_leg1 * t479 - t481, -t488,
-                -(gproximal_wx_leg1 * t490 + t493), -(9.81 * t176), t408, -t511,
-                minus_gproximal_wx_leg2 * t514, t519, -t511,
-                -(minus_gproximal_wx_leg2 * rate_proximal_leg2),
-                -::overact::math::signed(minus_gproximal_wx_leg2, rate_proximal_leg2),
-                -minus_gproximal_wx_leg2, -t540,
-                -(minus_gproximal_wx_leg2 * t552 + minus_c_proximal_leg2 * t556),
-                minus_c_proximal_leg2 * t528 - minus_gproximal_wx_leg2 * t575, t540 - t511,
-                minus_gproximal_wx_leg2 * t590 - minus_c_proximal_leg2 * t546,
-                minus_c_proximal_leg2 * minus_rate_dot_distal_leg2,
-                minus_gproximal_wx_leg2 * t601 - 9.81 * (minus_c_proximal_leg2 * t228), 9.81 * t217,
-                -t519, -t622, minus_gproximal_wx_leg3 * t625, t630, -t622,
+                -t531, minus_gproximal_wx_leg1 * t534, t539, -t531,
+                -(minus_gproximal_wx_leg1 * rate_proximal_leg1),
+                -::overact::math::signed(minus_gproximal_wx_leg1, rate_proximal_leg1),
+                -minus_gproximal_wx_leg1, -t560, t569 - minus_gproximal_wx_leg1 * t576,
+                minus_gproximal_wx_leg1 * t594 - t596, t560 - t531,
+                -(minus_gproximal_wx_leg1 * t610 + t612), t619,
+                t624 - minus_gproximal_wx_leg1 * t625, minus_gproximal_wx_leg1 * t633 + t638, -t539,
+                t653, gproximal_wx_leg2 * t656, -t661, t653, gproximal_wx_leg2 * rate_proximal_leg2,
+                ::overact::math::signed(gproximal_wx_leg2, rate_proximal_leg2), gproximal_wx_leg2,
+                t682, gproximal_wx_leg2 * t694 + gdistal_wx_leg2 * t698,
+                -(gproximal_wx_leg2 * t716 + gdistal_wx_leg2 * t670), t653 - t682,
+                gproximal_wx_leg2 * t732 - gdistal_wx_leg2 * t690,
+                gdistal_wx_leg2 * rate_dot_distal_leg2,
+                gdistal_wx_leg2 * t745 - gproximal_wx_leg2 * t747,
+                gproximal_wx_leg2 * t755 + gdistal_wx_leg2 * t759, t661, -t775,
+                minus_gproximal_wx_leg3 * t778, t783, -t775,
                 -(minus_gproximal_wx_leg3 * rate_proximal_leg3),
                 -::overact::math::signed(minus_gproximal_wx_leg3, rate_proximal_leg3),
-                -minus_gproximal_wx_leg3, t651, t660 - minus_gproximal_wx_leg3 * t667,
-                -(minus_gproximal_wx_leg3 * t685 + t687), -(t622 + t651),
-                t697 - minus_gproximal_wx_leg3 * t702, t710, minus_gproximal_wx_leg3 * t712 + t715,
-                9.81 * t283, -t630, t733, -(gproximal_wx_leg4 * t736), -t741, t733,
-                gproximal_wx_leg4 * rate_proximal_leg4,
-                ::overact::math::signed(gproximal_wx_leg4, rate_proximal_leg4), gproximal_wx_leg4,
-                t762, gproximal_wx_leg4 * t774 + minus_c_proximal_leg4 * t778,
-                gproximal_wx_leg4 * t796 - minus_c_proximal_leg4 * t755, t733 - t762,
-                gproximal_wx_leg4 * t812 + minus_c_proximal_leg4 * t770,
-                minus_c_proximal_leg4 * rate_dot_distal_leg4,
-                9.81 * (minus_c_proximal_leg4 * t337) - gproximal_wx_leg4 * t825, 9.81 * t343, t741,
-                t841 * t853 + t874 - t884, t855 * t897 - t841 * t904 + t861 * t909,
-                t841 * t927 + t855 * t930 - t861 * t933, t855 * t903 - t947 + t884,
-                t841 * t958 - t855 * t960 + t861 * t963, t947 - t874 + t861 * t926,
-                t861 * t985 - t855 * t987, t841 * t987 - t861 * t994, t855 * t994 - t841 * t985,
+                -minus_gproximal_wx_leg3, t804, t813 - minus_gproximal_wx_leg3 * t820,
+                -(minus_gproximal_wx_leg3 * t838 + t840), -(t775 + t804),
+                t850 - minus_gproximal_wx_leg3 * t855, t863, minus_gproximal_wx_leg3 * t865 + t870,
+                minus_gproximal_wx_leg3 * t877 - t882, -t783, -t897,
+                -(minus_gproximal_wx_leg4 * t900), t905, -t897,
+                -(minus_gproximal_wx_leg4 * rate_proximal_leg4),
+                -::overact::math::signed(minus_gproximal_wx_leg4, rate_proximal_leg4),
+                -minus_gproximal_wx_leg4, t926,
+                gdistal_wx_leg4 * t934 - minus_gproximal_wx_leg4 * t942,
+                -(minus_gproximal_wx_leg4 * t960 + gdistal_wx_leg4 * t916), -(t897 + t926),
+                gdistal_wx_leg4 * t938 - minus_gproximal_wx_leg4 * t977,
+                gdistal_wx_leg4 * rate_dot_distal_leg4,
+                gdistal_wx_leg4 * t989 - minus_gproximal_wx_leg4 * t991,
+                -(minus_gproximal_wx_leg4 * t999 + gdistal_wx_leg4 * t1003), -t905,
+                t13 * t1015 + t1028 - t1036, t79 * t1049 - t13 * t1056 + t16 * t1061,
+                t13 * t1079 + t79 * t1082 - t16 * t1085, t79 * t1055 - t1099 + t1036,
+                t13 * t1110 - t79 * t1112 + t16 * t1115, t1099 - t1028 + t16 * t1078,
+                t16 * t1137 - t79 * t1139, t13 * t1139 - t16 * t1146, t79 * t1146 - t13 * t1137,
             ],
             [
-                t401, -(gproximal_wy_leg1 * t403), -t409, t401,
+                t532, -(gproximal_wy_leg1 * t534), -t540, t532,
                 gproximal_wy_leg1 * rate_proximal_leg1,
                 ::overact::math::signed(gproximal_wy_leg1, rate_proximal_leg1), gproximal_wy_leg1,
-                t432, gproximal_wy_leg1 * t441 + minus_c_proximal_leg1 * t445,
-                gproximal_wy_leg1 * t463 - minus_c_proximal_leg1 * t419, t401 - t432,
-                gproximal_wy_leg1 * t479 + minus_c_proximal_leg1 * t437,
-                minus_c_proximal_leg1 * rate_dot_distal_leg1,
-                9.81 * (minus_c_proximal_leg1 * t164) - gproximal_wy_leg1 * t490, -(9.81 * t184),
-                t409, t512, -(gproximal_wy_leg2 * t514), -t520, t512,
-                gproximal_wy_leg2 * rate_proximal_leg2,
+                t563, gproximal_wy_leg1 * t576 - minus_gdistal_wy_leg1 * t568,
+                minus_gdistal_wy_leg1 * t548 - gproximal_wy_leg1 * t594, t532 - t563,
+                gproximal_wy_leg1 * t610 + minus_gdistal_wy_leg1 * t572,
+                -(minus_gdistal_wy_leg1 * rate_dot_distal_leg1),
+                gproximal_wy_leg1 * t625 - minus_gdistal_wy_leg1 * t623,
+                -(gproximal_wy_leg1 * t633 + minus_gdistal_wy_leg1 * t637), t540, t654,
+                gproximal_wy_leg2 * t656, -t662, t654, gproximal_wy_leg2 * rate_proximal_leg2,
                 ::overact::math::signed(gproximal_wy_leg2, rate_proximal_leg2), gproximal_wy_leg2,
-                t543, gproximal_wy_leg2 * t552 - t560, gproximal_wy_leg2 * t575 + t579, t512 - t543,
-                -(gproximal_wy_leg2 * t590 + t595), t600, -(gproximal_wy_leg2 * t601 + t608),
-                -(9.81 * t239), t520, -t623, minus_gproximal_wy_leg3 * t625, t631, -t623,
-                -(minus_gproximal_wy_leg3 * rate_proximal_leg3),
+                t685, gproximal_wy_leg2 * t694 - t702, t720 - gproximal_wy_leg2 * t716, t654 - t685,
+                gproximal_wy_leg2 * t732 + t737, -t742, -(gproximal_wy_leg2 * t747 + t751),
+                gproximal_wy_leg2 * t755 - t763, t662, -t776, minus_gproximal_wy_leg3 * t778, t784,
+                -t776, -(minus_gproximal_wy_leg3 * rate_proximal_leg3),
                 -::overact::math::signed(minus_gproximal_wy_leg3, rate_proximal_leg3),
-                -minus_gproximal_wy_leg3, t654,
-                -(minus_gproximal_wy_leg3 * t667 + minus_c_proximal_leg3 * t659),
-                minus_c_proximal_leg3 * t641 - minus_gproximal_wy_leg3 * t685, -(t623 + t654),
-                -(minus_gproximal_wy_leg3 * t702 + minus_c_proximal_leg3 * t663),
-                -(minus_c_proximal_leg3 * rate_dot_distal_leg3),
-                minus_gproximal_wy_leg3 * t712 - 9.81 * (minus_c_proximal_leg3 * t271),
-                -(9.81 * t293), -t631, -t734, minus_gproximal_wy_leg4 * t736, t742, -t734,
+                -minus_gproximal_wy_leg3, t807,
+                -(minus_gproximal_wy_leg3 * t820 + minus_gdistal_wy_leg3 * t812),
+                minus_gdistal_wy_leg3 * t794 - minus_gproximal_wy_leg3 * t838, -(t776 + t807),
+                -(minus_gproximal_wy_leg3 * t855 + minus_gdistal_wy_leg3 * t816),
+                -(minus_gdistal_wy_leg3 * rate_dot_distal_leg3),
+                minus_gproximal_wy_leg3 * t865 - minus_gdistal_wy_leg3 * t869,
+                minus_gproximal_wy_leg3 * t877 + minus_gdistal_wy_leg3 * t881, -t784, -t898,
+                -(minus_gproximal_wy_leg4 * t900), t906, -t898,
                 -(minus_gproximal_wy_leg4 * rate_proximal_leg4),
                 -::overact::math::signed(minus_gproximal_wy_leg4, rate_proximal_leg4),
-                -minus_gproximal_wy_leg4, t765, t781 - minus_gproximal_wy_leg4 * t774,
-                -(minus_gproximal_wy_leg4 * t796 + t801), -(t734 + t765),
-                t816 - minus_gproximal_wy_leg4 * t812, t822, minus_gproximal_wy_leg4 * t825 + t830,
-                9.81 * t325, -t742, t846 * t853 + t887 - t889,
-                t877 * t897 - t846 * t904 + t865 * t909, t846 * t927 + t877 * t930 - t865 * t933,
-                t877 * t903 - t951 + t889, t846 * t958 - t877 * t960 + t865 * t963,
-                t951 - t887 + t865 * t926, t865 * t985 - t877 * t987, t846 * t987 - t865 * t994,
-                t877 * t994 - t846 * t985,
+                -minus_gproximal_wy_leg4, t929, -(minus_gproximal_wy_leg4 * t942 + t946),
+                t964 - minus_gproximal_wy_leg4 * t960, -(t898 + t929),
+                -(minus_gproximal_wy_leg4 * t977 + t981), -t986,
+                -(minus_gproximal_wy_leg4 * t991 + t995), t1006 - minus_gproximal_wy_leg4 * t999,
+                -t906, t4 * t1015 + t1039 - t1041, t62 * t1049 - t4 * t1056 + t8 * t1061,
+                t4 * t1079 + t62 * t1082 - t8 * t1085, t62 * t1055 - t1103 + t1041,
+                t4 * t1110 - t62 * t1112 + t8 * t1115, t1103 - t1039 + t8 * t1078,
+                t8 * t1137 - t62 * t1139, t4 * t1139 - t8 * t1146, t62 * t1146 - t4 * t1137,
             ],
             [
-                -t402, minus_gproximal_wz_leg1 * t403, t410, -t402,
+                -t533, minus_gproximal_wz_leg1 * t534, t541, -t533,
                 -(minus_gproximal_wz_leg1 * rate_proximal_leg1),
                 -::overact::math::signed(minus_gproximal_wz_leg1, rate_proximal_leg1),
-                -minus_gproximal_wz_leg1, t434, t446 - minus_gproximal_wz_leg1 * t441,
-                -(minus_gproximal_wz_leg1 * t463 + t465), -(t402 + t434),
-                t481 - minus_gproximal_wz_leg1 * t479, t488, minus_gproximal_wz_leg1 * t490 + t493,
-                0.0, -t410, -t513, minus_gproximal_wz_leg2 * t514, t521, -t513,
+                -minus_gproximal_wz_leg1, t565, -(minus_gproximal_wz_leg1 * t576 + t569),
+                minus_gproximal_wz_leg1 * t594 + t596, -(t533 + t565),
+                t612 - minus_gproximal_wz_leg1 * t610, -t619,
+                -(minus_gproximal_wz_leg1 * t625 + t624), minus_gproximal_wz_leg1 * t633 - t638,
+                -t541, -t655, -(minus_gproximal_wz_leg2 * t656), t663, -t655,
                 -(minus_gproximal_wz_leg2 * rate_proximal_leg2),
                 -::overact::math::signed(minus_gproximal_wz_leg2, rate_proximal_leg2),
-                -minus_gproximal_wz_leg2, t545, t560 - minus_gproximal_wz_leg2 * t552,
-                -(minus_gproximal_wz_leg2 * t575 + t579), -(t513 + t545),
-                minus_gproximal_wz_leg2 * t590 + t595, -t600, minus_gproximal_wz_leg2 * t601 + t608,
-                0.0, -t521, -t624, minus_gproximal_wz_leg3 * t625, t632, -t624,
-                -(minus_gproximal_wz_leg3 * rate_proximal_leg3),
-                -::overact::math::signed(minus_gproximal_wz_leg3, rate_proximal_leg3),
-                -minus_gproximal_wz_leg3, t656, t660 - minus_gproximal_wz_leg3 * t667,
-                -(minus_gproximal_wz_leg3 * t685 + t687), -(t624 + t656),
-                t697 - minus_gproximal_wz_leg3 * t702, t710, minus_gproximal_wz_leg3 * t712 + t715,
-                0.0, -t632, -t735, minus_gproximal_wz_leg4 * t736, t743, -t735,
-                -(minus_gproximal_wz_leg4 * rate_proximal_leg4),
-                -::overact::math::signed(minus_gproximal_wz_leg4, rate_proximal_leg4),
-                -minus_gproximal_wz_leg4, t767, t781 - minus_gproximal_wz_leg4 * t774,
-                -(minus_gproximal_wz_leg4 * t796 + t801), -(t735 + t767),
-                t816 - minus_gproximal_wz_leg4 * t812, t822, minus_gproximal_wz_leg4 * t825 + t830,
-                0.0, -t743, t851 * t853 + t892 - t894, t880 * t897 - t851 * t904 + t870 * t909,
-                t851 * t927 + t880 * t930 - t870 * t933, t880 * t903 - t955 + t894,
-                t851 * t958 - t880 * t960 + t870 * t963, t955 - t892 + t870 * t926, 0.0, 0.0, 0.0,
+                -minus_gproximal_wz_leg2, -t687, t702 - minus_gproximal_wz_leg2 * t694,
+                minus_gproximal_wz_leg2 * t716 - t720, t687 - t655,
+                -(minus_gproximal_wz_leg2 * t732 + t737), t742,
+                minus_gproximal_wz_leg2 * t747 + t751, t763 - minus_gproximal_wz_leg2 * t755, -t663,
+                t777, -(gproximal_wz_leg3 * t778), -t785, t777,
+                gproximal_wz_leg3 * rate_proximal_leg3,
+                ::overact::math::signed(gproximal_wz_leg3, rate_proximal_leg3), gproximal_wz_leg3,
+                t809, gproximal_wz_leg3 * t820 + t813, gproximal_wz_leg3 * t838 - t840, t777 - t809,
+                gproximal_wz_leg3 * t855 + t850, t863, t870 - gproximal_wz_leg3 * t865,
+                -(gproximal_wz_leg3 * t877 + t882), t785, t899, gproximal_wz_leg4 * t900, -t907,
+                t899, gproximal_wz_leg4 * rate_proximal_leg4,
+                ::overact::math::signed(gproximal_wz_leg4, rate_proximal_leg4), gproximal_wz_leg4,
+                -t931, gproximal_wz_leg4 * t942 - t946, gproximal_wz_leg4 * t960 + t964,
+                t899 + t931, gproximal_wz_leg4 * t977 - t981, -t986,
+                gproximal_wz_leg4 * t991 - t995, gproximal_wz_leg4 * t999 + t1006, t907,
+                t18 * t1015 + t1044 - t1046, t59 * t1049 - t18 * t1056 + t21 * t1061,
+                t18 * t1079 + t59 * t1082 - t21 * t1085, t59 * t1055 - t1107 + t1046,
+                t18 * t1110 - t59 * t1112 + t21 * t1115, t1107 - t1044 + t21 * t1078, 0.0, 0.0, 0.0,
             ],
         ])
     }
@@ -2696,7 +3675,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 73.
     /// Columns: `PARAMETERS`.
     ///
-    /// 984 operations (354 additions, 625 multiplications, 5 divisions), 0 square roots, 8 trigonometric pairs, 6 signs, 856 intermediates.
+    /// 1120 operations (390 additions, 721 multiplications, 9 divisions), 4 square roots, 0 trigonometric pairs, 6 signs, 980 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2705,8 +3684,614 @@ impl Spherical4Rrr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 73]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_actuators_from_joints(pose, joints, twist, acceleration)
+        let t0 = 2.0 * pose[2];
+        let t1 = pose[2] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = 1.0 - t1 - t4;
+        let t6 = 2.0 * pose[1];
+        let t7 = pose[3] * t6;
+        let t8 = pose[0] * t0;
+        let t9 = t7 + t8;
+        let t10 = t5 - t9;
+        let t11 = t7 - t8;
+        let t13 = 1.0 - pose[1] * t6;
+        let t14 = t13 - t1;
+        let t15 = t11 - t14;
+        let t16 = t10 + t15;
+        let minus_s_distal_leg1 = 0.5 * t16;
+        let t20 = 1.0 - 0.25 * (t16 * t16);
+        ::overact::guard::reach(t20, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t20);
+        let t26 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
+        let t27 = pose[2] * t6;
+        let t28 = pose[0] * t3;
+        let t29 = t27 + t28;
+        let t30 = pose[3] * t0;
+        let t31 = pose[0] * t6;
+        let t32 = t30 - t31;
+        let t33 = t29 - t32;
+        let t34 = t10 - t15;
+        let s_proximal_leg1 = t26 * (0.35355339059327373 * (t33 * t34));
+        let t38 = minus_s_distal_leg1 * s_proximal_leg1;
+        let c_proximal_leg1 = t26 * (0.25 * (t34 * t34));
+        let t46 = 0.7071067811865475 * t33;
+        let t49 = 0.5 * (t15 * c_proximal_leg1)
+            - (0.5 * (t10 * c_proximal_leg1) + t46 * s_proximal_leg1);
+        ::overact::guard::leg(t49, 1.0, "leg1")?;
+        let t50 = 1.0 / t49;
+        let gproximal_wy_leg1 = t38 * t50;
+        let t54 = 0.5 * (t33 * s_proximal_leg1);
+        let t55 = 0.7071067811865475 * t15;
+        let minus_gproximal_wx_leg1 = (t54 - t55 * c_proximal_leg1) * t50;
+        let t61 = 0.7071067811865475 * t10;
+        let minus_gproximal_wz_leg1 = (t61 * c_proximal_leg1 + t54) * t50;
+        let rate_proximal_leg1 = gproximal_wy_leg1 * twist[1]
+            - minus_gproximal_wx_leg1 * twist[0] - minus_gproximal_wz_leg1 * twist[2];
+        let t67 = 0.7071067811865475 * rate_proximal_leg1;
+        let t69 = 0.5 * t50;
+        let gdistal_wx_leg1 = t33 * t69;
+        let minus_gdistal_wy_leg1 = t34 * t69;
+        let rate_distal_leg1 = gdistal_wx_leg1 * twist[0]
+            - minus_gdistal_wy_leg1 * twist[1] - gdistal_wx_leg1 * twist[2];
+        let t77 = 0.7071067811865475 * s_proximal_leg1 * rate_distal_leg1;
+        let t78 = t67 + t77;
+        let minus_gwrist_wx_leg1 = 0.7071067811865475 * c_proximal_leg1 * t50;
+        let minus_gwrist_wy_leg1 = s_proximal_leg1 * t50;
+        let rate_wrist_leg1 = minus_gwrist_wx_leg1 * twist[2]
+            - (minus_gwrist_wx_leg1 * twist[0] + minus_gwrist_wy_leg1 * twist[1]);
+        let t87 = t61 * rate_wrist_leg1;
+        let t89 = t67 - t77;
+        let t90 = t55 * rate_wrist_leg1;
+        let t96 = acceleration[1] - (t78 * t87 - t89 * t90 - 2.0 * (t67 * t77));
+        let t98 = c_proximal_leg1 * rate_distal_leg1;
+        let t100 = t46 * rate_wrist_leg1;
+        let t103 = t67 * t98;
+        let t105 = acceleration[0] - (t98 * t90 - t78 * t100 - t103);
+        let t112 = acceleration[2] - (t103 + t89 * t100 - t98 * t87);
+        let rate_dot_proximal_leg1 = gproximal_wy_leg1 * t96
+            - minus_gproximal_wx_leg1 * t105 - minus_gproximal_wz_leg1 * t112;
+        let t116 = 6.936717523440031 * c_proximal_leg1;
+        let t118 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t119 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t120 = rate_distal_leg1 * t119;
+        let t121 = t118 + t120;
+        let t123 = c_distal_leg1 * rate_proximal_leg1;
+        let t124 = rate_distal_leg1 * t123;
+        let t127 = t13 - t4;
+        let t128 = t127 - t32;
+        let t129 = 0.7071067811865475 * t128;
+        let t130 = t30 + t31;
+        let t131 = t130 - t14;
+        let t132 = t128 + t131;
+        let t135 = 1.0 - 0.25 * (t132 * t132);
+        ::overact::guard::reach(t135, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t135);
+        let t141 = 1.0 / (0.5 * (t128 * c_distal_leg2 - t131 * c_distal_leg2));
+        let t142 = t128 - t131;
+        let c_proximal_leg2 = t141 * (0.25 * (t142 * t142));
+        let t147 = t27 - t28;
+        let t148 = t147 - t9;
+        let minus_s_proximal_leg2 = t141 * (0.35355339059327373 * (t148 * t142));
+        let t153 = 0.5 * (t148 * minus_s_proximal_leg2);
+        let t157 = 0.7071067811865475 * t148;
+        let t162 = 0.5 * (t131 * c_proximal_leg2)
+            - (t157 * minus_s_proximal_leg2 + 0.5 * (t128 * c_proximal_leg2));
+        ::overact::guard::leg(t162, 1.0, "leg2")?;
+        let t163 = 1.0 / t162;
+        let minus_gproximal_wz_leg2 = (t129 * c_proximal_leg2 + t153) * t163;
+        let t165 = t11 + t14;
+        let t166 = t5 + t9;
+        let t167 = t165 - t166;
+        let s_distal_leg3 = 0.5 * t167;
+        let t171 = 1.0 - 0.25 * (t167 * t167);
+        ::overact::guard::reach(t171, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t171);
+        let t177 = 1.0 / (0.5 * (t166 * c_distal_leg3 + t165 * c_distal_leg3));
+        let t178 = t29 + t32;
+        let t179 = t166 + t165;
+        let s_proximal_leg3 = t177 * (0.35355339059327373 * (t178 * t179));
+        let t183 = s_distal_leg3 * s_proximal_leg3;
+        let c_proximal_leg3 = t177 * (0.25 * (t179 * t179));
+        let t189 = 0.7071067811865475 * t178;
+        let t194 = 0.5 * (t166 * c_proximal_leg3) + t189 * s_proximal_leg3
+            + 0.5 * (t165 * c_proximal_leg3);
+        ::overact::guard::leg(t194, 1.0, "leg3")?;
+        let t195 = 1.0 / t194;
+        let minus_gproximal_wy_leg3 = t183 * t195;
+        let t198 = 0.7071067811865475 * t131;
+        let gproximal_wy_leg2 = (t198 * c_proximal_leg2 - t153) * t163;
+        let t202 = 0.7071067811865475 * t166;
+        let t205 = 0.5 * (t178 * s_proximal_leg3);
+        let gproximal_wz_leg3 = (t202 * c_proximal_leg3 + t205) * t195;
+        let minus_s_distal_leg2 = 0.5 * t132;
+        let t211 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let gproximal_wx_leg2 = t211 * t163;
+        let t215 = gproximal_wy_leg1 * gproximal_wx_leg2
+            + minus_gproximal_wx_leg1 * gproximal_wy_leg2;
+        let t217 = 0.7071067811865475 * t165;
+        let minus_gproximal_wx_leg3 = (t205 + t217 * c_proximal_leg3) * t195;
+        let t223 = gproximal_wy_leg1 * minus_gproximal_wz_leg2
+            - minus_gproximal_wz_leg1 * gproximal_wy_leg2;
+        let t227 = minus_gproximal_wz_leg1 * gproximal_wx_leg2
+            + minus_gproximal_wx_leg1 * minus_gproximal_wz_leg2;
+        let t230 = gproximal_wz_leg3 * t215
+            - (minus_gproximal_wx_leg3 * t223 + minus_gproximal_wy_leg3 * t227);
+        ::overact::guard::platform(t230, 0.7071067811865474, "kept actuators")?;
+        ::overact::guard::platform(t230, 0.7071067811865474, "kept actuators")?;
+        ::overact::guard::platform(t230, 0.7071067811865474, "kept actuators")?;
+        let t231 = 1.0 / t230;
+        let t232 = (minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3
+            - gproximal_wy_leg2 * gproximal_wz_leg3) * t231;
+        let t237 = (minus_gproximal_wz_leg2 * minus_gproximal_wx_leg3
+            - gproximal_wx_leg2 * gproximal_wz_leg3) * t231;
+        let t243 = (gproximal_wx_leg2 * minus_gproximal_wy_leg3
+            - gproximal_wy_leg2 * minus_gproximal_wx_leg3) * t231;
+        let t245 = gdistal_wx_leg1 * t232 + minus_gdistal_wy_leg1 * t237
+            - gdistal_wx_leg1 * t243;
+        let t246 = t123 * t119;
+        let t248 = c_distal_leg1 * t121 + minus_s_distal_leg1 * t124 - t245 * t246;
+        let t252 = (minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3
+            - gproximal_wy_leg1 * gproximal_wz_leg3) * t231;
+        let t257 = (minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg1 * gproximal_wz_leg3) * t231;
+        let t263 = (gproximal_wy_leg1 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg1 * minus_gproximal_wy_leg3) * t231;
+        let t265 = gdistal_wx_leg1 * t252 + minus_gdistal_wy_leg1 * t257
+            + gdistal_wx_leg1 * t263;
+        let t266 = t265 * t246;
+        let t267 = t223 * t231;
+        let t269 = t227 * t231;
+        let t272 = t215 * t231;
+        let t274 = gdistal_wx_leg1 * t267 - minus_gdistal_wy_leg1 * t269
+            - gdistal_wx_leg1 * t272;
+        let t275 = t274 * t246;
+        let t278 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t283 = t123 * t123;
+        let t284 = t119 * t119;
+        let t285 = t283 - t284;
+        let rate_dot_distal_leg1 = gdistal_wx_leg1 * t105 - minus_gdistal_wy_leg1 * t96
+            - gdistal_wx_leg1 * t112;
+        let t297 = rate_distal_leg1 * rate_distal_leg1;
+        let t321 = c_distal_leg1 * t116 - 3.4683587617200153 * t16;
+        let t328 = 6.936717523440031
+            * (minus_s_distal_leg1 * c_proximal_leg1 + c_distal_leg1);
+        let rate_proximal_leg2 = gproximal_wx_leg2 * twist[0]
+            + gproximal_wy_leg2 * twist[1] - minus_gproximal_wz_leg2 * twist[2];
+        let t339 = 0.7071067811865475 * rate_proximal_leg2;
+        let t341 = 0.5 * t163;
+        let gdistal_wx_leg2 = t142 * t341;
+        let minus_gdistal_wy_leg2 = t148 * t341;
+        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
+            - minus_gdistal_wy_leg2 * twist[1] + minus_gdistal_wy_leg2 * twist[2];
+        let t349 = 0.7071067811865475 * minus_s_proximal_leg2 * rate_distal_leg2;
+        let t350 = t339 + t349;
+        let minus_gwrist_wy_leg2 = 0.7071067811865475 * c_proximal_leg2 * t163;
+        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t163;
+        let rate_wrist_leg2 = minus_gwrist_wy_leg2 * twist[2]
+            - (minus_gwrist_wx_leg2 * twist[0] + minus_gwrist_wy_leg2 * twist[1]);
+        let t359 = t198 * rate_wrist_leg2;
+        let t361 = t339 - t349;
+        let t362 = t129 * rate_wrist_leg2;
+        let t368 = acceleration[0] - (t350 * t359 - t361 * t362 - 2.0 * (t339 * t349));
+        let t370 = t157 * rate_wrist_leg2;
+        let t372 = c_proximal_leg2 * rate_distal_leg2;
+        let t375 = t339 * t372;
+        let t377 = acceleration[1] - (t361 * t370 + t372 * t359 - t375);
+        let t384 = acceleration[2] - (t375 - (t372 * t362 + t350 * t370));
+        let rate_dot_proximal_leg2 = gproximal_wx_leg2 * t368 + gproximal_wy_leg2 * t377
+            - minus_gproximal_wz_leg2 * t384;
+        let t388 = 6.936717523440031 * c_proximal_leg2;
+        let t394 = gdistal_wx_leg2 * t232 + minus_gdistal_wy_leg2 * t237
+            + minus_gdistal_wy_leg2 * t243;
+        let t395 = c_distal_leg2 * rate_proximal_leg2;
+        let t396 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t397 = t395 * t396;
+        let t398 = t394 * t397;
+        let t399 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t400 = rate_distal_leg2 * t396;
+        let t401 = t399 + t400;
+        let t403 = rate_distal_leg2 * t395;
+        let t410 = minus_gdistal_wy_leg2 * t263
+            - (gdistal_wx_leg2 * t252 + minus_gdistal_wy_leg2 * t257);
+        let t412 = c_distal_leg2 * t401 + minus_s_distal_leg2 * t403 - t410 * t397;
+        let t417 = gdistal_wx_leg2 * t267 - minus_gdistal_wy_leg2 * t269
+            + minus_gdistal_wy_leg2 * t272;
+        let t418 = t417 * t397;
+        let t419 = t395 * t395;
+        let t420 = t396 * t396;
+        let t421 = t419 - t420;
+        let t425 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let rate_dot_distal_leg2 = gdistal_wx_leg2 * t368 - minus_gdistal_wy_leg2 * t377
+            + minus_gdistal_wy_leg2 * t384;
+        let t441 = rate_distal_leg2 * rate_distal_leg2;
+        let t463 = c_distal_leg2 * t388 - 3.4683587617200153 * t132;
+        let t471 = 6.936717523440031
+            * (minus_s_distal_leg2 * c_proximal_leg2 + c_distal_leg2);
+        let rate_proximal_leg3 = gproximal_wz_leg3 * twist[2]
+            - (minus_gproximal_wx_leg3 * twist[0] + minus_gproximal_wy_leg3 * twist[1]);
+        let t482 = 0.7071067811865475 * rate_proximal_leg3;
+        let t483 = 0.5 * t195;
+        let gdistal_wx_leg3 = t178 * t483;
+        let minus_gdistal_wy_leg3 = t179 * t483;
+        let rate_distal_leg3 = gdistal_wx_leg3 * twist[0]
+            - minus_gdistal_wy_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
+        let t491 = c_proximal_leg3 * rate_distal_leg3;
+        let t492 = t482 * t491;
+        let t494 = 0.7071067811865475 * s_proximal_leg3 * rate_distal_leg3;
+        let t495 = t494 - t482;
+        let minus_gwrist_wx_leg3 = 0.7071067811865475 * c_proximal_leg3 * t195;
+        let minus_gwrist_wy_leg3 = s_proximal_leg3 * t195;
+        let minus_rate_wrist_leg3 = minus_gwrist_wx_leg3 * twist[0]
+            + minus_gwrist_wy_leg3 * twist[1] + minus_gwrist_wx_leg3 * twist[2];
+        let t504 = t189 * minus_rate_wrist_leg3;
+        let t506 = t202 * minus_rate_wrist_leg3;
+        let t510 = acceleration[2] - (t492 + t495 * t504 + t491 * t506);
+        let t512 = t217 * minus_rate_wrist_leg3;
+        let t514 = t482 + t494;
+        let t518 = acceleration[0] - (t492 - (t491 * t512 + t514 * t504));
+        let t526 = acceleration[1] - (2.0 * (t482 * t494) + t514 * t506 - t495 * t512);
+        let rate_dot_proximal_leg3 = gproximal_wz_leg3 * t510
+            - (minus_gproximal_wx_leg3 * t518 + minus_gproximal_wy_leg3 * t526);
+        let t531 = 6.936717523440031 * c_proximal_leg3;
+        let t537 = gdistal_wx_leg3 * t232 + minus_gdistal_wy_leg3 * t237
+            + gdistal_wx_leg3 * t243;
+        let t538 = c_distal_leg3 * rate_proximal_leg3;
+        let t539 = s_distal_leg3 * rate_proximal_leg3;
+        let t540 = t538 * t539;
+        let t541 = t537 * t540;
+        let t546 = gdistal_wx_leg3 * t263
+            - (gdistal_wx_leg3 * t252 + minus_gdistal_wy_leg3 * t257);
+        let t547 = t546 * t540;
+        let t552 = gdistal_wx_leg3 * t267 - minus_gdistal_wy_leg3 * t269
+            + gdistal_wx_leg3 * t272;
+        let t554 = rate_distal_leg3 * t539;
+        let t555 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t556 = t554 - t555;
+        let t558 = rate_distal_leg3 * t538;
+        let t561 = t552 * t540 - (c_distal_leg3 * t556 + s_distal_leg3 * t558);
+        let t562 = t538 * t538;
+        let t563 = t539 * t539;
+        let t564 = t562 - t563;
+        let t569 = s_distal_leg3 * rate_dot_proximal_leg3;
+        let t578 = rate_distal_leg3 * rate_distal_leg3;
+        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t518 - minus_gdistal_wy_leg3 * t526
+            + gdistal_wx_leg3 * t510;
+        let t606 = c_distal_leg3 * t531 + 3.4683587617200153 * t167;
+        let t614 = 6.936717523440031 * (s_distal_leg3 * c_proximal_leg3 - c_distal_leg3);
+        let t620 = t147 + t9;
+        let t621 = t127 + t32;
+        let t622 = t130 + t14;
+        let t623 = t622 - t621;
+        let t626 = 1.0 - 0.25 * (t623 * t623);
+        ::overact::guard::reach(t626, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t626);
+        let t632 = 1.0 / (0.5 * (t621 * c_distal_leg4 + t622 * c_distal_leg4));
+        let t633 = t621 + t622;
+        let minus_s_proximal_leg4 = t632 * (0.35355339059327373 * (t620 * t633));
+        let t638 = 0.5 * (t620 * minus_s_proximal_leg4);
+        let t639 = 0.7071067811865475 * t622;
+        let c_proximal_leg4 = t632 * (0.25 * (t633 * t633));
+        let t645 = 0.7071067811865475 * t620;
+        let t652 = t645 * minus_s_proximal_leg4 + 0.5 * (t621 * c_proximal_leg4)
+            + 0.5 * (t622 * c_proximal_leg4);
+        ::overact::guard::leg(t652, 1.0, "leg4")?;
+        let t653 = 1.0 / t652;
+        let minus_gproximal_wy_leg4 = (t638 + t639 * c_proximal_leg4) * t653;
+        let s_distal_leg4 = 0.5 * t623;
+        let t657 = s_distal_leg4 * minus_s_proximal_leg4;
+        let minus_gproximal_wx_leg4 = t657 * t653;
+        let t661 = 0.7071067811865475 * t621;
+        let gproximal_wz_leg4 = (t661 * c_proximal_leg4 + t638) * t653;
+        let t666 = minus_gproximal_wy_leg4 * t237 - minus_gproximal_wx_leg4 * t232
+            + gproximal_wz_leg4 * t243;
+        let rate_proximal_leg4 = gproximal_wz_leg4 * twist[2]
+            - (minus_gproximal_wx_leg4 * twist[0] + minus_gproximal_wy_leg4 * twist[1]);
+        let t672 = 0.7071067811865475 * rate_proximal_leg4;
+        let t673 = 0.5 * t653;
+        let gdistal_wx_leg4 = t633 * t673;
+        let minus_gdistal_wy_leg4 = t620 * t673;
+        let rate_distal_leg4 = gdistal_wx_leg4 * twist[0]
+            - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
+        let t681 = c_proximal_leg4 * rate_distal_leg4;
+        let t682 = t672 * t681;
+        let minus_gwrist_wx_leg4 = minus_s_proximal_leg4 * t653;
+        let minus_gwrist_wy_leg4 = 0.7071067811865475 * c_proximal_leg4 * t653;
+        let minus_rate_wrist_leg4 = minus_gwrist_wx_leg4 * twist[0]
+            + minus_gwrist_wy_leg4 * twist[1] + minus_gwrist_wy_leg4 * twist[2];
+        let t691 = t661 * minus_rate_wrist_leg4;
+        let t694 = 0.7071067811865475 * minus_s_proximal_leg4 * rate_distal_leg4;
+        let t695 = t672 + t694;
+        let t696 = t645 * minus_rate_wrist_leg4;
+        let t700 = acceleration[2] - (t682 + t681 * t691 + t695 * t696);
+        let t704 = t639 * minus_rate_wrist_leg4;
+        let t706 = t672 - t694;
+        let t710 = acceleration[0] - (2.0 * (t672 * t694) - (t695 * t704 + t706 * t691));
+        let t716 = acceleration[1] - (t682 + t706 * t696 - t681 * t704);
+        let rate_dot_proximal_leg4 = gproximal_wz_leg4 * t700
+            - (minus_gproximal_wx_leg4 * t710 + minus_gproximal_wy_leg4 * t716);
+        let t720 = t666 * rate_dot_proximal_leg4;
+        let t725 = minus_gproximal_wx_leg4 * t252 - minus_gproximal_wy_leg4 * t257
+            + gproximal_wz_leg4 * t263;
+        let t726 = t725 * rate_dot_proximal_leg4;
+        let t731 = gproximal_wz_leg4 * t272
+            - (minus_gproximal_wx_leg4 * t267 + minus_gproximal_wy_leg4 * t269);
+        let t732 = t731 * rate_dot_proximal_leg4;
+        let t733 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t737 = 6.936717523440031 * c_proximal_leg4;
+        let t738 = t666 * t737;
+        let t739 = t725 * t737;
+        let t740 = t731 * t737;
+        let t751 = gdistal_wx_leg4 * t232 + minus_gdistal_wy_leg4 * t237
+            - minus_gdistal_wy_leg4 * t243;
+        let t752 = c_distal_leg4 * rate_proximal_leg4;
+        let t753 = s_distal_leg4 * rate_proximal_leg4;
+        let t754 = t752 * t753;
+        let t756 = rate_distal_leg4 * t753;
+        let t757 = c_distal_leg4 * rate_dot_proximal_leg4;
+        let t758 = t756 - t757;
+        let t760 = rate_distal_leg4 * t752;
+        let t762 = c_distal_leg4 * t758 + s_distal_leg4 * t760;
+        let t764 = t751 * t754 - t666 * t762;
+        let t770 = gdistal_wx_leg4 * t252 + minus_gdistal_wy_leg4 * t257
+            + minus_gdistal_wy_leg4 * t263;
+        let t772 = t725 * t762 + t770 * t754;
+        let t777 = gdistal_wx_leg4 * t267 - minus_gdistal_wy_leg4 * t269
+            - minus_gdistal_wy_leg4 * t272;
+        let t780 = t777 * t754 - t731 * t762;
+        let t783 = s_distal_leg4 * rate_dot_proximal_leg4;
+        let t787 = s_distal_leg4 * (t756 + t758) - c_distal_leg4 * (t760 + t783 + t760);
+        let t789 = t752 * t752;
+        let t790 = t753 * t753;
+        let t791 = t789 - t790;
+        let t800 = rate_distal_leg4 * rate_distal_leg4;
+        let rate_dot_distal_leg4 = gdistal_wx_leg4 * t710 - minus_gdistal_wy_leg4 * t716
+            - minus_gdistal_wy_leg4 * t700;
+        let t810 = s_distal_leg4 * (t800 - t789)
+            - c_distal_leg4 * (rate_dot_distal_leg4 - t754);
+        let t827 = s_distal_leg4 * (t754 + rate_dot_distal_leg4)
+            - c_distal_leg4 * (t790 - t800);
+        let t840 = 6.936717523440031 * t657;
+        let t844 = c_distal_leg4 * t737 + 3.4683587617200153 * t623;
+        let t853 = 4.905 * t620;
+        let t857 = 6.936717523440031 * (s_distal_leg4 * c_proximal_leg4 - c_distal_leg4);
+        let t870 = t5 * acceleration[0] + t29 * acceleration[1] + t11 * acceleration[2];
+        let t876 = t5 * twist[0] + t29 * twist[1] + t11 * twist[2];
+        let t881 = t9 * twist[0] + t32 * twist[1] + t14 * twist[2];
+        let t882 = t876 * t881;
+        let t883 = t147 * t882;
+        let t889 = t147 * twist[0] + t127 * twist[1] + t130 * twist[2];
+        let t890 = t876 * t889;
+        let t891 = t9 * t890;
+        let t892 = t5 * t870 + t883 - t891;
+        let t895 = t127 * t882;
+        let t897 = t32 * t890;
+        let t898 = t29 * t870 + t895 - t897;
+        let t902 = t130 * t882;
+        let t904 = t14 * t890;
+        let t905 = t11 * t870 + t902 - t904;
+        let t918 = t889 * t881;
+        let t919 = t918 + t870;
+        let t925 = t147 * acceleration[0] + t127 * acceleration[1]
+            + t130 * acceleration[2];
+        let t926 = t882 - t925;
+        let t929 = t876 * t876;
+        let t930 = t889 * t889;
+        let t931 = t929 - t930;
+        let t933 = t147 * t919 - t5 * t926 + t9 * t931;
+        let t939 = t127 * t919 - t29 * t926 + t32 * t931;
+        let t946 = t130 * t919 - t11 * t926 + t14 * t931;
+        let t963 = t9 * acceleration[0] + t32 * acceleration[1] + t14 * acceleration[2];
+        let t964 = t890 + t963;
+        let t966 = t881 * t881;
+        let t967 = t966 - t929;
+        let t970 = t918 - t870;
+        let t972 = t5 * t964 + t147 * t967 - t9 * t970;
+        let t978 = t29 * t964 + t127 * t967 - t32 * t970;
+        let t985 = t11 * t964 + t130 * t967 - t14 * t970;
+        let t999 = t5 * t918;
+        let t1001 = t147 * t925 - t999 + t891;
+        let t1004 = t29 * t918;
+        let t1006 = t127 * t925 - t1004 + t897;
+        let t1010 = t11 * t918;
+        let t1012 = t130 * t925 - t1010 + t904;
+        let t1025 = t930 - t966;
+        let t1027 = t890 - t963;
+        let t1030 = t882 + t925;
+        let t1032 = t5 * t1025 - t147 * t1027 + t9 * t1030;
+        let t1038 = t29 * t1025 - t127 * t1027 + t32 * t1030;
+        let t1045 = t11 * t1025 - t130 * t1027 + t14 * t1030;
+        let t1060 = t999 - t883 + t9 * t963;
+        let t1064 = t1004 - t895 + t32 * t963;
+        let t1069 = t1010 - t902 + t14 * t963;
+        let t1082 = 9.81 * t130;
+        let t1084 = 9.81 * t14;
+        let t1086 = t9 * t1082 - t147 * t1084;
+        let t1090 = t32 * t1082 - t127 * t1084;
+        let t1100 = 9.81 * t11;
+        let t1102 = t5 * t1084 - t9 * t1100;
+        let t1106 = t29 * t1084 - t32 * t1100;
+        let t1117 = t147 * t1100 - t5 * t1082;
+        let t1121 = t127 * t1100 - t29 * t1082;
+        Ok([
+            [
+                rate_dot_proximal_leg1, -(6.936717523440031 * s_proximal_leg1), -t116,
+                rate_dot_proximal_leg1, rate_proximal_leg1,
+                ::overact::math::sign(rate_proximal_leg1), 1.0, t248,
+                minus_s_distal_leg1 * (t120 + t121)
+                    - c_distal_leg1 * (t124 + t124 - t278) + t245 * t285,
+                -(c_distal_leg1 * (t246 + rate_dot_distal_leg1)
+                    + minus_s_distal_leg1 * (t297 - t283) + t245 * t118),
+                rate_dot_proximal_leg1 - t248,
+                minus_s_distal_leg1 * (t246 - rate_dot_distal_leg1)
+                    - c_distal_leg1 * (t284 - t297) - t245 * t278,
+                t245 * rate_dot_distal_leg1,
+                6.936717523440031 * t38 + t245 * t321,
+                t245 * t328 - 4.905 * t33,
+                t116,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                -t398,
+                t394 * t421,
+                -(t394 * t399),
+                t398,
+                -(t394 * t425),
+                t394 * rate_dot_distal_leg2,
+                t394 * t463,
+                t394 * t471,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                t541,
+                t537 * t564,
+                -(t537 * t555),
+                -t541,
+                t537 * t569,
+                t537 * rate_dot_distal_leg3,
+                t537 * t606,
+                -(t537 * t614),
+                0.0,
+                t720,
+                t666 * t733,
+                -t738,
+                t720,
+                t666 * rate_proximal_leg4,
+                ::overact::math::signed(t666, rate_proximal_leg4),
+                t666,
+                t764,
+                t666 * t787 + t751 * t791,
+                t666 * t810 - t751 * t757,
+                t720 - t764,
+                t666 * t827 + t751 * t783,
+                t751 * rate_dot_distal_leg4,
+                t666 * t840 + t751 * t844,
+                t666 * t853 - t751 * t857,
+                t738,
+                t232 * t892 - t237 * t898 + t243 * t905,
+                t232 * t933 - t237 * t939 + t243 * t946,
+                t232 * t972 - t237 * t978 + t243 * t985,
+                t232 * t1001 - t237 * t1006 + t243 * t1012,
+                t232 * t1032 - t237 * t1038 + t243 * t1045,
+                t232 * t1060 - t237 * t1064 + t243 * t1069,
+                t232 * t1086 - t237 * t1090,
+                t232 * t1102 - t237 * t1106,
+                t232 * t1117 - t237 * t1121,
+            ],
+            [
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t266, -(t265 * t285), t265 * t118, -t266,
+                t265 * t278, -(t265 * rate_dot_distal_leg1), -(t265 * t321), -(t265 * t328), 0.0,
+                rate_dot_proximal_leg2, 6.936717523440031 * minus_s_proximal_leg2, -t388,
+                rate_dot_proximal_leg2, rate_proximal_leg2,
+                ::overact::math::sign(rate_proximal_leg2), 1.0, t412,
+                minus_s_distal_leg2 * (t400 + t401)
+                    - c_distal_leg2 * (t403 + t403 - t425) + t410 * t421,
+                -(c_distal_leg2 * (t397 + rate_dot_distal_leg2)
+                    + minus_s_distal_leg2 * (t441 - t419) + t410 * t399),
+                rate_dot_proximal_leg2 - t412,
+                minus_s_distal_leg2 * (t397 - rate_dot_distal_leg2)
+                    - c_distal_leg2 * (t420 - t441) - t410 * t425,
+                t410 * rate_dot_distal_leg2,
+                t410 * t463 - 6.936717523440031 * t211,
+                4.905 * t148 + t410 * t471,
+                t388,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                t547,
+                t546 * t564,
+                -(t546 * t555),
+                -t547,
+                t546 * t569,
+                t546 * rate_dot_distal_leg3,
+                t546 * t606,
+                -(t546 * t614),
+                0.0,
+                t726,
+                t725 * t733,
+                -t739,
+                t726,
+                t725 * rate_proximal_leg4,
+                ::overact::math::signed(t725, rate_proximal_leg4),
+                t725,
+                -t772,
+                t725 * t787 - t770 * t791,
+                t725 * t810 + t770 * t757,
+                t726 + t772,
+                t725 * t827 - t770 * t783,
+                -(t770 * rate_dot_distal_leg4),
+                t725 * t840 - t770 * t844,
+                t725 * t853 + t770 * t857,
+                t739,
+                t257 * t898 - t252 * t892 + t263 * t905,
+                t257 * t939 - t252 * t933 + t263 * t946,
+                t257 * t978 - t252 * t972 + t263 * t985,
+                t257 * t1006 - t252 * t1001 + t263 * t1012,
+                t257 * t1038 - t252 * t1032 + t263 * t1045,
+                t257 * t1064 - t252 * t1060 + t263 * t1069,
+                t257 * t1090 - t252 * t1086,
+                t257 * t1106 - t252 * t1102,
+                t257 * t1121 - t252 * t1117,
+            ],
+            [
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t275, t274 * t285, -(t274 * t118), t275,
+                -(t274 * t278), t274 * rate_dot_distal_leg1, t274 * t321, t274 * t328, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t418, t417 * t421, -(t417 * t399), t418,
+                -(t417 * t425), t417 * rate_dot_distal_leg2, t417 * t463, t417 * t471, 0.0,
+                rate_dot_proximal_leg3, -(6.936717523440031 * s_proximal_leg3), -t531,
+                rate_dot_proximal_leg3, rate_proximal_leg3,
+                ::overact::math::sign(rate_proximal_leg3), 1.0, t561,
+                s_distal_leg3 * (t554 + t556) - c_distal_leg3 * (t558 + t569 + t558)
+                    + t552 * t564,
+                s_distal_leg3 * (t578 - t562)
+                    - c_distal_leg3 * (rate_dot_distal_leg3 - t540) - t552 * t555,
+                rate_dot_proximal_leg3 - t561,
+                s_distal_leg3 * (t540 + rate_dot_distal_leg3)
+                    - c_distal_leg3 * (t563 - t578) + t552 * t569,
+                t552 * rate_dot_distal_leg3,
+                t552 * t606 - 6.936717523440031 * t183,
+                -(4.905 * t178 + t552 * t614),
+                t531,
+                t732,
+                t731 * t733,
+                -t740,
+                t732,
+                t731 * rate_proximal_leg4,
+                ::overact::math::signed(t731, rate_proximal_leg4),
+                t731,
+                t780,
+                t731 * t787 + t777 * t791,
+                t731 * t810 - t777 * t757,
+                t732 - t780,
+                t731 * t827 + t777 * t783,
+                t777 * rate_dot_distal_leg4,
+                t731 * t840 + t777 * t844,
+                t731 * t853 - t777 * t857,
+                t740,
+                t267 * t892 + t269 * t898 + t272 * t905,
+                t267 * t933 + t269 * t939 + t272 * t946,
+                t267 * t972 + t269 * t978 + t272 * t985,
+                t267 * t1001 + t269 * t1006 + t272 * t1012,
+                t267 * t1032 + t269 * t1038 + t272 * t1045,
+                t267 * t1060 + t269 * t1064 + t272 * t1069,
+                t267 * t1086 + t269 * t1090,
+                t267 * t1102 + t269 * t1106,
+                t267 * t1117 + t269 * t1121,
+            ],
+        ])
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -3311,7 +4896,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 73.
     /// Columns: `PARAMETERS`.
     ///
-    /// 1136 operations (418 additions, 710 multiplications, 8 divisions), 0 square roots, 8 trigonometric pairs, 6 signs, 1008 intermediates.
+    /// 1272 operations (454 additions, 806 multiplications, 12 divisions), 4 square roots, 0 trigonometric pairs, 6 signs, 1132 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3322,499 +4907,537 @@ impl Spherical4Rrr {
         start: &[f64; 4],
     ) -> Result<[[f64; 73]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let t2 = 0.7071067811865476 * minus_c_proximal_leg1;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t5 = t2 * c_distal_leg1;
-        let t6 = 0.7071067811865476 * minus_s_distal_leg1;
-        let t8 = 1.0 / minus_s_distal_leg1;
-        let gproximal_wx_leg1 = (t5 + t6) * t8;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let t16 = 1.0 / minus_s_distal_leg2;
-        let minus_gproximal_wx_leg2 = minus_s_proximal_leg2 * c_distal_leg2 * t16;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t22 = 0.7071067811865476 * minus_c_proximal_leg3;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let t25 = t22 * c_distal_leg3;
-        let t26 = 0.7071067811865476 * minus_s_distal_leg3;
-        let t28 = 1.0 / minus_s_distal_leg3;
-        let minus_gproximal_wx_leg3 = (t25 + t26) * t28;
-        let (minus_s_proximal_leg4, minus_c_proximal_leg4) = ::overact::math::sin_cos(
-            joints[9],
-        );
-        let (c_distal_leg4, minus_s_distal_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(minus_s_distal_leg4, 1.0, "leg4")?;
-        let t37 = 1.0 / minus_s_distal_leg4;
-        let gproximal_wx_leg4 = minus_s_proximal_leg4 * c_distal_leg4 * t37;
-        let t40 = gproximal_wx_leg1 * gproximal_wx_leg1
-            + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
-            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
-            + gproximal_wx_leg4 * gproximal_wx_leg4;
-        ::overact::guard::platform(t40, 1.0000000000000002, "actuators")?;
-        ::overact::guard::platform(t40, 1.0000000000000002, "actuators")?;
-        let t41 = 1.0 / t40;
-        let t48 = gproximal_wx_leg1 * actuator_velocities[0]
-            - minus_gproximal_wx_leg2 * actuator_velocities[1]
-            - minus_gproximal_wx_leg3 * actuator_velocities[2]
-            + gproximal_wx_leg4 * actuator_velocities[3];
-        let gproximal_wy_leg1 = minus_s_proximal_leg1 * c_distal_leg1 * t8;
-        let t53 = 0.7071067811865476 * minus_c_proximal_leg2;
-        let t54 = t53 * c_distal_leg2;
-        let t55 = 0.7071067811865476 * minus_s_distal_leg2;
-        let gproximal_wy_leg2 = (t54 + t55) * t16;
-        let minus_gproximal_wy_leg3 = minus_s_proximal_leg3 * c_distal_leg3 * t28;
-        let t64 = 0.7071067811865476 * minus_c_proximal_leg4;
-        let t65 = t64 * c_distal_leg4;
-        let t66 = 0.7071067811865476 * minus_s_distal_leg4;
-        let minus_gproximal_wy_leg4 = (t65 + t66) * t37;
-        let t70 = gproximal_wx_leg1 * gproximal_wy_leg1
-            - minus_gproximal_wx_leg2 * gproximal_wy_leg2
+        let t0 = 2.0 * pose[2];
+        let t1 = pose[2] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = 1.0 - t1 - t4;
+        let t6 = 2.0 * pose[1];
+        let t7 = pose[3] * t6;
+        let t8 = pose[0] * t0;
+        let t9 = t7 + t8;
+        let t10 = t5 - t9;
+        let t11 = t7 - t8;
+        let t13 = 1.0 - pose[1] * t6;
+        let t14 = t13 - t1;
+        let t15 = t11 - t14;
+        let t16 = t10 + t15;
+        let minus_s_distal_leg1 = 0.5 * t16;
+        let t20 = 1.0 - 0.25 * (t16 * t16);
+        ::overact::guard::reach(t20, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t20);
+        let t26 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
+        let t27 = pose[2] * t6;
+        let t28 = pose[0] * t3;
+        let t29 = t27 + t28;
+        let t30 = pose[3] * t0;
+        let t31 = pose[0] * t6;
+        let t32 = t30 - t31;
+        let t33 = t29 - t32;
+        let t34 = t10 - t15;
+        let s_proximal_leg1 = t26 * (0.35355339059327373 * (t33 * t34));
+        let t38 = minus_s_distal_leg1 * s_proximal_leg1;
+        let c_proximal_leg1 = t26 * (0.25 * (t34 * t34));
+        let t46 = 0.7071067811865475 * t33;
+        let t49 = 0.5 * (t15 * c_proximal_leg1)
+            - (0.5 * (t10 * c_proximal_leg1) + t46 * s_proximal_leg1);
+        ::overact::guard::leg(t49, 1.0, "leg1")?;
+        let t50 = 1.0 / t49;
+        let gproximal_wy_leg1 = t38 * t50;
+        let t53 = t30 + t31;
+        let t54 = t53 - t14;
+        let t55 = 0.7071067811865475 * t54;
+        let t56 = t13 - t4;
+        let t57 = t56 - t32;
+        let t58 = t57 + t54;
+        let t61 = 1.0 - 0.25 * (t58 * t58);
+        ::overact::guard::reach(t61, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t61);
+        let t67 = 1.0 / (0.5 * (t57 * c_distal_leg2 - t54 * c_distal_leg2));
+        let t68 = t57 - t54;
+        let c_proximal_leg2 = t67 * (0.25 * (t68 * t68));
+        let t73 = t27 - t28;
+        let t74 = t73 - t9;
+        let minus_s_proximal_leg2 = t67 * (0.35355339059327373 * (t74 * t68));
+        let t79 = 0.5 * (t74 * minus_s_proximal_leg2);
+        let t83 = 0.7071067811865475 * t74;
+        let t88 = 0.5 * (t54 * c_proximal_leg2)
+            - (t83 * minus_s_proximal_leg2 + 0.5 * (t57 * c_proximal_leg2));
+        ::overact::guard::leg(t88, 1.0, "leg2")?;
+        let t89 = 1.0 / t88;
+        let gproximal_wy_leg2 = (t55 * c_proximal_leg2 - t79) * t89;
+        let t93 = t11 + t14;
+        let t94 = t5 + t9;
+        let t95 = t93 - t94;
+        let s_distal_leg3 = 0.5 * t95;
+        let t99 = 1.0 - 0.25 * (t95 * t95);
+        ::overact::guard::reach(t99, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t99);
+        let t105 = 1.0 / (0.5 * (t94 * c_distal_leg3 + t93 * c_distal_leg3));
+        let t106 = t29 + t32;
+        let t107 = t94 + t93;
+        let s_proximal_leg3 = t105 * (0.35355339059327373 * (t106 * t107));
+        let t111 = s_distal_leg3 * s_proximal_leg3;
+        let c_proximal_leg3 = t105 * (0.25 * (t107 * t107));
+        let t117 = 0.7071067811865475 * t106;
+        let t122 = 0.5 * (t94 * c_proximal_leg3) + t117 * s_proximal_leg3
+            + 0.5 * (t93 * c_proximal_leg3);
+        ::overact::guard::leg(t122, 1.0, "leg3")?;
+        let t123 = 1.0 / t122;
+        let minus_gproximal_wy_leg3 = t111 * t123;
+        let t127 = t73 + t9;
+        let t128 = t56 + t32;
+        let t129 = t53 + t14;
+        let t130 = t129 - t128;
+        let t133 = 1.0 - 0.25 * (t130 * t130);
+        ::overact::guard::reach(t133, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t133);
+        let t139 = 1.0 / (0.5 * (t128 * c_distal_leg4 + t129 * c_distal_leg4));
+        let t140 = t128 + t129;
+        let minus_s_proximal_leg4 = t139 * (0.35355339059327373 * (t127 * t140));
+        let t145 = 0.5 * (t127 * minus_s_proximal_leg4);
+        let t146 = 0.7071067811865475 * t129;
+        let c_proximal_leg4 = t139 * (0.25 * (t140 * t140));
+        let t152 = 0.7071067811865475 * t127;
+        let t159 = t152 * minus_s_proximal_leg4 + 0.5 * (t128 * c_proximal_leg4)
+            + 0.5 * (t129 * c_proximal_leg4);
+        ::overact::guard::leg(t159, 1.0, "leg4")?;
+        let t160 = 1.0 / t159;
+        let minus_gproximal_wy_leg4 = (t145 + t146 * c_proximal_leg4) * t160;
+        let minus_s_distal_leg2 = 0.5 * t58;
+        let t165 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let gproximal_wx_leg2 = t165 * t89;
+        let t169 = 0.5 * (t33 * s_proximal_leg1);
+        let t170 = 0.7071067811865475 * t15;
+        let minus_gproximal_wx_leg1 = (t169 - t170 * c_proximal_leg1) * t50;
+        let t177 = 0.5 * (t106 * s_proximal_leg3);
+        let t178 = 0.7071067811865475 * t93;
+        let minus_gproximal_wx_leg3 = (t177 + t178 * c_proximal_leg3) * t123;
+        let s_distal_leg4 = 0.5 * t130;
+        let t185 = s_distal_leg4 * minus_s_proximal_leg4;
+        let minus_gproximal_wx_leg4 = t185 * t160;
+        let t188 = gproximal_wx_leg2 * gproximal_wy_leg2
+            - minus_gproximal_wx_leg1 * gproximal_wy_leg1
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
-            - gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t71 = t70 * t41;
-        let t80 = gproximal_wy_leg1 * gproximal_wy_leg1
+            + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
+        let t195 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+            + gproximal_wx_leg2 * gproximal_wx_leg2
+            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
+        ::overact::guard::platform(t195, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t195, 0.9999999999999998, "actuators")?;
+        let t196 = 1.0 / t195;
+        let t197 = t188 * t196;
+        let t199 = gproximal_wy_leg1 * gproximal_wy_leg1
             + gproximal_wy_leg2 * gproximal_wy_leg2
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t70 * t71;
-        ::overact::guard::platform(t80, 1.0000000000000002, "actuators")?;
-        ::overact::guard::platform(t80, 1.0000000000000002, "actuators")?;
-        let t81 = 1.0 / t80;
-        let t90 = gproximal_wy_leg1 * actuator_velocities[0]
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t188 * t197;
+        ::overact::guard::platform(t199, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t199, 0.9999999999999998, "actuators")?;
+        let t200 = 1.0 / t199;
+        let t201 = 0.5 * t50;
+        let gdistal_wx_leg1 = t33 * t201;
+        let t209 = gproximal_wx_leg2 * actuator_velocities[1]
+            - minus_gproximal_wx_leg1 * actuator_velocities[0]
+            - minus_gproximal_wx_leg3 * actuator_velocities[2]
+            - minus_gproximal_wx_leg4 * actuator_velocities[3];
+        let t219 = gproximal_wy_leg1 * actuator_velocities[0]
             + gproximal_wy_leg2 * actuator_velocities[1]
             - minus_gproximal_wy_leg3 * actuator_velocities[2]
-            - minus_gproximal_wy_leg4 * actuator_velocities[3] - t48 * t71;
-        let t92 = t25 - t26;
-        let minus_gproximal_wz_leg3 = t92 * t28;
-        let t95 = t5 - t6;
-        let minus_gproximal_wz_leg1 = t95 * t8;
-        let t98 = t54 - t55;
-        let minus_gproximal_wz_leg2 = t98 * t16;
-        let t103 = t65 - t66;
-        let minus_gproximal_wz_leg4 = t103 * t37;
-        let t113 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
-            - gproximal_wx_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
-            - gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t114 = t113 * t41;
-        let t116 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
-            - (gproximal_wy_leg1 * minus_gproximal_wz_leg1
-                + gproximal_wy_leg2 * minus_gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t70 * t114;
-        let t117 = t116 * t81;
-        let t128 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wy_leg4 * actuator_velocities[3] - t209 * t197;
+        let t221 = 0.7071067811865475 * t10;
+        let minus_gproximal_wz_leg1 = (t221 * c_proximal_leg1 + t169) * t50;
+        let t226 = 0.7071067811865475 * t57;
+        let minus_gproximal_wz_leg2 = (t226 * c_proximal_leg2 + t79) * t89;
+        let t232 = 0.7071067811865475 * t94;
+        let gproximal_wz_leg3 = (t232 * c_proximal_leg3 + t177) * t123;
+        let t238 = 0.7071067811865475 * t128;
+        let gproximal_wz_leg4 = (t238 * c_proximal_leg4 + t145) * t160;
+        let t250 = minus_gproximal_wx_leg1 * minus_gproximal_wz_leg1
+            - gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wx_leg3 * gproximal_wz_leg3
+            - minus_gproximal_wx_leg4 * gproximal_wz_leg4;
+        let t251 = t250 * t196;
+        let t253 = gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            + gproximal_wy_leg2 * minus_gproximal_wz_leg2
+            + minus_gproximal_wy_leg3 * gproximal_wz_leg3
+            + minus_gproximal_wy_leg4 * gproximal_wz_leg4 + t188 * t251;
+        let t254 = t253 * t200;
+        let t265 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
             + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t113 * t114
-            - t116 * t117;
-        ::overact::guard::platform(t128, 2.0000000000000004, "actuators")?;
-        ::overact::guard::platform(t128, 2.0000000000000004, "actuators")?;
-        let t129 = 1.0 / t128;
-        let t140 = minus_gproximal_wz_leg1 * actuator_velocities[0]
-            + minus_gproximal_wz_leg2 * actuator_velocities[1]
-            + minus_gproximal_wz_leg3 * actuator_velocities[2]
-            + minus_gproximal_wz_leg4 * actuator_velocities[3] + t48 * t114 + t117 * t90;
-        let t141 = t129 * t140;
-        let t143 = t81 * t90 + t117 * t141;
-        let t147 = t48 * t41 - t71 * t143 + t114 * t141;
-        let rate_proximal_leg1 = gproximal_wx_leg1 * t147 + gproximal_wy_leg1 * t143
-            + minus_gproximal_wz_leg1 * t141;
-        let t153 = 0.7071067811865476 * rate_proximal_leg1;
-        let minus_gdistal_wx_leg1 = 0.7071067811865476 * minus_s_proximal_leg1;
-        let rate_distal_leg1 = minus_c_proximal_leg1 * t143
-            - minus_gdistal_wx_leg1 * t147 - minus_gdistal_wx_leg1 * t141;
-        let t160 = minus_c_proximal_leg1 * rate_distal_leg1;
-        let t161 = t153 * t160;
-        let t162 = t2 * minus_s_distal_leg1;
-        let t163 = 0.7071067811865476 * c_distal_leg1;
-        let t164 = t162 + t163;
-        let gwrist_wx_leg1 = t2 * t8;
-        let gwrist_wy_leg1 = minus_s_proximal_leg1 * t8;
-        let rate_wrist_leg1 = gwrist_wx_leg1 * t147 + gwrist_wy_leg1 * t143
-            + gwrist_wx_leg1 * t141;
-        let t172 = t164 * rate_wrist_leg1;
-        let t174 = minus_gdistal_wx_leg1 * rate_distal_leg1;
-        let t175 = t153 + t174;
-        let t177 = minus_s_proximal_leg1 * minus_s_distal_leg1 * rate_wrist_leg1;
-        let t180 = t161 + t160 * t172 + t175 * t177;
-        let t182 = t153 - t174;
-        let t185 = (t163 - t162) * rate_wrist_leg1;
-        let t190 = t182 * t172 - t175 * t185 - 2.0 * (t153 * t174);
-        let t196 = t161 + t182 * t177 + t160 * t185;
-        let rate_dot_proximal_leg1 = gproximal_wx_leg1 * t180 - gproximal_wy_leg1 * t190
-            + minus_gproximal_wz_leg1 * t196;
-        let t199 = actuator_accelerations[0] - rate_dot_proximal_leg1;
-        let rate_proximal_leg2 = gproximal_wy_leg2 * t143
-            - minus_gproximal_wx_leg2 * t147 + minus_gproximal_wz_leg2 * t141;
-        let t206 = 0.7071067811865476 * rate_proximal_leg2;
-        let minus_gdistal_wy_leg2 = 0.7071067811865476 * minus_s_proximal_leg2;
-        let minus_rate_distal_leg2 = minus_c_proximal_leg2 * t147
-            + minus_gdistal_wy_leg2 * t143 + minus_gdistal_wy_leg2 * t141;
-        let t213 = minus_gdistal_wy_leg2 * minus_rate_distal_leg2;
-        let t214 = t206 - t213;
-        let t215 = 0.7071067811865476 * c_distal_leg2;
-        let t216 = t53 * minus_s_distal_leg2;
-        let gwrist_wy_leg2 = t53 * t16;
-        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t16;
-        let rate_wrist_leg2 = gwrist_wy_leg2 * t143 - minus_gwrist_wx_leg2 * t147
-            + gwrist_wy_leg2 * t141;
-        let t225 = (t215 - t216) * rate_wrist_leg2;
-        let t227 = t206 + t213;
-        let t228 = t216 + t215;
-        let t229 = t228 * rate_wrist_leg2;
-        let t234 = t214 * t225 - t227 * t229 - 2.0 * (t206 * t213);
-        let t236 = minus_c_proximal_leg2 * minus_rate_distal_leg2;
-        let t237 = t206 * t236;
-        let t240 = minus_s_proximal_leg2 * minus_s_distal_leg2 * rate_wrist_leg2;
-        let t243 = t237 + t236 * t229 - t214 * t240;
-        let t249 = t227 * t240 - t236 * t225 - t237;
-        let rate_dot_proximal_leg2 = minus_gproximal_wx_leg2 * t234
-            - gproximal_wy_leg2 * t243 + minus_gproximal_wz_leg2 * t249;
-        let t252 = actuator_accelerations[1] - rate_dot_proximal_leg2;
-        let rate_proximal_leg3 = minus_gproximal_wz_leg3 * t141
-            - (minus_gproximal_wx_leg3 * t147 + minus_gproximal_wy_leg3 * t143);
-        let t260 = 0.7071067811865476 * rate_proximal_leg3;
-        let gdistal_wx_leg3 = 0.7071067811865476 * minus_s_proximal_leg3;
-        let rate_distal_leg3 = gdistal_wx_leg3 * t147 - minus_c_proximal_leg3 * t143
-            - gdistal_wx_leg3 * t141;
-        let t267 = minus_c_proximal_leg3 * rate_distal_leg3;
-        let t268 = t260 * t267;
-        let t269 = t22 * minus_s_distal_leg3;
-        let t270 = 0.7071067811865476 * c_distal_leg3;
-        let t271 = t269 + t270;
-        let minus_gwrist_wx_leg3 = t22 * t28;
-        let minus_gwrist_wy_leg3 = minus_s_proximal_leg3 * t28;
-        let rate_wrist_leg3 = minus_gwrist_wx_leg3 * t141
-            - (minus_gwrist_wx_leg3 * t147 + minus_gwrist_wy_leg3 * t143);
-        let t279 = t271 * rate_wrist_leg3;
-        let t281 = gdistal_wx_leg3 * rate_distal_leg3;
-        let t282 = t260 + t281;
-        let t284 = minus_s_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let t287 = t268 + t267 * t279 + t282 * t284;
-        let t291 = t281 - t260;
-        let t294 = (t269 - t270) * rate_wrist_leg3;
-        let t297 = 2.0 * (t260 * t281) + t291 * t279 - t282 * t294;
-        let t303 = t268 - (t291 * t284 + t267 * t294);
-        let rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t287
-            + minus_gproximal_wy_leg3 * t297 + minus_gproximal_wz_leg3 * t303;
-        let t306 = actuator_accelerations[2] - rate_dot_proximal_leg3;
-        let rate_proximal_leg4 = gproximal_wx_leg4 * t147
-            - minus_gproximal_wy_leg4 * t143 + minus_gproximal_wz_leg4 * t141;
-        let t314 = 0.7071067811865476 * rate_proximal_leg4;
-        let gdistal_wy_leg4 = 0.7071067811865476 * minus_s_proximal_leg4;
-        let rate_distal_leg4 = minus_c_proximal_leg4 * t147 + gdistal_wy_leg4 * t143
-            - gdistal_wy_leg4 * t141;
-        let t321 = minus_c_proximal_leg4 * rate_distal_leg4;
-        let t322 = t314 * t321;
-        let t323 = gdistal_wy_leg4 * rate_distal_leg4;
-        let t324 = t314 + t323;
-        let gwrist_wx_leg4 = minus_s_proximal_leg4 * t37;
-        let minus_gwrist_wy_leg4 = t64 * t37;
-        let rate_wrist_leg4 = gwrist_wx_leg4 * t147 - minus_gwrist_wy_leg4 * t143
-            + minus_gwrist_wy_leg4 * t141;
-        let t333 = minus_s_proximal_leg4 * minus_s_distal_leg4 * rate_wrist_leg4;
-        let t335 = t64 * minus_s_distal_leg4;
-        let t336 = 0.7071067811865476 * c_distal_leg4;
-        let t337 = t335 + t336;
-        let t338 = t337 * rate_wrist_leg4;
-        let t341 = t322 + t324 * t333 + t321 * t338;
-        let t344 = (t335 - t336) * rate_wrist_leg4;
-        let t346 = t323 - t314;
-        let t351 = t324 * t344 - t346 * t338 - 2.0 * (t314 * t323);
-        let t357 = t322 - (t321 * t344 + t346 * t333);
-        let rate_dot_proximal_leg4 = minus_gproximal_wy_leg4 * t341
-            - gproximal_wx_leg4 * t351 + minus_gproximal_wz_leg4 * t357;
-        let t360 = actuator_accelerations[3] - rate_dot_proximal_leg4;
-        let t362 = gproximal_wx_leg1 * t199 - minus_gproximal_wx_leg2 * t252
-            - minus_gproximal_wx_leg3 * t306 + gproximal_wx_leg4 * t360;
-        let t372 = gproximal_wy_leg1 * t199 + gproximal_wy_leg2 * t252
-            - minus_gproximal_wy_leg3 * t306 - minus_gproximal_wy_leg4 * t360
-            - t71 * t362;
-        let t384 = minus_gproximal_wz_leg1 * t199 + minus_gproximal_wz_leg2 * t252
-            + minus_gproximal_wz_leg3 * t306 + minus_gproximal_wz_leg4 * t360
-            + t114 * t362 + t117 * t372;
-        let t385 = t129 * t384;
-        let t387 = t81 * t372 + t117 * t385;
-        let t391 = t41 * t362 - t71 * t387 + t114 * t385;
-        let t392 = t391 + t180;
-        let t394 = t387 - t190;
-        let t397 = t385 + t196;
-        let rate_dot_proximal_leg1_2 = gproximal_wx_leg1 * t392
-            + gproximal_wy_leg1 * t394 + minus_gproximal_wz_leg1 * t397;
-        let t400 = 6.9367175234400325 * minus_s_proximal_leg1;
-        let t401 = 6.9367175234400325 * minus_c_proximal_leg1;
-        let t403 = c_distal_leg1 * rate_proximal_leg1;
-        let t404 = rate_distal_leg1 * t403;
-        let t405 = minus_s_distal_leg1 * rate_dot_proximal_leg1_2;
-        let t406 = t404 - t405;
-        let t408 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t409 = rate_distal_leg1 * t408;
-        let t417 = minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2
-            + gproximal_wx_leg1 * minus_gproximal_wz_leg2;
-        let t421 = gproximal_wy_leg1 * minus_gproximal_wz_leg2
+            + gproximal_wz_leg3 * gproximal_wz_leg3
+            + gproximal_wz_leg4 * gproximal_wz_leg4 - t250 * t251 - t253 * t254;
+        ::overact::guard::platform(t265, 1.9999999999999996, "actuators")?;
+        ::overact::guard::platform(t265, 1.9999999999999996, "actuators")?;
+        let t266 = 1.0 / t265;
+        let t277 = gproximal_wz_leg3 * actuator_velocities[2]
+            - (minus_gproximal_wz_leg1 * actuator_velocities[0]
+                + minus_gproximal_wz_leg2 * actuator_velocities[1])
+            + gproximal_wz_leg4 * actuator_velocities[3] - t209 * t251 + t254 * t219;
+        let t278 = t266 * t277;
+        let t280 = t200 * t219 + t254 * t278;
+        let t284 = t209 * t196 - t197 * t280 - t251 * t278;
+        let minus_gdistal_wy_leg1 = t34 * t201;
+        let rate_distal_leg1 = gdistal_wx_leg1 * t284 - minus_gdistal_wy_leg1 * t280
+            - gdistal_wx_leg1 * t278;
+        let t291 = c_proximal_leg1 * rate_distal_leg1;
+        let minus_gwrist_wx_leg1 = 0.7071067811865475 * c_proximal_leg1 * t50;
+        let minus_gwrist_wy_leg1 = s_proximal_leg1 * t50;
+        let rate_wrist_leg1 = minus_gwrist_wx_leg1 * t278
+            - (minus_gwrist_wx_leg1 * t284 + minus_gwrist_wy_leg1 * t280);
+        let t300 = t170 * rate_wrist_leg1;
+        let rate_proximal_leg1 = gproximal_wy_leg1 * t280
+            - minus_gproximal_wx_leg1 * t284 - minus_gproximal_wz_leg1 * t278;
+        let t307 = 0.7071067811865475 * rate_proximal_leg1;
+        let t309 = 0.7071067811865475 * s_proximal_leg1 * rate_distal_leg1;
+        let t310 = t307 + t309;
+        let t311 = t46 * rate_wrist_leg1;
+        let t314 = t307 * t291;
+        let t315 = t291 * t300 - t310 * t311 - t314;
+        let t317 = t221 * rate_wrist_leg1;
+        let t319 = t307 - t309;
+        let t324 = t310 * t317 - t319 * t300 - 2.0 * (t307 * t309);
+        let t330 = t314 + t319 * t311 - t291 * t317;
+        let rate_dot_proximal_leg1 = minus_gproximal_wx_leg1 * t315
+            - gproximal_wy_leg1 * t324 + minus_gproximal_wz_leg1 * t330;
+        let t333 = actuator_accelerations[0] - rate_dot_proximal_leg1;
+        let rate_proximal_leg2 = gproximal_wx_leg2 * t284 + gproximal_wy_leg2 * t280
+            - minus_gproximal_wz_leg2 * t278;
+        let t340 = 0.7071067811865475 * rate_proximal_leg2;
+        let t341 = 0.5 * t89;
+        let gdistal_wx_leg2 = t68 * t341;
+        let minus_gdistal_wy_leg2 = t74 * t341;
+        let rate_distal_leg2 = gdistal_wx_leg2 * t284 - minus_gdistal_wy_leg2 * t280
+            + minus_gdistal_wy_leg2 * t278;
+        let t349 = c_proximal_leg2 * rate_distal_leg2;
+        let t350 = t340 * t349;
+        let minus_gwrist_wy_leg2 = 0.7071067811865475 * c_proximal_leg2 * t89;
+        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t89;
+        let rate_wrist_leg2 = minus_gwrist_wy_leg2 * t278
+            - (minus_gwrist_wx_leg2 * t284 + minus_gwrist_wy_leg2 * t280);
+        let t359 = t226 * rate_wrist_leg2;
+        let t362 = 0.7071067811865475 * minus_s_proximal_leg2 * rate_distal_leg2;
+        let t363 = t340 + t362;
+        let t364 = t83 * rate_wrist_leg2;
+        let t367 = t350 - (t349 * t359 + t363 * t364);
+        let t369 = t55 * rate_wrist_leg2;
+        let t371 = t340 - t362;
+        let t376 = t363 * t369 - t371 * t359 - 2.0 * (t340 * t362);
+        let t381 = t371 * t364 + t349 * t369 - t350;
+        let rate_dot_proximal_leg2 = minus_gproximal_wz_leg2 * t367
+            - (gproximal_wx_leg2 * t376 + gproximal_wy_leg2 * t381);
+        let t385 = actuator_accelerations[1] - rate_dot_proximal_leg2;
+        let rate_proximal_leg3 = gproximal_wz_leg3 * t278
+            - (minus_gproximal_wx_leg3 * t284 + minus_gproximal_wy_leg3 * t280);
+        let t393 = 0.7071067811865475 * rate_proximal_leg3;
+        let t394 = 0.5 * t123;
+        let gdistal_wx_leg3 = t106 * t394;
+        let minus_gdistal_wy_leg3 = t107 * t394;
+        let rate_distal_leg3 = gdistal_wx_leg3 * t284 - minus_gdistal_wy_leg3 * t280
+            + gdistal_wx_leg3 * t278;
+        let t402 = c_proximal_leg3 * rate_distal_leg3;
+        let t403 = t393 * t402;
+        let minus_gwrist_wx_leg3 = 0.7071067811865475 * c_proximal_leg3 * t123;
+        let minus_gwrist_wy_leg3 = s_proximal_leg3 * t123;
+        let minus_rate_wrist_leg3 = minus_gwrist_wx_leg3 * t284
+            + minus_gwrist_wy_leg3 * t280 + minus_gwrist_wx_leg3 * t278;
+        let t412 = t178 * minus_rate_wrist_leg3;
+        let t415 = 0.7071067811865475 * s_proximal_leg3 * rate_distal_leg3;
+        let t416 = t393 + t415;
+        let t417 = t117 * minus_rate_wrist_leg3;
+        let t420 = t403 - (t402 * t412 + t416 * t417);
+        let t424 = t232 * minus_rate_wrist_leg3;
+        let t426 = t415 - t393;
+        let t429 = 2.0 * (t393 * t415) + t416 * t424 - t426 * t412;
+        let t435 = t403 + t426 * t417 + t402 * t424;
+        let rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t420
+            + minus_gproximal_wy_leg3 * t429 - gproximal_wz_leg3 * t435;
+        let t438 = actuator_accelerations[2] - rate_dot_proximal_leg3;
+        let rate_proximal_leg4 = gproximal_wz_leg4 * t278
+            - (minus_gproximal_wx_leg4 * t284 + minus_gproximal_wy_leg4 * t280);
+        let t446 = 0.7071067811865475 * rate_proximal_leg4;
+        let t448 = 0.5 * t160;
+        let gdistal_wx_leg4 = t140 * t448;
+        let minus_gdistal_wy_leg4 = t127 * t448;
+        let rate_distal_leg4 = gdistal_wx_leg4 * t284 - minus_gdistal_wy_leg4 * t280
+            - minus_gdistal_wy_leg4 * t278;
+        let t456 = 0.7071067811865475 * minus_s_proximal_leg4 * rate_distal_leg4;
+        let t459 = t446 + t456;
+        let minus_gwrist_wx_leg4 = minus_s_proximal_leg4 * t160;
+        let minus_gwrist_wy_leg4 = 0.7071067811865475 * c_proximal_leg4 * t160;
+        let minus_rate_wrist_leg4 = minus_gwrist_wx_leg4 * t284
+            + minus_gwrist_wy_leg4 * t280 + minus_gwrist_wy_leg4 * t278;
+        let t468 = t146 * minus_rate_wrist_leg4;
+        let t470 = t446 - t456;
+        let t471 = t238 * minus_rate_wrist_leg4;
+        let t474 = 2.0 * (t446 * t456) - (t459 * t468 + t470 * t471);
+        let t476 = c_proximal_leg4 * rate_distal_leg4;
+        let t477 = t446 * t476;
+        let t478 = t152 * minus_rate_wrist_leg4;
+        let t482 = t477 + t470 * t478 - t476 * t468;
+        let t488 = t477 + t476 * t471 + t459 * t478;
+        let rate_dot_proximal_leg4 = minus_gproximal_wx_leg4 * t474
+            + minus_gproximal_wy_leg4 * t482 - gproximal_wz_leg4 * t488;
+        let t491 = actuator_accelerations[3] - rate_dot_proximal_leg4;
+        let t500 = gproximal_wx_leg2 * t385 - minus_gproximal_wx_leg1 * t333
+            - minus_gproximal_wx_leg3 * t438 - minus_gproximal_wx_leg4 * t491;
+        let t502 = gproximal_wy_leg1 * t333 + gproximal_wy_leg2 * t385
+            - minus_gproximal_wy_leg3 * t438 - minus_gproximal_wy_leg4 * t491
+            - t197 * t500;
+        let t514 = gproximal_wz_leg3 * t438
+            - (minus_gproximal_wz_leg1 * t333 + minus_gproximal_wz_leg2 * t385)
+            + gproximal_wz_leg4 * t491 - t251 * t500 + t254 * t502;
+        let t515 = t266 * t514;
+        let t517 = t200 * t502 + t254 * t515;
+        let t518 = t517 - t324;
+        let t524 = t196 * t500 - t197 * t517 - t251 * t515;
+        let t525 = t524 - t315;
+        let t528 = t515 - t330;
+        let rate_dot_proximal_leg1_2 = gproximal_wy_leg1 * t518
+            - minus_gproximal_wx_leg1 * t525 - minus_gproximal_wz_leg1 * t528;
+        let t532 = 6.936717523440031 * c_proximal_leg1;
+        let t534 = c_distal_leg1 * rate_dot_proximal_leg1_2;
+        let t535 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t536 = rate_distal_leg1 * t535;
+        let t537 = t534 + t536;
+        let t539 = c_distal_leg1 * rate_proximal_leg1;
+        let t540 = rate_distal_leg1 * t539;
+        let t548 = gproximal_wy_leg1 * gproximal_wx_leg2
+            + minus_gproximal_wx_leg1 * gproximal_wy_leg2;
+        let t552 = gproximal_wy_leg1 * minus_gproximal_wz_leg2
             - minus_gproximal_wz_leg1 * gproximal_wy_leg2;
-        let t426 = gproximal_wy_leg1 * minus_gproximal_wx_leg2
-            + gproximal_wx_leg1 * gproximal_wy_leg2;
-        let t428 = minus_gproximal_wy_leg3 * t417 - minus_gproximal_wx_leg3 * t421
-            + minus_gproximal_wz_leg3 * t426;
-        ::overact::guard::platform(t428, 0.7071067811865477, "kept actuators")?;
-        ::overact::guard::platform(t428, 0.7071067811865477, "kept actuators")?;
-        ::overact::guard::platform(t428, 0.7071067811865477, "kept actuators")?;
-        let t429 = 1.0 / t428;
-        let t430 = (minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3
-            + gproximal_wy_leg2 * minus_gproximal_wz_leg3) * t429;
-        let t435 = (minus_gproximal_wz_leg2 * minus_gproximal_wx_leg3
-            - minus_gproximal_wx_leg2 * minus_gproximal_wz_leg3) * t429;
-        let t441 = (gproximal_wy_leg2 * minus_gproximal_wx_leg3
-            + minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3) * t429;
-        let t443 = minus_gdistal_wx_leg1 * t430 + minus_c_proximal_leg1 * t435
-            + minus_gdistal_wx_leg1 * t441;
-        let t444 = t408 * t403;
-        let t446 = minus_s_distal_leg1 * t406 + c_distal_leg1 * t409 + t443 * t444;
-        let t450 = (minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3
-            + gproximal_wy_leg1 * minus_gproximal_wz_leg3) * t429;
-        let t455 = (minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3
-            + gproximal_wx_leg1 * minus_gproximal_wz_leg3) * t429;
-        let t461 = (gproximal_wx_leg1 * minus_gproximal_wy_leg3
-            - gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t429;
-        let t463 = minus_gdistal_wx_leg1 * t450 + minus_c_proximal_leg1 * t455
-            - minus_gdistal_wx_leg1 * t461;
-        let t464 = t463 * t444;
-        let t465 = t421 * t429;
-        let t467 = t417 * t429;
-        let t470 = t426 * t429;
-        let t472 = minus_gdistal_wx_leg1 * t465 + minus_c_proximal_leg1 * t467
-            + minus_gdistal_wx_leg1 * t470;
-        let t473 = t472 * t444;
-        let t476 = c_distal_leg1 * rate_dot_proximal_leg1_2;
-        let t481 = t408 * t408;
-        let t482 = t403 * t403;
-        let t483 = t481 - t482;
-        let t488 = rate_distal_leg1 * rate_distal_leg1;
-        let rate_dot_distal_leg1 = minus_c_proximal_leg1 * t394
-            - minus_gdistal_wx_leg1 * t392 - minus_gdistal_wx_leg1 * t397;
-        let t517 = 9.81 * t164;
-        let t522 = 9.81 * t95;
-        let t528 = t387 - t243;
-        let t530 = t391 - t234;
-        let t533 = t385 + t249;
-        let rate_dot_proximal_leg2_2 = gproximal_wy_leg2 * t528
-            - minus_gproximal_wx_leg2 * t530 + minus_gproximal_wz_leg2 * t533;
-        let t536 = 6.9367175234400325 * minus_s_proximal_leg2;
-        let t537 = 6.9367175234400325 * minus_c_proximal_leg2;
-        let t543 = minus_gdistal_wy_leg2 * t435 - minus_c_proximal_leg2 * t430
-            - minus_gdistal_wy_leg2 * t441;
-        let t544 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t545 = c_distal_leg2 * rate_proximal_leg2;
-        let t546 = t544 * t545;
-        let t547 = t543 * t546;
-        let t548 = minus_s_distal_leg2 * rate_dot_proximal_leg2_2;
-        let t549 = minus_rate_distal_leg2 * t545;
-        let t550 = t548 + t549;
-        let t552 = minus_rate_distal_leg2 * t544;
-        let t559 = minus_c_proximal_leg2 * t450 - minus_gdistal_wy_leg2 * t455
-            - minus_gdistal_wy_leg2 * t461;
-        let t561 = minus_s_distal_leg2 * t550 + c_distal_leg2 * t552 + t559 * t546;
-        let t566 = minus_gdistal_wy_leg2 * t467 - minus_c_proximal_leg2 * t465
-            - minus_gdistal_wy_leg2 * t470;
-        let t567 = t566 * t546;
-        let t568 = t544 * t544;
-        let t569 = t545 * t545;
-        let t570 = t568 - t569;
-        let t572 = c_distal_leg2 * rate_dot_proximal_leg2_2;
-        let minus_rate_dot_distal_leg2 = minus_c_proximal_leg2 * t530
-            + minus_gdistal_wy_leg2 * t528 + minus_gdistal_wy_leg2 * t533;
-        let t590 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t610 = 9.81 * t228;
-        let t616 = 9.81 * t98;
-        let t622 = t385 + t303;
-        let t624 = t391 - t287;
-        let t626 = t387 - t297;
-        let rate_dot_proximal_leg3_2 = minus_gproximal_wz_leg3 * t622
-            - (minus_gproximal_wx_leg3 * t624 + minus_gproximal_wy_leg3 * t626);
-        let t630 = 6.9367175234400325 * minus_s_proximal_leg3;
-        let t631 = 6.9367175234400325 * minus_c_proximal_leg3;
-        let t637 = gdistal_wx_leg3 * t430 + minus_c_proximal_leg3 * t435
-            - gdistal_wx_leg3 * t441;
-        let t638 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t639 = c_distal_leg3 * rate_proximal_leg3;
-        let t640 = t638 * t639;
-        let t641 = t637 * t640;
-        let t646 = gdistal_wx_leg3 * t450 + minus_c_proximal_leg3 * t455
-            + gdistal_wx_leg3 * t461;
-        let t647 = t646 * t640;
-        let t652 = gdistal_wx_leg3 * t465 + minus_c_proximal_leg3 * t467
-            - gdistal_wx_leg3 * t470;
-        let t654 = rate_distal_leg3 * t639;
-        let t655 = minus_s_distal_leg3 * rate_dot_proximal_leg3_2;
-        let t656 = t654 - t655;
-        let t658 = rate_distal_leg3 * t638;
-        let t661 = t652 * t640 - (minus_s_distal_leg3 * t656 + c_distal_leg3 * t658);
-        let t662 = t638 * t638;
-        let t663 = t639 * t639;
-        let t664 = t662 - t663;
-        let t669 = c_distal_leg3 * rate_dot_proximal_leg3_2;
-        let t678 = rate_distal_leg3 * rate_distal_leg3;
-        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t624 - minus_c_proximal_leg3 * t626
-            - gdistal_wx_leg3 * t622;
-        let t704 = 9.81 * t271;
-        let t710 = 9.81 * t92;
-        let t720 = gproximal_wx_leg4 * t430 + minus_gproximal_wy_leg4 * t435
-            + minus_gproximal_wz_leg4 * t441;
-        let t721 = t391 - t351;
-        let t723 = t387 - t341;
-        let t726 = t385 + t357;
-        let rate_dot_proximal_leg4_2 = gproximal_wx_leg4 * t721
-            - minus_gproximal_wy_leg4 * t723 + minus_gproximal_wz_leg4 * t726;
-        let t729 = t720 * rate_dot_proximal_leg4_2;
-        let t734 = minus_gproximal_wz_leg4 * t461
-            - (gproximal_wx_leg4 * t450 + minus_gproximal_wy_leg4 * t455);
-        let t735 = t734 * rate_dot_proximal_leg4_2;
-        let t740 = gproximal_wx_leg4 * t465 + minus_gproximal_wy_leg4 * t467
-            + minus_gproximal_wz_leg4 * t470;
-        let t741 = t740 * rate_dot_proximal_leg4_2;
-        let t742 = 6.9367175234400325 * minus_s_proximal_leg4;
-        let t746 = 6.9367175234400325 * minus_c_proximal_leg4;
-        let t747 = t720 * t746;
-        let t748 = t734 * t746;
-        let t749 = t740 * t746;
-        let t760 = minus_c_proximal_leg4 * t430 - gdistal_wy_leg4 * t435
-            - gdistal_wy_leg4 * t441;
-        let t761 = minus_s_distal_leg4 * rate_proximal_leg4;
-        let t762 = c_distal_leg4 * rate_proximal_leg4;
-        let t763 = t761 * t762;
-        let t765 = rate_distal_leg4 * t762;
-        let t766 = minus_s_distal_leg4 * rate_dot_proximal_leg4_2;
-        let t767 = t765 - t766;
-        let t769 = rate_distal_leg4 * t761;
-        let t771 = minus_s_distal_leg4 * t767 + c_distal_leg4 * t769;
-        let t773 = t760 * t763 - t720 * t771;
-        let t778 = gdistal_wy_leg4 * t455 - minus_c_proximal_leg4 * t450
-            - gdistal_wy_leg4 * t461;
-        let t781 = t778 * t763 - t734 * t771;
-        let t786 = minus_c_proximal_leg4 * t465 - gdistal_wy_leg4 * t467
-            - gdistal_wy_leg4 * t470;
-        let t789 = t786 * t763 - t740 * t771;
-        let t792 = c_distal_leg4 * rate_dot_proximal_leg4_2;
-        let t796 = c_distal_leg4 * (t765 + t767)
-            - minus_s_distal_leg4 * (t769 + t792 + t769);
-        let t798 = t761 * t761;
-        let t799 = t762 * t762;
-        let t800 = t798 - t799;
-        let t809 = rate_distal_leg4 * rate_distal_leg4;
-        let rate_dot_distal_leg4 = minus_c_proximal_leg4 * t721 + gdistal_wy_leg4 * t723
-            - gdistal_wy_leg4 * t726;
-        let t819 = c_distal_leg4 * (t809 - t798)
-            - minus_s_distal_leg4 * (rate_dot_distal_leg4 - t763);
-        let t836 = c_distal_leg4 * (t763 + rate_dot_distal_leg4)
-            - minus_s_distal_leg4 * (t799 - t809);
-        let t849 = 9.81 * t337;
-        let t851 = c_distal_leg4 * t742;
-        let t860 = minus_s_distal_leg4 * t742;
-        let t862 = 9.81 * t103;
-        let t871 = 2.0 * pose[2];
-        let t872 = pose[2] * t871;
-        let t874 = 2.0 * pose[3];
-        let t875 = pose[3] * t874;
-        let t876 = 1.0 - t872 - t875;
-        let t878 = 2.0 * pose[1];
-        let t879 = pose[2] * t878;
-        let t880 = pose[0] * t874;
-        let t881 = t879 + t880;
-        let t884 = pose[3] * t878;
-        let t885 = pose[0] * t871;
-        let t886 = t884 - t885;
-        let t888 = t876 * t391 + t881 * t387 - t886 * t385;
-        let t890 = t879 - t880;
-        let t895 = t876 * t147 + t881 * t143 - t886 * t141;
-        let t896 = t884 + t885;
-        let t898 = pose[3] * t871;
-        let t899 = pose[0] * t878;
-        let t900 = t898 - t899;
-        let t904 = 1.0 - pose[1] * t878;
-        let t905 = t904 - t872;
-        let t907 = t896 * t147 + t900 * t143 - t905 * t141;
-        let t908 = t895 * t907;
-        let t909 = t890 * t908;
-        let t912 = t904 - t875;
-        let t915 = t898 + t899;
-        let t917 = t890 * t147 + t912 * t143 - t915 * t141;
-        let t918 = t895 * t917;
-        let t919 = t896 * t918;
-        let t920 = t876 * t888 + t909 - t919;
-        let t923 = t912 * t908;
-        let t925 = t900 * t918;
-        let t926 = t881 * t888 + t923 - t925;
-        let t930 = t915 * t908;
-        let t932 = t905 * t918;
-        let t933 = t886 * t888 + t930 - t932;
-        let t946 = t917 * t907;
-        let t947 = t946 + t888;
-        let t953 = t890 * t391 + t912 * t387 - t915 * t385;
-        let t954 = t908 - t953;
-        let t957 = t895 * t895;
-        let t958 = t917 * t917;
-        let t959 = t957 - t958;
-        let t961 = t890 * t947 - t876 * t954 + t896 * t959;
-        let t967 = t912 * t947 - t881 * t954 + t900 * t959;
-        let t974 = t915 * t947 - t886 * t954 + t905 * t959;
-        let t991 = t896 * t391 + t900 * t387 - t905 * t385;
-        let t992 = t918 + t991;
-        let t994 = t907 * t907;
-        let t995 = t994 - t957;
-        let t998 = t946 - t888;
-        let t1000 = t876 * t992 + t890 * t995 - t896 * t998;
-        let t1006 = t881 * t992 + t912 * t995 - t900 * t998;
-        let t1013 = t886 * t992 + t915 * t995 - t905 * t998;
-        let t1027 = t876 * t946;
-        let t1029 = t890 * t953 - t1027 + t919;
-        let t1032 = t881 * t946;
-        let t1034 = t912 * t953 - t1032 + t925;
-        let t1038 = t886 * t946;
-        let t1040 = t915 * t953 - t1038 + t932;
-        let t1053 = t958 - t994;
-        let t1055 = t918 - t991;
-        let t1058 = t908 + t953;
-        let t1060 = t876 * t1053 - t890 * t1055 + t896 * t1058;
-        let t1066 = t881 * t1053 - t912 * t1055 + t900 * t1058;
-        let t1073 = t886 * t1053 - t915 * t1055 + t905 * t1058;
-        let t1088 = t1027 - t909 + t896 * t991;
-        let t1092 = t1032 - t923 + t900 * t991;
-        let t1097 = t1038 - t930 + t905 * t991;
-        let t1110 = 9.81 * t915;
-        let t1112 = 9.81 * t905;
-        let t1114 = t896 * t1110 - t890 * t1112;
-        let t1118 = t900 * t1110 - t912 * t1112;
-        let t1128 = 9.81 * t886;
-        let t1130 = t876 * t1112 - t896 * t1128;
-        let t1134 = t881 * t1112 - t900 * t1128;
-        let t1145 = t890 * t1128 - t876 * t1110;
-        let t1149 = t912 * t1128 - t881 * t1110;
+        let t556 = minus_gproximal_wz_leg1 * gproximal_wx_leg2
+            + minus_gproximal_wx_leg1 * minus_gproximal_wz_leg2;
+        let t559 = gproximal_wz_leg3 * t548
+            - (minus_gproximal_wx_leg3 * t552 + minus_gproximal_wy_leg3 * t556);
+        ::overact::guard::platform(t559, 0.7071067811865474, "kept actuators")?;
+        ::overact::guard::platform(t559, 0.7071067811865474, "kept actuators")?;
+        ::overact::guard::platform(t559, 0.7071067811865474, "kept actuators")?;
+        let t560 = 1.0 / t559;
+        let t561 = (minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3
+            - gproximal_wy_leg2 * gproximal_wz_leg3) * t560;
+        let t566 = (minus_gproximal_wz_leg2 * minus_gproximal_wx_leg3
+            - gproximal_wx_leg2 * gproximal_wz_leg3) * t560;
+        let t572 = (gproximal_wx_leg2 * minus_gproximal_wy_leg3
+            - gproximal_wy_leg2 * minus_gproximal_wx_leg3) * t560;
+        let t574 = gdistal_wx_leg1 * t561 + minus_gdistal_wy_leg1 * t566
+            - gdistal_wx_leg1 * t572;
+        let t575 = t539 * t535;
+        let t577 = c_distal_leg1 * t537 + minus_s_distal_leg1 * t540 - t574 * t575;
+        let t581 = (minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3
+            - gproximal_wy_leg1 * gproximal_wz_leg3) * t560;
+        let t586 = (minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg1 * gproximal_wz_leg3) * t560;
+        let t592 = (gproximal_wy_leg1 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg1 * minus_gproximal_wy_leg3) * t560;
+        let t594 = gdistal_wx_leg1 * t581 + minus_gdistal_wy_leg1 * t586
+            + gdistal_wx_leg1 * t592;
+        let t595 = t594 * t575;
+        let t596 = t552 * t560;
+        let t598 = t556 * t560;
+        let t601 = t548 * t560;
+        let t603 = gdistal_wx_leg1 * t596 - minus_gdistal_wy_leg1 * t598
+            - gdistal_wx_leg1 * t601;
+        let t604 = t603 * t575;
+        let t607 = minus_s_distal_leg1 * rate_dot_proximal_leg1_2;
+        let t612 = t539 * t539;
+        let t613 = t535 * t535;
+        let t614 = t612 - t613;
+        let rate_dot_distal_leg1 = gdistal_wx_leg1 * t525 - minus_gdistal_wy_leg1 * t518
+            - gdistal_wx_leg1 * t528;
+        let t626 = rate_distal_leg1 * rate_distal_leg1;
+        let t650 = c_distal_leg1 * t532 - 3.4683587617200153 * t16;
+        let t657 = 6.936717523440031
+            * (minus_s_distal_leg1 * c_proximal_leg1 + c_distal_leg1);
+        let t663 = t524 - t376;
+        let t665 = t517 - t381;
+        let t668 = t515 - t367;
+        let rate_dot_proximal_leg2_2 = gproximal_wx_leg2 * t663
+            + gproximal_wy_leg2 * t665 - minus_gproximal_wz_leg2 * t668;
+        let t672 = 6.936717523440031 * c_proximal_leg2;
+        let t678 = gdistal_wx_leg2 * t561 + minus_gdistal_wy_leg2 * t566
+            + minus_gdistal_wy_leg2 * t572;
+        let t679 = c_distal_leg2 * rate_proximal_leg2;
+        let t680 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t681 = t679 * t680;
+        let t682 = t678 * t681;
+        let t683 = c_distal_leg2 * rate_dot_proximal_leg2_2;
+        let t684 = rate_distal_leg2 * t680;
+        let t685 = t683 + t684;
+        let t687 = rate_distal_leg2 * t679;
+        let t694 = minus_gdistal_wy_leg2 * t592
+            - (gdistal_wx_leg2 * t581 + minus_gdistal_wy_leg2 * t586);
+        let t696 = c_distal_leg2 * t685 + minus_s_distal_leg2 * t687 - t694 * t681;
+        let t701 = gdistal_wx_leg2 * t596 - minus_gdistal_wy_leg2 * t598
+            + minus_gdistal_wy_leg2 * t601;
+        let t702 = t701 * t681;
+        let t703 = t679 * t679;
+        let t704 = t680 * t680;
+        let t705 = t703 - t704;
+        let t709 = minus_s_distal_leg2 * rate_dot_proximal_leg2_2;
+        let rate_dot_distal_leg2 = gdistal_wx_leg2 * t663 - minus_gdistal_wy_leg2 * t665
+            + minus_gdistal_wy_leg2 * t668;
+        let t725 = rate_distal_leg2 * rate_distal_leg2;
+        let t747 = c_distal_leg2 * t672 - 3.4683587617200153 * t58;
+        let t755 = 6.936717523440031
+            * (minus_s_distal_leg2 * c_proximal_leg2 + c_distal_leg2);
+        let t761 = t515 - t435;
+        let t763 = t524 - t420;
+        let t765 = t517 - t429;
+        let rate_dot_proximal_leg3_2 = gproximal_wz_leg3 * t761
+            - (minus_gproximal_wx_leg3 * t763 + minus_gproximal_wy_leg3 * t765);
+        let t770 = 6.936717523440031 * c_proximal_leg3;
+        let t776 = gdistal_wx_leg3 * t561 + minus_gdistal_wy_leg3 * t566
+            + gdistal_wx_leg3 * t572;
+        let t777 = c_distal_leg3 * rate_proximal_leg3;
+        let t778 = s_distal_leg3 * rate_proximal_leg3;
+        let t779 = t777 * t778;
+        let t780 = t776 * t779;
+        let t785 = gdistal_wx_leg3 * t592
+            - (gdistal_wx_leg3 * t581 + minus_gdistal_wy_leg3 * t586);
+        let t786 = t785 * t779;
+        let t791 = gdistal_wx_leg3 * t596 - minus_gdistal_wy_leg3 * t598
+            + gdistal_wx_leg3 * t601;
+        let t793 = rate_distal_leg3 * t778;
+        let t794 = c_distal_leg3 * rate_dot_proximal_leg3_2;
+        let t795 = t793 - t794;
+        let t797 = rate_distal_leg3 * t777;
+        let t800 = t791 * t779 - (c_distal_leg3 * t795 + s_distal_leg3 * t797);
+        let t801 = t777 * t777;
+        let t802 = t778 * t778;
+        let t803 = t801 - t802;
+        let t808 = s_distal_leg3 * rate_dot_proximal_leg3_2;
+        let t817 = rate_distal_leg3 * rate_distal_leg3;
+        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t763 - minus_gdistal_wy_leg3 * t765
+            + gdistal_wx_leg3 * t761;
+        let t845 = c_distal_leg3 * t770 + 3.4683587617200153 * t95;
+        let t853 = 6.936717523440031 * (s_distal_leg3 * c_proximal_leg3 - c_distal_leg3);
+        let t863 = minus_gproximal_wy_leg4 * t566 - minus_gproximal_wx_leg4 * t561
+            + gproximal_wz_leg4 * t572;
+        let t864 = t515 - t488;
+        let t866 = t524 - t474;
+        let t868 = t517 - t482;
+        let rate_dot_proximal_leg4_2 = gproximal_wz_leg4 * t864
+            - (minus_gproximal_wx_leg4 * t866 + minus_gproximal_wy_leg4 * t868);
+        let t872 = t863 * rate_dot_proximal_leg4_2;
+        let t877 = minus_gproximal_wx_leg4 * t581 - minus_gproximal_wy_leg4 * t586
+            + gproximal_wz_leg4 * t592;
+        let t878 = t877 * rate_dot_proximal_leg4_2;
+        let t883 = gproximal_wz_leg4 * t601
+            - (minus_gproximal_wx_leg4 * t596 + minus_gproximal_wy_leg4 * t598);
+        let t884 = t883 * rate_dot_proximal_leg4_2;
+        let t885 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t889 = 6.936717523440031 * c_proximal_leg4;
+        let t890 = t863 * t889;
+        let t891 = t877 * t889;
+        let t892 = t883 * t889;
+        let t903 = gdistal_wx_leg4 * t561 + minus_gdistal_wy_leg4 * t566
+            - minus_gdistal_wy_leg4 * t572;
+        let t904 = c_distal_leg4 * rate_proximal_leg4;
+        let t905 = s_distal_leg4 * rate_proximal_leg4;
+        let t906 = t904 * t905;
+        let t908 = rate_distal_leg4 * t905;
+        let t909 = c_distal_leg4 * rate_dot_proximal_leg4_2;
+        let t910 = t908 - t909;
+        let t912 = rate_distal_leg4 * t904;
+        let t914 = c_distal_leg4 * t910 + s_distal_leg4 * t912;
+        let t916 = t903 * t906 - t863 * t914;
+        let t922 = gdistal_wx_leg4 * t581 + minus_gdistal_wy_leg4 * t586
+            + minus_gdistal_wy_leg4 * t592;
+        let t924 = t877 * t914 + t922 * t906;
+        let t929 = gdistal_wx_leg4 * t596 - minus_gdistal_wy_leg4 * t598
+            - minus_gdistal_wy_leg4 * t601;
+        let t932 = t929 * t906 - t883 * t914;
+        let t935 = s_distal_leg4 * rate_dot_proximal_leg4_2;
+        let t939 = s_distal_leg4 * (t908 + t910) - c_distal_leg4 * (t912 + t935 + t912);
+        let t941 = t904 * t904;
+        let t942 = t905 * t905;
+        let t943 = t941 - t942;
+        let t952 = rate_distal_leg4 * rate_distal_leg4;
+        let rate_dot_distal_leg4 = gdistal_wx_leg4 * t866 - minus_gdistal_wy_leg4 * t868
+            - minus_gdistal_wy_leg4 * t864;
+        let t962 = s_distal_leg4 * (t952 - t941)
+            - c_distal_leg4 * (rate_dot_distal_leg4 - t906);
+        let t979 = s_distal_leg4 * (t906 + rate_dot_distal_leg4)
+            - c_distal_leg4 * (t942 - t952);
+        let t992 = 6.936717523440031 * t185;
+        let t996 = c_distal_leg4 * t889 + 3.4683587617200153 * t130;
+        let t1005 = 4.905 * t127;
+        let t1009 = 6.936717523440031
+            * (s_distal_leg4 * c_proximal_leg4 - c_distal_leg4);
+        let t1022 = t5 * t524 + t29 * t517 + t11 * t515;
+        let t1028 = t5 * t284 + t29 * t280 + t11 * t278;
+        let t1033 = t9 * t284 + t32 * t280 + t14 * t278;
+        let t1034 = t1028 * t1033;
+        let t1035 = t73 * t1034;
+        let t1041 = t73 * t284 + t56 * t280 + t53 * t278;
+        let t1042 = t1028 * t1041;
+        let t1043 = t9 * t1042;
+        let t1044 = t5 * t1022 + t1035 - t1043;
+        let t1047 = t56 * t1034;
+        let t1049 = t32 * t1042;
+        let t1050 = t29 * t1022 + t1047 - t1049;
+        let t1054 = t53 * t1034;
+        let t1056 = t14 * t1042;
+        let t1057 = t11 * t1022 + t1054 - t1056;
+        let t1070 = t1041 * t1033;
+        let t1071 = t1070 + t1022;
+        let t1077 = t73 * t524 + t56 * t517 + t53 * t515;
+        let t1078 = t1034 - t1077;
+        let t1081 = t1028 * t1028;
+        let t1082 = t1041 * t1041;
+        let t1083 = t1081 - t1082;
+        let t1085 = t73 * t1071 - t5 * t1078 + t9 * t1083;
+        let t1091 = t56 * t1071 - t29 * t1078 + t32 * t1083;
+        let t1098 = t53 * t1071 - t11 * t1078 + t14 * t1083;
+        let t1115 = t9 * t524 + t32 * t517 + t14 * t515;
+        let t1116 = t1042 + t1115;
+        let t1118 = t1033 * t1033;
+        let t1119 = t1118 - t1081;
+        let t1122 = t1070 - t1022;
+        let t1124 = t5 * t1116 + t73 * t1119 - t9 * t1122;
+        let t1130 = t29 * t1116 + t56 * t1119 - t32 * t1122;
+        let t1137 = t11 * t1116 + t53 * t1119 - t14 * t1122;
+        let t1151 = t5 * t1070;
+        let t1153 = t73 * t1077 - t1151 + t1043;
+        let t1156 = t29 * t1070;
+        let t1158 = t56 * t1077 - t1156 + t1049;
+        let t1162 = t11 * t1070;
+        let t1164 = t53 * t1077 - t1162 + t1056;
+        let t1177 = t1082 - t1118;
+        let t1179 = t1042 - t1115;
+        let t1182 = t1034 + t1077;
+        let t1184 = t5 * t1177 - t73 * t1179 + t9 * t1182;
+        let t1190 = t29 * t1177 - t56 * t1179 + t32 * t1182;
+        let t1197 = t11 * t1177 - t53 * t1179 + t14 * t1182;
+        let t1212 = t1151 - t1035 + t9 * t1115;
+        let t1216 = t1156 - t1047 + t32 * t1115;
+        let t1221 = t1162 - t1054 + t14 * t1115;
+        let t1234 = 9.81 * t53;
+        let t1236 = 9.81 * t14;
+        let t1238 = t9 * t1234 - t73 * t1236;
+        let t1242 = t32 * t1234 - t56 * t1236;
+        let t1252 = 9.81 * t11;
+        let t1254 = t5 * t1236 - t9 * t1252;
+        let t1258 = t29 * t1236 - t32 * t1252;
+        let t1269 = t73 * t1252 - t5 * t1234;
+        let t1273 = t56 * t1252 - t29 * t1234;
         Ok([
             [
-                rate_dot_proximal_leg1_2, -t400, -t401, rate_dot_proximal_leg1_2,
-                rate_proximal_leg1, ::overact::math::sign(rate_proximal_leg1), 1.0, -t446,
-                c_distal_leg1 * (t404 + t406)
-                    - minus_s_distal_leg1 * (t409 + t476 + t409) - t443 * t483,
-                c_distal_leg1 * (t488 - t481)
-                    - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t444) + t443 * t405,
-                rate_dot_proximal_leg1_2 + t446,
-                c_distal_leg1 * (t444 + rate_dot_distal_leg1)
-                    - minus_s_distal_leg1 * (t482 - t488) - t443 * t476,
-                -(t443 * rate_dot_distal_leg1),
-                -(c_distal_leg1 * t400 + t443 * t517),
-                t443 * t522 - minus_s_distal_leg1 * t400,
-                t401,
+                rate_dot_proximal_leg1_2, -(6.936717523440031 * s_proximal_leg1), -t532,
+                rate_dot_proximal_leg1_2, rate_proximal_leg1,
+                ::overact::math::sign(rate_proximal_leg1), 1.0, t577,
+                minus_s_distal_leg1 * (t536 + t537)
+                    - c_distal_leg1 * (t540 + t540 - t607) + t574 * t614,
+                -(c_distal_leg1 * (t575 + rate_dot_distal_leg1)
+                    + minus_s_distal_leg1 * (t626 - t612) + t574 * t534),
+                rate_dot_proximal_leg1_2 - t577,
+                minus_s_distal_leg1 * (t575 - rate_dot_distal_leg1)
+                    - c_distal_leg1 * (t613 - t626) - t574 * t607,
+                t574 * rate_dot_distal_leg1,
+                6.936717523440031 * t38 + t574 * t650,
+                t574 * t657 - 4.905 * t33,
+                t532,
                 0.0,
                 0.0,
                 0.0,
@@ -3822,14 +5445,14 @@ impl Spherical4Rrr {
                 0.0,
                 0.0,
                 0.0,
-                t547,
-                t543 * t570,
-                -(t543 * t548),
-                -t547,
-                t543 * t572,
-                -(t543 * minus_rate_dot_distal_leg2),
-                t543 * t610,
-                -(t543 * t616),
+                -t682,
+                t678 * t705,
+                -(t678 * t683),
+                t682,
+                -(t678 * t709),
+                t678 * rate_dot_distal_leg2,
+                t678 * t747,
+                t678 * t755,
                 0.0,
                 0.0,
                 0.0,
@@ -3838,58 +5461,58 @@ impl Spherical4Rrr {
                 0.0,
                 0.0,
                 0.0,
-                t641,
-                t637 * t664,
-                -(t637 * t655),
-                -t641,
-                t637 * t669,
-                t637 * rate_dot_distal_leg3,
-                t637 * t704,
-                -(t637 * t710),
+                t780,
+                t776 * t803,
+                -(t776 * t794),
+                -t780,
+                t776 * t808,
+                t776 * rate_dot_distal_leg3,
+                t776 * t845,
+                -(t776 * t853),
                 0.0,
-                t729,
-                -(t720 * t742),
-                -t747,
-                t729,
-                t720 * rate_proximal_leg4,
-                ::overact::math::signed(t720, rate_proximal_leg4),
-                t720,
-                t773,
-                t720 * t796 + t760 * t800,
-                t720 * t819 - t760 * t766,
-                t729 - t773,
-                t720 * t836 + t760 * t792,
-                t760 * rate_dot_distal_leg4,
-                t760 * t849 - t720 * t851,
-                -(t720 * t860 + t760 * t862),
-                t747,
-                t430 * t920 - t435 * t926 - t441 * t933,
-                t430 * t961 - t435 * t967 - t441 * t974,
-                t430 * t1000 - t435 * t1006 - t441 * t1013,
-                t430 * t1029 - t435 * t1034 - t441 * t1040,
-                t430 * t1060 - t435 * t1066 - t441 * t1073,
-                t430 * t1088 - t435 * t1092 - t441 * t1097,
-                t430 * t1114 - t435 * t1118,
-                t430 * t1130 - t435 * t1134,
-                t430 * t1145 - t435 * t1149,
+                t872,
+                t863 * t885,
+                -t890,
+                t872,
+                t863 * rate_proximal_leg4,
+                ::overact::math::signed(t863, rate_proximal_leg4),
+                t863,
+                t916,
+                t863 * t939 + t903 * t943,
+                t863 * t962 - t903 * t909,
+                t872 - t916,
+                t863 * t979 + t903 * t935,
+                t903 * rate_dot_distal_leg4,
+                t863 * t992 + t903 * t996,
+                t863 * t1005 - t903 * t1009,
+                t890,
+                t561 * t1044 - t566 * t1050 + t572 * t1057,
+                t561 * t1085 - t566 * t1091 + t572 * t1098,
+                t561 * t1124 - t566 * t1130 + t572 * t1137,
+                t561 * t1153 - t566 * t1158 + t572 * t1164,
+                t561 * t1184 - t566 * t1190 + t572 * t1197,
+                t561 * t1212 - t566 * t1216 + t572 * t1221,
+                t561 * t1238 - t566 * t1242,
+                t561 * t1254 - t566 * t1258,
+                t561 * t1269 - t566 * t1273,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t464, t463 * t483, -(t463 * t405), -t464,
-                t463 * t476, t463 * rate_dot_distal_leg1, t463 * t517, -(t463 * t522), 0.0,
-                rate_dot_proximal_leg2_2, -t536, -t537, rate_dot_proximal_leg2_2,
-                rate_proximal_leg2, ::overact::math::sign(rate_proximal_leg2), 1.0, t561,
-                minus_s_distal_leg2 * (t552 - (t572 - t552))
-                    - c_distal_leg2 * (t549 + t550) + t559 * t570,
-                minus_s_distal_leg2 * (t546 + minus_rate_dot_distal_leg2)
-                    + c_distal_leg2 * (t590 - t568) - t559 * t548,
-                rate_dot_proximal_leg2_2 - t561,
-                t559 * t572
-                    - (minus_s_distal_leg2 * (t569 - t590)
-                        + c_distal_leg2 * (minus_rate_dot_distal_leg2 - t546)),
-                -(t559 * minus_rate_dot_distal_leg2),
-                t559 * t610 - c_distal_leg2 * t536,
-                -(minus_s_distal_leg2 * t536 + t559 * t616),
-                t537,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t595, -(t594 * t614), t594 * t534, -t595,
+                t594 * t607, -(t594 * rate_dot_distal_leg1), -(t594 * t650), -(t594 * t657), 0.0,
+                rate_dot_proximal_leg2_2, 6.936717523440031 * minus_s_proximal_leg2, -t672,
+                rate_dot_proximal_leg2_2, rate_proximal_leg2,
+                ::overact::math::sign(rate_proximal_leg2), 1.0, t696,
+                minus_s_distal_leg2 * (t684 + t685)
+                    - c_distal_leg2 * (t687 + t687 - t709) + t694 * t705,
+                -(c_distal_leg2 * (t681 + rate_dot_distal_leg2)
+                    + minus_s_distal_leg2 * (t725 - t703) + t694 * t683),
+                rate_dot_proximal_leg2_2 - t696,
+                minus_s_distal_leg2 * (t681 - rate_dot_distal_leg2)
+                    - c_distal_leg2 * (t704 - t725) - t694 * t709,
+                t694 * rate_dot_distal_leg2,
+                t694 * t747 - 6.936717523440031 * t165,
+                4.905 * t74 + t694 * t755,
+                t672,
                 0.0,
                 0.0,
                 0.0,
@@ -3897,84 +5520,85 @@ impl Spherical4Rrr {
                 0.0,
                 0.0,
                 0.0,
-                -t647,
-                -(t646 * t664),
-                t646 * t655,
-                t647,
-                -(t646 * t669),
-                -(t646 * rate_dot_distal_leg3),
-                -(t646 * t704),
-                t646 * t710,
+                t786,
+                t785 * t803,
+                -(t785 * t794),
+                -t786,
+                t785 * t808,
+                t785 * rate_dot_distal_leg3,
+                t785 * t845,
+                -(t785 * t853),
                 0.0,
-                t735,
-                -(t734 * t742),
-                -t748,
-                t735,
-                t734 * rate_proximal_leg4,
-                ::overact::math::signed(t734, rate_proximal_leg4),
-                t734,
-                t781,
-                t734 * t796 + t778 * t800,
-                t734 * t819 - t778 * t766,
-                t735 - t781,
-                t734 * t836 + t778 * t792,
-                t778 * rate_dot_distal_leg4,
-                t778 * t849 - t734 * t851,
-                -(t734 * t860 + t778 * t862),
-                t748,
-                t455 * t926 - t450 * t920 - t461 * t933,
-                t455 * t967 - t450 * t961 - t461 * t974,
-                t455 * t1006 - t450 * t1000 - t461 * t1013,
-                t455 * t1034 - t450 * t1029 - t461 * t1040,
-                t455 * t1066 - t450 * t1060 - t461 * t1073,
-                t455 * t1092 - t450 * t1088 - t461 * t1097,
-                t455 * t1118 - t450 * t1114,
-                t455 * t1134 - t450 * t1130,
-                t455 * t1149 - t450 * t1145,
+                t878,
+                t877 * t885,
+                -t891,
+                t878,
+                t877 * rate_proximal_leg4,
+                ::overact::math::signed(t877, rate_proximal_leg4),
+                t877,
+                -t924,
+                t877 * t939 - t922 * t943,
+                t877 * t962 + t922 * t909,
+                t878 + t924,
+                t877 * t979 - t922 * t935,
+                -(t922 * rate_dot_distal_leg4),
+                t877 * t992 - t922 * t996,
+                t877 * t1005 + t922 * t1009,
+                t891,
+                t586 * t1050 - t581 * t1044 + t592 * t1057,
+                t586 * t1091 - t581 * t1085 + t592 * t1098,
+                t586 * t1130 - t581 * t1124 + t592 * t1137,
+                t586 * t1158 - t581 * t1153 + t592 * t1164,
+                t586 * t1190 - t581 * t1184 + t592 * t1197,
+                t586 * t1216 - t581 * t1212 + t592 * t1221,
+                t586 * t1242 - t581 * t1238,
+                t586 * t1258 - t581 * t1254,
+                t586 * t1273 - t581 * t1269,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t473, -(t472 * t483), t472 * t405, t473,
-                -(t472 * t476), -(t472 * rate_dot_distal_leg1), -(t472 * t517), t472 * t522, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t567, t566 * t570, -(t566 * t548), -t567,
-                t566 * t572, -(t566 * minus_rate_dot_distal_leg2), t566 * t610, -(t566 * t616), 0.0,
-                rate_dot_proximal_leg3_2, -t630, -t631, rate_dot_proximal_leg3_2,
-                rate_proximal_leg3, ::overact::math::sign(rate_proximal_leg3), 1.0, t661,
-                c_distal_leg3 * (t654 + t656)
-                    - minus_s_distal_leg3 * (t658 + t669 + t658) + t652 * t664,
-                c_distal_leg3 * (t678 - t662)
-                    - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t640) - t652 * t655,
-                rate_dot_proximal_leg3_2 - t661,
-                c_distal_leg3 * (t640 + rate_dot_distal_leg3)
-                    - minus_s_distal_leg3 * (t663 - t678) + t652 * t669,
-                t652 * rate_dot_distal_leg3,
-                t652 * t704 - c_distal_leg3 * t630,
-                -(minus_s_distal_leg3 * t630 + t652 * t710),
-                t631,
-                t741,
-                -(t740 * t742),
-                -t749,
-                t741,
-                t740 * rate_proximal_leg4,
-                ::overact::math::signed(t740, rate_proximal_leg4),
-                t740,
-                t789,
-                t740 * t796 + t786 * t800,
-                t740 * t819 - t786 * t766,
-                t741 - t789,
-                t740 * t836 + t786 * t792,
-                t786 * rate_dot_distal_leg4,
-                t786 * t849 - t740 * t851,
-                -(t740 * t860 + t786 * t862),
-                t749,
-                t465 * t920 - t467 * t926 - t470 * t933,
-                t465 * t961 - t467 * t967 - t470 * t974,
-                t465 * t1000 - t467 * t1006 - t470 * t1013,
-                t465 * t1029 - t467 * t1034 - t470 * t1040,
-                t465 * t1060 - t467 * t1066 - t470 * t1073,
-                t465 * t1088 - t467 * t1092 - t470 * t1097,
-                t465 * t1114 - t467 * t1118,
-                t465 * t1130 - t467 * t1134,
-                t465 * t1145 - t467 * t1149,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t604, t603 * t614, -(t603 * t534), t604,
+                -(t603 * t607), t603 * rate_dot_distal_leg1, t603 * t650, t603 * t657, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t702, t701 * t705, -(t701 * t683), t702,
+                -(t701 * t709), t701 * rate_dot_distal_leg2, t701 * t747, t701 * t755, 0.0,
+                rate_dot_proximal_leg3_2, -(6.936717523440031 * s_proximal_leg3), -t770,
+                rate_dot_proximal_leg3_2, rate_proximal_leg3,
+                ::overact::math::sign(rate_proximal_leg3), 1.0, t800,
+                s_distal_leg3 * (t793 + t795) - c_distal_leg3 * (t797 + t808 + t797)
+                    + t791 * t803,
+                s_distal_leg3 * (t817 - t801)
+                    - c_distal_leg3 * (rate_dot_distal_leg3 - t779) - t791 * t794,
+                rate_dot_proximal_leg3_2 - t800,
+                s_distal_leg3 * (t779 + rate_dot_distal_leg3)
+                    - c_distal_leg3 * (t802 - t817) + t791 * t808,
+                t791 * rate_dot_distal_leg3,
+                t791 * t845 - 6.936717523440031 * t111,
+                -(4.905 * t106 + t791 * t853),
+                t770,
+                t884,
+                t883 * t885,
+                -t892,
+                t884,
+                t883 * rate_proximal_leg4,
+                ::overact::math::signed(t883, rate_proximal_leg4),
+                t883,
+                t932,
+                t883 * t939 + t929 * t943,
+                t883 * t962 - t929 * t909,
+                t884 - t932,
+                t883 * t979 + t929 * t935,
+                t929 * rate_dot_distal_leg4,
+                t883 * t992 + t929 * t996,
+                t883 * t1005 - t929 * t1009,
+                t892,
+                t596 * t1044 + t598 * t1050 + t601 * t1057,
+                t596 * t1085 + t598 * t1091 + t601 * t1098,
+                t596 * t1124 + t598 * t1130 + t601 * t1137,
+                t596 * t1153 + t598 * t1158 + t601 * t1164,
+                t596 * t1184 + t598 * t1190 + t601 * t1197,
+                t596 * t1212 + t598 * t1216 + t601 * t1221,
+                t596 * t1238 + t598 * t1242,
+                t596 * t1254 + t598 * t1258,
+                t596 * t1269 + t598 * t1273,
             ],
         ])
     }
@@ -3988,7 +5612,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 53.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 798 operations (286 additions, 508 multiplications, 4 divisions), 0 square roots, 8 trigonometric pairs, 12 signs, 670 intermediates.
+    /// 922 operations (318 additions, 596 multiplications, 8 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 782 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3997,8 +5621,491 @@ impl Spherical4Rrr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 53]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_platform_base_from_joints(pose, joints, twist, acceleration)
+        let t0 = 2.0 * pose[2];
+        let t1 = pose[2] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = 1.0 - t1 - t4;
+        let t7 = 2.0 * pose[1];
+        let t8 = pose[2] * t7;
+        let t9 = pose[0] * t3;
+        let t10 = t8 + t9;
+        let t13 = pose[3] * t7;
+        let t14 = pose[0] * t0;
+        let t15 = t13 - t14;
+        let t17 = t5 * acceleration[0] + t10 * acceleration[1] + t15 * acceleration[2];
+        let t19 = t8 - t9;
+        let t24 = t5 * twist[0] + t10 * twist[1] + t15 * twist[2];
+        let t25 = t13 + t14;
+        let t27 = pose[3] * t0;
+        let t28 = pose[0] * t7;
+        let t29 = t27 - t28;
+        let t33 = 1.0 - pose[1] * t7;
+        let t34 = t33 - t1;
+        let t36 = t25 * twist[0] + t29 * twist[1] + t34 * twist[2];
+        let t37 = t24 * t36;
+        let t38 = t19 * t37;
+        let t41 = t33 - t4;
+        let t44 = t27 + t28;
+        let t46 = t19 * twist[0] + t41 * twist[1] + t44 * twist[2];
+        let t47 = t24 * t46;
+        let t48 = t25 * t47;
+        let t51 = t41 * t37;
+        let t53 = t29 * t47;
+        let t56 = t44 * t37;
+        let t58 = t34 * t47;
+        let t60 = t46 * t36;
+        let t61 = t60 + t17;
+        let t67 = t19 * acceleration[0] + t41 * acceleration[1] + t44 * acceleration[2];
+        let t68 = t37 - t67;
+        let t71 = t24 * t24;
+        let t72 = t46 * t46;
+        let t73 = t71 - t72;
+        let t90 = t25 * acceleration[0] + t29 * acceleration[1] + t34 * acceleration[2];
+        let t91 = t47 + t90;
+        let t93 = t36 * t36;
+        let t94 = t93 - t71;
+        let t97 = t60 - t17;
+        let t111 = t5 * t60;
+        let t115 = t10 * t60;
+        let t119 = t15 * t60;
+        let t122 = t72 - t93;
+        let t124 = t47 - t90;
+        let t127 = t37 + t67;
+        let t149 = 9.81 * t44;
+        let t151 = 9.81 * t34;
+        let t158 = 9.81 * t15;
+        let t170 = t10 - t29;
+        let t171 = t5 - t25;
+        let t172 = t15 - t34;
+        let t173 = t171 + t172;
+        let t176 = 1.0 - 0.25 * (t173 * t173);
+        ::overact::guard::reach(t176, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t176);
+        let t182 = 1.0 / (0.5 * (t171 * c_distal_leg1 - t172 * c_distal_leg1));
+        let t183 = t171 - t172;
+        let s_proximal_leg1 = t182 * (0.35355339059327373 * (t170 * t183));
+        let t188 = 0.5 * (t170 * s_proximal_leg1);
+        let t189 = 0.7071067811865475 * t172;
+        let c_proximal_leg1 = t182 * (0.25 * (t183 * t183));
+        let t199 = 0.7071067811865475 * t170;
+        let t202 = 0.5 * (t172 * c_proximal_leg1)
+            - (0.5 * (t171 * c_proximal_leg1) + t199 * s_proximal_leg1);
+        ::overact::guard::leg(t202, 1.0, "leg1")?;
+        let t203 = 1.0 / t202;
+        let minus_gproximal_wx_leg1 = (t188 - t189 * c_proximal_leg1) * t203;
+        let minus_s_distal_leg1 = 0.5 * t173;
+        let t206 = minus_s_distal_leg1 * s_proximal_leg1;
+        let gproximal_wy_leg1 = t206 * t203;
+        let t211 = 0.7071067811865475 * t171;
+        let minus_gproximal_wz_leg1 = (t211 * c_proximal_leg1 + t188) * t203;
+        let rate_proximal_leg1 = gproximal_wy_leg1 * twist[1]
+            - minus_gproximal_wx_leg1 * twist[0] - minus_gproximal_wz_leg1 * twist[2];
+        let t217 = 0.7071067811865475 * rate_proximal_leg1;
+        let t219 = 0.5 * t203;
+        let gdistal_wx_leg1 = t170 * t219;
+        let minus_gdistal_wy_leg1 = t183 * t219;
+        let rate_distal_leg1 = gdistal_wx_leg1 * twist[0]
+            - minus_gdistal_wy_leg1 * twist[1] - gdistal_wx_leg1 * twist[2];
+        let t227 = 0.7071067811865475 * s_proximal_leg1 * rate_distal_leg1;
+        let t228 = t217 + t227;
+        let minus_gwrist_wx_leg1 = 0.7071067811865475 * c_proximal_leg1 * t203;
+        let minus_gwrist_wy_leg1 = s_proximal_leg1 * t203;
+        let rate_wrist_leg1 = minus_gwrist_wx_leg1 * twist[2]
+            - (minus_gwrist_wx_leg1 * twist[0] + minus_gwrist_wy_leg1 * twist[1]);
+        let t237 = t211 * rate_wrist_leg1;
+        let t239 = t217 - t227;
+        let t240 = t189 * rate_wrist_leg1;
+        let t246 = acceleration[1] - (t228 * t237 - t239 * t240 - 2.0 * (t217 * t227));
+        let t248 = c_proximal_leg1 * rate_distal_leg1;
+        let t250 = t199 * rate_wrist_leg1;
+        let t253 = t217 * t248;
+        let t255 = acceleration[0] - (t248 * t240 - t228 * t250 - t253);
+        let t262 = acceleration[2] - (t253 + t239 * t250 - t248 * t237);
+        let rate_dot_proximal_leg1 = gproximal_wy_leg1 * t246
+            - minus_gproximal_wx_leg1 * t255 - minus_gproximal_wz_leg1 * t262;
+        let t268 = t41 - t29;
+        let t269 = t44 - t34;
+        let t270 = t268 + t269;
+        let minus_s_distal_leg2 = 0.5 * t270;
+        let t274 = 1.0 - 0.25 * (t270 * t270);
+        ::overact::guard::reach(t274, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t274);
+        let t280 = 1.0 / (0.5 * (t268 * c_distal_leg2 - t269 * c_distal_leg2));
+        let t281 = t19 - t25;
+        let t282 = t268 - t269;
+        let minus_s_proximal_leg2 = t280 * (0.35355339059327373 * (t281 * t282));
+        let t286 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let c_proximal_leg2 = t280 * (0.25 * (t282 * t282));
+        let t292 = 0.7071067811865475 * t281;
+        let t297 = 0.5 * (t269 * c_proximal_leg2)
+            - (t292 * minus_s_proximal_leg2 + 0.5 * (t268 * c_proximal_leg2));
+        ::overact::guard::leg(t297, 1.0, "leg2")?;
+        let t298 = 1.0 / t297;
+        let gproximal_wx_leg2 = t286 * t298;
+        let t301 = 0.7071067811865475 * t269;
+        let t304 = 0.5 * (t281 * minus_s_proximal_leg2);
+        let gproximal_wy_leg2 = (t301 * c_proximal_leg2 - t304) * t298;
+        let t309 = 0.7071067811865475 * t268;
+        let minus_gproximal_wz_leg2 = (t309 * c_proximal_leg2 + t304) * t298;
+        let rate_proximal_leg2 = gproximal_wx_leg2 * twist[0]
+            + gproximal_wy_leg2 * twist[1] - minus_gproximal_wz_leg2 * twist[2];
+        let t315 = 0.7071067811865475 * rate_proximal_leg2;
+        let t317 = 0.5 * t298;
+        let gdistal_wx_leg2 = t282 * t317;
+        let minus_gdistal_wy_leg2 = t281 * t317;
+        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
+            - minus_gdistal_wy_leg2 * twist[1] + minus_gdistal_wy_leg2 * twist[2];
+        let t325 = 0.7071067811865475 * minus_s_proximal_leg2 * rate_distal_leg2;
+        let t326 = t315 + t325;
+        let minus_gwrist_wy_leg2 = 0.7071067811865475 * c_proximal_leg2 * t298;
+        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t298;
+        let rate_wrist_leg2 = minus_gwrist_wy_leg2 * twist[2]
+            - (minus_gwrist_wx_leg2 * twist[0] + minus_gwrist_wy_leg2 * twist[1]);
+        let t335 = t301 * rate_wrist_leg2;
+        let t337 = t315 - t325;
+        let t338 = t309 * rate_wrist_leg2;
+        let t344 = acceleration[0] - (t326 * t335 - t337 * t338 - 2.0 * (t315 * t325));
+        let t346 = t292 * rate_wrist_leg2;
+        let t348 = c_proximal_leg2 * rate_distal_leg2;
+        let t351 = t315 * t348;
+        let t353 = acceleration[1] - (t337 * t346 + t348 * t335 - t351);
+        let t360 = acceleration[2] - (t351 - (t348 * t338 + t326 * t346));
+        let rate_dot_proximal_leg2 = gproximal_wx_leg2 * t344 + gproximal_wy_leg2 * t353
+            - minus_gproximal_wz_leg2 * t360;
+        let t366 = t10 + t29;
+        let t367 = t5 + t25;
+        let t368 = t15 + t34;
+        let t369 = t368 - t367;
+        let t372 = 1.0 - 0.25 * (t369 * t369);
+        ::overact::guard::reach(t372, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t372);
+        let t378 = 1.0 / (0.5 * (t367 * c_distal_leg3 + t368 * c_distal_leg3));
+        let t379 = t367 + t368;
+        let s_proximal_leg3 = t378 * (0.35355339059327373 * (t366 * t379));
+        let t384 = 0.5 * (t366 * s_proximal_leg3);
+        let t385 = 0.7071067811865475 * t368;
+        let c_proximal_leg3 = t378 * (0.25 * (t379 * t379));
+        let t393 = 0.7071067811865475 * t366;
+        let t398 = 0.5 * (t367 * c_proximal_leg3) + t393 * s_proximal_leg3
+            + 0.5 * (t368 * c_proximal_leg3);
+        ::overact::guard::leg(t398, 1.0, "leg3")?;
+        let t399 = 1.0 / t398;
+        let minus_gproximal_wx_leg3 = (t384 + t385 * c_proximal_leg3) * t399;
+        let t401 = 0.7071067811865475 * t367;
+        let gproximal_wz_leg3 = (t401 * c_proximal_leg3 + t384) * t399;
+        let s_distal_leg3 = 0.5 * t369;
+        let t408 = s_distal_leg3 * s_proximal_leg3;
+        let minus_gproximal_wy_leg3 = t408 * t399;
+        let rate_proximal_leg3 = gproximal_wz_leg3 * twist[2]
+            - (minus_gproximal_wx_leg3 * twist[0] + minus_gproximal_wy_leg3 * twist[1]);
+        let t413 = 0.7071067811865475 * rate_proximal_leg3;
+        let t414 = 0.5 * t399;
+        let gdistal_wx_leg3 = t366 * t414;
+        let minus_gdistal_wy_leg3 = t379 * t414;
+        let rate_distal_leg3 = gdistal_wx_leg3 * twist[0]
+            - minus_gdistal_wy_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
+        let t422 = c_proximal_leg3 * rate_distal_leg3;
+        let t423 = t413 * t422;
+        let t425 = 0.7071067811865475 * s_proximal_leg3 * rate_distal_leg3;
+        let t426 = t425 - t413;
+        let minus_gwrist_wx_leg3 = 0.7071067811865475 * c_proximal_leg3 * t399;
+        let minus_gwrist_wy_leg3 = s_proximal_leg3 * t399;
+        let minus_rate_wrist_leg3 = minus_gwrist_wx_leg3 * twist[0]
+            + minus_gwrist_wy_leg3 * twist[1] + minus_gwrist_wx_leg3 * twist[2];
+        let t435 = t393 * minus_rate_wrist_leg3;
+        let t437 = t401 * minus_rate_wrist_leg3;
+        let t441 = acceleration[2] - (t423 + t426 * t435 + t422 * t437);
+        let t443 = t385 * minus_rate_wrist_leg3;
+        let t445 = t413 + t425;
+        let t449 = acceleration[0] - (t423 - (t422 * t443 + t445 * t435));
+        let t457 = acceleration[1] - (2.0 * (t413 * t425) + t445 * t437 - t426 * t443);
+        let rate_dot_proximal_leg3 = gproximal_wz_leg3 * t441
+            - (minus_gproximal_wx_leg3 * t449 + minus_gproximal_wy_leg3 * t457);
+        let t464 = t44 + t34;
+        let t465 = t41 + t29;
+        let t466 = t464 - t465;
+        let s_distal_leg4 = 0.5 * t466;
+        let t470 = 1.0 - 0.25 * (t466 * t466);
+        ::overact::guard::reach(t470, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t470);
+        let t476 = 1.0 / (0.5 * (t465 * c_distal_leg4 + t464 * c_distal_leg4));
+        let t477 = t19 + t25;
+        let t478 = t465 + t464;
+        let minus_s_proximal_leg4 = t476 * (0.35355339059327373 * (t477 * t478));
+        let t482 = s_distal_leg4 * minus_s_proximal_leg4;
+        let t483 = 0.7071067811865475 * t477;
+        let c_proximal_leg4 = t476 * (0.25 * (t478 * t478));
+        let t493 = t483 * minus_s_proximal_leg4 + 0.5 * (t465 * c_proximal_leg4)
+            + 0.5 * (t464 * c_proximal_leg4);
+        ::overact::guard::leg(t493, 1.0, "leg4")?;
+        let t494 = 1.0 / t493;
+        let minus_gproximal_wx_leg4 = t482 * t494;
+        let t496 = 0.7071067811865475 * t465;
+        let t499 = 0.5 * (t477 * minus_s_proximal_leg4);
+        let gproximal_wz_leg4 = (t496 * c_proximal_leg4 + t499) * t494;
+        let t504 = 0.7071067811865475 * t464;
+        let minus_gproximal_wy_leg4 = (t499 + t504 * c_proximal_leg4) * t494;
+        let rate_proximal_leg4 = gproximal_wz_leg4 * twist[2]
+            - (minus_gproximal_wx_leg4 * twist[0] + minus_gproximal_wy_leg4 * twist[1]);
+        let t511 = 0.7071067811865475 * rate_proximal_leg4;
+        let t512 = 0.5 * t494;
+        let gdistal_wx_leg4 = t478 * t512;
+        let minus_gdistal_wy_leg4 = t477 * t512;
+        let rate_distal_leg4 = gdistal_wx_leg4 * twist[0]
+            - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
+        let t520 = c_proximal_leg4 * rate_distal_leg4;
+        let t521 = t511 * t520;
+        let minus_gwrist_wx_leg4 = minus_s_proximal_leg4 * t494;
+        let minus_gwrist_wy_leg4 = 0.7071067811865475 * c_proximal_leg4 * t494;
+        let minus_rate_wrist_leg4 = minus_gwrist_wx_leg4 * twist[0]
+            + minus_gwrist_wy_leg4 * twist[1] + minus_gwrist_wy_leg4 * twist[2];
+        let t530 = t496 * minus_rate_wrist_leg4;
+        let t533 = 0.7071067811865475 * minus_s_proximal_leg4 * rate_distal_leg4;
+        let t534 = t511 + t533;
+        let t535 = t483 * minus_rate_wrist_leg4;
+        let t539 = acceleration[2] - (t521 + t520 * t530 + t534 * t535);
+        let t543 = t504 * minus_rate_wrist_leg4;
+        let t545 = t511 - t533;
+        let t549 = acceleration[0] - (2.0 * (t511 * t533) - (t534 * t543 + t545 * t530));
+        let t555 = acceleration[1] - (t521 + t545 * t535 - t520 * t543);
+        let rate_dot_proximal_leg4 = gproximal_wz_leg4 * t539
+            - (minus_gproximal_wx_leg4 * t549 + minus_gproximal_wy_leg4 * t555);
+        let t562 = 6.936717523440031 * s_proximal_leg1;
+        let t566 = 6.936717523440031 * minus_s_proximal_leg2;
+        let t570 = 6.936717523440031 * s_proximal_leg3;
+        let t574 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t578 = 6.936717523440031 * c_proximal_leg1;
+        let t582 = 6.936717523440031 * c_proximal_leg2;
+        let t586 = 6.936717523440031 * c_proximal_leg3;
+        let t590 = 6.936717523440031 * c_proximal_leg4;
+        let t618 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t619 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t620 = rate_distal_leg1 * t619;
+        let t621 = t618 + t620;
+        let t623 = c_distal_leg1 * rate_proximal_leg1;
+        let t624 = rate_distal_leg1 * t623;
+        let t626 = c_distal_leg1 * t621 + minus_s_distal_leg1 * t624;
+        let t628 = t623 * t619;
+        let t629 = gdistal_wx_leg1 * t628;
+        let t636 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t637 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t638 = rate_distal_leg2 * t637;
+        let t639 = t636 + t638;
+        let t641 = c_distal_leg2 * rate_proximal_leg2;
+        let t642 = rate_distal_leg2 * t641;
+        let t644 = c_distal_leg2 * t639 + minus_s_distal_leg2 * t642;
+        let t646 = t641 * t637;
+        let t650 = minus_gdistal_wy_leg2 * t646;
+        let t654 = s_distal_leg3 * rate_proximal_leg3;
+        let t655 = rate_distal_leg3 * t654;
+        let t656 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t657 = t655 - t656;
+        let t659 = c_distal_leg3 * rate_proximal_leg3;
+        let t660 = rate_distal_leg3 * t659;
+        let t662 = c_distal_leg3 * t657 + s_distal_leg3 * t660;
+        let t664 = t659 * t654;
+        let t665 = gdistal_wx_leg3 * t664;
+        let t672 = s_distal_leg4 * rate_proximal_leg4;
+        let t673 = rate_distal_leg4 * t672;
+        let t674 = c_distal_leg4 * rate_dot_proximal_leg4;
+        let t675 = t673 - t674;
+        let t677 = c_distal_leg4 * rate_proximal_leg4;
+        let t678 = rate_distal_leg4 * t677;
+        let t680 = c_distal_leg4 * t675 + s_distal_leg4 * t678;
+        let t682 = t677 * t672;
+        let t686 = minus_gdistal_wy_leg4 * t682;
+        let t690 = t623 * t623;
+        let t691 = t619 * t619;
+        let t692 = t690 - t691;
+        let t693 = gdistal_wx_leg1 * t692;
+        let t696 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t700 = minus_s_distal_leg1 * (t620 + t621)
+            - c_distal_leg1 * (t624 + t624 - t696);
+        let t710 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t714 = minus_s_distal_leg2 * (t638 + t639)
+            - c_distal_leg2 * (t642 + t642 - t710);
+        let t716 = t641 * t641;
+        let t717 = t637 * t637;
+        let t718 = t716 - t717;
+        let t722 = minus_gdistal_wy_leg2 * t718;
+        let t726 = t659 * t659;
+        let t727 = t654 * t654;
+        let t728 = t726 - t727;
+        let t729 = gdistal_wx_leg3 * t728;
+        let t732 = s_distal_leg3 * rate_dot_proximal_leg3;
+        let t736 = s_distal_leg3 * (t655 + t657) - c_distal_leg3 * (t660 + t732 + t660);
+        let t744 = t677 * t677;
+        let t745 = t672 * t672;
+        let t746 = t744 - t745;
+        let t750 = s_distal_leg4 * rate_dot_proximal_leg4;
+        let t754 = s_distal_leg4 * (t673 + t675) - c_distal_leg4 * (t678 + t750 + t678);
+        let t758 = minus_gdistal_wy_leg4 * t746;
+        let rate_dot_distal_leg1 = gdistal_wx_leg1 * t255 - minus_gdistal_wy_leg1 * t246
+            - gdistal_wx_leg1 * t262;
+        let t769 = rate_distal_leg1 * rate_distal_leg1;
+        let t772 = c_distal_leg1 * (t628 + rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t769 - t690);
+        let t774 = gdistal_wx_leg1 * t618;
+        let rate_dot_distal_leg2 = gdistal_wx_leg2 * t344 - minus_gdistal_wy_leg2 * t353
+            + minus_gdistal_wy_leg2 * t360;
+        let t788 = rate_distal_leg2 * rate_distal_leg2;
+        let t791 = c_distal_leg2 * (t646 + rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t788 - t716);
+        let t795 = minus_gdistal_wy_leg2 * t636;
+        let t800 = rate_distal_leg3 * rate_distal_leg3;
+        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t449 - minus_gdistal_wy_leg3 * t457
+            + gdistal_wx_leg3 * t441;
+        let t810 = s_distal_leg3 * (t800 - t726)
+            - c_distal_leg3 * (rate_dot_distal_leg3 - t664);
+        let t812 = gdistal_wx_leg3 * t656;
+        let t819 = rate_distal_leg4 * rate_distal_leg4;
+        let rate_dot_distal_leg4 = gdistal_wx_leg4 * t549 - minus_gdistal_wy_leg4 * t555
+            - minus_gdistal_wy_leg4 * t539;
+        let t829 = s_distal_leg4 * (t819 - t744)
+            - c_distal_leg4 * (rate_dot_distal_leg4 - t682);
+        let t833 = minus_gdistal_wy_leg4 * t674;
+        let t842 = minus_s_distal_leg1 * (t628 - rate_dot_distal_leg1)
+            - c_distal_leg1 * (t691 - t769);
+        let t844 = gdistal_wx_leg1 * t696;
+        let t855 = minus_s_distal_leg2 * (t646 - rate_dot_distal_leg2)
+            - c_distal_leg2 * (t717 - t788);
+        let t860 = minus_gdistal_wy_leg2 * t710;
+        let t864 = gdistal_wx_leg3 * t732;
+        let t869 = s_distal_leg3 * (t664 + rate_dot_distal_leg3)
+            - c_distal_leg3 * (t727 - t800);
+        let t882 = s_distal_leg4 * (t682 + rate_dot_distal_leg4)
+            - c_distal_leg4 * (t745 - t819);
+        let t886 = minus_gdistal_wy_leg4 * t750;
+        let t892 = c_distal_leg1 * t578 - 3.4683587617200153 * t173;
+        let t893 = gdistal_wx_leg1 * t892;
+        let t894 = 6.936717523440031 * t206;
+        let t904 = c_distal_leg2 * t582 - 3.4683587617200153 * t270;
+        let t906 = 6.936717523440031 * t286;
+        let t910 = minus_gdistal_wy_leg2 * t904;
+        let t914 = 6.936717523440031 * t408;
+        let t918 = c_distal_leg3 * t586 + 3.4683587617200153 * t369;
+        let t919 = gdistal_wx_leg3 * t918;
+        let t928 = c_distal_leg4 * t590 + 3.4683587617200153 * t466;
+        let t930 = 6.936717523440031 * t482;
+        let t934 = minus_gdistal_wy_leg4 * t928;
+        Ok([
+            [
+                t5 * t17 + t38 - t48, t19 * t61 - t5 * t68 + t25 * t73,
+                t5 * t91 + t19 * t94 - t25 * t97, t19 * t67 - t111 + t48,
+                t5 * t122 - t19 * t124 + t25 * t127, t111 - t38 + t25 * t90,
+                t25 * t149 - t19 * t151, t5 * t151 - t25 * t158, t19 * t158 - t5 * t149,
+                -(minus_gproximal_wx_leg1 * rate_dot_proximal_leg1),
+                gproximal_wx_leg2 * rate_dot_proximal_leg2,
+                -(minus_gproximal_wx_leg3 * rate_dot_proximal_leg3),
+                -(minus_gproximal_wx_leg4 * rate_dot_proximal_leg4), minus_gproximal_wx_leg1 * t562,
+                gproximal_wx_leg2 * t566, minus_gproximal_wx_leg3 * t570,
+                -(minus_gproximal_wx_leg4 * t574), minus_gproximal_wx_leg1 * t578,
+                -(gproximal_wx_leg2 * t582), minus_gproximal_wx_leg3 * t586,
+                minus_gproximal_wx_leg4 * t590, -(minus_gproximal_wx_leg1 * rate_proximal_leg1),
+                gproximal_wx_leg2 * rate_proximal_leg2,
+                -(minus_gproximal_wx_leg3 * rate_proximal_leg3),
+                -(minus_gproximal_wx_leg4 * rate_proximal_leg4),
+                -::overact::math::signed(minus_gproximal_wx_leg1, rate_proximal_leg1),
+                ::overact::math::signed(gproximal_wx_leg2, rate_proximal_leg2),
+                -::overact::math::signed(minus_gproximal_wx_leg3, rate_proximal_leg3),
+                -::overact::math::signed(minus_gproximal_wx_leg4, rate_proximal_leg4),
+                -minus_gproximal_wx_leg1, gproximal_wx_leg2, -minus_gproximal_wx_leg3,
+                -minus_gproximal_wx_leg4, -(minus_gproximal_wx_leg1 * t626 + t629),
+                gproximal_wx_leg2 * t644 - gdistal_wx_leg2 * t646,
+                minus_gproximal_wx_leg3 * t662 + t665,
+                minus_gproximal_wx_leg4 * t680 + gdistal_wx_leg4 * t682,
+                t693 - minus_gproximal_wx_leg1 * t700,
+                gproximal_wx_leg2 * t714 + gdistal_wx_leg2 * t718,
+                t729 - minus_gproximal_wx_leg3 * t736,
+                gdistal_wx_leg4 * t746 - minus_gproximal_wx_leg4 * t754,
+                minus_gproximal_wx_leg1 * t772 - t774,
+                -(gproximal_wx_leg2 * t791 + gdistal_wx_leg2 * t636),
+                -(minus_gproximal_wx_leg3 * t810 + t812),
+                -(minus_gproximal_wx_leg4 * t829 + gdistal_wx_leg4 * t674),
+                -(minus_gproximal_wx_leg1 * t842 + t844),
+                gproximal_wx_leg2 * t855 - gdistal_wx_leg2 * t710,
+                t864 - minus_gproximal_wx_leg3 * t869,
+                gdistal_wx_leg4 * t750 - minus_gproximal_wx_leg4 * t882,
+                t893 - minus_gproximal_wx_leg1 * t894,
+                gdistal_wx_leg2 * t904 - gproximal_wx_leg2 * t906,
+                minus_gproximal_wx_leg3 * t914 + t919,
+                gdistal_wx_leg4 * t928 - minus_gproximal_wx_leg4 * t930,
+            ],
+            [
+                t10 * t17 + t51 - t53, t41 * t61 - t10 * t68 + t29 * t73,
+                t10 * t91 + t41 * t94 - t29 * t97, t41 * t67 - t115 + t53,
+                t10 * t122 - t41 * t124 + t29 * t127, t115 - t51 + t29 * t90,
+                t29 * t149 - t41 * t151, t10 * t151 - t29 * t158, t41 * t158 - t10 * t149,
+                gproximal_wy_leg1 * rate_dot_proximal_leg1,
+                gproximal_wy_leg2 * rate_dot_proximal_leg2,
+                -(minus_gproximal_wy_leg3 * rate_dot_proximal_leg3),
+                -(minus_gproximal_wy_leg4 * rate_dot_proximal_leg4), -(gproximal_wy_leg1 * t562),
+                gproximal_wy_leg2 * t566, minus_gproximal_wy_leg3 * t570,
+                -(minus_gproximal_wy_leg4 * t574), -(gproximal_wy_leg1 * t578),
+                -(gproximal_wy_leg2 * t582), minus_gproximal_wy_leg3 * t586,
+                minus_gproximal_wy_leg4 * t590, gproximal_wy_leg1 * rate_proximal_leg1,
+                gproximal_wy_leg2 * rate_proximal_leg2,
+                -(minus_gproximal_wy_leg3 * rate_proximal_leg3),
+                -(minus_gproximal_wy_leg4 * rate_proximal_leg4),
+                ::overact::math::signed(gproximal_wy_leg1, rate_proximal_leg1),
+                ::overact::math::signed(gproximal_wy_leg2, rate_proximal_leg2),
+                -::overact::math::signed(minus_gproximal_wy_leg3, rate_proximal_leg3),
+                -::overact::math::signed(minus_gproximal_wy_leg4, rate_proximal_leg4),
+                gproximal_wy_leg1, gproximal_wy_leg2, -minus_gproximal_wy_leg3,
+                -minus_gproximal_wy_leg4, gproximal_wy_leg1 * t626 + minus_gdistal_wy_leg1 * t628,
+                gproximal_wy_leg2 * t644 + t650,
+                minus_gproximal_wy_leg3 * t662 - minus_gdistal_wy_leg3 * t664,
+                minus_gproximal_wy_leg4 * t680 - t686,
+                gproximal_wy_leg1 * t700 - minus_gdistal_wy_leg1 * t692,
+                gproximal_wy_leg2 * t714 - t722,
+                -(minus_gproximal_wy_leg3 * t736 + minus_gdistal_wy_leg3 * t728),
+                -(minus_gproximal_wy_leg4 * t754 + t758),
+                minus_gdistal_wy_leg1 * t618 - gproximal_wy_leg1 * t772,
+                t795 - gproximal_wy_leg2 * t791,
+                minus_gdistal_wy_leg3 * t656 - minus_gproximal_wy_leg3 * t810,
+                t833 - minus_gproximal_wy_leg4 * t829,
+                gproximal_wy_leg1 * t842 + minus_gdistal_wy_leg1 * t696,
+                gproximal_wy_leg2 * t855 + t860,
+                -(minus_gproximal_wy_leg3 * t869 + minus_gdistal_wy_leg3 * t732),
+                -(minus_gproximal_wy_leg4 * t882 + t886),
+                gproximal_wy_leg1 * t894 - minus_gdistal_wy_leg1 * t892,
+                -(gproximal_wy_leg2 * t906 + t910),
+                minus_gproximal_wy_leg3 * t914 - minus_gdistal_wy_leg3 * t918,
+                -(minus_gproximal_wy_leg4 * t930 + t934),
+            ],
+            [
+                t15 * t17 + t56 - t58, t44 * t61 - t15 * t68 + t34 * t73,
+                t15 * t91 + t44 * t94 - t34 * t97, t44 * t67 - t119 + t58,
+                t15 * t122 - t44 * t124 + t34 * t127, t119 - t56 + t34 * t90, 0.0, 0.0, 0.0,
+                -(minus_gproximal_wz_leg1 * rate_dot_proximal_leg1),
+                -(minus_gproximal_wz_leg2 * rate_dot_proximal_leg2),
+                gproximal_wz_leg3 * rate_dot_proximal_leg3,
+                gproximal_wz_leg4 * rate_dot_proximal_leg4, minus_gproximal_wz_leg1 * t562,
+                -(minus_gproximal_wz_leg2 * t566), -(gproximal_wz_leg3 * t570),
+                gproximal_wz_leg4 * t574, minus_gproximal_wz_leg1 * t578,
+                minus_gproximal_wz_leg2 * t582, -(gproximal_wz_leg3 * t586),
+                -(gproximal_wz_leg4 * t590), -(minus_gproximal_wz_leg1 * rate_proximal_leg1),
+                -(minus_gproximal_wz_leg2 * rate_proximal_leg2),
+                gproximal_wz_leg3 * rate_proximal_leg3, gproximal_wz_leg4 * rate_proximal_leg4,
+                -::overact::math::signed(minus_gproximal_wz_leg1, rate_proximal_leg1),
+                -::overact::math::signed(minus_gproximal_wz_leg2, rate_proximal_leg2),
+                ::overact::math::signed(gproximal_wz_leg3, rate_proximal_leg3),
+                ::overact::math::signed(gproximal_wz_leg4, rate_proximal_leg4),
+                -minus_gproximal_wz_leg1, -minus_gproximal_wz_leg2, gproximal_wz_leg3,
+                gproximal_wz_leg4, t629 - minus_gproximal_wz_leg1 * t626,
+                -(minus_gproximal_wz_leg2 * t644 + t650), t665 - gproximal_wz_leg3 * t662,
+                -(gproximal_wz_leg4 * t680 + t686), -(minus_gproximal_wz_leg1 * t700 + t693),
+                t722 - minus_gproximal_wz_leg2 * t714, gproximal_wz_leg3 * t736 + t729,
+                gproximal_wz_leg4 * t754 - t758, minus_gproximal_wz_leg1 * t772 + t774,
+                minus_gproximal_wz_leg2 * t791 - t795, gproximal_wz_leg3 * t810 - t812,
+                gproximal_wz_leg4 * t829 + t833, t844 - minus_gproximal_wz_leg1 * t842,
+                -(minus_gproximal_wz_leg2 * t855 + t860), gproximal_wz_leg3 * t869 + t864,
+                gproximal_wz_leg4 * t882 - t886, -(minus_gproximal_wz_leg1 * t894 + t893),
+                minus_gproximal_wz_leg2 * t906 + t910, t919 - gproximal_wz_leg3 * t914,
+                gproximal_wz_leg4 * t930 - t934,
+            ],
+        ])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -4500,7 +6607,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 53.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 950 operations (350 additions, 593 multiplications, 7 divisions), 0 square roots, 8 trigonometric pairs, 12 signs, 822 intermediates.
+    /// 1074 operations (382 additions, 681 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 934 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4511,472 +6618,517 @@ impl Spherical4Rrr {
         start: &[f64; 4],
     ) -> Result<[[f64; 53]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
         let t0 = 2.0 * pose[2];
         let t1 = pose[2] * t0;
         let t3 = 2.0 * pose[3];
         let t4 = pose[3] * t3;
         let t5 = 1.0 - t1 - t4;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let t8 = 0.7071067811865476 * minus_c_proximal_leg1;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t11 = t8 * c_distal_leg1;
-        let t12 = 0.7071067811865476 * minus_s_distal_leg1;
-        let t14 = 1.0 / minus_s_distal_leg1;
-        let gproximal_wx_leg1 = (t11 + t12) * t14;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let t22 = 1.0 / minus_s_distal_leg2;
-        let minus_gproximal_wx_leg2 = minus_s_proximal_leg2 * c_distal_leg2 * t22;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t28 = 0.7071067811865476 * minus_c_proximal_leg3;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let t31 = t28 * c_distal_leg3;
-        let t32 = 0.7071067811865476 * minus_s_distal_leg3;
-        let t34 = 1.0 / minus_s_distal_leg3;
-        let minus_gproximal_wx_leg3 = (t31 + t32) * t34;
-        let (minus_s_proximal_leg4, minus_c_proximal_leg4) = ::overact::math::sin_cos(
-            joints[9],
-        );
-        let (c_distal_leg4, minus_s_distal_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(minus_s_distal_leg4, 1.0, "leg4")?;
-        let t43 = 1.0 / minus_s_distal_leg4;
-        let gproximal_wx_leg4 = minus_s_proximal_leg4 * c_distal_leg4 * t43;
-        let t46 = gproximal_wx_leg1 * gproximal_wx_leg1
-            + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+        let t6 = 2.0 * pose[1];
+        let t7 = pose[2] * t6;
+        let t8 = pose[0] * t3;
+        let t9 = t7 + t8;
+        let t10 = pose[3] * t0;
+        let t11 = pose[0] * t6;
+        let t12 = t10 - t11;
+        let t13 = t9 - t12;
+        let t14 = pose[3] * t6;
+        let t15 = pose[0] * t0;
+        let t16 = t14 + t15;
+        let t17 = t5 - t16;
+        let t18 = t14 - t15;
+        let t20 = 1.0 - pose[1] * t6;
+        let t21 = t20 - t1;
+        let t22 = t18 - t21;
+        let t23 = t17 + t22;
+        let t26 = 1.0 - 0.25 * (t23 * t23);
+        ::overact::guard::reach(t26, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t26);
+        let t32 = 1.0 / (0.5 * (t17 * c_distal_leg1 - t22 * c_distal_leg1));
+        let t33 = t17 - t22;
+        let s_proximal_leg1 = t32 * (0.35355339059327373 * (t13 * t33));
+        let t38 = 0.5 * (t13 * s_proximal_leg1);
+        let t39 = 0.7071067811865475 * t22;
+        let c_proximal_leg1 = t32 * (0.25 * (t33 * t33));
+        let t49 = 0.7071067811865475 * t13;
+        let t52 = 0.5 * (t22 * c_proximal_leg1)
+            - (0.5 * (t17 * c_proximal_leg1) + t49 * s_proximal_leg1);
+        ::overact::guard::leg(t52, 1.0, "leg1")?;
+        let t53 = 1.0 / t52;
+        let minus_gproximal_wx_leg1 = (t38 - t39 * c_proximal_leg1) * t53;
+        let t56 = t20 - t4;
+        let t57 = t56 - t12;
+        let t58 = t10 + t11;
+        let t59 = t58 - t21;
+        let t60 = t57 + t59;
+        let minus_s_distal_leg2 = 0.5 * t60;
+        let t64 = 1.0 - 0.25 * (t60 * t60);
+        ::overact::guard::reach(t64, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t64);
+        let t70 = 1.0 / (0.5 * (t57 * c_distal_leg2 - t59 * c_distal_leg2));
+        let t71 = t7 - t8;
+        let t72 = t71 - t16;
+        let t73 = t57 - t59;
+        let minus_s_proximal_leg2 = t70 * (0.35355339059327373 * (t72 * t73));
+        let t77 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let c_proximal_leg2 = t70 * (0.25 * (t73 * t73));
+        let t83 = 0.7071067811865475 * t72;
+        let t88 = 0.5 * (t59 * c_proximal_leg2)
+            - (t83 * minus_s_proximal_leg2 + 0.5 * (t57 * c_proximal_leg2));
+        ::overact::guard::leg(t88, 1.0, "leg2")?;
+        let t89 = 1.0 / t88;
+        let gproximal_wx_leg2 = t77 * t89;
+        let t93 = t9 + t12;
+        let t94 = t5 + t16;
+        let t95 = t18 + t21;
+        let t96 = t95 - t94;
+        let t99 = 1.0 - 0.25 * (t96 * t96);
+        ::overact::guard::reach(t99, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t99);
+        let t105 = 1.0 / (0.5 * (t94 * c_distal_leg3 + t95 * c_distal_leg3));
+        let t106 = t94 + t95;
+        let s_proximal_leg3 = t105 * (0.35355339059327373 * (t93 * t106));
+        let t111 = 0.5 * (t93 * s_proximal_leg3);
+        let t112 = 0.7071067811865475 * t95;
+        let c_proximal_leg3 = t105 * (0.25 * (t106 * t106));
+        let t120 = 0.7071067811865475 * t93;
+        let t125 = 0.5 * (t94 * c_proximal_leg3) + t120 * s_proximal_leg3
+            + 0.5 * (t95 * c_proximal_leg3);
+        ::overact::guard::leg(t125, 1.0, "leg3")?;
+        let t126 = 1.0 / t125;
+        let minus_gproximal_wx_leg3 = (t111 + t112 * c_proximal_leg3) * t126;
+        let t130 = t58 + t21;
+        let t131 = t56 + t12;
+        let t132 = t130 - t131;
+        let s_distal_leg4 = 0.5 * t132;
+        let t136 = 1.0 - 0.25 * (t132 * t132);
+        ::overact::guard::reach(t136, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t136);
+        let t142 = 1.0 / (0.5 * (t131 * c_distal_leg4 + t130 * c_distal_leg4));
+        let t143 = t71 + t16;
+        let t144 = t131 + t130;
+        let minus_s_proximal_leg4 = t142 * (0.35355339059327373 * (t143 * t144));
+        let t148 = s_distal_leg4 * minus_s_proximal_leg4;
+        let t149 = 0.7071067811865475 * t143;
+        let c_proximal_leg4 = t142 * (0.25 * (t144 * t144));
+        let t159 = t149 * minus_s_proximal_leg4 + 0.5 * (t131 * c_proximal_leg4)
+            + 0.5 * (t130 * c_proximal_leg4);
+        ::overact::guard::leg(t159, 1.0, "leg4")?;
+        let t160 = 1.0 / t159;
+        let minus_gproximal_wx_leg4 = t148 * t160;
+        let t163 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+            + gproximal_wx_leg2 * gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
-            + gproximal_wx_leg4 * gproximal_wx_leg4;
-        ::overact::guard::platform(t46, 1.0000000000000002, "actuators")?;
-        ::overact::guard::platform(t46, 1.0000000000000002, "actuators")?;
-        let t47 = 1.0 / t46;
-        let t54 = gproximal_wx_leg1 * actuator_velocities[0]
-            - minus_gproximal_wx_leg2 * actuator_velocities[1]
+            + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
+        ::overact::guard::platform(t163, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t163, 0.9999999999999998, "actuators")?;
+        let t164 = 1.0 / t163;
+        let t165 = 0.7071067811865475 * t57;
+        let t168 = 0.5 * (t72 * minus_s_proximal_leg2);
+        let minus_gproximal_wz_leg2 = (t165 * c_proximal_leg2 + t168) * t89;
+        let t177 = gproximal_wx_leg2 * actuator_velocities[1]
+            - minus_gproximal_wx_leg1 * actuator_velocities[0]
             - minus_gproximal_wx_leg3 * actuator_velocities[2]
-            + gproximal_wx_leg4 * actuator_velocities[3];
-        let gproximal_wy_leg1 = minus_s_proximal_leg1 * c_distal_leg1 * t14;
-        let t59 = 0.7071067811865476 * minus_c_proximal_leg2;
-        let t60 = t59 * c_distal_leg2;
-        let t61 = 0.7071067811865476 * minus_s_distal_leg2;
-        let gproximal_wy_leg2 = (t60 + t61) * t22;
-        let minus_gproximal_wy_leg3 = minus_s_proximal_leg3 * c_distal_leg3 * t34;
-        let t70 = 0.7071067811865476 * minus_c_proximal_leg4;
-        let t71 = t70 * c_distal_leg4;
-        let t72 = 0.7071067811865476 * minus_s_distal_leg4;
-        let minus_gproximal_wy_leg4 = (t71 + t72) * t43;
-        let t76 = gproximal_wx_leg1 * gproximal_wy_leg1
-            - minus_gproximal_wx_leg2 * gproximal_wy_leg2
+            - minus_gproximal_wx_leg4 * actuator_velocities[3];
+        let t179 = 0.7071067811865475 * t59;
+        let gproximal_wy_leg2 = (t179 * c_proximal_leg2 - t168) * t89;
+        let minus_s_distal_leg1 = 0.5 * t23;
+        let t185 = minus_s_distal_leg1 * s_proximal_leg1;
+        let gproximal_wy_leg1 = t185 * t53;
+        let s_distal_leg3 = 0.5 * t96;
+        let t190 = s_distal_leg3 * s_proximal_leg3;
+        let minus_gproximal_wy_leg3 = t190 * t126;
+        let t195 = 0.5 * (t143 * minus_s_proximal_leg4);
+        let t196 = 0.7071067811865475 * t130;
+        let minus_gproximal_wy_leg4 = (t195 + t196 * c_proximal_leg4) * t160;
+        let t201 = gproximal_wx_leg2 * gproximal_wy_leg2
+            - minus_gproximal_wx_leg1 * gproximal_wy_leg1
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
-            - gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t77 = t76 * t47;
-        let t86 = gproximal_wy_leg1 * gproximal_wy_leg1
+            + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
+        let t202 = t201 * t164;
+        let t211 = gproximal_wy_leg1 * gproximal_wy_leg1
             + gproximal_wy_leg2 * gproximal_wy_leg2
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t76 * t77;
-        ::overact::guard::platform(t86, 1.0000000000000002, "actuators")?;
-        ::overact::guard::platform(t86, 1.0000000000000002, "actuators")?;
-        let t87 = 1.0 / t86;
-        let t96 = gproximal_wy_leg1 * actuator_velocities[0]
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t201 * t202;
+        ::overact::guard::platform(t211, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t211, 0.9999999999999998, "actuators")?;
+        let t212 = 1.0 / t211;
+        let t221 = gproximal_wy_leg1 * actuator_velocities[0]
             + gproximal_wy_leg2 * actuator_velocities[1]
             - minus_gproximal_wy_leg3 * actuator_velocities[2]
-            - minus_gproximal_wy_leg4 * actuator_velocities[3] - t54 * t77;
-        let minus_gproximal_wz_leg3 = (t31 - t32) * t34;
-        let minus_gproximal_wz_leg1 = (t11 - t12) * t14;
-        let minus_gproximal_wz_leg2 = (t60 - t61) * t22;
-        let minus_gproximal_wz_leg4 = (t71 - t72) * t43;
-        let t119 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
-            - gproximal_wx_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
-            - gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t120 = t119 * t47;
-        let t122 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
-            - (gproximal_wy_leg1 * minus_gproximal_wz_leg1
-                + gproximal_wy_leg2 * minus_gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t76 * t120;
-        let t123 = t122 * t87;
-        let t134 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wy_leg4 * actuator_velocities[3] - t177 * t202;
+        let t223 = 0.7071067811865475 * t17;
+        let minus_gproximal_wz_leg1 = (t223 * c_proximal_leg1 + t38) * t53;
+        let t230 = 0.7071067811865475 * t94;
+        let gproximal_wz_leg3 = (t230 * c_proximal_leg3 + t111) * t126;
+        let t236 = 0.7071067811865475 * t131;
+        let gproximal_wz_leg4 = (t236 * c_proximal_leg4 + t195) * t160;
+        let t248 = minus_gproximal_wx_leg1 * minus_gproximal_wz_leg1
+            - gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wx_leg3 * gproximal_wz_leg3
+            - minus_gproximal_wx_leg4 * gproximal_wz_leg4;
+        let t249 = t248 * t164;
+        let t251 = gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            + gproximal_wy_leg2 * minus_gproximal_wz_leg2
+            + minus_gproximal_wy_leg3 * gproximal_wz_leg3
+            + minus_gproximal_wy_leg4 * gproximal_wz_leg4 + t201 * t249;
+        let t252 = t251 * t212;
+        let t263 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
             + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t119 * t120
-            - t122 * t123;
-        ::overact::guard::platform(t134, 2.0000000000000004, "actuators")?;
-        ::overact::guard::platform(t134, 2.0000000000000004, "actuators")?;
-        let t135 = 1.0 / t134;
-        let t146 = minus_gproximal_wz_leg1 * actuator_velocities[0]
-            + minus_gproximal_wz_leg2 * actuator_velocities[1]
-            + minus_gproximal_wz_leg3 * actuator_velocities[2]
-            + minus_gproximal_wz_leg4 * actuator_velocities[3] + t54 * t120 + t123 * t96;
-        let t147 = t135 * t146;
-        let t149 = t87 * t96 + t123 * t147;
-        let t153 = t54 * t47 - t77 * t149 + t120 * t147;
-        let rate_proximal_leg1 = gproximal_wx_leg1 * t153 + gproximal_wy_leg1 * t149
-            + minus_gproximal_wz_leg1 * t147;
-        let t159 = 0.7071067811865476 * rate_proximal_leg1;
-        let minus_gdistal_wx_leg1 = 0.7071067811865476 * minus_s_proximal_leg1;
-        let rate_distal_leg1 = minus_c_proximal_leg1 * t149
-            - minus_gdistal_wx_leg1 * t153 - minus_gdistal_wx_leg1 * t147;
-        let t166 = minus_c_proximal_leg1 * rate_distal_leg1;
-        let t167 = t159 * t166;
-        let t168 = t8 * minus_s_distal_leg1;
-        let t169 = 0.7071067811865476 * c_distal_leg1;
-        let t170 = t168 + t169;
-        let gwrist_wx_leg1 = t8 * t14;
-        let gwrist_wy_leg1 = minus_s_proximal_leg1 * t14;
-        let rate_wrist_leg1 = gwrist_wx_leg1 * t153 + gwrist_wy_leg1 * t149
-            + gwrist_wx_leg1 * t147;
-        let t178 = t170 * rate_wrist_leg1;
-        let t180 = minus_gdistal_wx_leg1 * rate_distal_leg1;
-        let t181 = t159 + t180;
-        let t183 = minus_s_proximal_leg1 * minus_s_distal_leg1 * rate_wrist_leg1;
-        let t186 = t167 + t166 * t178 + t181 * t183;
-        let t188 = t159 - t180;
-        let t191 = (t169 - t168) * rate_wrist_leg1;
-        let t196 = t188 * t178 - t181 * t191 - 2.0 * (t159 * t180);
-        let t202 = t167 + t188 * t183 + t166 * t191;
-        let rate_dot_proximal_leg1 = gproximal_wx_leg1 * t186 - gproximal_wy_leg1 * t196
-            + minus_gproximal_wz_leg1 * t202;
-        let t205 = actuator_accelerations[0] - rate_dot_proximal_leg1;
-        let rate_proximal_leg2 = gproximal_wy_leg2 * t149
-            - minus_gproximal_wx_leg2 * t153 + minus_gproximal_wz_leg2 * t147;
-        let t212 = 0.7071067811865476 * rate_proximal_leg2;
-        let minus_gdistal_wy_leg2 = 0.7071067811865476 * minus_s_proximal_leg2;
-        let minus_rate_distal_leg2 = minus_c_proximal_leg2 * t153
-            + minus_gdistal_wy_leg2 * t149 + minus_gdistal_wy_leg2 * t147;
-        let t219 = minus_gdistal_wy_leg2 * minus_rate_distal_leg2;
-        let t220 = t212 - t219;
-        let t221 = 0.7071067811865476 * c_distal_leg2;
-        let t222 = t59 * minus_s_distal_leg2;
-        let gwrist_wy_leg2 = t59 * t22;
-        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t22;
-        let rate_wrist_leg2 = gwrist_wy_leg2 * t149 - minus_gwrist_wx_leg2 * t153
-            + gwrist_wy_leg2 * t147;
-        let t231 = (t221 - t222) * rate_wrist_leg2;
-        let t233 = t212 + t219;
-        let t234 = t222 + t221;
-        let t235 = t234 * rate_wrist_leg2;
-        let t240 = t220 * t231 - t233 * t235 - 2.0 * (t212 * t219);
-        let t242 = minus_c_proximal_leg2 * minus_rate_distal_leg2;
-        let t243 = t212 * t242;
-        let t246 = minus_s_proximal_leg2 * minus_s_distal_leg2 * rate_wrist_leg2;
-        let t249 = t243 + t242 * t235 - t220 * t246;
-        let t255 = t233 * t246 - t242 * t231 - t243;
-        let rate_dot_proximal_leg2 = minus_gproximal_wx_leg2 * t240
-            - gproximal_wy_leg2 * t249 + minus_gproximal_wz_leg2 * t255;
-        let t258 = actuator_accelerations[1] - rate_dot_proximal_leg2;
-        let rate_proximal_leg3 = minus_gproximal_wz_leg3 * t147
-            - (minus_gproximal_wx_leg3 * t153 + minus_gproximal_wy_leg3 * t149);
-        let t266 = 0.7071067811865476 * rate_proximal_leg3;
-        let gdistal_wx_leg3 = 0.7071067811865476 * minus_s_proximal_leg3;
-        let rate_distal_leg3 = gdistal_wx_leg3 * t153 - minus_c_proximal_leg3 * t149
-            - gdistal_wx_leg3 * t147;
-        let t273 = minus_c_proximal_leg3 * rate_distal_leg3;
-        let t274 = t266 * t273;
-        let t275 = t28 * minus_s_distal_leg3;
-        let t276 = 0.7071067811865476 * c_distal_leg3;
-        let t277 = t275 + t276;
-        let minus_gwrist_wx_leg3 = t28 * t34;
-        let minus_gwrist_wy_leg3 = minus_s_proximal_leg3 * t34;
-        let rate_wrist_leg3 = minus_gwrist_wx_leg3 * t147
-            - (minus_gwrist_wx_leg3 * t153 + minus_gwrist_wy_leg3 * t149);
-        let t285 = t277 * rate_wrist_leg3;
-        let t287 = gdistal_wx_leg3 * rate_distal_leg3;
-        let t288 = t266 + t287;
-        let t290 = minus_s_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let t293 = t274 + t273 * t285 + t288 * t290;
-        let t297 = t287 - t266;
-        let t300 = (t275 - t276) * rate_wrist_leg3;
-        let t303 = 2.0 * (t266 * t287) + t297 * t285 - t288 * t300;
-        let t309 = t274 - (t297 * t290 + t273 * t300);
-        let rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t293
-            + minus_gproximal_wy_leg3 * t303 + minus_gproximal_wz_leg3 * t309;
-        let t312 = actuator_accelerations[2] - rate_dot_proximal_leg3;
-        let rate_proximal_leg4 = gproximal_wx_leg4 * t153
-            - minus_gproximal_wy_leg4 * t149 + minus_gproximal_wz_leg4 * t147;
-        let t320 = 0.7071067811865476 * rate_proximal_leg4;
-        let gdistal_wy_leg4 = 0.7071067811865476 * minus_s_proximal_leg4;
-        let rate_distal_leg4 = minus_c_proximal_leg4 * t153 + gdistal_wy_leg4 * t149
-            - gdistal_wy_leg4 * t147;
-        let t327 = minus_c_proximal_leg4 * rate_distal_leg4;
-        let t328 = t320 * t327;
-        let t329 = gdistal_wy_leg4 * rate_distal_leg4;
-        let t330 = t320 + t329;
-        let gwrist_wx_leg4 = minus_s_proximal_leg4 * t43;
-        let minus_gwrist_wy_leg4 = t70 * t43;
-        let rate_wrist_leg4 = gwrist_wx_leg4 * t153 - minus_gwrist_wy_leg4 * t149
-            + minus_gwrist_wy_leg4 * t147;
-        let t339 = minus_s_proximal_leg4 * minus_s_distal_leg4 * rate_wrist_leg4;
-        let t341 = t70 * minus_s_distal_leg4;
-        let t342 = 0.7071067811865476 * c_distal_leg4;
-        let t343 = t341 + t342;
-        let t344 = t343 * rate_wrist_leg4;
-        let t347 = t328 + t330 * t339 + t327 * t344;
-        let t350 = (t341 - t342) * rate_wrist_leg4;
-        let t352 = t329 - t320;
-        let t357 = t330 * t350 - t352 * t344 - 2.0 * (t320 * t329);
-        let t363 = t328 - (t327 * t350 + t352 * t339);
-        let rate_dot_proximal_leg4 = minus_gproximal_wy_leg4 * t347
-            - gproximal_wx_leg4 * t357 + minus_gproximal_wz_leg4 * t363;
-        let t366 = actuator_accelerations[3] - rate_dot_proximal_leg4;
-        let t368 = gproximal_wx_leg1 * t205 - minus_gproximal_wx_leg2 * t258
-            - minus_gproximal_wx_leg3 * t312 + gproximal_wx_leg4 * t366;
-        let t378 = gproximal_wy_leg1 * t205 + gproximal_wy_leg2 * t258
-            - minus_gproximal_wy_leg3 * t312 - minus_gproximal_wy_leg4 * t366
-            - t77 * t368;
-        let t390 = minus_gproximal_wz_leg1 * t205 + minus_gproximal_wz_leg2 * t258
-            + minus_gproximal_wz_leg3 * t312 + minus_gproximal_wz_leg4 * t366
-            + t120 * t368 + t123 * t378;
-        let t391 = t135 * t390;
-        let t393 = t87 * t378 + t123 * t391;
-        let t397 = t47 * t368 - t77 * t393 + t120 * t391;
-        let t399 = 2.0 * pose[1];
-        let t400 = pose[2] * t399;
-        let t401 = pose[0] * t3;
-        let t402 = t400 + t401;
-        let t405 = pose[3] * t399;
-        let t406 = pose[0] * t0;
-        let t407 = t405 - t406;
-        let t409 = t5 * t397 + t402 * t393 - t407 * t391;
-        let t411 = t400 - t401;
-        let t416 = t5 * t153 + t402 * t149 - t407 * t147;
-        let t417 = t405 + t406;
-        let t419 = pose[3] * t0;
-        let t420 = pose[0] * t399;
-        let t421 = t419 - t420;
-        let t425 = 1.0 - pose[1] * t399;
-        let t426 = t425 - t1;
-        let t428 = t417 * t153 + t421 * t149 - t426 * t147;
-        let t429 = t416 * t428;
-        let t430 = t411 * t429;
-        let t433 = t425 - t4;
-        let t436 = t419 + t420;
-        let t438 = t411 * t153 + t433 * t149 - t436 * t147;
-        let t439 = t416 * t438;
-        let t440 = t417 * t439;
-        let t443 = t433 * t429;
-        let t445 = t421 * t439;
-        let t448 = t436 * t429;
-        let t450 = t426 * t439;
-        let t452 = t438 * t428;
-        let t453 = t452 + t409;
-        let t459 = t411 * t397 + t433 * t393 - t436 * t391;
-        let t460 = t429 - t459;
-        let t463 = t416 * t416;
-        let t464 = t438 * t438;
-        let t465 = t463 - t464;
-        let t482 = t417 * t397 + t421 * t393 - t426 * t391;
-        let t483 = t439 + t482;
-        let t485 = t428 * t428;
-        let t486 = t485 - t463;
-        let t489 = t452 - t409;
-        let t503 = t5 * t452;
-        let t507 = t402 * t452;
-        let t511 = t407 * t452;
-        let t514 = t464 - t485;
-        let t516 = t439 - t482;
-        let t519 = t429 + t459;
-        let t541 = 9.81 * t436;
-        let t543 = 9.81 * t426;
-        let t550 = 9.81 * t407;
-        let t562 = t397 + t186;
-        let t564 = t393 - t196;
-        let t567 = t391 + t202;
-        let rate_dot_proximal_leg1_2 = gproximal_wx_leg1 * t562
-            + gproximal_wy_leg1 * t564 + minus_gproximal_wz_leg1 * t567;
-        let t573 = t393 - t249;
-        let t575 = t397 - t240;
-        let t578 = t391 + t255;
-        let rate_dot_proximal_leg2_2 = gproximal_wy_leg2 * t573
-            - minus_gproximal_wx_leg2 * t575 + minus_gproximal_wz_leg2 * t578;
-        let t584 = t391 + t309;
-        let t586 = t397 - t293;
-        let t588 = t393 - t303;
-        let rate_dot_proximal_leg3_2 = minus_gproximal_wz_leg3 * t584
-            - (minus_gproximal_wx_leg3 * t586 + minus_gproximal_wy_leg3 * t588);
-        let t595 = t397 - t357;
-        let t597 = t393 - t347;
-        let t600 = t391 + t363;
-        let rate_dot_proximal_leg4_2 = gproximal_wx_leg4 * t595
-            - minus_gproximal_wy_leg4 * t597 + minus_gproximal_wz_leg4 * t600;
-        let t606 = 6.9367175234400325 * minus_s_proximal_leg1;
-        let t610 = 6.9367175234400325 * minus_s_proximal_leg2;
-        let t614 = 6.9367175234400325 * minus_s_proximal_leg3;
-        let t618 = 6.9367175234400325 * minus_s_proximal_leg4;
-        let t622 = 6.9367175234400325 * minus_c_proximal_leg1;
-        let t626 = 6.9367175234400325 * minus_c_proximal_leg2;
-        let t630 = 6.9367175234400325 * minus_c_proximal_leg3;
-        let t634 = 6.9367175234400325 * minus_c_proximal_leg4;
-        let t662 = c_distal_leg1 * rate_proximal_leg1;
-        let t663 = rate_distal_leg1 * t662;
-        let t664 = minus_s_distal_leg1 * rate_dot_proximal_leg1_2;
-        let t665 = t663 - t664;
-        let t667 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t668 = rate_distal_leg1 * t667;
-        let t670 = minus_s_distal_leg1 * t665 + c_distal_leg1 * t668;
-        let t672 = t667 * t662;
-        let t673 = minus_gdistal_wx_leg1 * t672;
-        let t680 = minus_s_distal_leg2 * rate_dot_proximal_leg2_2;
-        let t681 = c_distal_leg2 * rate_proximal_leg2;
-        let t682 = minus_rate_distal_leg2 * t681;
-        let t683 = t680 + t682;
-        let t685 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t686 = minus_rate_distal_leg2 * t685;
-        let t688 = minus_s_distal_leg2 * t683 + c_distal_leg2 * t686;
-        let t690 = t685 * t681;
-        let t694 = minus_gdistal_wy_leg2 * t690;
-        let t698 = c_distal_leg3 * rate_proximal_leg3;
-        let t699 = rate_distal_leg3 * t698;
-        let t700 = minus_s_distal_leg3 * rate_dot_proximal_leg3_2;
-        let t701 = t699 - t700;
-        let t703 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t704 = rate_distal_leg3 * t703;
-        let t706 = minus_s_distal_leg3 * t701 + c_distal_leg3 * t704;
-        let t708 = t703 * t698;
-        let t709 = gdistal_wx_leg3 * t708;
-        let t716 = minus_s_distal_leg4 * rate_proximal_leg4;
-        let t717 = c_distal_leg4 * rate_proximal_leg4;
-        let t718 = t716 * t717;
-        let t720 = rate_distal_leg4 * t717;
-        let t721 = minus_s_distal_leg4 * rate_dot_proximal_leg4_2;
-        let t722 = t720 - t721;
-        let t724 = rate_distal_leg4 * t716;
-        let t726 = minus_s_distal_leg4 * t722 + c_distal_leg4 * t724;
-        let t730 = gdistal_wy_leg4 * t718;
-        let t736 = c_distal_leg1 * rate_dot_proximal_leg1_2;
-        let t740 = c_distal_leg1 * (t663 + t665)
-            - minus_s_distal_leg1 * (t668 + t736 + t668);
-        let t742 = t667 * t667;
-        let t743 = t662 * t662;
-        let t744 = t742 - t743;
-        let t745 = minus_gdistal_wx_leg1 * t744;
-        let t752 = c_distal_leg2 * rate_dot_proximal_leg2_2;
-        let t758 = minus_s_distal_leg2 * (t686 - (t752 - t686))
-            - c_distal_leg2 * (t682 + t683);
-        let t760 = t685 * t685;
-        let t761 = t681 * t681;
-        let t762 = t760 - t761;
-        let t766 = minus_gdistal_wy_leg2 * t762;
-        let t770 = t703 * t703;
-        let t771 = t698 * t698;
-        let t772 = t770 - t771;
-        let t773 = gdistal_wx_leg3 * t772;
-        let t776 = c_distal_leg3 * rate_dot_proximal_leg3_2;
-        let t780 = c_distal_leg3 * (t699 + t701)
-            - minus_s_distal_leg3 * (t704 + t776 + t704);
-        let t790 = c_distal_leg4 * rate_dot_proximal_leg4_2;
-        let t794 = c_distal_leg4 * (t720 + t722)
-            - minus_s_distal_leg4 * (t724 + t790 + t724);
-        let t796 = t716 * t716;
-        let t797 = t717 * t717;
-        let t798 = t796 - t797;
-        let t801 = gdistal_wy_leg4 * t798;
-        let t806 = rate_distal_leg1 * rate_distal_leg1;
-        let rate_dot_distal_leg1 = minus_c_proximal_leg1 * t564
-            - minus_gdistal_wx_leg1 * t562 - minus_gdistal_wx_leg1 * t567;
-        let t816 = c_distal_leg1 * (t806 - t742)
-            - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t672);
-        let t818 = minus_gdistal_wx_leg1 * t664;
-        let minus_rate_dot_distal_leg2 = minus_c_proximal_leg2 * t575
-            + minus_gdistal_wy_leg2 * t573 + minus_gdistal_wy_leg2 * t578;
-        let t833 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t836 = minus_s_distal_leg2 * (t690 + minus_rate_dot_distal_leg2)
-            + c_distal_leg2 * (t833 - t760);
-        let t840 = minus_gdistal_wy_leg2 * t680;
-        let t844 = rate_distal_leg3 * rate_distal_leg3;
-        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t586 - minus_c_proximal_leg3 * t588
-            - gdistal_wx_leg3 * t584;
-        let t854 = c_distal_leg3 * (t844 - t770)
-            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t708);
-        let t856 = gdistal_wx_leg3 * t700;
-        let t863 = rate_distal_leg4 * rate_distal_leg4;
-        let rate_dot_distal_leg4 = minus_c_proximal_leg4 * t595 + gdistal_wy_leg4 * t597
-            - gdistal_wy_leg4 * t600;
-        let t873 = c_distal_leg4 * (t863 - t796)
-            - minus_s_distal_leg4 * (rate_dot_distal_leg4 - t718);
-        let t878 = gdistal_wy_leg4 * t721;
-        let t886 = c_distal_leg1 * (t672 + rate_dot_distal_leg1)
-            - minus_s_distal_leg1 * (t743 - t806);
-        let t888 = minus_gdistal_wx_leg1 * t736;
-        let t899 = minus_s_distal_leg2 * (t761 - t833)
-            + c_distal_leg2 * (minus_rate_dot_distal_leg2 - t690);
-        let t904 = minus_gdistal_wy_leg2 * t752;
-        let t908 = gdistal_wx_leg3 * t776;
-        let t913 = c_distal_leg3 * (t708 + rate_dot_distal_leg3)
-            - minus_s_distal_leg3 * (t771 - t844);
-        let t925 = c_distal_leg4 * (t718 + rate_dot_distal_leg4)
-            - minus_s_distal_leg4 * (t797 - t863);
-        let t929 = gdistal_wy_leg4 * t790;
-        let t934 = c_distal_leg1 * t606;
-        let t937 = 6.9367175234400325 * (minus_s_proximal_leg1 * t170);
-        let t945 = c_distal_leg2 * t610;
-        let t952 = 6.9367175234400325 * (minus_s_proximal_leg2 * t234);
-        let t956 = c_distal_leg3 * t614;
-        let t959 = 6.9367175234400325 * (minus_s_proximal_leg3 * t277);
-        let t969 = c_distal_leg4 * t618;
-        let t974 = 6.9367175234400325 * (minus_s_proximal_leg4 * t343);
+            + gproximal_wz_leg3 * gproximal_wz_leg3
+            + gproximal_wz_leg4 * gproximal_wz_leg4 - t248 * t249 - t251 * t252;
+        ::overact::guard::platform(t263, 1.9999999999999996, "actuators")?;
+        ::overact::guard::platform(t263, 1.9999999999999996, "actuators")?;
+        let t264 = 1.0 / t263;
+        let t275 = gproximal_wz_leg3 * actuator_velocities[2]
+            - (minus_gproximal_wz_leg1 * actuator_velocities[0]
+                + minus_gproximal_wz_leg2 * actuator_velocities[1])
+            + gproximal_wz_leg4 * actuator_velocities[3] - t177 * t249 + t252 * t221;
+        let t276 = t264 * t275;
+        let t278 = t212 * t221 + t252 * t276;
+        let t282 = t177 * t164 - t202 * t278 - t249 * t276;
+        let rate_proximal_leg2 = gproximal_wx_leg2 * t282 + gproximal_wy_leg2 * t278
+            - minus_gproximal_wz_leg2 * t276;
+        let t288 = 0.7071067811865475 * rate_proximal_leg2;
+        let t289 = 0.5 * t89;
+        let gdistal_wx_leg2 = t73 * t289;
+        let minus_gdistal_wy_leg2 = t72 * t289;
+        let rate_distal_leg2 = gdistal_wx_leg2 * t282 - minus_gdistal_wy_leg2 * t278
+            + minus_gdistal_wy_leg2 * t276;
+        let t297 = c_proximal_leg2 * rate_distal_leg2;
+        let t298 = t288 * t297;
+        let minus_gwrist_wy_leg2 = 0.7071067811865475 * c_proximal_leg2 * t89;
+        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t89;
+        let rate_wrist_leg2 = minus_gwrist_wy_leg2 * t276
+            - (minus_gwrist_wx_leg2 * t282 + minus_gwrist_wy_leg2 * t278);
+        let t307 = t165 * rate_wrist_leg2;
+        let t310 = 0.7071067811865475 * minus_s_proximal_leg2 * rate_distal_leg2;
+        let t311 = t288 + t310;
+        let t312 = t83 * rate_wrist_leg2;
+        let t315 = t298 - (t297 * t307 + t311 * t312);
+        let t317 = t179 * rate_wrist_leg2;
+        let t319 = t288 - t310;
+        let t324 = t311 * t317 - t319 * t307 - 2.0 * (t288 * t310);
+        let t329 = t319 * t312 + t297 * t317 - t298;
+        let rate_dot_proximal_leg2 = minus_gproximal_wz_leg2 * t315
+            - (gproximal_wx_leg2 * t324 + gproximal_wy_leg2 * t329);
+        let t333 = actuator_accelerations[1] - rate_dot_proximal_leg2;
+        let t335 = 0.5 * t53;
+        let gdistal_wx_leg1 = t13 * t335;
+        let minus_gdistal_wy_leg1 = t33 * t335;
+        let rate_distal_leg1 = gdistal_wx_leg1 * t282 - minus_gdistal_wy_leg1 * t278
+            - gdistal_wx_leg1 * t276;
+        let t343 = c_proximal_leg1 * rate_distal_leg1;
+        let minus_gwrist_wx_leg1 = 0.7071067811865475 * c_proximal_leg1 * t53;
+        let minus_gwrist_wy_leg1 = s_proximal_leg1 * t53;
+        let rate_wrist_leg1 = minus_gwrist_wx_leg1 * t276
+            - (minus_gwrist_wx_leg1 * t282 + minus_gwrist_wy_leg1 * t278);
+        let t352 = t39 * rate_wrist_leg1;
+        let rate_proximal_leg1 = gproximal_wy_leg1 * t278
+            - minus_gproximal_wx_leg1 * t282 - minus_gproximal_wz_leg1 * t276;
+        let t359 = 0.7071067811865475 * rate_proximal_leg1;
+        let t361 = 0.7071067811865475 * s_proximal_leg1 * rate_distal_leg1;
+        let t362 = t359 + t361;
+        let t363 = t49 * rate_wrist_leg1;
+        let t366 = t359 * t343;
+        let t367 = t343 * t352 - t362 * t363 - t366;
+        let t369 = t223 * rate_wrist_leg1;
+        let t371 = t359 - t361;
+        let t376 = t362 * t369 - t371 * t352 - 2.0 * (t359 * t361);
+        let t382 = t366 + t371 * t363 - t343 * t369;
+        let rate_dot_proximal_leg1 = minus_gproximal_wx_leg1 * t367
+            - gproximal_wy_leg1 * t376 + minus_gproximal_wz_leg1 * t382;
+        let t385 = actuator_accelerations[0] - rate_dot_proximal_leg1;
+        let rate_proximal_leg3 = gproximal_wz_leg3 * t276
+            - (minus_gproximal_wx_leg3 * t282 + minus_gproximal_wy_leg3 * t278);
+        let t393 = 0.7071067811865475 * rate_proximal_leg3;
+        let t394 = 0.5 * t126;
+        let gdistal_wx_leg3 = t93 * t394;
+        let minus_gdistal_wy_leg3 = t106 * t394;
+        let rate_distal_leg3 = gdistal_wx_leg3 * t282 - minus_gdistal_wy_leg3 * t278
+            + gdistal_wx_leg3 * t276;
+        let t402 = c_proximal_leg3 * rate_distal_leg3;
+        let t403 = t393 * t402;
+        let minus_gwrist_wx_leg3 = 0.7071067811865475 * c_proximal_leg3 * t126;
+        let minus_gwrist_wy_leg3 = s_proximal_leg3 * t126;
+        let minus_rate_wrist_leg3 = minus_gwrist_wx_leg3 * t282
+            + minus_gwrist_wy_leg3 * t278 + minus_gwrist_wx_leg3 * t276;
+        let t412 = t112 * minus_rate_wrist_leg3;
+        let t415 = 0.7071067811865475 * s_proximal_leg3 * rate_distal_leg3;
+        let t416 = t393 + t415;
+        let t417 = t120 * minus_rate_wrist_leg3;
+        let t420 = t403 - (t402 * t412 + t416 * t417);
+        let t424 = t230 * minus_rate_wrist_leg3;
+        let t426 = t415 - t393;
+        let t429 = 2.0 * (t393 * t415) + t416 * t424 - t426 * t412;
+        let t435 = t403 + t426 * t417 + t402 * t424;
+        let rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t420
+            + minus_gproximal_wy_leg3 * t429 - gproximal_wz_leg3 * t435;
+        let t438 = actuator_accelerations[2] - rate_dot_proximal_leg3;
+        let rate_proximal_leg4 = gproximal_wz_leg4 * t276
+            - (minus_gproximal_wx_leg4 * t282 + minus_gproximal_wy_leg4 * t278);
+        let t446 = 0.7071067811865475 * rate_proximal_leg4;
+        let t448 = 0.5 * t160;
+        let gdistal_wx_leg4 = t144 * t448;
+        let minus_gdistal_wy_leg4 = t143 * t448;
+        let rate_distal_leg4 = gdistal_wx_leg4 * t282 - minus_gdistal_wy_leg4 * t278
+            - minus_gdistal_wy_leg4 * t276;
+        let t456 = 0.7071067811865475 * minus_s_proximal_leg4 * rate_distal_leg4;
+        let t459 = t446 + t456;
+        let minus_gwrist_wx_leg4 = minus_s_proximal_leg4 * t160;
+        let minus_gwrist_wy_leg4 = 0.7071067811865475 * c_proximal_leg4 * t160;
+        let minus_rate_wrist_leg4 = minus_gwrist_wx_leg4 * t282
+            + minus_gwrist_wy_leg4 * t278 + minus_gwrist_wy_leg4 * t276;
+        let t468 = t196 * minus_rate_wrist_leg4;
+        let t470 = t446 - t456;
+        let t471 = t236 * minus_rate_wrist_leg4;
+        let t474 = 2.0 * (t446 * t456) - (t459 * t468 + t470 * t471);
+        let t476 = c_proximal_leg4 * rate_distal_leg4;
+        let t477 = t446 * t476;
+        let t478 = t149 * minus_rate_wrist_leg4;
+        let t482 = t477 + t470 * t478 - t476 * t468;
+        let t488 = t477 + t476 * t471 + t459 * t478;
+        let rate_dot_proximal_leg4 = minus_gproximal_wx_leg4 * t474
+            + minus_gproximal_wy_leg4 * t482 - gproximal_wz_leg4 * t488;
+        let t491 = actuator_accelerations[3] - rate_dot_proximal_leg4;
+        let t493 = gproximal_wx_leg2 * t333 - minus_gproximal_wx_leg1 * t385
+            - minus_gproximal_wx_leg3 * t438 - minus_gproximal_wx_leg4 * t491;
+        let t503 = gproximal_wy_leg1 * t385 + gproximal_wy_leg2 * t333
+            - minus_gproximal_wy_leg3 * t438 - minus_gproximal_wy_leg4 * t491
+            - t202 * t493;
+        let t515 = gproximal_wz_leg3 * t438
+            - (minus_gproximal_wz_leg1 * t385 + minus_gproximal_wz_leg2 * t333)
+            + gproximal_wz_leg4 * t491 - t249 * t493 + t252 * t503;
+        let t516 = t264 * t515;
+        let t518 = t212 * t503 + t252 * t516;
+        let t522 = t164 * t493 - t202 * t518 - t249 * t516;
+        let t527 = t5 * t522 + t9 * t518 + t18 * t516;
+        let t533 = t5 * t282 + t9 * t278 + t18 * t276;
+        let t538 = t16 * t282 + t12 * t278 + t21 * t276;
+        let t539 = t533 * t538;
+        let t540 = t71 * t539;
+        let t546 = t71 * t282 + t56 * t278 + t58 * t276;
+        let t547 = t533 * t546;
+        let t548 = t16 * t547;
+        let t551 = t56 * t539;
+        let t553 = t12 * t547;
+        let t556 = t58 * t539;
+        let t558 = t21 * t547;
+        let t560 = t546 * t538;
+        let t561 = t560 + t527;
+        let t567 = t71 * t522 + t56 * t518 + t58 * t516;
+        let t568 = t539 - t567;
+        let t571 = t533 * t533;
+        let t572 = t546 * t546;
+        let t573 = t571 - t572;
+        let t590 = t16 * t522 + t12 * t518 + t21 * t516;
+        let t591 = t547 + t590;
+        let t593 = t538 * t538;
+        let t594 = t593 - t571;
+        let t597 = t560 - t527;
+        let t611 = t5 * t560;
+        let t615 = t9 * t560;
+        let t619 = t18 * t560;
+        let t622 = t572 - t593;
+        let t624 = t547 - t590;
+        let t627 = t539 + t567;
+        let t649 = 9.81 * t58;
+        let t651 = 9.81 * t21;
+        let t658 = 9.81 * t18;
+        let t670 = t518 - t376;
+        let t672 = t522 - t367;
+        let t675 = t516 - t382;
+        let rate_dot_proximal_leg1_2 = gproximal_wy_leg1 * t670
+            - minus_gproximal_wx_leg1 * t672 - minus_gproximal_wz_leg1 * t675;
+        let t681 = t522 - t324;
+        let t683 = t518 - t329;
+        let t686 = t516 - t315;
+        let rate_dot_proximal_leg2_2 = gproximal_wx_leg2 * t681
+            + gproximal_wy_leg2 * t683 - minus_gproximal_wz_leg2 * t686;
+        let t692 = t516 - t435;
+        let t694 = t522 - t420;
+        let t696 = t518 - t429;
+        let rate_dot_proximal_leg3_2 = gproximal_wz_leg3 * t692
+            - (minus_gproximal_wx_leg3 * t694 + minus_gproximal_wy_leg3 * t696);
+        let t703 = t516 - t488;
+        let t705 = t522 - t474;
+        let t707 = t518 - t482;
+        let rate_dot_proximal_leg4_2 = gproximal_wz_leg4 * t703
+            - (minus_gproximal_wx_leg4 * t705 + minus_gproximal_wy_leg4 * t707);
+        let t714 = 6.936717523440031 * s_proximal_leg1;
+        let t718 = 6.936717523440031 * minus_s_proximal_leg2;
+        let t722 = 6.936717523440031 * s_proximal_leg3;
+        let t726 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t730 = 6.936717523440031 * c_proximal_leg1;
+        let t734 = 6.936717523440031 * c_proximal_leg2;
+        let t738 = 6.936717523440031 * c_proximal_leg3;
+        let t742 = 6.936717523440031 * c_proximal_leg4;
+        let t770 = c_distal_leg1 * rate_dot_proximal_leg1_2;
+        let t771 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t772 = rate_distal_leg1 * t771;
+        let t773 = t770 + t772;
+        let t775 = c_distal_leg1 * rate_proximal_leg1;
+        let t776 = rate_distal_leg1 * t775;
+        let t778 = c_distal_leg1 * t773 + minus_s_distal_leg1 * t776;
+        let t780 = t775 * t771;
+        let t781 = gdistal_wx_leg1 * t780;
+        let t788 = c_distal_leg2 * rate_dot_proximal_leg2_2;
+        let t789 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t790 = rate_distal_leg2 * t789;
+        let t791 = t788 + t790;
+        let t793 = c_distal_leg2 * rate_proximal_leg2;
+        let t794 = rate_distal_leg2 * t793;
+        let t796 = c_distal_leg2 * t791 + minus_s_distal_leg2 * t794;
+        let t798 = t793 * t789;
+        let t802 = minus_gdistal_wy_leg2 * t798;
+        let t806 = s_distal_leg3 * rate_proximal_leg3;
+        let t807 = rate_distal_leg3 * t806;
+        let t808 = c_distal_leg3 * rate_dot_proximal_leg3_2;
+        let t809 = t807 - t808;
+        let t811 = c_distal_leg3 * rate_proximal_leg3;
+        let t812 = rate_distal_leg3 * t811;
+        let t814 = c_distal_leg3 * t809 + s_distal_leg3 * t812;
+        let t816 = t811 * t806;
+        let t817 = gdistal_wx_leg3 * t816;
+        let t824 = s_distal_leg4 * rate_proximal_leg4;
+        let t825 = rate_distal_leg4 * t824;
+        let t826 = c_distal_leg4 * rate_dot_proximal_leg4_2;
+        let t827 = t825 - t826;
+        let t829 = c_distal_leg4 * rate_proximal_leg4;
+        let t830 = rate_distal_leg4 * t829;
+        let t832 = c_distal_leg4 * t827 + s_distal_leg4 * t830;
+        let t834 = t829 * t824;
+        let t838 = minus_gdistal_wy_leg4 * t834;
+        let t842 = t775 * t775;
+        let t843 = t771 * t771;
+        let t844 = t842 - t843;
+        let t845 = gdistal_wx_leg1 * t844;
+        let t848 = minus_s_distal_leg1 * rate_dot_proximal_leg1_2;
+        let t852 = minus_s_distal_leg1 * (t772 + t773)
+            - c_distal_leg1 * (t776 + t776 - t848);
+        let t862 = minus_s_distal_leg2 * rate_dot_proximal_leg2_2;
+        let t866 = minus_s_distal_leg2 * (t790 + t791)
+            - c_distal_leg2 * (t794 + t794 - t862);
+        let t868 = t793 * t793;
+        let t869 = t789 * t789;
+        let t870 = t868 - t869;
+        let t874 = minus_gdistal_wy_leg2 * t870;
+        let t878 = t811 * t811;
+        let t879 = t806 * t806;
+        let t880 = t878 - t879;
+        let t881 = gdistal_wx_leg3 * t880;
+        let t884 = s_distal_leg3 * rate_dot_proximal_leg3_2;
+        let t888 = s_distal_leg3 * (t807 + t809) - c_distal_leg3 * (t812 + t884 + t812);
+        let t896 = t829 * t829;
+        let t897 = t824 * t824;
+        let t898 = t896 - t897;
+        let t902 = s_distal_leg4 * rate_dot_proximal_leg4_2;
+        let t906 = s_distal_leg4 * (t825 + t827) - c_distal_leg4 * (t830 + t902 + t830);
+        let t910 = minus_gdistal_wy_leg4 * t898;
+        let rate_dot_distal_leg1 = gdistal_wx_leg1 * t672 - minus_gdistal_wy_leg1 * t670
+            - gdistal_wx_leg1 * t675;
+        let t921 = rate_distal_leg1 * rate_distal_leg1;
+        let t924 = c_distal_leg1 * (t780 + rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t921 - t842);
+        let t926 = gdistal_wx_leg1 * t770;
+        let rate_dot_distal_leg2 = gdistal_wx_leg2 * t681 - minus_gdistal_wy_leg2 * t683
+            + minus_gdistal_wy_leg2 * t686;
+        let t940 = rate_distal_leg2 * rate_distal_leg2;
+        let t943 = c_distal_leg2 * (t798 + rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t940 - t868);
+        let t947 = minus_gdistal_wy_leg2 * t788;
+        let t952 = rate_distal_leg3 * rate_distal_leg3;
+        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t694 - minus_gdistal_wy_leg3 * t696
+            + gdistal_wx_leg3 * t692;
+        let t962 = s_distal_leg3 * (t952 - t878)
+            - c_distal_leg3 * (rate_dot_distal_leg3 - t816);
+        let t964 = gdistal_wx_leg3 * t808;
+        let t971 = rate_distal_leg4 * rate_distal_leg4;
+        let rate_dot_distal_leg4 = gdistal_wx_leg4 * t705 - minus_gdistal_wy_leg4 * t707
+            - minus_gdistal_wy_leg4 * t703;
+        let t981 = s_distal_leg4 * (t971 - t896)
+            - c_distal_leg4 * (rate_dot_distal_leg4 - t834);
+        let t985 = minus_gdistal_wy_leg4 * t826;
+        let t994 = minus_s_distal_leg1 * (t780 - rate_dot_distal_leg1)
+            - c_distal_leg1 * (t843 - t921);
+        let t996 = gdistal_wx_leg1 * t848;
+        let t1007 = minus_s_distal_leg2 * (t798 - rate_dot_distal_leg2)
+            - c_distal_leg2 * (t869 - t940);
+        let t1012 = minus_gdistal_wy_leg2 * t862;
+        let t1016 = gdistal_wx_leg3 * t884;
+        let t1021 = s_distal_leg3 * (t816 + rate_dot_distal_leg3)
+            - c_distal_leg3 * (t879 - t952);
+        let t1034 = s_distal_leg4 * (t834 + rate_dot_distal_leg4)
+            - c_distal_leg4 * (t897 - t971);
+        let t1038 = minus_gdistal_wy_leg4 * t902;
+        let t1044 = c_distal_leg1 * t730 - 3.4683587617200153 * t23;
+        let t1045 = gdistal_wx_leg1 * t1044;
+        let t1046 = 6.936717523440031 * t185;
+        let t1056 = c_distal_leg2 * t734 - 3.4683587617200153 * t60;
+        let t1058 = 6.936717523440031 * t77;
+        let t1062 = minus_gdistal_wy_leg2 * t1056;
+        let t1066 = 6.936717523440031 * t190;
+        let t1070 = c_distal_leg3 * t738 + 3.4683587617200153 * t96;
+        let t1071 = gdistal_wx_leg3 * t1070;
+        let t1080 = c_distal_leg4 * t742 + 3.4683587617200153 * t132;
+        let t1082 = 6.936717523440031 * t148;
+        let t1086 = minus_gdistal_wy_leg4 * t1080;
         Ok([
             [
-                t5 * t409 + t430 - t440, t411 * t453 - t5 * t460 + t417 * t465,
-                t5 * t483 + t411 * t486 - t417 * t489, t411 * t459 - t503 + t440,
-                t5 * t514 - t411 * t516 + t417 * t519, t503 - t430 + t417 * t482,
-                t417 * t541 - t411 * t543, t5 * t543 - t417 * t550, t411 * t550 - t5 * t541,
-                gproximal_wx_leg1 * rate_dot_proximal_leg1_2,
-                -(minus_gproximal_wx_leg2 * rate_dot_proximal_leg2_2),
+                t5 * t527 + t540 - t548, t71 * t561 - t5 * t568 + t16 * t573,
+                t5 * t591 + t71 * t594 - t16 * t597, t71 * t567 - t611 + t548,
+                t5 * t622 - t71 * t624 + t16 * t627, t611 - t540 + t16 * t590,
+                t16 * t649 - t71 * t651, t5 * t651 - t16 * t658, t71 * t658 - t5 * t649,
+                -(minus_gproximal_wx_leg1 * rate_dot_proximal_leg1_2),
+                gproximal_wx_leg2 * rate_dot_proximal_leg2_2,
                 -(minus_gproximal_wx_leg3 * rate_dot_proximal_leg3_2),
-                gproximal_wx_leg4 * rate_dot_proximal_leg4_2, -(gproximal_wx_leg1 * t606),
-                minus_gproximal_wx_leg2 * t610, minus_gproximal_wx_leg3 * t614,
-                -(gproximal_wx_leg4 * t618), -(gproximal_wx_leg1 * t622),
-                minus_gproximal_wx_leg2 * t626, minus_gproximal_wx_leg3 * t630,
-                -(gproximal_wx_leg4 * t634), gproximal_wx_leg1 * rate_proximal_leg1,
-                -(minus_gproximal_wx_leg2 * rate_proximal_leg2),
+                -(minus_gproximal_wx_leg4 * rate_dot_proximal_leg4_2),
+                minus_gproximal_wx_leg1 * t714, gproximal_wx_leg2 * t718,
+                minus_gproximal_wx_leg3 * t722, -(minus_gproximal_wx_leg4 * t726),
+                minus_gproximal_wx_leg1 * t730, -(gproximal_wx_leg2 * t734),
+                minus_gproximal_wx_leg3 * t738, minus_gproximal_wx_leg4 * t742,
+                -(minus_gproximal_wx_leg1 * rate_proximal_leg1),
+                gproximal_wx_leg2 * rate_proximal_leg2,
                 -(minus_gproximal_wx_leg3 * rate_proximal_leg3),
-                gproximal_wx_leg4 * rate_proximal_leg4,
-                ::overact::math::signed(gproximal_wx_leg1, rate_proximal_leg1),
-                -::overact::math::signed(minus_gproximal_wx_leg2, rate_proximal_leg2),
+                -(minus_gproximal_wx_leg4 * rate_proximal_leg4),
+                -::overact::math::signed(minus_gproximal_wx_leg1, rate_proximal_leg1),
+                ::overact::math::signed(gproximal_wx_leg2, rate_proximal_leg2),
                 -::overact::math::signed(minus_gproximal_wx_leg3, rate_proximal_leg3),
-                ::overact::math::signed(gproximal_wx_leg4, rate_proximal_leg4), gproximal_wx_leg1,
-                -minus_gproximal_wx_leg2, -minus_gproximal_wx_leg3, gproximal_wx_leg4,
-                -(gproximal_wx_leg1 * t670 + t673),
-                -(minus_gproximal_wx_leg2 * t688 + minus_c_proximal_leg2 * t690),
-                minus_gproximal_wx_leg3 * t706 + t709,
-                minus_c_proximal_leg4 * t718 - gproximal_wx_leg4 * t726,
-                gproximal_wx_leg1 * t740 - t745,
-                -(minus_gproximal_wx_leg2 * t758 + minus_c_proximal_leg2 * t762),
-                t773 - minus_gproximal_wx_leg3 * t780,
-                gproximal_wx_leg4 * t794 + minus_c_proximal_leg4 * t798,
-                gproximal_wx_leg1 * t816 + t818,
-                minus_c_proximal_leg2 * t680 - minus_gproximal_wx_leg2 * t836,
-                -(minus_gproximal_wx_leg3 * t854 + t856),
-                gproximal_wx_leg4 * t873 - minus_c_proximal_leg4 * t721,
-                gproximal_wx_leg1 * t886 - t888,
-                minus_gproximal_wx_leg2 * t899 - minus_c_proximal_leg2 * t752,
-                t908 - minus_gproximal_wx_leg3 * t913,
-                gproximal_wx_leg4 * t925 + minus_c_proximal_leg4 * t790,
-                -(gproximal_wx_leg1 * t934 + t937),
-                minus_gproximal_wx_leg2 * t945 - 9.81 * (minus_c_proximal_leg2 * t234),
-                minus_gproximal_wx_leg3 * t956 + t959,
-                9.81 * (minus_c_proximal_leg4 * t343) - gproximal_wx_leg4 * t969,
+                -::overact::math::signed(minus_gproximal_wx_leg4, rate_proximal_leg4),
+                -minus_gproximal_wx_leg1, gproximal_wx_leg2, -minus_gproximal_wx_leg3,
+                -minus_gproximal_wx_leg4, -(minus_gproximal_wx_leg1 * t778 + t781),
+                gproximal_wx_leg2 * t796 - gdistal_wx_leg2 * t798,
+                minus_gproximal_wx_leg3 * t814 + t817,
+                minus_gproximal_wx_leg4 * t832 + gdistal_wx_leg4 * t834,
+                t845 - minus_gproximal_wx_leg1 * t852,
+                gproximal_wx_leg2 * t866 + gdistal_wx_leg2 * t870,
+                t881 - minus_gproximal_wx_leg3 * t888,
+                gdistal_wx_leg4 * t898 - minus_gproximal_wx_leg4 * t906,
+                minus_gproximal_wx_leg1 * t924 - t926,
+                -(gproximal_wx_leg2 * t943 + gdistal_wx_leg2 * t788),
+                -(minus_gproximal_wx_leg3 * t962 + t964),
+                -(minus_gproximal_wx_leg4 * t981 + gdistal_wx_leg4 * t826),
+                -(minus_gproximal_wx_leg1 * t994 + t996),
+                gproximal_wx_leg2 * t1007 - gdistal_wx_leg2 * t862,
+                t1016 - minus_gproximal_wx_leg3 * t1021,
+                gdistal_wx_leg4 * t902 - minus_gproximal_wx_leg4 * t1034,
+                t1045 - minus_gproximal_wx_leg1 * t1046,
+                gdistal_wx_leg2 * t1056 - gproximal_wx_leg2 * t1058,
+                minus_gproximal_wx_leg3 * t1066 + t1071,
+                gdistal_wx_leg4 * t1080 - minus_gproximal_wx_leg4 * t1082,
             ],
             [
-                t402 * t409 + t443 - t445, t433 * t453 - t402 * t460 + t421 * t465,
-                t402 * t483 + t433 * t486 - t421 * t489, t433 * t459 - t507 + t445,
-                t402 * t514 - t433 * t516 + t421 * t519, t507 - t443 + t421 * t482,
-                t421 * t541 - t433 * t543, t402 * t543 - t421 * t550, t433 * t550 - t402 * t541,
+                t9 * t527 + t551 - t553, t56 * t561 - t9 * t568 + t12 * t573,
+                t9 * t591 + t56 * t594 - t12 * t597, t56 * t567 - t615 + t553,
+                t9 * t622 - t56 * t624 + t12 * t627, t615 - t551 + t12 * t590,
+                t12 * t649 - t56 * t651, t9 * t651 - t12 * t658, t56 * t658 - t9 * t649,
                 gproximal_wy_leg1 * rate_dot_proximal_leg1_2,
                 gproximal_wy_leg2 * rate_dot_proximal_leg2_2,
                 -(minus_gproximal_wy_leg3 * rate_dot_proximal_leg3_2),
-                -(minus_gproximal_wy_leg4 * rate_dot_proximal_leg4_2), -(gproximal_wy_leg1 * t606),
-                -(gproximal_wy_leg2 * t610), minus_gproximal_wy_leg3 * t614,
-                minus_gproximal_wy_leg4 * t618, -(gproximal_wy_leg1 * t622),
-                -(gproximal_wy_leg2 * t626), minus_gproximal_wy_leg3 * t630,
-                minus_gproximal_wy_leg4 * t634, gproximal_wy_leg1 * rate_proximal_leg1,
+                -(minus_gproximal_wy_leg4 * rate_dot_proximal_leg4_2), -(gproximal_wy_leg1 * t714),
+                gproximal_wy_leg2 * t718, minus_gproximal_wy_leg3 * t722,
+                -(minus_gproximal_wy_leg4 * t726), -(gproximal_wy_leg1 * t730),
+                -(gproximal_wy_leg2 * t734), minus_gproximal_wy_leg3 * t738,
+                minus_gproximal_wy_leg4 * t742, gproximal_wy_leg1 * rate_proximal_leg1,
                 gproximal_wy_leg2 * rate_proximal_leg2,
                 -(minus_gproximal_wy_leg3 * rate_proximal_leg3),
                 -(minus_gproximal_wy_leg4 * rate_proximal_leg4),
@@ -4985,59 +7137,57 @@ impl Spherical4Rrr {
                 -::overact::math::signed(minus_gproximal_wy_leg3, rate_proximal_leg3),
                 -::overact::math::signed(minus_gproximal_wy_leg4, rate_proximal_leg4),
                 gproximal_wy_leg1, gproximal_wy_leg2, -minus_gproximal_wy_leg3,
-                -minus_gproximal_wy_leg4, minus_c_proximal_leg1 * t672 - gproximal_wy_leg1 * t670,
-                gproximal_wy_leg2 * t688 - t694,
-                minus_gproximal_wy_leg3 * t706 - minus_c_proximal_leg3 * t708,
-                minus_gproximal_wy_leg4 * t726 + t730,
-                gproximal_wy_leg1 * t740 + minus_c_proximal_leg1 * t744,
-                gproximal_wy_leg2 * t758 - t766,
-                -(minus_gproximal_wy_leg3 * t780 + minus_c_proximal_leg3 * t772),
-                t801 - minus_gproximal_wy_leg4 * t794,
-                gproximal_wy_leg1 * t816 - minus_c_proximal_leg1 * t664,
-                gproximal_wy_leg2 * t836 + t840,
-                minus_c_proximal_leg3 * t700 - minus_gproximal_wy_leg3 * t854,
-                -(minus_gproximal_wy_leg4 * t873 + t878),
-                gproximal_wy_leg1 * t886 + minus_c_proximal_leg1 * t736,
-                -(gproximal_wy_leg2 * t899 + t904),
-                -(minus_gproximal_wy_leg3 * t913 + minus_c_proximal_leg3 * t776),
-                t929 - minus_gproximal_wy_leg4 * t925,
-                9.81 * (minus_c_proximal_leg1 * t170) - gproximal_wy_leg1 * t934,
-                -(gproximal_wy_leg2 * t945 + t952),
-                minus_gproximal_wy_leg3 * t956 - 9.81 * (minus_c_proximal_leg3 * t277),
-                minus_gproximal_wy_leg4 * t969 + t974,
+                -minus_gproximal_wy_leg4, gproximal_wy_leg1 * t778 + minus_gdistal_wy_leg1 * t780,
+                gproximal_wy_leg2 * t796 + t802,
+                minus_gproximal_wy_leg3 * t814 - minus_gdistal_wy_leg3 * t816,
+                minus_gproximal_wy_leg4 * t832 - t838,
+                gproximal_wy_leg1 * t852 - minus_gdistal_wy_leg1 * t844,
+                gproximal_wy_leg2 * t866 - t874,
+                -(minus_gproximal_wy_leg3 * t888 + minus_gdistal_wy_leg3 * t880),
+                -(minus_gproximal_wy_leg4 * t906 + t910),
+                minus_gdistal_wy_leg1 * t770 - gproximal_wy_leg1 * t924,
+                t947 - gproximal_wy_leg2 * t943,
+                minus_gdistal_wy_leg3 * t808 - minus_gproximal_wy_leg3 * t962,
+                t985 - minus_gproximal_wy_leg4 * t981,
+                gproximal_wy_leg1 * t994 + minus_gdistal_wy_leg1 * t848,
+                gproximal_wy_leg2 * t1007 + t1012,
+                -(minus_gproximal_wy_leg3 * t1021 + minus_gdistal_wy_leg3 * t884),
+                -(minus_gproximal_wy_leg4 * t1034 + t1038),
+                gproximal_wy_leg1 * t1046 - minus_gdistal_wy_leg1 * t1044,
+                -(gproximal_wy_leg2 * t1058 + t1062),
+                minus_gproximal_wy_leg3 * t1066 - minus_gdistal_wy_leg3 * t1070,
+                -(minus_gproximal_wy_leg4 * t1082 + t1086),
             ],
             [
-                t407 * t409 + t448 - t450, t436 * t453 - t407 * t460 + t426 * t465,
-                t407 * t483 + t436 * t486 - t426 * t489, t436 * t459 - t511 + t450,
-                t407 * t514 - t436 * t516 + t426 * t519, t511 - t448 + t426 * t482, 0.0, 0.0, 0.0,
+                t18 * t527 + t556 - t558, t58 * t561 - t18 * t568 + t21 * t573,
+                t18 * t591 + t58 * t594 - t21 * t597, t58 * t567 - t619 + t558,
+                t18 * t622 - t58 * t624 + t21 * t627, t619 - t556 + t21 * t590, 0.0, 0.0, 0.0,
                 -(minus_gproximal_wz_leg1 * rate_dot_proximal_leg1_2),
                 -(minus_gproximal_wz_leg2 * rate_dot_proximal_leg2_2),
-                -(minus_gproximal_wz_leg3 * rate_dot_proximal_leg3_2),
-                -(minus_gproximal_wz_leg4 * rate_dot_proximal_leg4_2),
-                minus_gproximal_wz_leg1 * t606, minus_gproximal_wz_leg2 * t610,
-                minus_gproximal_wz_leg3 * t614, minus_gproximal_wz_leg4 * t618,
-                minus_gproximal_wz_leg1 * t622, minus_gproximal_wz_leg2 * t626,
-                minus_gproximal_wz_leg3 * t630, minus_gproximal_wz_leg4 * t634,
-                -(minus_gproximal_wz_leg1 * rate_proximal_leg1),
+                gproximal_wz_leg3 * rate_dot_proximal_leg3_2,
+                gproximal_wz_leg4 * rate_dot_proximal_leg4_2, minus_gproximal_wz_leg1 * t714,
+                -(minus_gproximal_wz_leg2 * t718), -(gproximal_wz_leg3 * t722),
+                gproximal_wz_leg4 * t726, minus_gproximal_wz_leg1 * t730,
+                minus_gproximal_wz_leg2 * t734, -(gproximal_wz_leg3 * t738),
+                -(gproximal_wz_leg4 * t742), -(minus_gproximal_wz_leg1 * rate_proximal_leg1),
                 -(minus_gproximal_wz_leg2 * rate_proximal_leg2),
-                -(minus_gproximal_wz_leg3 * rate_proximal_leg3),
-                -(minus_gproximal_wz_leg4 * rate_proximal_leg4),
+                gproximal_wz_leg3 * rate_proximal_leg3, gproximal_wz_leg4 * rate_proximal_leg4,
                 -::overact::math::signed(minus_gproximal_wz_leg1, rate_proximal_leg1),
                 -::overact::math::signed(minus_gproximal_wz_leg2, rate_proximal_leg2),
-                -::overact::math::signed(minus_gproximal_wz_leg3, rate_proximal_leg3),
-                -::overact::math::signed(minus_gproximal_wz_leg4, rate_proximal_leg4),
-                -minus_gproximal_wz_leg1, -minus_gproximal_wz_leg2, -minus_gproximal_wz_leg3,
-                -minus_gproximal_wz_leg4, minus_gproximal_wz_leg1 * t670 + t673,
-                t694 - minus_gproximal_wz_leg2 * t688, minus_gproximal_wz_leg3 * t706 + t709,
-                minus_gproximal_wz_leg4 * t726 + t730, t745 - minus_gproximal_wz_leg1 * t740,
-                t766 - minus_gproximal_wz_leg2 * t758, t773 - minus_gproximal_wz_leg3 * t780,
-                t801 - minus_gproximal_wz_leg4 * t794, -(minus_gproximal_wz_leg1 * t816 + t818),
-                -(minus_gproximal_wz_leg2 * t836 + t840), -(minus_gproximal_wz_leg3 * t854 + t856),
-                -(minus_gproximal_wz_leg4 * t873 + t878), t888 - minus_gproximal_wz_leg1 * t886,
-                minus_gproximal_wz_leg2 * t899 + t904, t908 - minus_gproximal_wz_leg3 * t913,
-                t929 - minus_gproximal_wz_leg4 * t925, minus_gproximal_wz_leg1 * t934 + t937,
-                minus_gproximal_wz_leg2 * t945 + t952, minus_gproximal_wz_leg3 * t956 + t959,
-                minus_gproximal_wz_leg4 * t969 + t974,
+                ::overact::math::signed(gproximal_wz_leg3, rate_proximal_leg3),
+                ::overact::math::signed(gproximal_wz_leg4, rate_proximal_leg4),
+                -minus_gproximal_wz_leg1, -minus_gproximal_wz_leg2, gproximal_wz_leg3,
+                gproximal_wz_leg4, t781 - minus_gproximal_wz_leg1 * t778,
+                -(minus_gproximal_wz_leg2 * t796 + t802), t817 - gproximal_wz_leg3 * t814,
+                -(gproximal_wz_leg4 * t832 + t838), -(minus_gproximal_wz_leg1 * t852 + t845),
+                t874 - minus_gproximal_wz_leg2 * t866, gproximal_wz_leg3 * t888 + t881,
+                gproximal_wz_leg4 * t906 - t910, minus_gproximal_wz_leg1 * t924 + t926,
+                minus_gproximal_wz_leg2 * t943 - t947, gproximal_wz_leg3 * t962 - t964,
+                gproximal_wz_leg4 * t981 + t985, t996 - minus_gproximal_wz_leg1 * t994,
+                -(minus_gproximal_wz_leg2 * t1007 + t1012), gproximal_wz_leg3 * t1021 + t1016,
+                gproximal_wz_leg4 * t1034 - t1038, -(minus_gproximal_wz_leg1 * t1046 + t1045),
+                minus_gproximal_wz_leg2 * t1058 + t1062, t1071 - gproximal_wz_leg3 * t1066,
+                gproximal_wz_leg4 * t1082 - t1086,
             ],
         ])
     }
@@ -5051,7 +7201,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 53.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 937 operations (342 additions, 590 multiplications, 5 divisions), 0 square roots, 8 trigonometric pairs, 6 signs, 839 intermediates.
+    /// 1065 operations (374 additions, 682 multiplications, 9 divisions), 4 square roots, 0 trigonometric pairs, 6 signs, 955 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5060,8 +7210,505 @@ impl Spherical4Rrr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 53]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::idm_red_actuators_base_from_joints(pose, joints, twist, acceleration)
+        let t0 = 2.0 * pose[1];
+        let t2 = 1.0 - pose[1] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = t2 - t4;
+        let t6 = 2.0 * pose[2];
+        let t7 = pose[3] * t6;
+        let t8 = pose[0] * t0;
+        let t9 = t7 - t8;
+        let t10 = t5 - t9;
+        let t11 = 0.7071067811865475 * t10;
+        let t12 = t7 + t8;
+        let t13 = pose[2] * t6;
+        let t14 = t2 - t13;
+        let t15 = t12 - t14;
+        let t16 = t10 + t15;
+        let t19 = 1.0 - 0.25 * (t16 * t16);
+        ::overact::guard::reach(t19, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t19);
+        let t25 = 1.0 / (0.5 * (t10 * c_distal_leg2 - t15 * c_distal_leg2));
+        let t26 = t10 - t15;
+        let c_proximal_leg2 = t25 * (0.25 * (t26 * t26));
+        let t31 = pose[2] * t0;
+        let t32 = pose[0] * t3;
+        let t33 = t31 - t32;
+        let t34 = pose[3] * t0;
+        let t35 = pose[0] * t6;
+        let t36 = t34 + t35;
+        let t37 = t33 - t36;
+        let minus_s_proximal_leg2 = t25 * (0.35355339059327373 * (t37 * t26));
+        let t42 = 0.5 * (t37 * minus_s_proximal_leg2);
+        let t46 = 0.7071067811865475 * t37;
+        let t51 = 0.5 * (t15 * c_proximal_leg2)
+            - (t46 * minus_s_proximal_leg2 + 0.5 * (t10 * c_proximal_leg2));
+        ::overact::guard::leg(t51, 1.0, "leg2")?;
+        let t52 = 1.0 / t51;
+        let minus_gproximal_wz_leg2 = (t11 * c_proximal_leg2 + t42) * t52;
+        let t54 = t34 - t35;
+        let t55 = t54 + t14;
+        let t57 = 1.0 - t13 - t4;
+        let t58 = t57 + t36;
+        let t59 = t55 - t58;
+        let s_distal_leg3 = 0.5 * t59;
+        let t63 = 1.0 - 0.25 * (t59 * t59);
+        ::overact::guard::reach(t63, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t63);
+        let t69 = 1.0 / (0.5 * (t58 * c_distal_leg3 + t55 * c_distal_leg3));
+        let t70 = t31 + t32;
+        let t71 = t70 + t9;
+        let t72 = t58 + t55;
+        let s_proximal_leg3 = t69 * (0.35355339059327373 * (t71 * t72));
+        let t76 = s_distal_leg3 * s_proximal_leg3;
+        let c_proximal_leg3 = t69 * (0.25 * (t72 * t72));
+        let t82 = 0.7071067811865475 * t71;
+        let t87 = 0.5 * (t58 * c_proximal_leg3) + t82 * s_proximal_leg3
+            + 0.5 * (t55 * c_proximal_leg3);
+        ::overact::guard::leg(t87, 1.0, "leg3")?;
+        let t88 = 1.0 / t87;
+        let minus_gproximal_wy_leg3 = t76 * t88;
+        let t91 = 0.7071067811865475 * t15;
+        let gproximal_wy_leg2 = (t91 * c_proximal_leg2 - t42) * t52;
+        let t95 = 0.7071067811865475 * t58;
+        let t98 = 0.5 * (t71 * s_proximal_leg3);
+        let gproximal_wz_leg3 = (t95 * c_proximal_leg3 + t98) * t88;
+        let t103 = t57 - t36;
+        let t104 = t54 - t14;
+        let t105 = t103 + t104;
+        let minus_s_distal_leg1 = 0.5 * t105;
+        let t109 = 1.0 - 0.25 * (t105 * t105);
+        ::overact::guard::reach(t109, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t109);
+        let t115 = 1.0 / (0.5 * (t103 * c_distal_leg1 - t104 * c_distal_leg1));
+        let t116 = t70 - t9;
+        let t117 = t103 - t104;
+        let s_proximal_leg1 = t115 * (0.35355339059327373 * (t116 * t117));
+        let t121 = minus_s_distal_leg1 * s_proximal_leg1;
+        let c_proximal_leg1 = t115 * (0.25 * (t117 * t117));
+        let t129 = 0.7071067811865475 * t116;
+        let t132 = 0.5 * (t104 * c_proximal_leg1)
+            - (0.5 * (t103 * c_proximal_leg1) + t129 * s_proximal_leg1);
+        ::overact::guard::leg(t132, 1.0, "leg1")?;
+        let t133 = 1.0 / t132;
+        let gproximal_wy_leg1 = t121 * t133;
+        let minus_s_distal_leg2 = 0.5 * t16;
+        let t136 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let gproximal_wx_leg2 = t136 * t52;
+        let t140 = 0.5 * (t116 * s_proximal_leg1);
+        let t141 = 0.7071067811865475 * t104;
+        let minus_gproximal_wx_leg1 = (t140 - t141 * c_proximal_leg1) * t133;
+        let t146 = gproximal_wy_leg1 * gproximal_wx_leg2
+            + minus_gproximal_wx_leg1 * gproximal_wy_leg2;
+        let t148 = 0.7071067811865475 * t55;
+        let minus_gproximal_wx_leg3 = (t98 + t148 * c_proximal_leg3) * t88;
+        let t153 = 0.7071067811865475 * t103;
+        let minus_gproximal_wz_leg1 = (t153 * c_proximal_leg1 + t140) * t133;
+        let t158 = gproximal_wy_leg1 * minus_gproximal_wz_leg2
+            - minus_gproximal_wz_leg1 * gproximal_wy_leg2;
+        let t162 = minus_gproximal_wz_leg1 * gproximal_wx_leg2
+            + minus_gproximal_wx_leg1 * minus_gproximal_wz_leg2;
+        let t165 = gproximal_wz_leg3 * t146
+            - (minus_gproximal_wx_leg3 * t158 + minus_gproximal_wy_leg3 * t162);
+        ::overact::guard::platform(t165, 0.7071067811865474, "kept actuators")?;
+        ::overact::guard::platform(t165, 0.7071067811865474, "kept actuators")?;
+        ::overact::guard::platform(t165, 0.7071067811865474, "kept actuators")?;
+        let t166 = 1.0 / t165;
+        let t167 = (minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3
+            - gproximal_wy_leg2 * gproximal_wz_leg3) * t166;
+        let t172 = t57 * acceleration[0] + t70 * acceleration[1] + t54 * acceleration[2];
+        let t178 = t57 * twist[0] + t70 * twist[1] + t54 * twist[2];
+        let t183 = t36 * twist[0] + t9 * twist[1] + t14 * twist[2];
+        let t184 = t178 * t183;
+        let t185 = t33 * t184;
+        let t191 = t33 * twist[0] + t5 * twist[1] + t12 * twist[2];
+        let t192 = t178 * t191;
+        let t193 = t36 * t192;
+        let t194 = t57 * t172 + t185 - t193;
+        let t199 = (minus_gproximal_wz_leg2 * minus_gproximal_wx_leg3
+            - gproximal_wx_leg2 * gproximal_wz_leg3) * t166;
+        let t201 = t5 * t184;
+        let t203 = t9 * t192;
+        let t204 = t70 * t172 + t201 - t203;
+        let t210 = (gproximal_wx_leg2 * minus_gproximal_wy_leg3
+            - gproximal_wy_leg2 * minus_gproximal_wx_leg3) * t166;
+        let t212 = t12 * t184;
+        let t214 = t14 * t192;
+        let t215 = t54 * t172 + t212 - t214;
+        let t221 = (minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg1 * gproximal_wz_leg3) * t166;
+        let t226 = (minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3
+            - gproximal_wy_leg1 * gproximal_wz_leg3) * t166;
+        let t232 = (gproximal_wy_leg1 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg1 * minus_gproximal_wy_leg3) * t166;
+        let t235 = t158 * t166;
+        let t237 = t162 * t166;
+        let t240 = t146 * t166;
+        let t243 = t191 * t183;
+        let t244 = t243 + t172;
+        let t250 = t33 * acceleration[0] + t5 * acceleration[1] + t12 * acceleration[2];
+        let t251 = t184 - t250;
+        let t254 = t178 * t178;
+        let t255 = t191 * t191;
+        let t256 = t254 - t255;
+        let t258 = t33 * t244 - t57 * t251 + t36 * t256;
+        let t264 = t5 * t244 - t70 * t251 + t9 * t256;
+        let t271 = t12 * t244 - t54 * t251 + t14 * t256;
+        let t288 = t36 * acceleration[0] + t9 * acceleration[1] + t14 * acceleration[2];
+        let t289 = t192 + t288;
+        let t291 = t183 * t183;
+        let t292 = t291 - t254;
+        let t295 = t243 - t172;
+        let t297 = t57 * t289 + t33 * t292 - t36 * t295;
+        let t303 = t70 * t289 + t5 * t292 - t9 * t295;
+        let t310 = t54 * t289 + t12 * t292 - t14 * t295;
+        let t324 = t57 * t243;
+        let t326 = t33 * t250 - t324 + t193;
+        let t329 = t70 * t243;
+        let t331 = t5 * t250 - t329 + t203;
+        let t335 = t54 * t243;
+        let t337 = t12 * t250 - t335 + t214;
+        let t350 = t255 - t291;
+        let t352 = t192 - t288;
+        let t355 = t184 + t250;
+        let t357 = t57 * t350 - t33 * t352 + t36 * t355;
+        let t363 = t70 * t350 - t5 * t352 + t9 * t355;
+        let t370 = t54 * t350 - t12 * t352 + t14 * t355;
+        let t385 = t324 - t185 + t36 * t288;
+        let t389 = t329 - t201 + t9 * t288;
+        let t394 = t335 - t212 + t14 * t288;
+        let t407 = 9.81 * t12;
+        let t409 = 9.81 * t14;
+        let t411 = t36 * t407 - t33 * t409;
+        let t415 = t9 * t407 - t5 * t409;
+        let t425 = 9.81 * t54;
+        let t427 = t57 * t409 - t36 * t425;
+        let t431 = t70 * t409 - t9 * t425;
+        let t442 = t33 * t425 - t57 * t407;
+        let t446 = t5 * t425 - t70 * t407;
+        let rate_proximal_leg1 = gproximal_wy_leg1 * twist[1]
+            - minus_gproximal_wx_leg1 * twist[0] - minus_gproximal_wz_leg1 * twist[2];
+        let t460 = 0.7071067811865475 * rate_proximal_leg1;
+        let t462 = 0.5 * t133;
+        let gdistal_wx_leg1 = t116 * t462;
+        let minus_gdistal_wy_leg1 = t117 * t462;
+        let rate_distal_leg1 = gdistal_wx_leg1 * twist[0]
+            - minus_gdistal_wy_leg1 * twist[1] - gdistal_wx_leg1 * twist[2];
+        let t470 = 0.7071067811865475 * s_proximal_leg1 * rate_distal_leg1;
+        let t471 = t460 + t470;
+        let minus_gwrist_wx_leg1 = 0.7071067811865475 * c_proximal_leg1 * t133;
+        let minus_gwrist_wy_leg1 = s_proximal_leg1 * t133;
+        let rate_wrist_leg1 = minus_gwrist_wx_leg1 * twist[2]
+            - (minus_gwrist_wx_leg1 * twist[0] + minus_gwrist_wy_leg1 * twist[1]);
+        let t480 = t153 * rate_wrist_leg1;
+        let t482 = t460 - t470;
+        let t483 = t141 * rate_wrist_leg1;
+        let t489 = acceleration[1] - (t471 * t480 - t482 * t483 - 2.0 * (t460 * t470));
+        let t491 = c_proximal_leg1 * rate_distal_leg1;
+        let t493 = t129 * rate_wrist_leg1;
+        let t496 = t460 * t491;
+        let t498 = acceleration[0] - (t491 * t483 - t471 * t493 - t496);
+        let t505 = acceleration[2] - (t496 + t482 * t493 - t491 * t480);
+        let rate_dot_proximal_leg1 = gproximal_wy_leg1 * t489
+            - minus_gproximal_wx_leg1 * t498 - minus_gproximal_wz_leg1 * t505;
+        let rate_proximal_leg2 = gproximal_wx_leg2 * twist[0]
+            + gproximal_wy_leg2 * twist[1] - minus_gproximal_wz_leg2 * twist[2];
+        let t513 = 0.7071067811865475 * rate_proximal_leg2;
+        let t515 = 0.5 * t52;
+        let gdistal_wx_leg2 = t26 * t515;
+        let minus_gdistal_wy_leg2 = t37 * t515;
+        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
+            - minus_gdistal_wy_leg2 * twist[1] + minus_gdistal_wy_leg2 * twist[2];
+        let t523 = 0.7071067811865475 * minus_s_proximal_leg2 * rate_distal_leg2;
+        let t524 = t513 + t523;
+        let minus_gwrist_wy_leg2 = 0.7071067811865475 * c_proximal_leg2 * t52;
+        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t52;
+        let rate_wrist_leg2 = minus_gwrist_wy_leg2 * twist[2]
+            - (minus_gwrist_wx_leg2 * twist[0] + minus_gwrist_wy_leg2 * twist[1]);
+        let t533 = t91 * rate_wrist_leg2;
+        let t535 = t513 - t523;
+        let t536 = t11 * rate_wrist_leg2;
+        let t542 = acceleration[0] - (t524 * t533 - t535 * t536 - 2.0 * (t513 * t523));
+        let t544 = t46 * rate_wrist_leg2;
+        let t546 = c_proximal_leg2 * rate_distal_leg2;
+        let t549 = t513 * t546;
+        let t551 = acceleration[1] - (t535 * t544 + t546 * t533 - t549);
+        let t558 = acceleration[2] - (t549 - (t546 * t536 + t524 * t544));
+        let rate_dot_proximal_leg2 = gproximal_wx_leg2 * t542 + gproximal_wy_leg2 * t551
+            - minus_gproximal_wz_leg2 * t558;
+        let rate_proximal_leg3 = gproximal_wz_leg3 * twist[2]
+            - (minus_gproximal_wx_leg3 * twist[0] + minus_gproximal_wy_leg3 * twist[1]);
+        let t566 = 0.7071067811865475 * rate_proximal_leg3;
+        let t567 = 0.5 * t88;
+        let gdistal_wx_leg3 = t71 * t567;
+        let minus_gdistal_wy_leg3 = t72 * t567;
+        let rate_distal_leg3 = gdistal_wx_leg3 * twist[0]
+            - minus_gdistal_wy_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
+        let t575 = c_proximal_leg3 * rate_distal_leg3;
+        let t576 = t566 * t575;
+        let t578 = 0.7071067811865475 * s_proximal_leg3 * rate_distal_leg3;
+        let t579 = t578 - t566;
+        let minus_gwrist_wx_leg3 = 0.7071067811865475 * c_proximal_leg3 * t88;
+        let minus_gwrist_wy_leg3 = s_proximal_leg3 * t88;
+        let minus_rate_wrist_leg3 = minus_gwrist_wx_leg3 * twist[0]
+            + minus_gwrist_wy_leg3 * twist[1] + minus_gwrist_wx_leg3 * twist[2];
+        let t588 = t82 * minus_rate_wrist_leg3;
+        let t590 = t95 * minus_rate_wrist_leg3;
+        let t594 = acceleration[2] - (t576 + t579 * t588 + t575 * t590);
+        let t596 = t148 * minus_rate_wrist_leg3;
+        let t598 = t566 + t578;
+        let t602 = acceleration[0] - (t576 - (t575 * t596 + t598 * t588));
+        let t610 = acceleration[1] - (2.0 * (t566 * t578) + t598 * t590 - t579 * t596);
+        let rate_dot_proximal_leg3 = gproximal_wz_leg3 * t594
+            - (minus_gproximal_wx_leg3 * t602 + minus_gproximal_wy_leg3 * t610);
+        let t614 = t33 + t36;
+        let t615 = t5 + t9;
+        let t616 = t12 + t14;
+        let t617 = t616 - t615;
+        let t620 = 1.0 - 0.25 * (t617 * t617);
+        ::overact::guard::reach(t620, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t620);
+        let t626 = 1.0 / (0.5 * (t615 * c_distal_leg4 + t616 * c_distal_leg4));
+        let t627 = t615 + t616;
+        let minus_s_proximal_leg4 = t626 * (0.35355339059327373 * (t614 * t627));
+        let t632 = 0.5 * (t614 * minus_s_proximal_leg4);
+        let t633 = 0.7071067811865475 * t616;
+        let c_proximal_leg4 = t626 * (0.25 * (t627 * t627));
+        let t639 = 0.7071067811865475 * t614;
+        let t646 = t639 * minus_s_proximal_leg4 + 0.5 * (t615 * c_proximal_leg4)
+            + 0.5 * (t616 * c_proximal_leg4);
+        ::overact::guard::leg(t646, 1.0, "leg4")?;
+        let t647 = 1.0 / t646;
+        let minus_gproximal_wy_leg4 = (t632 + t633 * c_proximal_leg4) * t647;
+        let s_distal_leg4 = 0.5 * t617;
+        let t651 = s_distal_leg4 * minus_s_proximal_leg4;
+        let minus_gproximal_wx_leg4 = t651 * t647;
+        let t655 = 0.7071067811865475 * t615;
+        let gproximal_wz_leg4 = (t655 * c_proximal_leg4 + t632) * t647;
+        let t660 = minus_gproximal_wy_leg4 * t199 - minus_gproximal_wx_leg4 * t167
+            + gproximal_wz_leg4 * t210;
+        let rate_proximal_leg4 = gproximal_wz_leg4 * twist[2]
+            - (minus_gproximal_wx_leg4 * twist[0] + minus_gproximal_wy_leg4 * twist[1]);
+        let t666 = 0.7071067811865475 * rate_proximal_leg4;
+        let t667 = 0.5 * t647;
+        let gdistal_wx_leg4 = t627 * t667;
+        let minus_gdistal_wy_leg4 = t614 * t667;
+        let rate_distal_leg4 = gdistal_wx_leg4 * twist[0]
+            - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
+        let t675 = c_proximal_leg4 * rate_distal_leg4;
+        let t676 = t666 * t675;
+        let minus_gwrist_wx_leg4 = minus_s_proximal_leg4 * t647;
+        let minus_gwrist_wy_leg4 = 0.7071067811865475 * c_proximal_leg4 * t647;
+        let minus_rate_wrist_leg4 = minus_gwrist_wx_leg4 * twist[0]
+            + minus_gwrist_wy_leg4 * twist[1] + minus_gwrist_wy_leg4 * twist[2];
+        let t685 = t655 * minus_rate_wrist_leg4;
+        let t688 = 0.7071067811865475 * minus_s_proximal_leg4 * rate_distal_leg4;
+        let t689 = t666 + t688;
+        let t690 = t639 * minus_rate_wrist_leg4;
+        let t694 = acceleration[2] - (t676 + t675 * t685 + t689 * t690);
+        let t698 = t633 * minus_rate_wrist_leg4;
+        let t700 = t666 - t688;
+        let t704 = acceleration[0] - (2.0 * (t666 * t688) - (t689 * t698 + t700 * t685));
+        let t710 = acceleration[1] - (t676 + t700 * t690 - t675 * t698);
+        let rate_dot_proximal_leg4 = gproximal_wz_leg4 * t694
+            - (minus_gproximal_wx_leg4 * t704 + minus_gproximal_wy_leg4 * t710);
+        let t719 = minus_gproximal_wx_leg4 * t226 - minus_gproximal_wy_leg4 * t221
+            + gproximal_wz_leg4 * t232;
+        let t725 = gproximal_wz_leg4 * t240
+            - (minus_gproximal_wx_leg4 * t235 + minus_gproximal_wy_leg4 * t237);
+        let t730 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t734 = 6.936717523440031 * c_proximal_leg1;
+        let t735 = 6.936717523440031 * c_proximal_leg2;
+        let t736 = 6.936717523440031 * c_proximal_leg3;
+        let t737 = 6.936717523440031 * c_proximal_leg4;
+        let t750 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t751 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t752 = rate_distal_leg1 * t751;
+        let t753 = t750 + t752;
+        let t755 = c_distal_leg1 * rate_proximal_leg1;
+        let t756 = rate_distal_leg1 * t755;
+        let t763 = gdistal_wx_leg1 * t167 + minus_gdistal_wy_leg1 * t199
+            - gdistal_wx_leg1 * t210;
+        let t764 = t755 * t751;
+        let t771 = gdistal_wx_leg1 * t226 + minus_gdistal_wy_leg1 * t221
+            + gdistal_wx_leg1 * t232;
+        let t777 = gdistal_wx_leg1 * t235 - minus_gdistal_wy_leg1 * t237
+            - gdistal_wx_leg1 * t240;
+        let t783 = gdistal_wx_leg2 * t167 + minus_gdistal_wy_leg2 * t199
+            + minus_gdistal_wy_leg2 * t210;
+        let t784 = c_distal_leg2 * rate_proximal_leg2;
+        let t785 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t786 = t784 * t785;
+        let t788 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t789 = rate_distal_leg2 * t785;
+        let t790 = t788 + t789;
+        let t792 = rate_distal_leg2 * t784;
+        let t799 = minus_gdistal_wy_leg2 * t232
+            - (gdistal_wx_leg2 * t226 + minus_gdistal_wy_leg2 * t221);
+        let t806 = gdistal_wx_leg2 * t235 - minus_gdistal_wy_leg2 * t237
+            + minus_gdistal_wy_leg2 * t240;
+        let t812 = gdistal_wx_leg3 * t167 + minus_gdistal_wy_leg3 * t199
+            + gdistal_wx_leg3 * t210;
+        let t813 = c_distal_leg3 * rate_proximal_leg3;
+        let t814 = s_distal_leg3 * rate_proximal_leg3;
+        let t815 = t813 * t814;
+        let t821 = gdistal_wx_leg3 * t232
+            - (gdistal_wx_leg3 * t226 + minus_gdistal_wy_leg3 * t221);
+        let t827 = gdistal_wx_leg3 * t235 - minus_gdistal_wy_leg3 * t237
+            + gdistal_wx_leg3 * t240;
+        let t829 = rate_distal_leg3 * t814;
+        let t830 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t831 = t829 - t830;
+        let t833 = rate_distal_leg3 * t813;
+        let t841 = gdistal_wx_leg4 * t167 + minus_gdistal_wy_leg4 * t199
+            - minus_gdistal_wy_leg4 * t210;
+        let t842 = c_distal_leg4 * rate_proximal_leg4;
+        let t843 = s_distal_leg4 * rate_proximal_leg4;
+        let t844 = t842 * t843;
+        let t846 = rate_distal_leg4 * t843;
+        let t847 = c_distal_leg4 * rate_dot_proximal_leg4;
+        let t848 = t846 - t847;
+        let t850 = rate_distal_leg4 * t842;
+        let t852 = c_distal_leg4 * t848 + s_distal_leg4 * t850;
+        let t860 = gdistal_wx_leg4 * t226 + minus_gdistal_wy_leg4 * t221
+            + minus_gdistal_wy_leg4 * t232;
+        let t867 = gdistal_wx_leg4 * t235 - minus_gdistal_wy_leg4 * t237
+            - minus_gdistal_wy_leg4 * t240;
+        let t873 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t878 = t755 * t755;
+        let t879 = t751 * t751;
+        let t880 = t878 - t879;
+        let t885 = t784 * t784;
+        let t886 = t785 * t785;
+        let t887 = t885 - t886;
+        let t891 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t899 = t813 * t813;
+        let t900 = t814 * t814;
+        let t901 = t899 - t900;
+        let t906 = s_distal_leg3 * rate_dot_proximal_leg3;
+        let t915 = s_distal_leg4 * rate_dot_proximal_leg4;
+        let t919 = s_distal_leg4 * (t846 + t848) - c_distal_leg4 * (t850 + t915 + t850);
+        let t921 = t842 * t842;
+        let t922 = t843 * t843;
+        let t923 = t921 - t922;
+        let rate_dot_distal_leg1 = gdistal_wx_leg1 * t498 - minus_gdistal_wy_leg1 * t489
+            - gdistal_wx_leg1 * t505;
+        let t939 = rate_distal_leg1 * rate_distal_leg1;
+        let rate_dot_distal_leg2 = gdistal_wx_leg2 * t542 - minus_gdistal_wy_leg2 * t551
+            + minus_gdistal_wy_leg2 * t558;
+        let t955 = rate_distal_leg2 * rate_distal_leg2;
+        let t964 = rate_distal_leg3 * rate_distal_leg3;
+        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t602 - minus_gdistal_wy_leg3 * t610
+            + gdistal_wx_leg3 * t594;
+        let t977 = rate_distal_leg4 * rate_distal_leg4;
+        let rate_dot_distal_leg4 = gdistal_wx_leg4 * t704 - minus_gdistal_wy_leg4 * t710
+            - minus_gdistal_wy_leg4 * t694;
+        let t987 = s_distal_leg4 * (t977 - t921)
+            - c_distal_leg4 * (rate_dot_distal_leg4 - t844);
+        let t1028 = s_distal_leg4 * (t844 + rate_dot_distal_leg4)
+            - c_distal_leg4 * (t922 - t977);
+        let t1041 = c_distal_leg1 * t734 - 3.4683587617200153 * t105;
+        let t1048 = c_distal_leg2 * t735 - 3.4683587617200153 * t16;
+        let t1056 = c_distal_leg3 * t736 + 3.4683587617200153 * t59;
+        let t1062 = 6.936717523440031 * t651;
+        let t1066 = c_distal_leg4 * t737 + 3.4683587617200153 * t617;
+        Ok([
+            [
+                t167 * t194 - t199 * t204 + t210 * t215, t167 * t258 - t199 * t264 + t210 * t271,
+                t167 * t297 - t199 * t303 + t210 * t310, t167 * t326 - t199 * t331 + t210 * t337,
+                t167 * t357 - t199 * t363 + t210 * t370, t167 * t385 - t199 * t389 + t210 * t394,
+                t167 * t411 - t199 * t415, t167 * t427 - t199 * t431, t167 * t442 - t199 * t446,
+                rate_dot_proximal_leg1, 0.0, 0.0, t660 * rate_dot_proximal_leg4,
+                -(6.936717523440031 * s_proximal_leg1), 0.0, 0.0, t660 * t730, -t734, 0.0, 0.0,
+                -(t660 * t737), rate_proximal_leg1, 0.0, 0.0, t660 * rate_proximal_leg4,
+                ::overact::math::sign(rate_proximal_leg1), 0.0, 0.0,
+                ::overact::math::signed(t660, rate_proximal_leg4), 1.0, 0.0, 0.0, t660,
+                c_distal_leg1 * t753 + minus_s_distal_leg1 * t756 - t763 * t764, -(t783 * t786),
+                t812 * t815, t841 * t844 - t660 * t852,
+                minus_s_distal_leg1 * (t752 + t753)
+                    - c_distal_leg1 * (t756 + t756 - t873) + t763 * t880,
+                t783 * t887,
+                t812 * t901,
+                t660 * t919 + t841 * t923,
+                -(c_distal_leg1 * (t764 + rate_dot_distal_leg1)
+                    + minus_s_distal_leg1 * (t939 - t878) + t763 * t750),
+                -(t783 * t788),
+                -(t812 * t830),
+                t660 * t987 - t841 * t847,
+                minus_s_distal_leg1 * (t764 - rate_dot_distal_leg1)
+                    - c_distal_leg1 * (t879 - t939) - t763 * t873,
+                -(t783 * t891),
+                t812 * t906,
+                t660 * t1028 + t841 * t915,
+                6.936717523440031 * t121 + t763 * t1041,
+                t783 * t1048,
+                t812 * t1056,
+                t660 * t1062 + t841 * t1066,
+            ],
+            [
+                t221 * t204 - t226 * t194 + t232 * t215, t221 * t264 - t226 * t258 + t232 * t271,
+                t221 * t303 - t226 * t297 + t232 * t310, t221 * t331 - t226 * t326 + t232 * t337,
+                t221 * t363 - t226 * t357 + t232 * t370, t221 * t389 - t226 * t385 + t232 * t394,
+                t221 * t415 - t226 * t411, t221 * t431 - t226 * t427, t221 * t446 - t226 * t442,
+                0.0, rate_dot_proximal_leg2, 0.0, t719 * rate_dot_proximal_leg4, 0.0,
+                6.936717523440031 * minus_s_proximal_leg2, 0.0, t719 * t730, 0.0, -t735, 0.0,
+                -(t719 * t737), 0.0, rate_proximal_leg2, 0.0, t719 * rate_proximal_leg4, 0.0,
+                ::overact::math::sign(rate_proximal_leg2), 0.0,
+                ::overact::math::signed(t719, rate_proximal_leg4), 0.0, 1.0, 0.0, t719, t771 * t764,
+                c_distal_leg2 * t790 + minus_s_distal_leg2 * t792 - t799 * t786, t821 * t815,
+                -(t719 * t852 + t860 * t844), -(t771 * t880),
+                minus_s_distal_leg2 * (t789 + t790)
+                    - c_distal_leg2 * (t792 + t792 - t891) + t799 * t887,
+                t821 * t901,
+                t719 * t919 - t860 * t923,
+                t771 * t750,
+                -(c_distal_leg2 * (t786 + rate_dot_distal_leg2)
+                    + minus_s_distal_leg2 * (t955 - t885) + t799 * t788),
+                -(t821 * t830),
+                t719 * t987 + t860 * t847,
+                t771 * t873,
+                minus_s_distal_leg2 * (t786 - rate_dot_distal_leg2)
+                    - c_distal_leg2 * (t886 - t955) - t799 * t891,
+                t821 * t906,
+                t719 * t1028 - t860 * t915,
+                -(t771 * t1041),
+                t799 * t1048 - 6.936717523440031 * t136,
+                t821 * t1056,
+                t719 * t1062 - t860 * t1066,
+            ],
+            [
+                t235 * t194 + t237 * t204 + t240 * t215, t235 * t258 + t237 * t264 + t240 * t271,
+                t235 * t297 + t237 * t303 + t240 * t310, t235 * t326 + t237 * t331 + t240 * t337,
+                t235 * t357 + t237 * t363 + t240 * t370, t235 * t385 + t237 * t389 + t240 * t394,
+                t235 * t411 + t237 * t415, t235 * t427 + t237 * t431, t235 * t442 + t237 * t446,
+                0.0, 0.0, rate_dot_proximal_leg3, t725 * rate_dot_proximal_leg4, 0.0, 0.0,
+                -(6.936717523440031 * s_proximal_leg3), t725 * t730, 0.0, 0.0, -t736,
+                -(t725 * t737), 0.0, 0.0, rate_proximal_leg3, t725 * rate_proximal_leg4, 0.0, 0.0,
+                ::overact::math::sign(rate_proximal_leg3),
+                ::overact::math::signed(t725, rate_proximal_leg4), 0.0, 0.0, 1.0, t725,
+                -(t777 * t764), -(t806 * t786),
+                t827 * t815 - (c_distal_leg3 * t831 + s_distal_leg3 * t833),
+                t867 * t844 - t725 * t852, t777 * t880, t806 * t887,
+                s_distal_leg3 * (t829 + t831) - c_distal_leg3 * (t833 + t906 + t833)
+                    + t827 * t901,
+                t725 * t919 + t867 * t923,
+                -(t777 * t750),
+                -(t806 * t788),
+                s_distal_leg3 * (t964 - t899)
+                    - c_distal_leg3 * (rate_dot_distal_leg3 - t815) - t827 * t830,
+                t725 * t987 - t867 * t847,
+                -(t777 * t873),
+                -(t806 * t891),
+                s_distal_leg3 * (t815 + rate_dot_distal_leg3)
+                    - c_distal_leg3 * (t900 - t964) + t827 * t906,
+                t725 * t1028 + t867 * t915,
+                t777 * t1041,
+                t806 * t1048,
+                t827 * t1056 - 6.936717523440031 * t76,
+                t725 * t1062 + t867 * t1066,
+            ],
+        ])
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -5553,7 +8200,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 53.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 1089 operations (406 additions, 675 multiplications, 8 divisions), 0 square roots, 8 trigonometric pairs, 6 signs, 991 intermediates.
+    /// 1217 operations (438 additions, 767 multiplications, 12 divisions), 4 square roots, 0 trigonometric pairs, 6 signs, 1107 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5564,550 +8211,590 @@ impl Spherical4Rrr {
         start: &[f64; 4],
     ) -> Result<[[f64; 53]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let t2 = 0.7071067811865476 * minus_c_proximal_leg2;
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let t5 = t2 * c_distal_leg2;
-        let t6 = 0.7071067811865476 * minus_s_distal_leg2;
-        let t8 = 1.0 / minus_s_distal_leg2;
-        let minus_gproximal_wz_leg2 = (t5 - t6) * t8;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let t15 = 1.0 / minus_s_distal_leg3;
-        let minus_gproximal_wy_leg3 = minus_s_proximal_leg3 * c_distal_leg3 * t15;
-        let gproximal_wy_leg2 = (t5 + t6) * t8;
-        let t20 = 0.7071067811865476 * minus_c_proximal_leg3;
-        let t21 = t20 * c_distal_leg3;
-        let t22 = 0.7071067811865476 * minus_s_distal_leg3;
-        let minus_gproximal_wz_leg3 = (t21 - t22) * t15;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let t29 = 0.7071067811865476 * minus_c_proximal_leg1;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t32 = t29 * c_distal_leg1;
-        let t33 = 0.7071067811865476 * minus_s_distal_leg1;
-        let t35 = 1.0 / minus_s_distal_leg1;
-        let minus_gproximal_wz_leg1 = (t32 - t33) * t35;
-        let minus_gproximal_wx_leg2 = minus_s_proximal_leg2 * c_distal_leg2 * t8;
-        let gproximal_wx_leg1 = (t32 + t33) * t35;
-        let t43 = minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2
-            + gproximal_wx_leg1 * minus_gproximal_wz_leg2;
-        let minus_gproximal_wx_leg3 = (t21 + t22) * t15;
-        let gproximal_wy_leg1 = minus_s_proximal_leg1 * c_distal_leg1 * t35;
-        let t51 = gproximal_wy_leg1 * minus_gproximal_wz_leg2
+        let t0 = 2.0 * pose[1];
+        let t2 = 1.0 - pose[1] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = t2 - t4;
+        let t6 = 2.0 * pose[2];
+        let t7 = pose[3] * t6;
+        let t8 = pose[0] * t0;
+        let t9 = t7 - t8;
+        let t10 = t5 - t9;
+        let t11 = 0.7071067811865475 * t10;
+        let t12 = t7 + t8;
+        let t13 = pose[2] * t6;
+        let t14 = t2 - t13;
+        let t15 = t12 - t14;
+        let t16 = t10 + t15;
+        let t19 = 1.0 - 0.25 * (t16 * t16);
+        ::overact::guard::reach(t19, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t19);
+        let t25 = 1.0 / (0.5 * (t10 * c_distal_leg2 - t15 * c_distal_leg2));
+        let t26 = t10 - t15;
+        let c_proximal_leg2 = t25 * (0.25 * (t26 * t26));
+        let t31 = pose[2] * t0;
+        let t32 = pose[0] * t3;
+        let t33 = t31 - t32;
+        let t34 = pose[3] * t0;
+        let t35 = pose[0] * t6;
+        let t36 = t34 + t35;
+        let t37 = t33 - t36;
+        let minus_s_proximal_leg2 = t25 * (0.35355339059327373 * (t37 * t26));
+        let t42 = 0.5 * (t37 * minus_s_proximal_leg2);
+        let t46 = 0.7071067811865475 * t37;
+        let t51 = 0.5 * (t15 * c_proximal_leg2)
+            - (t46 * minus_s_proximal_leg2 + 0.5 * (t10 * c_proximal_leg2));
+        ::overact::guard::leg(t51, 1.0, "leg2")?;
+        let t52 = 1.0 / t51;
+        let minus_gproximal_wz_leg2 = (t11 * c_proximal_leg2 + t42) * t52;
+        let t54 = t34 - t35;
+        let t55 = t54 + t14;
+        let t57 = 1.0 - t13 - t4;
+        let t58 = t57 + t36;
+        let t59 = t55 - t58;
+        let s_distal_leg3 = 0.5 * t59;
+        let t63 = 1.0 - 0.25 * (t59 * t59);
+        ::overact::guard::reach(t63, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t63);
+        let t69 = 1.0 / (0.5 * (t58 * c_distal_leg3 + t55 * c_distal_leg3));
+        let t70 = t31 + t32;
+        let t71 = t70 + t9;
+        let t72 = t58 + t55;
+        let s_proximal_leg3 = t69 * (0.35355339059327373 * (t71 * t72));
+        let t76 = s_distal_leg3 * s_proximal_leg3;
+        let c_proximal_leg3 = t69 * (0.25 * (t72 * t72));
+        let t82 = 0.7071067811865475 * t71;
+        let t87 = 0.5 * (t58 * c_proximal_leg3) + t82 * s_proximal_leg3
+            + 0.5 * (t55 * c_proximal_leg3);
+        ::overact::guard::leg(t87, 1.0, "leg3")?;
+        let t88 = 1.0 / t87;
+        let minus_gproximal_wy_leg3 = t76 * t88;
+        let t91 = 0.7071067811865475 * t15;
+        let gproximal_wy_leg2 = (t91 * c_proximal_leg2 - t42) * t52;
+        let t95 = 0.7071067811865475 * t58;
+        let t98 = 0.5 * (t71 * s_proximal_leg3);
+        let gproximal_wz_leg3 = (t95 * c_proximal_leg3 + t98) * t88;
+        let t103 = t57 - t36;
+        let t104 = t54 - t14;
+        let t105 = t103 + t104;
+        let minus_s_distal_leg1 = 0.5 * t105;
+        let t109 = 1.0 - 0.25 * (t105 * t105);
+        ::overact::guard::reach(t109, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t109);
+        let t115 = 1.0 / (0.5 * (t103 * c_distal_leg1 - t104 * c_distal_leg1));
+        let t116 = t70 - t9;
+        let t117 = t103 - t104;
+        let s_proximal_leg1 = t115 * (0.35355339059327373 * (t116 * t117));
+        let t121 = minus_s_distal_leg1 * s_proximal_leg1;
+        let c_proximal_leg1 = t115 * (0.25 * (t117 * t117));
+        let t129 = 0.7071067811865475 * t116;
+        let t132 = 0.5 * (t104 * c_proximal_leg1)
+            - (0.5 * (t103 * c_proximal_leg1) + t129 * s_proximal_leg1);
+        ::overact::guard::leg(t132, 1.0, "leg1")?;
+        let t133 = 1.0 / t132;
+        let gproximal_wy_leg1 = t121 * t133;
+        let minus_s_distal_leg2 = 0.5 * t16;
+        let t136 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let gproximal_wx_leg2 = t136 * t52;
+        let t140 = 0.5 * (t116 * s_proximal_leg1);
+        let t141 = 0.7071067811865475 * t104;
+        let minus_gproximal_wx_leg1 = (t140 - t141 * c_proximal_leg1) * t133;
+        let t146 = gproximal_wy_leg1 * gproximal_wx_leg2
+            + minus_gproximal_wx_leg1 * gproximal_wy_leg2;
+        let t148 = 0.7071067811865475 * t55;
+        let minus_gproximal_wx_leg3 = (t98 + t148 * c_proximal_leg3) * t88;
+        let t153 = 0.7071067811865475 * t103;
+        let minus_gproximal_wz_leg1 = (t153 * c_proximal_leg1 + t140) * t133;
+        let t158 = gproximal_wy_leg1 * minus_gproximal_wz_leg2
             - minus_gproximal_wz_leg1 * gproximal_wy_leg2;
-        let t56 = gproximal_wy_leg1 * minus_gproximal_wx_leg2
-            + gproximal_wx_leg1 * gproximal_wy_leg2;
-        let t58 = minus_gproximal_wy_leg3 * t43 - minus_gproximal_wx_leg3 * t51
-            + minus_gproximal_wz_leg3 * t56;
-        ::overact::guard::platform(t58, 0.7071067811865477, "kept actuators")?;
-        ::overact::guard::platform(t58, 0.7071067811865477, "kept actuators")?;
-        ::overact::guard::platform(t58, 0.7071067811865477, "kept actuators")?;
-        let t59 = 1.0 / t58;
-        let t60 = (minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3
-            + gproximal_wy_leg2 * minus_gproximal_wz_leg3) * t59;
-        let t61 = 2.0 * pose[2];
-        let t62 = pose[2] * t61;
-        let t64 = 2.0 * pose[3];
-        let t65 = pose[3] * t64;
-        let t66 = 1.0 - t62 - t65;
-        let (minus_s_proximal_leg4, minus_c_proximal_leg4) = ::overact::math::sin_cos(
-            joints[9],
-        );
-        let (c_distal_leg4, minus_s_distal_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(minus_s_distal_leg4, 1.0, "leg4")?;
-        let t77 = 1.0 / minus_s_distal_leg4;
-        let gproximal_wx_leg4 = minus_s_proximal_leg4 * c_distal_leg4 * t77;
-        let t80 = gproximal_wx_leg1 * gproximal_wx_leg1
-            + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+        let t162 = minus_gproximal_wz_leg1 * gproximal_wx_leg2
+            + minus_gproximal_wx_leg1 * minus_gproximal_wz_leg2;
+        let t165 = gproximal_wz_leg3 * t146
+            - (minus_gproximal_wx_leg3 * t158 + minus_gproximal_wy_leg3 * t162);
+        ::overact::guard::platform(t165, 0.7071067811865474, "kept actuators")?;
+        ::overact::guard::platform(t165, 0.7071067811865474, "kept actuators")?;
+        ::overact::guard::platform(t165, 0.7071067811865474, "kept actuators")?;
+        let t166 = 1.0 / t165;
+        let t167 = (minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3
+            - gproximal_wy_leg2 * gproximal_wz_leg3) * t166;
+        let t173 = t12 + t14;
+        let t174 = t5 + t9;
+        let t175 = t173 - t174;
+        let s_distal_leg4 = 0.5 * t175;
+        let t179 = 1.0 - 0.25 * (t175 * t175);
+        ::overact::guard::reach(t179, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t179);
+        let t185 = 1.0 / (0.5 * (t174 * c_distal_leg4 + t173 * c_distal_leg4));
+        let t186 = t33 + t36;
+        let t187 = t174 + t173;
+        let minus_s_proximal_leg4 = t185 * (0.35355339059327373 * (t186 * t187));
+        let t191 = s_distal_leg4 * minus_s_proximal_leg4;
+        let t192 = 0.7071067811865475 * t186;
+        let c_proximal_leg4 = t185 * (0.25 * (t187 * t187));
+        let t202 = t192 * minus_s_proximal_leg4 + 0.5 * (t174 * c_proximal_leg4)
+            + 0.5 * (t173 * c_proximal_leg4);
+        ::overact::guard::leg(t202, 1.0, "leg4")?;
+        let t203 = 1.0 / t202;
+        let minus_gproximal_wx_leg4 = t191 * t203;
+        let t206 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+            + gproximal_wx_leg2 * gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
-            + gproximal_wx_leg4 * gproximal_wx_leg4;
-        ::overact::guard::platform(t80, 1.0000000000000002, "actuators")?;
-        ::overact::guard::platform(t80, 1.0000000000000002, "actuators")?;
-        let t81 = 1.0 / t80;
-        let t88 = gproximal_wx_leg1 * actuator_velocities[0]
-            - minus_gproximal_wx_leg2 * actuator_velocities[1]
+            + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
+        ::overact::guard::platform(t206, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t206, 0.9999999999999998, "actuators")?;
+        let t207 = 1.0 / t206;
+        let t214 = gproximal_wx_leg2 * actuator_velocities[1]
+            - minus_gproximal_wx_leg1 * actuator_velocities[0]
             - minus_gproximal_wx_leg3 * actuator_velocities[2]
-            + gproximal_wx_leg4 * actuator_velocities[3];
-        let t95 = 0.7071067811865476 * minus_c_proximal_leg4;
-        let t96 = t95 * c_distal_leg4;
-        let t97 = 0.7071067811865476 * minus_s_distal_leg4;
-        let minus_gproximal_wy_leg4 = (t96 + t97) * t77;
-        let t101 = gproximal_wx_leg1 * gproximal_wy_leg1
-            - minus_gproximal_wx_leg2 * gproximal_wy_leg2
+            - minus_gproximal_wx_leg4 * actuator_velocities[3];
+        let t222 = 0.5 * (t186 * minus_s_proximal_leg4);
+        let t223 = 0.7071067811865475 * t173;
+        let minus_gproximal_wy_leg4 = (t222 + t223 * c_proximal_leg4) * t203;
+        let t228 = gproximal_wx_leg2 * gproximal_wy_leg2
+            - minus_gproximal_wx_leg1 * gproximal_wy_leg1
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
-            - gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t102 = t101 * t81;
-        let t111 = gproximal_wy_leg1 * gproximal_wy_leg1
+            + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
+        let t229 = t228 * t207;
+        let t238 = gproximal_wy_leg1 * gproximal_wy_leg1
             + gproximal_wy_leg2 * gproximal_wy_leg2
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t101 * t102;
-        ::overact::guard::platform(t111, 1.0000000000000002, "actuators")?;
-        ::overact::guard::platform(t111, 1.0000000000000002, "actuators")?;
-        let t112 = 1.0 / t111;
-        let t121 = gproximal_wy_leg1 * actuator_velocities[0]
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t228 * t229;
+        ::overact::guard::platform(t238, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t238, 0.9999999999999998, "actuators")?;
+        let t239 = 1.0 / t238;
+        let t248 = gproximal_wy_leg1 * actuator_velocities[0]
             + gproximal_wy_leg2 * actuator_velocities[1]
             - minus_gproximal_wy_leg3 * actuator_velocities[2]
-            - minus_gproximal_wy_leg4 * actuator_velocities[3] - t88 * t102;
-        let minus_gproximal_wz_leg4 = (t96 - t97) * t77;
-        let t138 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
-            - gproximal_wx_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
-            - gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t139 = t138 * t81;
-        let t141 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
-            - (gproximal_wy_leg1 * minus_gproximal_wz_leg1
-                + gproximal_wy_leg2 * minus_gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t101 * t139;
-        let t142 = t141 * t112;
-        let t153 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wy_leg4 * actuator_velocities[3] - t214 * t229;
+        let t255 = 0.7071067811865475 * t174;
+        let gproximal_wz_leg4 = (t255 * c_proximal_leg4 + t222) * t203;
+        let t267 = minus_gproximal_wx_leg1 * minus_gproximal_wz_leg1
+            - gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wx_leg3 * gproximal_wz_leg3
+            - minus_gproximal_wx_leg4 * gproximal_wz_leg4;
+        let t268 = t267 * t207;
+        let t270 = gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            + gproximal_wy_leg2 * minus_gproximal_wz_leg2
+            + minus_gproximal_wy_leg3 * gproximal_wz_leg3
+            + minus_gproximal_wy_leg4 * gproximal_wz_leg4 + t228 * t268;
+        let t271 = t270 * t239;
+        let t282 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
             + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t138 * t139
-            - t141 * t142;
-        ::overact::guard::platform(t153, 2.0000000000000004, "actuators")?;
-        ::overact::guard::platform(t153, 2.0000000000000004, "actuators")?;
-        let t154 = 1.0 / t153;
-        let t165 = minus_gproximal_wz_leg1 * actuator_velocities[0]
-            + minus_gproximal_wz_leg2 * actuator_velocities[1]
-            + minus_gproximal_wz_leg3 * actuator_velocities[2]
-            + minus_gproximal_wz_leg4 * actuator_velocities[3] + t88 * t139
-            + t142 * t121;
-        let t166 = t154 * t165;
-        let t168 = t112 * t121 + t142 * t166;
-        let t172 = t88 * t81 - t102 * t168 + t139 * t166;
-        let rate_proximal_leg1 = gproximal_wx_leg1 * t172 + gproximal_wy_leg1 * t168
-            + minus_gproximal_wz_leg1 * t166;
-        let t178 = 0.7071067811865476 * rate_proximal_leg1;
-        let minus_gdistal_wx_leg1 = 0.7071067811865476 * minus_s_proximal_leg1;
-        let rate_distal_leg1 = minus_c_proximal_leg1 * t168
-            - minus_gdistal_wx_leg1 * t172 - minus_gdistal_wx_leg1 * t166;
-        let t185 = minus_c_proximal_leg1 * rate_distal_leg1;
-        let t186 = t178 * t185;
-        let t187 = t29 * minus_s_distal_leg1;
-        let t188 = 0.7071067811865476 * c_distal_leg1;
-        let t189 = t187 + t188;
-        let gwrist_wx_leg1 = t29 * t35;
-        let gwrist_wy_leg1 = minus_s_proximal_leg1 * t35;
-        let rate_wrist_leg1 = gwrist_wx_leg1 * t172 + gwrist_wy_leg1 * t168
-            + gwrist_wx_leg1 * t166;
-        let t197 = t189 * rate_wrist_leg1;
-        let t199 = minus_gdistal_wx_leg1 * rate_distal_leg1;
-        let t200 = t178 + t199;
-        let t202 = minus_s_proximal_leg1 * minus_s_distal_leg1 * rate_wrist_leg1;
-        let t205 = t186 + t185 * t197 + t200 * t202;
-        let t207 = t178 - t199;
-        let t210 = (t188 - t187) * rate_wrist_leg1;
-        let t215 = t207 * t197 - t200 * t210 - 2.0 * (t178 * t199);
-        let t221 = t186 + t207 * t202 + t185 * t210;
-        let rate_dot_proximal_leg1 = gproximal_wx_leg1 * t205 - gproximal_wy_leg1 * t215
-            + minus_gproximal_wz_leg1 * t221;
-        let t224 = actuator_accelerations[0] - rate_dot_proximal_leg1;
-        let rate_proximal_leg2 = gproximal_wy_leg2 * t168
-            - minus_gproximal_wx_leg2 * t172 + minus_gproximal_wz_leg2 * t166;
-        let t231 = 0.7071067811865476 * rate_proximal_leg2;
-        let minus_gdistal_wy_leg2 = 0.7071067811865476 * minus_s_proximal_leg2;
-        let minus_rate_distal_leg2 = minus_c_proximal_leg2 * t172
-            + minus_gdistal_wy_leg2 * t168 + minus_gdistal_wy_leg2 * t166;
-        let t238 = minus_gdistal_wy_leg2 * minus_rate_distal_leg2;
-        let t239 = t231 - t238;
-        let t240 = 0.7071067811865476 * c_distal_leg2;
-        let t241 = t2 * minus_s_distal_leg2;
-        let gwrist_wy_leg2 = t2 * t8;
-        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t8;
-        let rate_wrist_leg2 = gwrist_wy_leg2 * t168 - minus_gwrist_wx_leg2 * t172
-            + gwrist_wy_leg2 * t166;
-        let t250 = (t240 - t241) * rate_wrist_leg2;
-        let t252 = t231 + t238;
-        let t253 = t241 + t240;
-        let t254 = t253 * rate_wrist_leg2;
-        let t259 = t239 * t250 - t252 * t254 - 2.0 * (t231 * t238);
-        let t261 = minus_c_proximal_leg2 * minus_rate_distal_leg2;
-        let t262 = t231 * t261;
-        let t265 = minus_s_proximal_leg2 * minus_s_distal_leg2 * rate_wrist_leg2;
-        let t268 = t262 + t261 * t254 - t239 * t265;
-        let t274 = t252 * t265 - t261 * t250 - t262;
-        let rate_dot_proximal_leg2 = minus_gproximal_wx_leg2 * t259
-            - gproximal_wy_leg2 * t268 + minus_gproximal_wz_leg2 * t274;
-        let t277 = actuator_accelerations[1] - rate_dot_proximal_leg2;
-        let rate_proximal_leg3 = minus_gproximal_wz_leg3 * t166
-            - (minus_gproximal_wx_leg3 * t172 + minus_gproximal_wy_leg3 * t168);
-        let t285 = 0.7071067811865476 * rate_proximal_leg3;
-        let gdistal_wx_leg3 = 0.7071067811865476 * minus_s_proximal_leg3;
-        let rate_distal_leg3 = gdistal_wx_leg3 * t172 - minus_c_proximal_leg3 * t168
-            - gdistal_wx_leg3 * t166;
-        let t292 = minus_c_proximal_leg3 * rate_distal_leg3;
-        let t293 = t285 * t292;
-        let t294 = t20 * minus_s_distal_leg3;
-        let t295 = 0.7071067811865476 * c_distal_leg3;
-        let t296 = t294 + t295;
-        let minus_gwrist_wx_leg3 = t20 * t15;
-        let minus_gwrist_wy_leg3 = minus_s_proximal_leg3 * t15;
-        let rate_wrist_leg3 = minus_gwrist_wx_leg3 * t166
-            - (minus_gwrist_wx_leg3 * t172 + minus_gwrist_wy_leg3 * t168);
-        let t304 = t296 * rate_wrist_leg3;
-        let t306 = gdistal_wx_leg3 * rate_distal_leg3;
-        let t307 = t285 + t306;
-        let t309 = minus_s_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let t312 = t293 + t292 * t304 + t307 * t309;
-        let t316 = t306 - t285;
-        let t319 = (t294 - t295) * rate_wrist_leg3;
-        let t322 = 2.0 * (t285 * t306) + t316 * t304 - t307 * t319;
-        let t328 = t293 - (t316 * t309 + t292 * t319);
-        let rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t312
-            + minus_gproximal_wy_leg3 * t322 + minus_gproximal_wz_leg3 * t328;
-        let t331 = actuator_accelerations[2] - rate_dot_proximal_leg3;
-        let rate_proximal_leg4 = gproximal_wx_leg4 * t172
-            - minus_gproximal_wy_leg4 * t168 + minus_gproximal_wz_leg4 * t166;
-        let t339 = 0.7071067811865476 * rate_proximal_leg4;
-        let gdistal_wy_leg4 = 0.7071067811865476 * minus_s_proximal_leg4;
-        let rate_distal_leg4 = minus_c_proximal_leg4 * t172 + gdistal_wy_leg4 * t168
-            - gdistal_wy_leg4 * t166;
-        let t346 = minus_c_proximal_leg4 * rate_distal_leg4;
-        let t347 = t339 * t346;
-        let t348 = gdistal_wy_leg4 * rate_distal_leg4;
-        let t349 = t339 + t348;
-        let gwrist_wx_leg4 = minus_s_proximal_leg4 * t77;
-        let minus_gwrist_wy_leg4 = t95 * t77;
-        let rate_wrist_leg4 = gwrist_wx_leg4 * t172 - minus_gwrist_wy_leg4 * t168
-            + minus_gwrist_wy_leg4 * t166;
-        let t358 = minus_s_proximal_leg4 * minus_s_distal_leg4 * rate_wrist_leg4;
-        let t360 = t95 * minus_s_distal_leg4;
-        let t361 = 0.7071067811865476 * c_distal_leg4;
-        let t362 = t360 + t361;
-        let t363 = t362 * rate_wrist_leg4;
-        let t366 = t347 + t349 * t358 + t346 * t363;
-        let t369 = (t360 - t361) * rate_wrist_leg4;
-        let t371 = t348 - t339;
-        let t376 = t349 * t369 - t371 * t363 - 2.0 * (t339 * t348);
-        let t382 = t347 - (t346 * t369 + t371 * t358);
-        let rate_dot_proximal_leg4 = minus_gproximal_wy_leg4 * t366
-            - gproximal_wx_leg4 * t376 + minus_gproximal_wz_leg4 * t382;
-        let t385 = actuator_accelerations[3] - rate_dot_proximal_leg4;
-        let t387 = gproximal_wx_leg1 * t224 - minus_gproximal_wx_leg2 * t277
-            - minus_gproximal_wx_leg3 * t331 + gproximal_wx_leg4 * t385;
-        let t397 = gproximal_wy_leg1 * t224 + gproximal_wy_leg2 * t277
-            - minus_gproximal_wy_leg3 * t331 - minus_gproximal_wy_leg4 * t385
-            - t102 * t387;
-        let t409 = minus_gproximal_wz_leg1 * t224 + minus_gproximal_wz_leg2 * t277
-            + minus_gproximal_wz_leg3 * t331 + minus_gproximal_wz_leg4 * t385
-            + t139 * t387 + t142 * t397;
-        let t410 = t154 * t409;
-        let t412 = t112 * t397 + t142 * t410;
-        let t416 = t81 * t387 - t102 * t412 + t139 * t410;
-        let t418 = 2.0 * pose[1];
-        let t419 = pose[2] * t418;
-        let t420 = pose[0] * t64;
-        let t421 = t419 + t420;
-        let t424 = pose[3] * t418;
-        let t425 = pose[0] * t61;
-        let t426 = t424 - t425;
-        let t428 = t66 * t416 + t421 * t412 - t426 * t410;
-        let t430 = t419 - t420;
-        let t435 = t66 * t172 + t421 * t168 - t426 * t166;
-        let t436 = t424 + t425;
-        let t438 = pose[3] * t61;
-        let t439 = pose[0] * t418;
-        let t440 = t438 - t439;
-        let t444 = 1.0 - pose[1] * t418;
-        let t445 = t444 - t62;
-        let t447 = t436 * t172 + t440 * t168 - t445 * t166;
-        let t448 = t435 * t447;
-        let t449 = t430 * t448;
-        let t452 = t444 - t65;
-        let t455 = t438 + t439;
-        let t457 = t430 * t172 + t452 * t168 - t455 * t166;
-        let t458 = t435 * t457;
-        let t459 = t436 * t458;
-        let t460 = t66 * t428 + t449 - t459;
-        let t465 = (minus_gproximal_wz_leg2 * minus_gproximal_wx_leg3
-            - minus_gproximal_wx_leg2 * minus_gproximal_wz_leg3) * t59;
-        let t467 = t452 * t448;
-        let t469 = t440 * t458;
-        let t470 = t421 * t428 + t467 - t469;
-        let t476 = (gproximal_wy_leg2 * minus_gproximal_wx_leg3
-            + minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3) * t59;
-        let t478 = t455 * t448;
-        let t480 = t445 * t458;
-        let t481 = t426 * t428 + t478 - t480;
-        let t487 = (minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3
-            + gproximal_wx_leg1 * minus_gproximal_wz_leg3) * t59;
-        let t492 = (minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3
-            + gproximal_wy_leg1 * minus_gproximal_wz_leg3) * t59;
-        let t498 = (gproximal_wx_leg1 * minus_gproximal_wy_leg3
-            - gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t59;
-        let t501 = t51 * t59;
-        let t503 = t43 * t59;
-        let t506 = t56 * t59;
-        let t509 = t457 * t447;
-        let t510 = t509 + t428;
-        let t516 = t430 * t416 + t452 * t412 - t455 * t410;
-        let t517 = t448 - t516;
-        let t520 = t435 * t435;
-        let t521 = t457 * t457;
-        let t522 = t520 - t521;
-        let t524 = t430 * t510 - t66 * t517 + t436 * t522;
-        let t530 = t452 * t510 - t421 * t517 + t440 * t522;
-        let t537 = t455 * t510 - t426 * t517 + t445 * t522;
-        let t554 = t436 * t416 + t440 * t412 - t445 * t410;
-        let t555 = t458 + t554;
-        let t557 = t447 * t447;
-        let t558 = t557 - t520;
-        let t561 = t509 - t428;
-        let t563 = t66 * t555 + t430 * t558 - t436 * t561;
-        let t569 = t421 * t555 + t452 * t558 - t440 * t561;
-        let t576 = t426 * t555 + t455 * t558 - t445 * t561;
-        let t590 = t66 * t509;
-        let t592 = t430 * t516 - t590 + t459;
-        let t595 = t421 * t509;
-        let t597 = t452 * t516 - t595 + t469;
-        let t601 = t426 * t509;
-        let t603 = t455 * t516 - t601 + t480;
-        let t616 = t521 - t557;
-        let t618 = t458 - t554;
-        let t621 = t448 + t516;
-        let t623 = t66 * t616 - t430 * t618 + t436 * t621;
-        let t629 = t421 * t616 - t452 * t618 + t440 * t621;
-        let t636 = t426 * t616 - t455 * t618 + t445 * t621;
-        let t651 = t590 - t449 + t436 * t554;
-        let t655 = t595 - t467 + t440 * t554;
-        let t660 = t601 - t478 + t445 * t554;
-        let t673 = 9.81 * t455;
-        let t675 = 9.81 * t445;
-        let t677 = t436 * t673 - t430 * t675;
-        let t681 = t440 * t673 - t452 * t675;
-        let t691 = 9.81 * t426;
-        let t693 = t66 * t675 - t436 * t691;
-        let t697 = t421 * t675 - t440 * t691;
-        let t708 = t430 * t691 - t66 * t673;
-        let t712 = t452 * t691 - t421 * t673;
-        let t721 = t416 + t205;
-        let t723 = t412 - t215;
-        let t726 = t410 + t221;
-        let rate_dot_proximal_leg1_2 = gproximal_wx_leg1 * t721
-            + gproximal_wy_leg1 * t723 + minus_gproximal_wz_leg1 * t726;
-        let t729 = t412 - t268;
-        let t731 = t416 - t259;
-        let t734 = t410 + t274;
-        let rate_dot_proximal_leg2_2 = gproximal_wy_leg2 * t729
-            - minus_gproximal_wx_leg2 * t731 + minus_gproximal_wz_leg2 * t734;
-        let t737 = t410 + t328;
-        let t739 = t416 - t312;
-        let t741 = t412 - t322;
-        let rate_dot_proximal_leg3_2 = minus_gproximal_wz_leg3 * t737
-            - (minus_gproximal_wx_leg3 * t739 + minus_gproximal_wy_leg3 * t741);
-        let t749 = gproximal_wx_leg4 * t60 + minus_gproximal_wy_leg4 * t465
-            + minus_gproximal_wz_leg4 * t476;
-        let t750 = t416 - t376;
-        let t752 = t412 - t366;
-        let t755 = t410 + t382;
-        let rate_dot_proximal_leg4_2 = gproximal_wx_leg4 * t750
-            - minus_gproximal_wy_leg4 * t752 + minus_gproximal_wz_leg4 * t755;
-        let t763 = minus_gproximal_wz_leg4 * t498
-            - (gproximal_wx_leg4 * t492 + minus_gproximal_wy_leg4 * t487);
-        let t769 = gproximal_wx_leg4 * t501 + minus_gproximal_wy_leg4 * t503
-            + minus_gproximal_wz_leg4 * t506;
-        let t771 = 6.9367175234400325 * minus_s_proximal_leg1;
-        let t772 = 6.9367175234400325 * minus_s_proximal_leg2;
-        let t773 = 6.9367175234400325 * minus_s_proximal_leg3;
-        let t774 = 6.9367175234400325 * minus_s_proximal_leg4;
-        let t781 = 6.9367175234400325 * minus_c_proximal_leg4;
-        let t794 = c_distal_leg1 * rate_proximal_leg1;
-        let t795 = rate_distal_leg1 * t794;
-        let t796 = minus_s_distal_leg1 * rate_dot_proximal_leg1_2;
-        let t797 = t795 - t796;
-        let t799 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t800 = rate_distal_leg1 * t799;
-        let t807 = minus_gdistal_wx_leg1 * t60 + minus_c_proximal_leg1 * t465
-            + minus_gdistal_wx_leg1 * t476;
-        let t808 = t799 * t794;
-        let t815 = minus_gdistal_wx_leg1 * t492 + minus_c_proximal_leg1 * t487
-            - minus_gdistal_wx_leg1 * t498;
-        let t821 = minus_gdistal_wx_leg1 * t501 + minus_c_proximal_leg1 * t503
-            + minus_gdistal_wx_leg1 * t506;
-        let t827 = minus_gdistal_wy_leg2 * t465 - minus_c_proximal_leg2 * t60
-            - minus_gdistal_wy_leg2 * t476;
-        let t828 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t829 = c_distal_leg2 * rate_proximal_leg2;
-        let t830 = t828 * t829;
-        let t832 = minus_s_distal_leg2 * rate_dot_proximal_leg2_2;
-        let t833 = minus_rate_distal_leg2 * t829;
-        let t834 = t832 + t833;
-        let t836 = minus_rate_distal_leg2 * t828;
-        let t843 = minus_c_proximal_leg2 * t492 - minus_gdistal_wy_leg2 * t487
-            - minus_gdistal_wy_leg2 * t498;
-        let t850 = minus_gdistal_wy_leg2 * t503 - minus_c_proximal_leg2 * t501
-            - minus_gdistal_wy_leg2 * t506;
-        let t856 = gdistal_wx_leg3 * t60 + minus_c_proximal_leg3 * t465
-            - gdistal_wx_leg3 * t476;
-        let t857 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t858 = c_distal_leg3 * rate_proximal_leg3;
-        let t859 = t857 * t858;
-        let t865 = gdistal_wx_leg3 * t492 + minus_c_proximal_leg3 * t487
-            + gdistal_wx_leg3 * t498;
-        let t871 = gdistal_wx_leg3 * t501 + minus_c_proximal_leg3 * t503
-            - gdistal_wx_leg3 * t506;
-        let t873 = rate_distal_leg3 * t858;
-        let t874 = minus_s_distal_leg3 * rate_dot_proximal_leg3_2;
-        let t875 = t873 - t874;
-        let t877 = rate_distal_leg3 * t857;
-        let t885 = minus_c_proximal_leg4 * t60 - gdistal_wy_leg4 * t465
-            - gdistal_wy_leg4 * t476;
-        let t886 = minus_s_distal_leg4 * rate_proximal_leg4;
-        let t887 = c_distal_leg4 * rate_proximal_leg4;
-        let t888 = t886 * t887;
-        let t890 = rate_distal_leg4 * t887;
-        let t891 = minus_s_distal_leg4 * rate_dot_proximal_leg4_2;
-        let t892 = t890 - t891;
-        let t894 = rate_distal_leg4 * t886;
-        let t896 = minus_s_distal_leg4 * t892 + c_distal_leg4 * t894;
-        let t903 = gdistal_wy_leg4 * t487 - minus_c_proximal_leg4 * t492
-            - gdistal_wy_leg4 * t498;
-        let t911 = minus_c_proximal_leg4 * t501 - gdistal_wy_leg4 * t503
-            - gdistal_wy_leg4 * t506;
-        let t917 = c_distal_leg1 * rate_dot_proximal_leg1_2;
-        let t922 = t799 * t799;
-        let t923 = t794 * t794;
-        let t924 = t922 - t923;
-        let t929 = t828 * t828;
-        let t930 = t829 * t829;
-        let t931 = t929 - t930;
-        let t933 = c_distal_leg2 * rate_dot_proximal_leg2_2;
-        let t943 = t857 * t857;
-        let t944 = t858 * t858;
-        let t945 = t943 - t944;
-        let t950 = c_distal_leg3 * rate_dot_proximal_leg3_2;
-        let t959 = c_distal_leg4 * rate_dot_proximal_leg4_2;
-        let t963 = c_distal_leg4 * (t890 + t892)
-            - minus_s_distal_leg4 * (t894 + t959 + t894);
-        let t965 = t886 * t886;
-        let t966 = t887 * t887;
-        let t967 = t965 - t966;
-        let t976 = rate_distal_leg1 * rate_distal_leg1;
-        let rate_dot_distal_leg1 = minus_c_proximal_leg1 * t723
-            - minus_gdistal_wx_leg1 * t721 - minus_gdistal_wx_leg1 * t726;
-        let minus_rate_dot_distal_leg2 = minus_c_proximal_leg2 * t731
-            + minus_gdistal_wy_leg2 * t729 + minus_gdistal_wy_leg2 * t734;
-        let t999 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t1008 = rate_distal_leg3 * rate_distal_leg3;
-        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t739 - minus_c_proximal_leg3 * t741
-            - gdistal_wx_leg3 * t737;
-        let t1021 = rate_distal_leg4 * rate_distal_leg4;
-        let rate_dot_distal_leg4 = minus_c_proximal_leg4 * t750 + gdistal_wy_leg4 * t752
-            - gdistal_wy_leg4 * t755;
-        let t1031 = c_distal_leg4 * (t1021 - t965)
-            - minus_s_distal_leg4 * (rate_dot_distal_leg4 - t888);
-        let t1072 = c_distal_leg4 * (t888 + rate_dot_distal_leg4)
-            - minus_s_distal_leg4 * (t966 - t1021);
-        let t1083 = 9.81 * t189;
-        let t1088 = 9.81 * t253;
-        let t1094 = 9.81 * t296;
-        let t1100 = 9.81 * t362;
-        let t1102 = c_distal_leg4 * t774;
+            + gproximal_wz_leg3 * gproximal_wz_leg3
+            + gproximal_wz_leg4 * gproximal_wz_leg4 - t267 * t268 - t270 * t271;
+        ::overact::guard::platform(t282, 1.9999999999999996, "actuators")?;
+        ::overact::guard::platform(t282, 1.9999999999999996, "actuators")?;
+        let t283 = 1.0 / t282;
+        let t294 = gproximal_wz_leg3 * actuator_velocities[2]
+            - (minus_gproximal_wz_leg1 * actuator_velocities[0]
+                + minus_gproximal_wz_leg2 * actuator_velocities[1])
+            + gproximal_wz_leg4 * actuator_velocities[3] - t214 * t268 + t271 * t248;
+        let t295 = t283 * t294;
+        let t297 = t239 * t248 + t271 * t295;
+        let t301 = t214 * t207 - t229 * t297 - t268 * t295;
+        let rate_proximal_leg2 = gproximal_wx_leg2 * t301 + gproximal_wy_leg2 * t297
+            - minus_gproximal_wz_leg2 * t295;
+        let t307 = 0.7071067811865475 * rate_proximal_leg2;
+        let t308 = 0.5 * t52;
+        let gdistal_wx_leg2 = t26 * t308;
+        let minus_gdistal_wy_leg2 = t37 * t308;
+        let rate_distal_leg2 = gdistal_wx_leg2 * t301 - minus_gdistal_wy_leg2 * t297
+            + minus_gdistal_wy_leg2 * t295;
+        let t316 = c_proximal_leg2 * rate_distal_leg2;
+        let t317 = t307 * t316;
+        let minus_gwrist_wy_leg2 = 0.7071067811865475 * c_proximal_leg2 * t52;
+        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t52;
+        let rate_wrist_leg2 = minus_gwrist_wy_leg2 * t295
+            - (minus_gwrist_wx_leg2 * t301 + minus_gwrist_wy_leg2 * t297);
+        let t326 = t11 * rate_wrist_leg2;
+        let t329 = 0.7071067811865475 * minus_s_proximal_leg2 * rate_distal_leg2;
+        let t330 = t307 + t329;
+        let t331 = t46 * rate_wrist_leg2;
+        let t334 = t317 - (t316 * t326 + t330 * t331);
+        let t336 = t91 * rate_wrist_leg2;
+        let t338 = t307 - t329;
+        let t343 = t330 * t336 - t338 * t326 - 2.0 * (t307 * t329);
+        let t348 = t338 * t331 + t316 * t336 - t317;
+        let rate_dot_proximal_leg2 = minus_gproximal_wz_leg2 * t334
+            - (gproximal_wx_leg2 * t343 + gproximal_wy_leg2 * t348);
+        let t352 = actuator_accelerations[1] - rate_dot_proximal_leg2;
+        let t354 = 0.5 * t133;
+        let gdistal_wx_leg1 = t116 * t354;
+        let minus_gdistal_wy_leg1 = t117 * t354;
+        let rate_distal_leg1 = gdistal_wx_leg1 * t301 - minus_gdistal_wy_leg1 * t297
+            - gdistal_wx_leg1 * t295;
+        let t362 = c_proximal_leg1 * rate_distal_leg1;
+        let minus_gwrist_wx_leg1 = 0.7071067811865475 * c_proximal_leg1 * t133;
+        let minus_gwrist_wy_leg1 = s_proximal_leg1 * t133;
+        let rate_wrist_leg1 = minus_gwrist_wx_leg1 * t295
+            - (minus_gwrist_wx_leg1 * t301 + minus_gwrist_wy_leg1 * t297);
+        let t371 = t141 * rate_wrist_leg1;
+        let rate_proximal_leg1 = gproximal_wy_leg1 * t297
+            - minus_gproximal_wx_leg1 * t301 - minus_gproximal_wz_leg1 * t295;
+        let t378 = 0.7071067811865475 * rate_proximal_leg1;
+        let t380 = 0.7071067811865475 * s_proximal_leg1 * rate_distal_leg1;
+        let t381 = t378 + t380;
+        let t382 = t129 * rate_wrist_leg1;
+        let t385 = t378 * t362;
+        let t386 = t362 * t371 - t381 * t382 - t385;
+        let t388 = t153 * rate_wrist_leg1;
+        let t390 = t378 - t380;
+        let t395 = t381 * t388 - t390 * t371 - 2.0 * (t378 * t380);
+        let t401 = t385 + t390 * t382 - t362 * t388;
+        let rate_dot_proximal_leg1 = minus_gproximal_wx_leg1 * t386
+            - gproximal_wy_leg1 * t395 + minus_gproximal_wz_leg1 * t401;
+        let t404 = actuator_accelerations[0] - rate_dot_proximal_leg1;
+        let rate_proximal_leg3 = gproximal_wz_leg3 * t295
+            - (minus_gproximal_wx_leg3 * t301 + minus_gproximal_wy_leg3 * t297);
+        let t412 = 0.7071067811865475 * rate_proximal_leg3;
+        let t413 = 0.5 * t88;
+        let gdistal_wx_leg3 = t71 * t413;
+        let minus_gdistal_wy_leg3 = t72 * t413;
+        let rate_distal_leg3 = gdistal_wx_leg3 * t301 - minus_gdistal_wy_leg3 * t297
+            + gdistal_wx_leg3 * t295;
+        let t421 = c_proximal_leg3 * rate_distal_leg3;
+        let t422 = t412 * t421;
+        let minus_gwrist_wx_leg3 = 0.7071067811865475 * c_proximal_leg3 * t88;
+        let minus_gwrist_wy_leg3 = s_proximal_leg3 * t88;
+        let minus_rate_wrist_leg3 = minus_gwrist_wx_leg3 * t301
+            + minus_gwrist_wy_leg3 * t297 + minus_gwrist_wx_leg3 * t295;
+        let t431 = t148 * minus_rate_wrist_leg3;
+        let t434 = 0.7071067811865475 * s_proximal_leg3 * rate_distal_leg3;
+        let t435 = t412 + t434;
+        let t436 = t82 * minus_rate_wrist_leg3;
+        let t439 = t422 - (t421 * t431 + t435 * t436);
+        let t443 = t95 * minus_rate_wrist_leg3;
+        let t445 = t434 - t412;
+        let t448 = 2.0 * (t412 * t434) + t435 * t443 - t445 * t431;
+        let t454 = t422 + t445 * t436 + t421 * t443;
+        let rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t439
+            + minus_gproximal_wy_leg3 * t448 - gproximal_wz_leg3 * t454;
+        let t457 = actuator_accelerations[2] - rate_dot_proximal_leg3;
+        let rate_proximal_leg4 = gproximal_wz_leg4 * t295
+            - (minus_gproximal_wx_leg4 * t301 + minus_gproximal_wy_leg4 * t297);
+        let t465 = 0.7071067811865475 * rate_proximal_leg4;
+        let t467 = 0.5 * t203;
+        let gdistal_wx_leg4 = t187 * t467;
+        let minus_gdistal_wy_leg4 = t186 * t467;
+        let rate_distal_leg4 = gdistal_wx_leg4 * t301 - minus_gdistal_wy_leg4 * t297
+            - minus_gdistal_wy_leg4 * t295;
+        let t475 = 0.7071067811865475 * minus_s_proximal_leg4 * rate_distal_leg4;
+        let t478 = t465 + t475;
+        let minus_gwrist_wx_leg4 = minus_s_proximal_leg4 * t203;
+        let minus_gwrist_wy_leg4 = 0.7071067811865475 * c_proximal_leg4 * t203;
+        let minus_rate_wrist_leg4 = minus_gwrist_wx_leg4 * t301
+            + minus_gwrist_wy_leg4 * t297 + minus_gwrist_wy_leg4 * t295;
+        let t487 = t223 * minus_rate_wrist_leg4;
+        let t489 = t465 - t475;
+        let t490 = t255 * minus_rate_wrist_leg4;
+        let t493 = 2.0 * (t465 * t475) - (t478 * t487 + t489 * t490);
+        let t495 = c_proximal_leg4 * rate_distal_leg4;
+        let t496 = t465 * t495;
+        let t497 = t192 * minus_rate_wrist_leg4;
+        let t501 = t496 + t489 * t497 - t495 * t487;
+        let t507 = t496 + t495 * t490 + t478 * t497;
+        let rate_dot_proximal_leg4 = minus_gproximal_wx_leg4 * t493
+            + minus_gproximal_wy_leg4 * t501 - gproximal_wz_leg4 * t507;
+        let t510 = actuator_accelerations[3] - rate_dot_proximal_leg4;
+        let t512 = gproximal_wx_leg2 * t352 - minus_gproximal_wx_leg1 * t404
+            - minus_gproximal_wx_leg3 * t457 - minus_gproximal_wx_leg4 * t510;
+        let t522 = gproximal_wy_leg1 * t404 + gproximal_wy_leg2 * t352
+            - minus_gproximal_wy_leg3 * t457 - minus_gproximal_wy_leg4 * t510
+            - t229 * t512;
+        let t534 = gproximal_wz_leg3 * t457
+            - (minus_gproximal_wz_leg1 * t404 + minus_gproximal_wz_leg2 * t352)
+            + gproximal_wz_leg4 * t510 - t268 * t512 + t271 * t522;
+        let t535 = t283 * t534;
+        let t537 = t239 * t522 + t271 * t535;
+        let t541 = t207 * t512 - t229 * t537 - t268 * t535;
+        let t546 = t57 * t541 + t70 * t537 + t54 * t535;
+        let t552 = t57 * t301 + t70 * t297 + t54 * t295;
+        let t557 = t36 * t301 + t9 * t297 + t14 * t295;
+        let t558 = t552 * t557;
+        let t559 = t33 * t558;
+        let t565 = t33 * t301 + t5 * t297 + t12 * t295;
+        let t566 = t552 * t565;
+        let t567 = t36 * t566;
+        let t568 = t57 * t546 + t559 - t567;
+        let t573 = (minus_gproximal_wz_leg2 * minus_gproximal_wx_leg3
+            - gproximal_wx_leg2 * gproximal_wz_leg3) * t166;
+        let t575 = t5 * t558;
+        let t577 = t9 * t566;
+        let t578 = t70 * t546 + t575 - t577;
+        let t584 = (gproximal_wx_leg2 * minus_gproximal_wy_leg3
+            - gproximal_wy_leg2 * minus_gproximal_wx_leg3) * t166;
+        let t586 = t12 * t558;
+        let t588 = t14 * t566;
+        let t589 = t54 * t546 + t586 - t588;
+        let t595 = (minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg1 * gproximal_wz_leg3) * t166;
+        let t600 = (minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3
+            - gproximal_wy_leg1 * gproximal_wz_leg3) * t166;
+        let t606 = (gproximal_wy_leg1 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg1 * minus_gproximal_wy_leg3) * t166;
+        let t609 = t158 * t166;
+        let t611 = t162 * t166;
+        let t614 = t146 * t166;
+        let t617 = t565 * t557;
+        let t618 = t617 + t546;
+        let t624 = t33 * t541 + t5 * t537 + t12 * t535;
+        let t625 = t558 - t624;
+        let t628 = t552 * t552;
+        let t629 = t565 * t565;
+        let t630 = t628 - t629;
+        let t632 = t33 * t618 - t57 * t625 + t36 * t630;
+        let t638 = t5 * t618 - t70 * t625 + t9 * t630;
+        let t645 = t12 * t618 - t54 * t625 + t14 * t630;
+        let t662 = t36 * t541 + t9 * t537 + t14 * t535;
+        let t663 = t566 + t662;
+        let t665 = t557 * t557;
+        let t666 = t665 - t628;
+        let t669 = t617 - t546;
+        let t671 = t57 * t663 + t33 * t666 - t36 * t669;
+        let t677 = t70 * t663 + t5 * t666 - t9 * t669;
+        let t684 = t54 * t663 + t12 * t666 - t14 * t669;
+        let t698 = t57 * t617;
+        let t700 = t33 * t624 - t698 + t567;
+        let t703 = t70 * t617;
+        let t705 = t5 * t624 - t703 + t577;
+        let t709 = t54 * t617;
+        let t711 = t12 * t624 - t709 + t588;
+        let t724 = t629 - t665;
+        let t726 = t566 - t662;
+        let t729 = t558 + t624;
+        let t731 = t57 * t724 - t33 * t726 + t36 * t729;
+        let t737 = t70 * t724 - t5 * t726 + t9 * t729;
+        let t744 = t54 * t724 - t12 * t726 + t14 * t729;
+        let t759 = t698 - t559 + t36 * t662;
+        let t763 = t703 - t575 + t9 * t662;
+        let t768 = t709 - t586 + t14 * t662;
+        let t781 = 9.81 * t12;
+        let t783 = 9.81 * t14;
+        let t785 = t36 * t781 - t33 * t783;
+        let t789 = t9 * t781 - t5 * t783;
+        let t799 = 9.81 * t54;
+        let t801 = t57 * t783 - t36 * t799;
+        let t805 = t70 * t783 - t9 * t799;
+        let t816 = t33 * t799 - t57 * t781;
+        let t820 = t5 * t799 - t70 * t781;
+        let t829 = t537 - t395;
+        let t831 = t541 - t386;
+        let t834 = t535 - t401;
+        let rate_dot_proximal_leg1_2 = gproximal_wy_leg1 * t829
+            - minus_gproximal_wx_leg1 * t831 - minus_gproximal_wz_leg1 * t834;
+        let t837 = t541 - t343;
+        let t839 = t537 - t348;
+        let t842 = t535 - t334;
+        let rate_dot_proximal_leg2_2 = gproximal_wx_leg2 * t837
+            + gproximal_wy_leg2 * t839 - minus_gproximal_wz_leg2 * t842;
+        let t845 = t535 - t454;
+        let t847 = t541 - t439;
+        let t849 = t537 - t448;
+        let rate_dot_proximal_leg3_2 = gproximal_wz_leg3 * t845
+            - (minus_gproximal_wx_leg3 * t847 + minus_gproximal_wy_leg3 * t849);
+        let t857 = minus_gproximal_wy_leg4 * t573 - minus_gproximal_wx_leg4 * t167
+            + gproximal_wz_leg4 * t584;
+        let t858 = t535 - t507;
+        let t860 = t541 - t493;
+        let t862 = t537 - t501;
+        let rate_dot_proximal_leg4_2 = gproximal_wz_leg4 * t858
+            - (minus_gproximal_wx_leg4 * t860 + minus_gproximal_wy_leg4 * t862);
+        let t871 = minus_gproximal_wx_leg4 * t600 - minus_gproximal_wy_leg4 * t595
+            + gproximal_wz_leg4 * t606;
+        let t877 = gproximal_wz_leg4 * t614
+            - (minus_gproximal_wx_leg4 * t609 + minus_gproximal_wy_leg4 * t611);
+        let t882 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t886 = 6.936717523440031 * c_proximal_leg1;
+        let t887 = 6.936717523440031 * c_proximal_leg2;
+        let t888 = 6.936717523440031 * c_proximal_leg3;
+        let t889 = 6.936717523440031 * c_proximal_leg4;
+        let t902 = c_distal_leg1 * rate_dot_proximal_leg1_2;
+        let t903 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t904 = rate_distal_leg1 * t903;
+        let t905 = t902 + t904;
+        let t907 = c_distal_leg1 * rate_proximal_leg1;
+        let t908 = rate_distal_leg1 * t907;
+        let t915 = gdistal_wx_leg1 * t167 + minus_gdistal_wy_leg1 * t573
+            - gdistal_wx_leg1 * t584;
+        let t916 = t907 * t903;
+        let t923 = gdistal_wx_leg1 * t600 + minus_gdistal_wy_leg1 * t595
+            + gdistal_wx_leg1 * t606;
+        let t929 = gdistal_wx_leg1 * t609 - minus_gdistal_wy_leg1 * t611
+            - gdistal_wx_leg1 * t614;
+        let t935 = gdistal_wx_leg2 * t167 + minus_gdistal_wy_leg2 * t573
+            + minus_gdistal_wy_leg2 * t584;
+        let t936 = c_distal_leg2 * rate_proximal_leg2;
+        let t937 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t938 = t936 * t937;
+        let t940 = c_distal_leg2 * rate_dot_proximal_leg2_2;
+        let t941 = rate_distal_leg2 * t937;
+        let t942 = t940 + t941;
+        let t944 = rate_distal_leg2 * t936;
+        let t951 = minus_gdistal_wy_leg2 * t606
+            - (gdistal_wx_leg2 * t600 + minus_gdistal_wy_leg2 * t595);
+        let t958 = gdistal_wx_leg2 * t609 - minus_gdistal_wy_leg2 * t611
+            + minus_gdistal_wy_leg2 * t614;
+        let t964 = gdistal_wx_leg3 * t167 + minus_gdistal_wy_leg3 * t573
+            + gdistal_wx_leg3 * t584;
+        let t965 = c_distal_leg3 * rate_proximal_leg3;
+        let t966 = s_distal_leg3 * rate_proximal_leg3;
+        let t967 = t965 * t966;
+        let t973 = gdistal_wx_leg3 * t606
+            - (gdistal_wx_leg3 * t600 + minus_gdistal_wy_leg3 * t595);
+        let t979 = gdistal_wx_leg3 * t609 - minus_gdistal_wy_leg3 * t611
+            + gdistal_wx_leg3 * t614;
+        let t981 = rate_distal_leg3 * t966;
+        let t982 = c_distal_leg3 * rate_dot_proximal_leg3_2;
+        let t983 = t981 - t982;
+        let t985 = rate_distal_leg3 * t965;
+        let t993 = gdistal_wx_leg4 * t167 + minus_gdistal_wy_leg4 * t573
+            - minus_gdistal_wy_leg4 * t584;
+        let t994 = c_distal_leg4 * rate_proximal_leg4;
+        let t995 = s_distal_leg4 * rate_proximal_leg4;
+        let t996 = t994 * t995;
+        let t998 = rate_distal_leg4 * t995;
+        let t999 = c_distal_leg4 * rate_dot_proximal_leg4_2;
+        let t1000 = t998 - t999;
+        let t1002 = rate_distal_leg4 * t994;
+        let t1004 = c_distal_leg4 * t1000 + s_distal_leg4 * t1002;
+        let t1012 = gdistal_wx_leg4 * t600 + minus_gdistal_wy_leg4 * t595
+            + minus_gdistal_wy_leg4 * t606;
+        let t1019 = gdistal_wx_leg4 * t609 - minus_gdistal_wy_leg4 * t611
+            - minus_gdistal_wy_leg4 * t614;
+        let t1025 = minus_s_distal_leg1 * rate_dot_proximal_leg1_2;
+        let t1030 = t907 * t907;
+        let t1031 = t903 * t903;
+        let t1032 = t1030 - t1031;
+        let t1037 = t936 * t936;
+        let t1038 = t937 * t937;
+        let t1039 = t1037 - t1038;
+        let t1043 = minus_s_distal_leg2 * rate_dot_proximal_leg2_2;
+        let t1051 = t965 * t965;
+        let t1052 = t966 * t966;
+        let t1053 = t1051 - t1052;
+        let t1058 = s_distal_leg3 * rate_dot_proximal_leg3_2;
+        let t1067 = s_distal_leg4 * rate_dot_proximal_leg4_2;
+        let t1071 = s_distal_leg4 * (t998 + t1000)
+            - c_distal_leg4 * (t1002 + t1067 + t1002);
+        let t1073 = t994 * t994;
+        let t1074 = t995 * t995;
+        let t1075 = t1073 - t1074;
+        let rate_dot_distal_leg1 = gdistal_wx_leg1 * t831 - minus_gdistal_wy_leg1 * t829
+            - gdistal_wx_leg1 * t834;
+        let t1091 = rate_distal_leg1 * rate_distal_leg1;
+        let rate_dot_distal_leg2 = gdistal_wx_leg2 * t837 - minus_gdistal_wy_leg2 * t839
+            + minus_gdistal_wy_leg2 * t842;
+        let t1107 = rate_distal_leg2 * rate_distal_leg2;
+        let t1116 = rate_distal_leg3 * rate_distal_leg3;
+        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t847 - minus_gdistal_wy_leg3 * t849
+            + gdistal_wx_leg3 * t845;
+        let t1129 = rate_distal_leg4 * rate_distal_leg4;
+        let rate_dot_distal_leg4 = gdistal_wx_leg4 * t860 - minus_gdistal_wy_leg4 * t862
+            - minus_gdistal_wy_leg4 * t858;
+        let t1139 = s_distal_leg4 * (t1129 - t1073)
+            - c_distal_leg4 * (rate_dot_distal_leg4 - t996);
+        let t1180 = s_distal_leg4 * (t996 + rate_dot_distal_leg4)
+            - c_distal_leg4 * (t1074 - t1129);
+        let t1193 = c_distal_leg1 * t886 - 3.4683587617200153 * t105;
+        let t1200 = c_distal_leg2 * t887 - 3.4683587617200153 * t16;
+        let t1208 = c_distal_leg3 * t888 + 3.4683587617200153 * t59;
+        let t1214 = 6.936717523440031 * t191;
+        let t1218 = c_distal_leg4 * t889 + 3.4683587617200153 * t175;
         Ok([
             [
-                t60 * t460 - t465 * t470 - t476 * t481, t60 * t524 - t465 * t530 - t476 * t537,
-                t60 * t563 - t465 * t569 - t476 * t576, t60 * t592 - t465 * t597 - t476 * t603,
-                t60 * t623 - t465 * t629 - t476 * t636, t60 * t651 - t465 * t655 - t476 * t660,
-                t60 * t677 - t465 * t681, t60 * t693 - t465 * t697, t60 * t708 - t465 * t712,
-                rate_dot_proximal_leg1_2, 0.0, 0.0, t749 * rate_dot_proximal_leg4_2, -t771, 0.0,
-                0.0, -(t749 * t774), -(6.9367175234400325 * minus_c_proximal_leg1), 0.0, 0.0,
-                -(t749 * t781), rate_proximal_leg1, 0.0, 0.0, t749 * rate_proximal_leg4,
+                t167 * t568 - t573 * t578 + t584 * t589, t167 * t632 - t573 * t638 + t584 * t645,
+                t167 * t671 - t573 * t677 + t584 * t684, t167 * t700 - t573 * t705 + t584 * t711,
+                t167 * t731 - t573 * t737 + t584 * t744, t167 * t759 - t573 * t763 + t584 * t768,
+                t167 * t785 - t573 * t789, t167 * t801 - t573 * t805, t167 * t816 - t573 * t820,
+                rate_dot_proximal_leg1_2, 0.0, 0.0, t857 * rate_dot_proximal_leg4_2,
+                -(6.936717523440031 * s_proximal_leg1), 0.0, 0.0, t857 * t882, -t886, 0.0, 0.0,
+                -(t857 * t889), rate_proximal_leg1, 0.0, 0.0, t857 * rate_proximal_leg4,
                 ::overact::math::sign(rate_proximal_leg1), 0.0, 0.0,
-                ::overact::math::signed(t749, rate_proximal_leg4), 1.0, 0.0, 0.0, t749,
-                -(minus_s_distal_leg1 * t797 + c_distal_leg1 * t800 + t807 * t808), t827 * t830,
-                t856 * t859, t885 * t888 - t749 * t896,
-                c_distal_leg1 * (t795 + t797)
-                    - minus_s_distal_leg1 * (t800 + t917 + t800) - t807 * t924,
-                t827 * t931,
-                t856 * t945,
-                t749 * t963 + t885 * t967,
-                c_distal_leg1 * (t976 - t922)
-                    - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t808) + t807 * t796,
-                -(t827 * t832),
-                -(t856 * t874),
-                t749 * t1031 - t885 * t891,
-                c_distal_leg1 * (t808 + rate_dot_distal_leg1)
-                    - minus_s_distal_leg1 * (t923 - t976) - t807 * t917,
-                t827 * t933,
-                t856 * t950,
-                t749 * t1072 + t885 * t959,
-                -(c_distal_leg1 * t771 + t807 * t1083),
-                t827 * t1088,
-                t856 * t1094,
-                t885 * t1100 - t749 * t1102,
+                ::overact::math::signed(t857, rate_proximal_leg4), 1.0, 0.0, 0.0, t857,
+                c_distal_leg1 * t905 + minus_s_distal_leg1 * t908 - t915 * t916, -(t935 * t938),
+                t964 * t967, t993 * t996 - t857 * t1004,
+                minus_s_distal_leg1 * (t904 + t905)
+                    - c_distal_leg1 * (t908 + t908 - t1025) + t915 * t1032,
+                t935 * t1039,
+                t964 * t1053,
+                t857 * t1071 + t993 * t1075,
+                -(c_distal_leg1 * (t916 + rate_dot_distal_leg1)
+                    + minus_s_distal_leg1 * (t1091 - t1030) + t915 * t902),
+                -(t935 * t940),
+                -(t964 * t982),
+                t857 * t1139 - t993 * t999,
+                minus_s_distal_leg1 * (t916 - rate_dot_distal_leg1)
+                    - c_distal_leg1 * (t1031 - t1091) - t915 * t1025,
+                -(t935 * t1043),
+                t964 * t1058,
+                t857 * t1180 + t993 * t1067,
+                6.936717523440031 * t121 + t915 * t1193,
+                t935 * t1200,
+                t964 * t1208,
+                t857 * t1214 + t993 * t1218,
             ],
             [
-                t487 * t470 - t492 * t460 - t498 * t481, t487 * t530 - t492 * t524 - t498 * t537,
-                t487 * t569 - t492 * t563 - t498 * t576, t487 * t597 - t492 * t592 - t498 * t603,
-                t487 * t629 - t492 * t623 - t498 * t636, t487 * t655 - t492 * t651 - t498 * t660,
-                t487 * t681 - t492 * t677, t487 * t697 - t492 * t693, t487 * t712 - t492 * t708,
-                0.0, rate_dot_proximal_leg2_2, 0.0, t763 * rate_dot_proximal_leg4_2, 0.0, -t772,
-                0.0, -(t763 * t774), 0.0, -(6.9367175234400325 * minus_c_proximal_leg2), 0.0,
-                -(t763 * t781), 0.0, rate_proximal_leg2, 0.0, t763 * rate_proximal_leg4, 0.0,
+                t595 * t578 - t600 * t568 + t606 * t589, t595 * t638 - t600 * t632 + t606 * t645,
+                t595 * t677 - t600 * t671 + t606 * t684, t595 * t705 - t600 * t700 + t606 * t711,
+                t595 * t737 - t600 * t731 + t606 * t744, t595 * t763 - t600 * t759 + t606 * t768,
+                t595 * t789 - t600 * t785, t595 * t805 - t600 * t801, t595 * t820 - t600 * t816,
+                0.0, rate_dot_proximal_leg2_2, 0.0, t871 * rate_dot_proximal_leg4_2, 0.0,
+                6.936717523440031 * minus_s_proximal_leg2, 0.0, t871 * t882, 0.0, -t887, 0.0,
+                -(t871 * t889), 0.0, rate_proximal_leg2, 0.0, t871 * rate_proximal_leg4, 0.0,
                 ::overact::math::sign(rate_proximal_leg2), 0.0,
-                ::overact::math::signed(t763, rate_proximal_leg4), 0.0, 1.0, 0.0, t763, t815 * t808,
-                minus_s_distal_leg2 * t834 + c_distal_leg2 * t836 + t843 * t830, -(t865 * t859),
-                t903 * t888 - t763 * t896, t815 * t924,
-                minus_s_distal_leg2 * (t836 - (t933 - t836))
-                    - c_distal_leg2 * (t833 + t834) + t843 * t931,
-                -(t865 * t945),
-                t763 * t963 + t903 * t967,
-                -(t815 * t796),
-                minus_s_distal_leg2 * (t830 + minus_rate_dot_distal_leg2)
-                    + c_distal_leg2 * (t999 - t929) - t843 * t832,
-                t865 * t874,
-                t763 * t1031 - t903 * t891,
-                t815 * t917,
-                t843 * t933
-                    - (minus_s_distal_leg2 * (t930 - t999)
-                        + c_distal_leg2 * (minus_rate_dot_distal_leg2 - t830)),
-                -(t865 * t950),
-                t763 * t1072 + t903 * t959,
-                t815 * t1083,
-                t843 * t1088 - c_distal_leg2 * t772,
-                -(t865 * t1094),
-                t903 * t1100 - t763 * t1102,
+                ::overact::math::signed(t871, rate_proximal_leg4), 0.0, 1.0, 0.0, t871, t923 * t916,
+                c_distal_leg2 * t942 + minus_s_distal_leg2 * t944 - t951 * t938, t973 * t967,
+                -(t871 * t1004 + t1012 * t996), -(t923 * t1032),
+                minus_s_distal_leg2 * (t941 + t942)
+                    - c_distal_leg2 * (t944 + t944 - t1043) + t951 * t1039,
+                t973 * t1053,
+                t871 * t1071 - t1012 * t1075,
+                t923 * t902,
+                -(c_distal_leg2 * (t938 + rate_dot_distal_leg2)
+                    + minus_s_distal_leg2 * (t1107 - t1037) + t951 * t940),
+                -(t973 * t982),
+                t871 * t1139 + t1012 * t999,
+                t923 * t1025,
+                minus_s_distal_leg2 * (t938 - rate_dot_distal_leg2)
+                    - c_distal_leg2 * (t1038 - t1107) - t951 * t1043,
+                t973 * t1058,
+                t871 * t1180 - t1012 * t1067,
+                -(t923 * t1193),
+                t951 * t1200 - 6.936717523440031 * t136,
+                t973 * t1208,
+                t871 * t1214 - t1012 * t1218,
             ],
             [
-                t501 * t460 - t503 * t470 - t506 * t481, t501 * t524 - t503 * t530 - t506 * t537,
-                t501 * t563 - t503 * t569 - t506 * t576, t501 * t592 - t503 * t597 - t506 * t603,
-                t501 * t623 - t503 * t629 - t506 * t636, t501 * t651 - t503 * t655 - t506 * t660,
-                t501 * t677 - t503 * t681, t501 * t693 - t503 * t697, t501 * t708 - t503 * t712,
-                0.0, 0.0, rate_dot_proximal_leg3_2, t769 * rate_dot_proximal_leg4_2, 0.0, 0.0,
-                -t773, -(t769 * t774), 0.0, 0.0, -(6.9367175234400325 * minus_c_proximal_leg3),
-                -(t769 * t781), 0.0, 0.0, rate_proximal_leg3, t769 * rate_proximal_leg4, 0.0, 0.0,
+                t609 * t568 + t611 * t578 + t614 * t589, t609 * t632 + t611 * t638 + t614 * t645,
+                t609 * t671 + t611 * t677 + t614 * t684, t609 * t700 + t611 * t705 + t614 * t711,
+                t609 * t731 + t611 * t737 + t614 * t744, t609 * t759 + t611 * t763 + t614 * t768,
+                t609 * t785 + t611 * t789, t609 * t801 + t611 * t805, t609 * t816 + t611 * t820,
+                0.0, 0.0, rate_dot_proximal_leg3_2, t877 * rate_dot_proximal_leg4_2, 0.0, 0.0,
+                -(6.936717523440031 * s_proximal_leg3), t877 * t882, 0.0, 0.0, -t888,
+                -(t877 * t889), 0.0, 0.0, rate_proximal_leg3, t877 * rate_proximal_leg4, 0.0, 0.0,
                 ::overact::math::sign(rate_proximal_leg3),
-                ::overact::math::signed(t769, rate_proximal_leg4), 0.0, 0.0, 1.0, t769,
-                -(t821 * t808), t850 * t830,
-                t871 * t859 - (minus_s_distal_leg3 * t875 + c_distal_leg3 * t877),
-                t911 * t888 - t769 * t896, -(t821 * t924), t850 * t931,
-                c_distal_leg3 * (t873 + t875)
-                    - minus_s_distal_leg3 * (t877 + t950 + t877) + t871 * t945,
-                t769 * t963 + t911 * t967,
-                t821 * t796,
-                -(t850 * t832),
-                c_distal_leg3 * (t1008 - t943)
-                    - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t859) - t871 * t874,
-                t769 * t1031 - t911 * t891,
-                -(t821 * t917),
-                t850 * t933,
-                c_distal_leg3 * (t859 + rate_dot_distal_leg3)
-                    - minus_s_distal_leg3 * (t944 - t1008) + t871 * t950,
-                t769 * t1072 + t911 * t959,
-                -(t821 * t1083),
-                t850 * t1088,
-                t871 * t1094 - c_distal_leg3 * t773,
-                t911 * t1100 - t769 * t1102,
+                ::overact::math::signed(t877, rate_proximal_leg4), 0.0, 0.0, 1.0, t877,
+                -(t929 * t916), -(t958 * t938),
+                t979 * t967 - (c_distal_leg3 * t983 + s_distal_leg3 * t985),
+                t1019 * t996 - t877 * t1004, t929 * t1032, t958 * t1039,
+                s_distal_leg3 * (t981 + t983) - c_distal_leg3 * (t985 + t1058 + t985)
+                    + t979 * t1053,
+                t877 * t1071 + t1019 * t1075,
+                -(t929 * t902),
+                -(t958 * t940),
+                s_distal_leg3 * (t1116 - t1051)
+                    - c_distal_leg3 * (rate_dot_distal_leg3 - t967) - t979 * t982,
+                t877 * t1139 - t1019 * t999,
+                -(t929 * t1025),
+                -(t958 * t1043),
+                s_distal_leg3 * (t967 + rate_dot_distal_leg3)
+                    - c_distal_leg3 * (t1052 - t1116) + t979 * t1058,
+                t877 * t1180 + t1019 * t1067,
+                t929 * t1193,
+                t958 * t1200,
+                t979 * t1208 - 6.936717523440031 * t76,
+                t877 * t1214 + t1019 * t1218,
             ],
         ])
     }
@@ -6119,7 +8806,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 3.
     ///
-    /// 61 operations (17 additions, 40 multiplications, 4 divisions), 0 square roots, 8 trigonometric pairs, 0 signs, 74 intermediates.
+    /// 208 operations (64 additions, 136 multiplications, 8 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 209 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6127,60 +8814,128 @@ impl Spherical4Rrr {
         pose: &[f64; 4],
         torques: &[f64; 4],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t5 = 0.7071067811865476 * minus_c_proximal_leg1 * c_distal_leg1;
-        let t6 = 0.7071067811865476 * minus_s_distal_leg1;
-        let t8 = 1.0 / minus_s_distal_leg1;
-        let gproximal_wx_leg1 = (t5 + t6) * t8;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let t16 = 1.0 / minus_s_distal_leg2;
-        let minus_gproximal_wx_leg2 = minus_s_proximal_leg2 * c_distal_leg2 * t16;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let t25 = 0.7071067811865476 * minus_c_proximal_leg3 * c_distal_leg3;
-        let t26 = 0.7071067811865476 * minus_s_distal_leg3;
-        let t28 = 1.0 / minus_s_distal_leg3;
-        let minus_gproximal_wx_leg3 = (t25 + t26) * t28;
-        let (minus_s_proximal_leg4, minus_c_proximal_leg4) = ::overact::math::sin_cos(
-            joints[9],
-        );
-        let (c_distal_leg4, minus_s_distal_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(minus_s_distal_leg4, 1.0, "leg4")?;
-        let t37 = 1.0 / minus_s_distal_leg4;
-        let gproximal_wx_leg4 = minus_s_proximal_leg4 * c_distal_leg4 * t37;
-        let gproximal_wy_leg1 = minus_s_proximal_leg1 * c_distal_leg1 * t8;
-        let t45 = 0.7071067811865476 * minus_c_proximal_leg2 * c_distal_leg2;
-        let t46 = 0.7071067811865476 * minus_s_distal_leg2;
-        let gproximal_wy_leg2 = (t45 + t46) * t16;
-        let minus_gproximal_wy_leg3 = minus_s_proximal_leg3 * c_distal_leg3 * t28;
-        let t56 = 0.7071067811865476 * minus_c_proximal_leg4 * c_distal_leg4;
-        let t57 = 0.7071067811865476 * minus_s_distal_leg4;
-        let minus_gproximal_wy_leg4 = (t56 + t57) * t37;
-        let minus_gproximal_wz_leg1 = (t5 - t6) * t8;
-        let minus_gproximal_wz_leg2 = (t45 - t46) * t16;
-        let minus_gproximal_wz_leg3 = (t25 - t26) * t28;
-        let minus_gproximal_wz_leg4 = (t56 - t57) * t37;
+        let t0 = 2.0 * pose[1];
+        let t2 = 1.0 - pose[1] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = t2 - t4;
+        let t6 = 2.0 * pose[2];
+        let t7 = pose[3] * t6;
+        let t8 = pose[0] * t0;
+        let t9 = t7 - t8;
+        let t10 = t5 - t9;
+        let t11 = t7 + t8;
+        let t12 = pose[2] * t6;
+        let t13 = t2 - t12;
+        let t14 = t11 - t13;
+        let t15 = t10 + t14;
+        let minus_s_distal_leg2 = 0.5 * t15;
+        let t19 = 1.0 - 0.25 * (t15 * t15);
+        ::overact::guard::reach(t19, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t19);
+        let t25 = 1.0 / (0.5 * (t10 * c_distal_leg2 - t14 * c_distal_leg2));
+        let t26 = pose[2] * t0;
+        let t27 = pose[0] * t3;
+        let t28 = t26 - t27;
+        let t29 = pose[3] * t0;
+        let t30 = pose[0] * t6;
+        let t31 = t29 + t30;
+        let t32 = t28 - t31;
+        let t33 = t10 - t14;
+        let minus_s_proximal_leg2 = t25 * (0.35355339059327373 * (t32 * t33));
+        let c_proximal_leg2 = t25 * (0.25 * (t33 * t33));
+        let t48 = 0.5 * (t14 * c_proximal_leg2)
+            - (0.7071067811865475 * t32 * minus_s_proximal_leg2
+                + 0.5 * (t10 * c_proximal_leg2));
+        ::overact::guard::leg(t48, 1.0, "leg2")?;
+        let t49 = 1.0 / t48;
+        let gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t49;
+        let t52 = t26 + t27;
+        let t53 = t52 - t9;
+        let t55 = 1.0 - t12 - t4;
+        let t56 = t55 - t31;
+        let t57 = t29 - t30;
+        let t58 = t57 - t13;
+        let t59 = t56 + t58;
+        let t62 = 1.0 - 0.25 * (t59 * t59);
+        ::overact::guard::reach(t62, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t62);
+        let t68 = 1.0 / (0.5 * (t56 * c_distal_leg1 - t58 * c_distal_leg1));
+        let t69 = t56 - t58;
+        let s_proximal_leg1 = t68 * (0.35355339059327373 * (t53 * t69));
+        let t74 = 0.5 * (t53 * s_proximal_leg1);
+        let c_proximal_leg1 = t68 * (0.25 * (t69 * t69));
+        let t88 = 0.5 * (t58 * c_proximal_leg1)
+            - (0.5 * (t56 * c_proximal_leg1)
+                + 0.7071067811865475 * t53 * s_proximal_leg1);
+        ::overact::guard::leg(t88, 1.0, "leg1")?;
+        let t89 = 1.0 / t88;
+        let minus_gproximal_wx_leg1 = (t74 - 0.7071067811865475 * t58 * c_proximal_leg1)
+            * t89;
+        let t93 = t52 + t9;
+        let t94 = t55 + t31;
+        let t95 = t57 + t13;
+        let t96 = t95 - t94;
+        let t99 = 1.0 - 0.25 * (t96 * t96);
+        ::overact::guard::reach(t99, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t99);
+        let t105 = 1.0 / (0.5 * (t94 * c_distal_leg3 + t95 * c_distal_leg3));
+        let t106 = t94 + t95;
+        let s_proximal_leg3 = t105 * (0.35355339059327373 * (t93 * t106));
+        let t111 = 0.5 * (t93 * s_proximal_leg3);
+        let c_proximal_leg3 = t105 * (0.25 * (t106 * t106));
+        let t125 = 0.5 * (t94 * c_proximal_leg3)
+            + 0.7071067811865475 * t93 * s_proximal_leg3 + 0.5 * (t95 * c_proximal_leg3);
+        ::overact::guard::leg(t125, 1.0, "leg3")?;
+        let t126 = 1.0 / t125;
+        let minus_gproximal_wx_leg3 = (t111 + 0.7071067811865475 * t95 * c_proximal_leg3)
+            * t126;
+        let t130 = t11 + t13;
+        let t131 = t5 + t9;
+        let t132 = t130 - t131;
+        let s_distal_leg4 = 0.5 * t132;
+        let t136 = 1.0 - 0.25 * (t132 * t132);
+        ::overact::guard::reach(t136, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t136);
+        let t142 = 1.0 / (0.5 * (t131 * c_distal_leg4 + t130 * c_distal_leg4));
+        let t143 = t28 + t31;
+        let t144 = t131 + t130;
+        let minus_s_proximal_leg4 = t142 * (0.35355339059327373 * (t143 * t144));
+        let c_proximal_leg4 = t142 * (0.25 * (t144 * t144));
+        let t159 = 0.7071067811865475 * t143 * minus_s_proximal_leg4
+            + 0.5 * (t131 * c_proximal_leg4) + 0.5 * (t130 * c_proximal_leg4);
+        ::overact::guard::leg(t159, 1.0, "leg4")?;
+        let t160 = 1.0 / t159;
+        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t160;
+        let minus_s_distal_leg1 = 0.5 * t59;
+        let gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t89;
+        let t171 = 0.5 * (t32 * minus_s_proximal_leg2);
+        let gproximal_wy_leg2 = (0.7071067811865475 * t14 * c_proximal_leg2 - t171)
+            * t49;
+        let s_distal_leg3 = 0.5 * t96;
+        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t126;
+        let t182 = 0.5 * (t143 * minus_s_proximal_leg4);
+        let minus_gproximal_wy_leg4 = (t182
+            + 0.7071067811865475 * t130 * c_proximal_leg4) * t160;
+        let gproximal_wz_leg3 = (0.7071067811865475 * t94 * c_proximal_leg3 + t111)
+            * t126;
+        let minus_gproximal_wz_leg1 = (0.7071067811865475 * t56 * c_proximal_leg1 + t74)
+            * t89;
+        let minus_gproximal_wz_leg2 = (0.7071067811865475 * t10 * c_proximal_leg2 + t171)
+            * t49;
+        let gproximal_wz_leg4 = (0.7071067811865475 * t131 * c_proximal_leg4 + t182)
+            * t160;
         Ok([
-            gproximal_wx_leg1 * torques[0] - minus_gproximal_wx_leg2 * torques[1]
-                - minus_gproximal_wx_leg3 * torques[2] + gproximal_wx_leg4 * torques[3],
+            gproximal_wx_leg2 * torques[1] - minus_gproximal_wx_leg1 * torques[0]
+                - minus_gproximal_wx_leg3 * torques[2]
+                - minus_gproximal_wx_leg4 * torques[3],
             gproximal_wy_leg1 * torques[0] + gproximal_wy_leg2 * torques[1]
                 - minus_gproximal_wy_leg3 * torques[2]
                 - minus_gproximal_wy_leg4 * torques[3],
-            -(minus_gproximal_wz_leg1 * torques[0] + minus_gproximal_wz_leg2 * torques[1]
-                + minus_gproximal_wz_leg3 * torques[2]
-                + minus_gproximal_wz_leg4 * torques[3]),
+            gproximal_wz_leg3 * torques[2]
+                - (minus_gproximal_wz_leg1 * torques[0]
+                    + minus_gproximal_wz_leg2 * torques[1])
+                + gproximal_wz_leg4 * torques[3],
         ])
     }
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
@@ -6191,7 +8946,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 3.
     ///
-    /// 103 operations (28 additions, 70 multiplications, 5 divisions), 0 square roots, 8 trigonometric pairs, 0 signs, 116 intermediates.
+    /// 250 operations (75 additions, 166 multiplications, 9 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 251 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6199,95 +8954,159 @@ impl Spherical4Rrr {
         pose: &[f64; 4],
         torques: &[f64; 4],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (minus_s_proximal_leg4, minus_c_proximal_leg4) = ::overact::math::sin_cos(
-            joints[9],
-        );
-        let (c_distal_leg4, minus_s_distal_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(minus_s_distal_leg4, 1.0, "leg4")?;
-        let t5 = 1.0 / minus_s_distal_leg4;
-        let gproximal_wx_leg4 = minus_s_proximal_leg4 * c_distal_leg4 * t5;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let t12 = 0.7071067811865476 * minus_c_proximal_leg2 * c_distal_leg2;
-        let t13 = 0.7071067811865476 * minus_s_distal_leg2;
-        let t15 = 1.0 / minus_s_distal_leg2;
-        let minus_gproximal_wz_leg2 = (t12 - t13) * t15;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let t22 = 1.0 / minus_s_distal_leg3;
-        let minus_gproximal_wy_leg3 = minus_s_proximal_leg3 * c_distal_leg3 * t22;
-        let gproximal_wy_leg2 = (t12 + t13) * t15;
-        let t28 = 0.7071067811865476 * minus_c_proximal_leg3 * c_distal_leg3;
-        let t29 = 0.7071067811865476 * minus_s_distal_leg3;
-        let minus_gproximal_wz_leg3 = (t28 - t29) * t22;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t39 = 0.7071067811865476 * minus_c_proximal_leg1 * c_distal_leg1;
-        let t40 = 0.7071067811865476 * minus_s_distal_leg1;
-        let t42 = 1.0 / minus_s_distal_leg1;
-        let minus_gproximal_wz_leg1 = (t39 - t40) * t42;
-        let minus_gproximal_wx_leg2 = minus_s_proximal_leg2 * c_distal_leg2 * t15;
-        let gproximal_wx_leg1 = (t39 + t40) * t42;
-        let t50 = minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2
-            + gproximal_wx_leg1 * minus_gproximal_wz_leg2;
-        let minus_gproximal_wx_leg3 = (t28 + t29) * t22;
-        let gproximal_wy_leg1 = minus_s_proximal_leg1 * c_distal_leg1 * t42;
-        let t58 = gproximal_wy_leg1 * minus_gproximal_wz_leg2
+        let t0 = 2.0 * pose[1];
+        let t1 = pose[2] * t0;
+        let t2 = 2.0 * pose[3];
+        let t3 = pose[0] * t2;
+        let t4 = t1 - t3;
+        let t5 = pose[3] * t0;
+        let t6 = 2.0 * pose[2];
+        let t7 = pose[0] * t6;
+        let t8 = t5 + t7;
+        let t9 = t4 + t8;
+        let t11 = 1.0 - pose[1] * t0;
+        let t12 = pose[3] * t2;
+        let t13 = t11 - t12;
+        let t14 = pose[3] * t6;
+        let t15 = pose[0] * t0;
+        let t16 = t14 - t15;
+        let t17 = t13 + t16;
+        let t18 = t14 + t15;
+        let t19 = pose[2] * t6;
+        let t20 = t11 - t19;
+        let t21 = t18 + t20;
+        let t22 = t21 - t17;
+        let t25 = 1.0 - 0.25 * (t22 * t22);
+        ::overact::guard::reach(t25, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t25);
+        let t31 = 1.0 / (0.5 * (t17 * c_distal_leg4 + t21 * c_distal_leg4));
+        let t32 = t17 + t21;
+        let minus_s_proximal_leg4 = t31 * (0.35355339059327373 * (t9 * t32));
+        let t37 = 0.5 * (t9 * minus_s_proximal_leg4);
+        let c_proximal_leg4 = t31 * (0.25 * (t32 * t32));
+        let t51 = 0.7071067811865475 * t9 * minus_s_proximal_leg4
+            + 0.5 * (t17 * c_proximal_leg4) + 0.5 * (t21 * c_proximal_leg4);
+        ::overact::guard::leg(t51, 1.0, "leg4")?;
+        let t52 = 1.0 / t51;
+        let minus_gproximal_wy_leg4 = (t37 + 0.7071067811865475 * t21 * c_proximal_leg4)
+            * t52;
+        let t54 = t13 - t16;
+        let t56 = t18 - t20;
+        let t57 = t54 + t56;
+        let t60 = 1.0 - 0.25 * (t57 * t57);
+        ::overact::guard::reach(t60, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t60);
+        let t66 = 1.0 / (0.5 * (t54 * c_distal_leg2 - t56 * c_distal_leg2));
+        let t67 = t54 - t56;
+        let c_proximal_leg2 = t66 * (0.25 * (t67 * t67));
+        let t72 = t4 - t8;
+        let minus_s_proximal_leg2 = t66 * (0.35355339059327373 * (t72 * t67));
+        let t77 = 0.5 * (t72 * minus_s_proximal_leg2);
+        let t86 = 0.5 * (t56 * c_proximal_leg2)
+            - (0.7071067811865475 * t72 * minus_s_proximal_leg2
+                + 0.5 * (t54 * c_proximal_leg2));
+        ::overact::guard::leg(t86, 1.0, "leg2")?;
+        let t87 = 1.0 / t86;
+        let minus_gproximal_wz_leg2 = (0.7071067811865475 * t54 * c_proximal_leg2 + t77)
+            * t87;
+        let t89 = t1 + t3;
+        let t90 = t89 + t16;
+        let t92 = 1.0 - t19 - t12;
+        let t93 = t92 + t8;
+        let t94 = t5 - t7;
+        let t95 = t94 + t20;
+        let t96 = t95 - t93;
+        let t99 = 1.0 - 0.25 * (t96 * t96);
+        ::overact::guard::reach(t99, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t99);
+        let t105 = 1.0 / (0.5 * (t93 * c_distal_leg3 + t95 * c_distal_leg3));
+        let t106 = t93 + t95;
+        let s_proximal_leg3 = t105 * (0.35355339059327373 * (t90 * t106));
+        let t111 = 0.5 * (t90 * s_proximal_leg3);
+        let c_proximal_leg3 = t105 * (0.25 * (t106 * t106));
+        let t125 = 0.5 * (t93 * c_proximal_leg3)
+            + 0.7071067811865475 * t90 * s_proximal_leg3 + 0.5 * (t95 * c_proximal_leg3);
+        ::overact::guard::leg(t125, 1.0, "leg3")?;
+        let t126 = 1.0 / t125;
+        let minus_gproximal_wx_leg3 = (t111 + 0.7071067811865475 * t95 * c_proximal_leg3)
+            * t126;
+        let minus_s_distal_leg2 = 0.5 * t57;
+        let gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t87;
+        let gproximal_wz_leg3 = (0.7071067811865475 * t93 * c_proximal_leg3 + t111)
+            * t126;
+        let t138 = t92 - t8;
+        let t139 = t94 - t20;
+        let t140 = t138 + t139;
+        let minus_s_distal_leg1 = 0.5 * t140;
+        let t144 = 1.0 - 0.25 * (t140 * t140);
+        ::overact::guard::reach(t144, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t144);
+        let t150 = 1.0 / (0.5 * (t138 * c_distal_leg1 - t139 * c_distal_leg1));
+        let t151 = t89 - t16;
+        let t152 = t138 - t139;
+        let s_proximal_leg1 = t150 * (0.35355339059327373 * (t151 * t152));
+        let c_proximal_leg1 = t150 * (0.25 * (t152 * t152));
+        let t167 = 0.5 * (t139 * c_proximal_leg1)
+            - (0.5 * (t138 * c_proximal_leg1)
+                + 0.7071067811865475 * t151 * s_proximal_leg1);
+        ::overact::guard::leg(t167, 1.0, "leg1")?;
+        let t168 = 1.0 / t167;
+        let gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t168;
+        let t172 = 0.5 * (t151 * s_proximal_leg1);
+        let minus_gproximal_wx_leg1 = (t172
+            - 0.7071067811865475 * t139 * c_proximal_leg1) * t168;
+        let gproximal_wy_leg2 = (0.7071067811865475 * t56 * c_proximal_leg2 - t77) * t87;
+        let t182 = gproximal_wy_leg1 * gproximal_wx_leg2
+            + minus_gproximal_wx_leg1 * gproximal_wy_leg2;
+        let minus_gproximal_wz_leg1 = (0.7071067811865475 * t138 * c_proximal_leg1
+            + t172) * t168;
+        let t190 = gproximal_wy_leg1 * minus_gproximal_wz_leg2
             - minus_gproximal_wz_leg1 * gproximal_wy_leg2;
-        let t63 = gproximal_wy_leg1 * minus_gproximal_wx_leg2
-            + gproximal_wx_leg1 * gproximal_wy_leg2;
-        let t65 = minus_gproximal_wy_leg3 * t50 - minus_gproximal_wx_leg3 * t58
-            + minus_gproximal_wz_leg3 * t63;
-        ::overact::guard::platform(t65, 0.7071067811865477, "kept actuators")?;
-        ::overact::guard::platform(t65, 0.7071067811865477, "kept actuators")?;
-        ::overact::guard::platform(t65, 0.7071067811865477, "kept actuators")?;
-        let t66 = 1.0 / t65;
-        let t70 = 0.7071067811865476 * minus_c_proximal_leg4 * c_distal_leg4;
-        let t71 = 0.7071067811865476 * minus_s_distal_leg4;
-        let minus_gproximal_wy_leg4 = (t70 + t71) * t5;
-        let t79 = gproximal_wx_leg4
-            * ((minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3
-                + gproximal_wy_leg2 * minus_gproximal_wz_leg3) * t66)
-            + minus_gproximal_wy_leg4
-                * ((minus_gproximal_wz_leg2 * minus_gproximal_wx_leg3
-                    - minus_gproximal_wx_leg2 * minus_gproximal_wz_leg3) * t66);
-        let minus_gproximal_wz_leg4 = (t70 - t71) * t5;
-        let t105 = gproximal_wx_leg4
+        let s_distal_leg3 = 0.5 * t96;
+        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t126;
+        let t197 = minus_gproximal_wz_leg1 * gproximal_wx_leg2
+            + minus_gproximal_wx_leg1 * minus_gproximal_wz_leg2;
+        let t200 = gproximal_wz_leg3 * t182
+            - (minus_gproximal_wx_leg3 * t190 + minus_gproximal_wy_leg3 * t197);
+        ::overact::guard::platform(t200, 0.7071067811865474, "kept actuators")?;
+        ::overact::guard::platform(t200, 0.7071067811865474, "kept actuators")?;
+        ::overact::guard::platform(t200, 0.7071067811865474, "kept actuators")?;
+        let t201 = 1.0 / t200;
+        let s_distal_leg4 = 0.5 * t22;
+        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t52;
+        let t212 = minus_gproximal_wy_leg4
+            * ((minus_gproximal_wz_leg2 * minus_gproximal_wx_leg3
+                - gproximal_wx_leg2 * gproximal_wz_leg3) * t201)
+            - minus_gproximal_wx_leg4
+                * ((minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3
+                    - gproximal_wy_leg2 * gproximal_wz_leg3) * t201);
+        let gproximal_wz_leg4 = (0.7071067811865475 * t17 * c_proximal_leg4 + t37) * t52;
+        let t235 = minus_gproximal_wx_leg4
             * ((minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3
-                + gproximal_wy_leg1 * minus_gproximal_wz_leg3) * t66)
-            + minus_gproximal_wy_leg4
+                - gproximal_wy_leg1 * gproximal_wz_leg3) * t201)
+            - minus_gproximal_wy_leg4
                 * ((minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3
-                    + gproximal_wx_leg1 * minus_gproximal_wz_leg3) * t66);
-        let t118 = torques[2]
+                    + minus_gproximal_wx_leg1 * gproximal_wz_leg3) * t201);
+        let t253 = torques[2]
             + torques[3]
-                * (gproximal_wx_leg4 * (t58 * t66)
-                    + minus_gproximal_wy_leg4 * (t50 * t66)
-                    + minus_gproximal_wz_leg4 * (t63 * t66));
+                * (gproximal_wz_leg4 * (t182 * t201)
+                    - (minus_gproximal_wx_leg4 * (t190 * t201)
+                        + minus_gproximal_wy_leg4 * (t197 * t201)));
         Ok([
             torques[0]
                 + torques[3]
-                    * (t79
-                        + minus_gproximal_wz_leg4
-                            * ((gproximal_wy_leg2 * minus_gproximal_wx_leg3
-                                + minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3)
-                                * t66)),
+                    * (t212
+                        + gproximal_wz_leg4
+                            * ((gproximal_wx_leg2 * minus_gproximal_wy_leg3
+                                - gproximal_wy_leg2 * minus_gproximal_wx_leg3) * t201)),
             torques[1]
                 + torques[3]
-                    * (minus_gproximal_wz_leg4
-                        * ((gproximal_wx_leg1 * minus_gproximal_wy_leg3
-                            - gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t66)
-                        - t105),
-            t118,
+                    * (t235
+                        + gproximal_wz_leg4
+                            * ((gproximal_wy_leg1 * minus_gproximal_wx_leg3
+                                + minus_gproximal_wx_leg1 * minus_gproximal_wy_leg3)
+                                * t201)),
+            t253,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -6300,7 +9119,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 4.
     ///
-    /// 873 operations (371 additions, 495 multiplications, 7 divisions), 0 square roots, 8 trigonometric pairs, 4 signs, 889 intermediates.
+    /// 1009 operations (407 additions, 591 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 4 signs, 1013 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6310,8 +9129,473 @@ impl Spherical4Rrr {
         acceleration: &[f64; 3],
         parameters: &[f64; 73],
     ) -> Result<[f64; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Self::inverse_dynamics_from_joints(pose, joints, twist, acceleration, parameters)
+        let t0 = 2.0 * pose[2];
+        let t1 = pose[2] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = 1.0 - t1 - t4;
+        let t6 = 2.0 * pose[1];
+        let t7 = pose[3] * t6;
+        let t8 = pose[0] * t0;
+        let t9 = t7 + t8;
+        let t10 = t5 - t9;
+        let t11 = t7 - t8;
+        let t13 = 1.0 - pose[1] * t6;
+        let t14 = t13 - t1;
+        let t15 = t11 - t14;
+        let t16 = t10 + t15;
+        let minus_s_distal_leg1 = 0.5 * t16;
+        let t20 = 1.0 - 0.25 * (t16 * t16);
+        ::overact::guard::reach(t20, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t20);
+        let t26 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
+        let t27 = pose[2] * t6;
+        let t28 = pose[0] * t3;
+        let t29 = t27 + t28;
+        let t30 = pose[3] * t0;
+        let t31 = pose[0] * t6;
+        let t32 = t30 - t31;
+        let t33 = t29 - t32;
+        let t34 = t10 - t15;
+        let s_proximal_leg1 = t26 * (0.35355339059327373 * (t33 * t34));
+        let c_proximal_leg1 = t26 * (0.25 * (t34 * t34));
+        let t46 = 0.7071067811865475 * t33;
+        let t49 = 0.5 * (t15 * c_proximal_leg1)
+            - (0.5 * (t10 * c_proximal_leg1) + t46 * s_proximal_leg1);
+        ::overact::guard::leg(t49, 1.0, "leg1")?;
+        let t50 = 1.0 / t49;
+        let gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t50;
+        let t53 = t30 + t31;
+        let t54 = t53 - t14;
+        let t55 = 0.7071067811865475 * t54;
+        let t56 = t13 - t4;
+        let t57 = t56 - t32;
+        let t58 = t57 + t54;
+        let t61 = 1.0 - 0.25 * (t58 * t58);
+        ::overact::guard::reach(t61, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t61);
+        let t67 = 1.0 / (0.5 * (t57 * c_distal_leg2 - t54 * c_distal_leg2));
+        let t68 = t57 - t54;
+        let c_proximal_leg2 = t67 * (0.25 * (t68 * t68));
+        let t73 = t27 - t28;
+        let t74 = t73 - t9;
+        let minus_s_proximal_leg2 = t67 * (0.35355339059327373 * (t74 * t68));
+        let t79 = 0.5 * (t74 * minus_s_proximal_leg2);
+        let t83 = 0.7071067811865475 * t74;
+        let t88 = 0.5 * (t54 * c_proximal_leg2)
+            - (t83 * minus_s_proximal_leg2 + 0.5 * (t57 * c_proximal_leg2));
+        ::overact::guard::leg(t88, 1.0, "leg2")?;
+        let t89 = 1.0 / t88;
+        let gproximal_wy_leg2 = (t55 * c_proximal_leg2 - t79) * t89;
+        let t93 = t11 + t14;
+        let t94 = t5 + t9;
+        let t95 = t93 - t94;
+        let s_distal_leg3 = 0.5 * t95;
+        let t99 = 1.0 - 0.25 * (t95 * t95);
+        ::overact::guard::reach(t99, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t99);
+        let t105 = 1.0 / (0.5 * (t94 * c_distal_leg3 + t93 * c_distal_leg3));
+        let t106 = t29 + t32;
+        let t107 = t94 + t93;
+        let s_proximal_leg3 = t105 * (0.35355339059327373 * (t106 * t107));
+        let c_proximal_leg3 = t105 * (0.25 * (t107 * t107));
+        let t117 = 0.7071067811865475 * t106;
+        let t122 = 0.5 * (t94 * c_proximal_leg3) + t117 * s_proximal_leg3
+            + 0.5 * (t93 * c_proximal_leg3);
+        ::overact::guard::leg(t122, 1.0, "leg3")?;
+        let t123 = 1.0 / t122;
+        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t123;
+        let t127 = t73 + t9;
+        let t128 = t56 + t32;
+        let t129 = t53 + t14;
+        let t130 = t129 - t128;
+        let t133 = 1.0 - 0.25 * (t130 * t130);
+        ::overact::guard::reach(t133, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t133);
+        let t139 = 1.0 / (0.5 * (t128 * c_distal_leg4 + t129 * c_distal_leg4));
+        let t140 = t128 + t129;
+        let minus_s_proximal_leg4 = t139 * (0.35355339059327373 * (t127 * t140));
+        let t145 = 0.5 * (t127 * minus_s_proximal_leg4);
+        let t146 = 0.7071067811865475 * t129;
+        let c_proximal_leg4 = t139 * (0.25 * (t140 * t140));
+        let t152 = 0.7071067811865475 * t127;
+        let t159 = t152 * minus_s_proximal_leg4 + 0.5 * (t128 * c_proximal_leg4)
+            + 0.5 * (t129 * c_proximal_leg4);
+        ::overact::guard::leg(t159, 1.0, "leg4")?;
+        let t160 = 1.0 / t159;
+        let minus_gproximal_wy_leg4 = (t145 + t146 * c_proximal_leg4) * t160;
+        let minus_s_distal_leg2 = 0.5 * t58;
+        let gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t89;
+        let t169 = 0.5 * (t33 * s_proximal_leg1);
+        let t170 = 0.7071067811865475 * t15;
+        let minus_gproximal_wx_leg1 = (t169 - t170 * c_proximal_leg1) * t50;
+        let t177 = 0.5 * (t106 * s_proximal_leg3);
+        let t178 = 0.7071067811865475 * t93;
+        let minus_gproximal_wx_leg3 = (t177 + t178 * c_proximal_leg3) * t123;
+        let s_distal_leg4 = 0.5 * t130;
+        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t160;
+        let t188 = gproximal_wx_leg2 * gproximal_wy_leg2
+            - minus_gproximal_wx_leg1 * gproximal_wy_leg1
+            + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+            + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
+        let t195 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+            + gproximal_wx_leg2 * gproximal_wx_leg2
+            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
+        ::overact::guard::platform(t195, 0.9999999999999998, "actuators")?;
+        let t196 = 1.0 / t195;
+        let t197 = t188 * t196;
+        let t199 = gproximal_wy_leg1 * gproximal_wy_leg1
+            + gproximal_wy_leg2 * gproximal_wy_leg2
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t188 * t197;
+        ::overact::guard::platform(t199, 0.9999999999999998, "actuators")?;
+        let t200 = 1.0 / t199;
+        let t204 = 0.7071067811865475 * t10;
+        let minus_gproximal_wz_leg1 = (t204 * c_proximal_leg1 + t169) * t50;
+        let rate_proximal_leg1 = gproximal_wy_leg1 * twist[1]
+            - minus_gproximal_wx_leg1 * twist[0] - minus_gproximal_wz_leg1 * twist[2];
+        let t210 = 0.7071067811865475 * rate_proximal_leg1;
+        let t212 = 0.5 * t50;
+        let gdistal_wx_leg1 = t33 * t212;
+        let minus_gdistal_wy_leg1 = t34 * t212;
+        let rate_distal_leg1 = gdistal_wx_leg1 * twist[0]
+            - minus_gdistal_wy_leg1 * twist[1] - gdistal_wx_leg1 * twist[2];
+        let t220 = 0.7071067811865475 * s_proximal_leg1 * rate_distal_leg1;
+        let t221 = t210 + t220;
+        let minus_gwrist_wx_leg1 = 0.7071067811865475 * c_proximal_leg1 * t50;
+        let minus_gwrist_wy_leg1 = s_proximal_leg1 * t50;
+        let rate_wrist_leg1 = minus_gwrist_wx_leg1 * twist[2]
+            - (minus_gwrist_wx_leg1 * twist[0] + minus_gwrist_wy_leg1 * twist[1]);
+        let t230 = t204 * rate_wrist_leg1;
+        let t232 = t210 - t220;
+        let t233 = t170 * rate_wrist_leg1;
+        let t239 = acceleration[1] - (t221 * t230 - t232 * t233 - 2.0 * (t210 * t220));
+        let t241 = c_proximal_leg1 * rate_distal_leg1;
+        let t243 = t46 * rate_wrist_leg1;
+        let t246 = t210 * t241;
+        let t248 = acceleration[0] - (t241 * t233 - t221 * t243 - t246);
+        let t255 = acceleration[2] - (t246 + t232 * t243 - t241 * t230);
+        let rate_dot_proximal_leg1 = gproximal_wy_leg1 * t239
+            - minus_gproximal_wx_leg1 * t248 - minus_gproximal_wz_leg1 * t255;
+        let t259 = 6.936717523440031 * s_proximal_leg1;
+        let t262 = 6.936717523440031 * c_proximal_leg1;
+        let t271 = parameters[0] * rate_dot_proximal_leg1 - parameters[1] * t259
+            - parameters[2] * t262 + parameters[3] * rate_dot_proximal_leg1
+            + parameters[4] * rate_proximal_leg1
+            + ::overact::math::signed(parameters[5], rate_proximal_leg1) + parameters[6];
+        let t272 = c_distal_leg1 * rate_proximal_leg1;
+        let t273 = rate_distal_leg1 * t272;
+        let t274 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t275 = t273 - t274;
+        let t278 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t279 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t280 = rate_distal_leg1 * t279;
+        let t281 = t278 + t280;
+        let t284 = t272 * t279;
+        let rate_dot_distal_leg1 = gdistal_wx_leg1 * t248 - minus_gdistal_wy_leg1 * t239
+            - gdistal_wx_leg1 * t255;
+        let t295 = t279 * t279;
+        let t296 = rate_distal_leg1 * rate_distal_leg1;
+        let t299 = parameters[8] * (t273 + t275) - parameters[7] * t281
+            + parameters[9] * (t284 + rate_dot_distal_leg1) + parameters[10] * t280
+            + parameters[11] * (t295 - t296);
+        let t306 = c_distal_leg1 * t262 - 3.4683587617200153 * t16;
+        let t310 = t272 * t272;
+        let t322 = parameters[9] * (t296 - t310)
+            - (parameters[7] * t273 + parameters[8] * (t280 + t281))
+            + parameters[10] * t275 - parameters[11] * (t284 - rate_dot_distal_leg1);
+        let t329 = 6.936717523440031
+            * (minus_s_distal_leg1 * c_proximal_leg1 + c_distal_leg1);
+        let t333 = c_distal_leg1
+            * (t299 - parameters[12] * t280 + parameters[14] * t259
+                - parameters[15] * t306)
+            + minus_s_distal_leg1
+                * (t322 + parameters[12] * t273 - parameters[13] * t259
+                    - parameters[15] * t329);
+        let t334 = t271 - t333;
+        let t345 = parameters[8] * (t310 - t295) - parameters[7] * t284
+            - parameters[9] * t278 + parameters[10] * t284 - parameters[11] * t274;
+        let t351 = t345 + parameters[12] * rate_dot_distal_leg1 + parameters[13] * t306
+            + parameters[14] * t329;
+        let t357 = 0.7071067811865475 * t57;
+        let minus_gproximal_wz_leg2 = (t357 * c_proximal_leg2 + t79) * t89;
+        let rate_proximal_leg2 = gproximal_wx_leg2 * twist[0]
+            + gproximal_wy_leg2 * twist[1] - minus_gproximal_wz_leg2 * twist[2];
+        let t363 = 0.7071067811865475 * rate_proximal_leg2;
+        let t365 = 0.5 * t89;
+        let gdistal_wx_leg2 = t68 * t365;
+        let minus_gdistal_wy_leg2 = t74 * t365;
+        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
+            - minus_gdistal_wy_leg2 * twist[1] + minus_gdistal_wy_leg2 * twist[2];
+        let t373 = 0.7071067811865475 * minus_s_proximal_leg2 * rate_distal_leg2;
+        let t374 = t363 + t373;
+        let minus_gwrist_wy_leg2 = 0.7071067811865475 * c_proximal_leg2 * t89;
+        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t89;
+        let rate_wrist_leg2 = minus_gwrist_wy_leg2 * twist[2]
+            - (minus_gwrist_wx_leg2 * twist[0] + minus_gwrist_wy_leg2 * twist[1]);
+        let t383 = t55 * rate_wrist_leg2;
+        let t385 = t363 - t373;
+        let t386 = t357 * rate_wrist_leg2;
+        let t392 = acceleration[0] - (t374 * t383 - t385 * t386 - 2.0 * (t363 * t373));
+        let t394 = t83 * rate_wrist_leg2;
+        let t396 = c_proximal_leg2 * rate_distal_leg2;
+        let t399 = t363 * t396;
+        let t401 = acceleration[1] - (t385 * t394 + t396 * t383 - t399);
+        let t408 = acceleration[2] - (t399 - (t396 * t386 + t374 * t394));
+        let rate_dot_proximal_leg2 = gproximal_wx_leg2 * t392 + gproximal_wy_leg2 * t401
+            - minus_gproximal_wz_leg2 * t408;
+        let t412 = 6.936717523440031 * minus_s_proximal_leg2;
+        let t415 = 6.936717523440031 * c_proximal_leg2;
+        let t424 = parameters[16] * rate_dot_proximal_leg2 + parameters[17] * t412
+            - parameters[18] * t415 + parameters[19] * rate_dot_proximal_leg2
+            + parameters[20] * rate_proximal_leg2
+            + ::overact::math::signed(parameters[21], rate_proximal_leg2)
+            + parameters[22];
+        let t425 = c_distal_leg2 * rate_proximal_leg2;
+        let t426 = rate_distal_leg2 * t425;
+        let t427 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t428 = t426 - t427;
+        let t431 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t432 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t433 = rate_distal_leg2 * t432;
+        let t434 = t431 + t433;
+        let t437 = t425 * t432;
+        let rate_dot_distal_leg2 = gdistal_wx_leg2 * t392 - minus_gdistal_wy_leg2 * t401
+            + minus_gdistal_wy_leg2 * t408;
+        let t448 = t432 * t432;
+        let t449 = rate_distal_leg2 * rate_distal_leg2;
+        let t452 = parameters[24] * (t426 + t428) - parameters[23] * t434
+            + parameters[25] * (t437 + rate_dot_distal_leg2) + parameters[26] * t433
+            + parameters[27] * (t448 - t449);
+        let t459 = c_distal_leg2 * t415 - 3.4683587617200153 * t58;
+        let t463 = t425 * t425;
+        let t475 = parameters[25] * (t449 - t463)
+            - (parameters[23] * t426 + parameters[24] * (t433 + t434))
+            + parameters[26] * t428 - parameters[27] * (t437 - rate_dot_distal_leg2);
+        let t482 = 6.936717523440031
+            * (minus_s_distal_leg2 * c_proximal_leg2 + c_distal_leg2);
+        let t486 = c_distal_leg2
+            * (t452 - parameters[28] * t433 - parameters[30] * t412
+                - parameters[31] * t459)
+            + minus_s_distal_leg2
+                * (t475 + parameters[28] * t426 + parameters[29] * t412
+                    - parameters[31] * t482);
+        let t487 = t424 - t486;
+        let t498 = parameters[24] * (t463 - t448) - parameters[23] * t437
+            - parameters[25] * t431 + parameters[26] * t437 - parameters[27] * t427;
+        let t504 = t498 + parameters[28] * rate_dot_distal_leg2 + parameters[29] * t459
+            + parameters[30] * t482;
+        let t505 = minus_gdistal_wy_leg2 * t504;
+        let t508 = 0.7071067811865475 * t94;
+        let gproximal_wz_leg3 = (t508 * c_proximal_leg3 + t177) * t123;
+        let rate_proximal_leg3 = gproximal_wz_leg3 * twist[2]
+            - (minus_gproximal_wx_leg3 * twist[0] + minus_gproximal_wy_leg3 * twist[1]);
+        let t517 = 0.7071067811865475 * rate_proximal_leg3;
+        let t518 = 0.5 * t123;
+        let gdistal_wx_leg3 = t106 * t518;
+        let minus_gdistal_wy_leg3 = t107 * t518;
+        let rate_distal_leg3 = gdistal_wx_leg3 * twist[0]
+            - minus_gdistal_wy_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
+        let t526 = c_proximal_leg3 * rate_distal_leg3;
+        let t527 = t517 * t526;
+        let t529 = 0.7071067811865475 * s_proximal_leg3 * rate_distal_leg3;
+        let t530 = t529 - t517;
+        let minus_gwrist_wx_leg3 = 0.7071067811865475 * c_proximal_leg3 * t123;
+        let minus_gwrist_wy_leg3 = s_proximal_leg3 * t123;
+        let minus_rate_wrist_leg3 = minus_gwrist_wx_leg3 * twist[0]
+            + minus_gwrist_wy_leg3 * twist[1] + minus_gwrist_wx_leg3 * twist[2];
+        let t539 = t117 * minus_rate_wrist_leg3;
+        let t541 = t508 * minus_rate_wrist_leg3;
+        let t545 = acceleration[2] - (t527 + t530 * t539 + t526 * t541);
+        let t547 = t178 * minus_rate_wrist_leg3;
+        let t549 = t517 + t529;
+        let t553 = acceleration[0] - (t527 - (t526 * t547 + t549 * t539));
+        let t561 = acceleration[1] - (2.0 * (t517 * t529) + t549 * t541 - t530 * t547);
+        let rate_dot_proximal_leg3 = gproximal_wz_leg3 * t545
+            - (minus_gproximal_wx_leg3 * t553 + minus_gproximal_wy_leg3 * t561);
+        let t566 = 6.936717523440031 * s_proximal_leg3;
+        let t569 = 6.936717523440031 * c_proximal_leg3;
+        let t578 = parameters[32] * rate_dot_proximal_leg3 - parameters[33] * t566
+            - parameters[34] * t569 + parameters[35] * rate_dot_proximal_leg3
+            + parameters[36] * rate_proximal_leg3
+            + ::overact::math::signed(parameters[37], rate_proximal_leg3)
+            + parameters[38];
+        let t579 = s_distal_leg3 * rate_proximal_leg3;
+        let t580 = rate_distal_leg3 * t579;
+        let t581 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t582 = t580 - t581;
+        let t585 = c_distal_leg3 * rate_proximal_leg3;
+        let t586 = rate_distal_leg3 * t585;
+        let t589 = rate_distal_leg3 * rate_distal_leg3;
+        let t590 = t585 * t585;
+        let t594 = s_distal_leg3 * rate_dot_proximal_leg3;
+        let t595 = t594 + t586;
+        let t598 = t585 * t579;
+        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t553 - minus_gdistal_wy_leg3 * t561
+            + gdistal_wx_leg3 * t545;
+        let t606 = parameters[40] * (t580 + t582) - parameters[39] * t586
+            + parameters[41] * (t589 - t590) + parameters[42] * t595
+            + parameters[43] * (t598 + rate_dot_distal_leg3);
+        let t613 = 6.936717523440031 * (s_distal_leg3 * c_proximal_leg3 - c_distal_leg3);
+        let t626 = t579 * t579;
+        let t629 = parameters[39] * t582 + parameters[40] * (t586 + t595)
+            + parameters[41] * (rate_dot_distal_leg3 - t598) - parameters[42] * t580
+            + parameters[43] * (t626 - t589);
+        let t636 = c_distal_leg3 * t569 + 3.4683587617200153 * t95;
+        let t640 = s_distal_leg3
+            * (t606 + parameters[44] * t586 - parameters[45] * t566
+                + parameters[47] * t613)
+            - c_distal_leg3
+                * (t629 + parameters[44] * t580 + parameters[46] * t566
+                    - parameters[47] * t636);
+        let t641 = t578 + t640;
+        let t652 = parameters[39] * t598 + parameters[40] * (t590 - t626)
+            - parameters[41] * t581 - parameters[42] * t598 + parameters[43] * t594;
+        let t658 = t652 + parameters[44] * rate_dot_distal_leg3 + parameters[45] * t636
+            - parameters[46] * t613;
+        let t661 = gproximal_wy_leg1 * t334 - minus_gdistal_wy_leg1 * t351
+            + gproximal_wy_leg2 * t487 - t505
+            - (minus_gproximal_wy_leg3 * t641 + minus_gdistal_wy_leg3 * t658);
+        let t662 = 0.7071067811865475 * t128;
+        let gproximal_wz_leg4 = (t662 * c_proximal_leg4 + t145) * t160;
+        let rate_proximal_leg4 = gproximal_wz_leg4 * twist[2]
+            - (minus_gproximal_wx_leg4 * twist[0] + minus_gproximal_wy_leg4 * twist[1]);
+        let t671 = 0.7071067811865475 * rate_proximal_leg4;
+        let t672 = 0.5 * t160;
+        let gdistal_wx_leg4 = t140 * t672;
+        let minus_gdistal_wy_leg4 = t127 * t672;
+        let rate_distal_leg4 = gdistal_wx_leg4 * twist[0]
+            - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
+        let t680 = c_proximal_leg4 * rate_distal_leg4;
+        let t681 = t671 * t680;
+        let minus_gwrist_wx_leg4 = minus_s_proximal_leg4 * t160;
+        let minus_gwrist_wy_leg4 = 0.7071067811865475 * c_proximal_leg4 * t160;
+        let minus_rate_wrist_leg4 = minus_gwrist_wx_leg4 * twist[0]
+            + minus_gwrist_wy_leg4 * twist[1] + minus_gwrist_wy_leg4 * twist[2];
+        let t690 = t662 * minus_rate_wrist_leg4;
+        let t693 = 0.7071067811865475 * minus_s_proximal_leg4 * rate_distal_leg4;
+        let t694 = t671 + t693;
+        let t695 = t152 * minus_rate_wrist_leg4;
+        let t699 = acceleration[2] - (t681 + t680 * t690 + t694 * t695);
+        let t703 = t146 * minus_rate_wrist_leg4;
+        let t705 = t671 - t693;
+        let t709 = acceleration[0] - (2.0 * (t671 * t693) - (t694 * t703 + t705 * t690));
+        let t715 = acceleration[1] - (t681 + t705 * t695 - t680 * t703);
+        let rate_dot_proximal_leg4 = gproximal_wz_leg4 * t699
+            - (minus_gproximal_wx_leg4 * t709 + minus_gproximal_wy_leg4 * t715);
+        let t720 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t723 = 6.936717523440031 * c_proximal_leg4;
+        let t732 = parameters[48] * rate_dot_proximal_leg4 + parameters[49] * t720
+            - parameters[50] * t723 + parameters[51] * rate_dot_proximal_leg4
+            + parameters[52] * rate_proximal_leg4
+            + ::overact::math::signed(parameters[53], rate_proximal_leg4)
+            + parameters[54];
+        let t733 = s_distal_leg4 * rate_proximal_leg4;
+        let t734 = rate_distal_leg4 * t733;
+        let t735 = c_distal_leg4 * rate_dot_proximal_leg4;
+        let t736 = t734 - t735;
+        let t739 = c_distal_leg4 * rate_proximal_leg4;
+        let t740 = rate_distal_leg4 * t739;
+        let t743 = rate_distal_leg4 * rate_distal_leg4;
+        let t744 = t739 * t739;
+        let t748 = s_distal_leg4 * rate_dot_proximal_leg4;
+        let t749 = t748 + t740;
+        let t752 = t739 * t733;
+        let rate_dot_distal_leg4 = gdistal_wx_leg4 * t709 - minus_gdistal_wy_leg4 * t715
+            - minus_gdistal_wy_leg4 * t699;
+        let t760 = parameters[56] * (t734 + t736) - parameters[55] * t740
+            + parameters[57] * (t743 - t744) + parameters[58] * t749
+            + parameters[59] * (t752 + rate_dot_distal_leg4);
+        let t767 = 6.936717523440031 * (s_distal_leg4 * c_proximal_leg4 - c_distal_leg4);
+        let t780 = t733 * t733;
+        let t783 = parameters[55] * t736 + parameters[56] * (t740 + t749)
+            + parameters[57] * (rate_dot_distal_leg4 - t752) - parameters[58] * t734
+            + parameters[59] * (t780 - t743);
+        let t790 = c_distal_leg4 * t723 + 3.4683587617200153 * t130;
+        let t794 = s_distal_leg4
+            * (t760 + parameters[60] * t740 + parameters[61] * t720
+                + parameters[63] * t767)
+            - c_distal_leg4
+                * (t783 + parameters[60] * t734 - parameters[62] * t720
+                    - parameters[63] * t790);
+        let t795 = t732 + t794;
+        let t806 = parameters[55] * t752 + parameters[56] * (t744 - t780)
+            - parameters[57] * t735 - parameters[58] * t752 + parameters[59] * t748;
+        let t812 = t806 + parameters[60] * rate_dot_distal_leg4 + parameters[61] * t790
+            - parameters[62] * t767;
+        let t813 = minus_gdistal_wy_leg4 * t812;
+        let t820 = t5 * acceleration[0] + t29 * acceleration[1] + t11 * acceleration[2];
+        let t826 = t5 * twist[0] + t29 * twist[1] + t11 * twist[2];
+        let t831 = t9 * twist[0] + t32 * twist[1] + t14 * twist[2];
+        let t832 = t826 * t831;
+        let t837 = t73 * acceleration[0] + t56 * acceleration[1] + t53 * acceleration[2];
+        let t845 = t73 * twist[0] + t56 * twist[1] + t53 * twist[2];
+        let t846 = t826 * t845;
+        let t851 = t9 * acceleration[0] + t32 * acceleration[1] + t14 * acceleration[2];
+        let t855 = t845 * t831;
+        let t858 = t845 * t845;
+        let t859 = t831 * t831;
+        let t862 = parameters[64] * t820 - parameters[65] * (t832 - t837)
+            + parameters[66] * (t846 + t851) - parameters[67] * t855
+            + parameters[68] * (t858 - t859);
+        let t865 = 9.81 * t14;
+        let t868 = 9.81 * t53;
+        let t870 = t862 + parameters[69] * t855 + parameters[71] * t865
+            - parameters[72] * t868;
+        let t876 = t826 * t826;
+        let t884 = parameters[64] * t832 + parameters[65] * (t855 + t820)
+            + parameters[66] * (t859 - t876) + parameters[67] * t837
+            - parameters[68] * (t846 - t851);
+        let t889 = 9.81 * t11;
+        let t891 = t884 - parameters[69] * t832 - parameters[70] * t865
+            + parameters[72] * t889;
+        let t905 = parameters[65] * (t876 - t858) - parameters[64] * t846
+            - parameters[66] * (t855 - t820) + parameters[67] * t846
+            + parameters[68] * (t832 + t837);
+        let t911 = t905 + parameters[69] * t851 + parameters[70] * t868
+            - parameters[71] * t889;
+        let t915 = gdistal_wx_leg1 * t351;
+        let t922 = gdistal_wx_leg3 * t658;
+        let t929 = t915 - minus_gproximal_wx_leg1 * t334 + gproximal_wx_leg2 * t487
+            + gdistal_wx_leg2 * t504 + t922 - minus_gproximal_wx_leg3 * t641
+            + gdistal_wx_leg4 * t812 - minus_gproximal_wx_leg4 * t795;
+        let t935 = t929 + t5 * t870 + t73 * t891 + t9 * t911;
+        let t937 = t661 - (minus_gproximal_wy_leg4 * t795 + t813) + t29 * t870
+            + t56 * t891 + t32 * t911 - t935 * t197;
+        let t952 = minus_gproximal_wx_leg1 * minus_gproximal_wz_leg1
+            - gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wx_leg3 * gproximal_wz_leg3
+            - minus_gproximal_wx_leg4 * gproximal_wz_leg4;
+        let t953 = t952 * t196;
+        let t955 = gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            + gproximal_wy_leg2 * minus_gproximal_wz_leg2
+            + minus_gproximal_wy_leg3 * gproximal_wz_leg3
+            + minus_gproximal_wy_leg4 * gproximal_wz_leg4 + t188 * t953;
+        let t956 = t955 * t200;
+        let t967 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2
+            + gproximal_wz_leg3 * gproximal_wz_leg3
+            + gproximal_wz_leg4 * gproximal_wz_leg4 - t952 * t953 - t955 * t956;
+        ::overact::guard::platform(t967, 1.9999999999999996, "actuators")?;
+        let t978 = t505 - minus_gproximal_wz_leg2 * t487
+            - (minus_gproximal_wz_leg1 * t334 + t915) + gproximal_wz_leg3 * t641 + t922
+            + gproximal_wz_leg4 * t795 - t813;
+        let t988 = t978 + t11 * t870 + t53 * t891 + t14 * t911 - t935 * t953
+            + t956 * t937;
+        let t989 = t988 / t967;
+        let t991 = t200 * t937 + t956 * t989;
+        let t997 = t935 * t196 - t197 * t991 - t953 * t989;
+        Ok([
+            gproximal_wy_leg1 * t991 - minus_gproximal_wx_leg1 * t997
+                - minus_gproximal_wz_leg1 * t989,
+            gproximal_wx_leg2 * t997 + gproximal_wy_leg2 * t991
+                - minus_gproximal_wz_leg2 * t989,
+            gproximal_wz_leg3 * t989
+                - (minus_gproximal_wx_leg3 * t997 + minus_gproximal_wy_leg3 * t991),
+            gproximal_wz_leg4 * t989
+                - (minus_gproximal_wx_leg4 * t997 + minus_gproximal_wy_leg4 * t991),
+        ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -6780,7 +10064,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 4.
     ///
-    /// 970 operations (413 additions, 550 multiplications, 7 divisions), 0 square roots, 8 trigonometric pairs, 4 signs, 986 intermediates.
+    /// 1106 operations (449 additions, 646 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 4 signs, 1110 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6792,495 +10076,529 @@ impl Spherical4Rrr {
         start: &[f64; 4],
     ) -> Result<[f64; 4], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let joints = &Self::joints(pose)?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let t2 = 0.7071067811865476 * minus_c_proximal_leg1;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t5 = t2 * c_distal_leg1;
-        let t6 = 0.7071067811865476 * minus_s_distal_leg1;
-        let t8 = 1.0 / minus_s_distal_leg1;
-        let gproximal_wx_leg1 = (t5 + t6) * t8;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let t16 = 1.0 / minus_s_distal_leg2;
-        let minus_gproximal_wx_leg2 = minus_s_proximal_leg2 * c_distal_leg2 * t16;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t22 = 0.7071067811865476 * minus_c_proximal_leg3;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let t25 = t22 * c_distal_leg3;
-        let t26 = 0.7071067811865476 * minus_s_distal_leg3;
-        let t28 = 1.0 / minus_s_distal_leg3;
-        let minus_gproximal_wx_leg3 = (t25 + t26) * t28;
-        let (minus_s_proximal_leg4, minus_c_proximal_leg4) = ::overact::math::sin_cos(
-            joints[9],
-        );
-        let (c_distal_leg4, minus_s_distal_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(minus_s_distal_leg4, 1.0, "leg4")?;
-        let t37 = 1.0 / minus_s_distal_leg4;
-        let gproximal_wx_leg4 = minus_s_proximal_leg4 * c_distal_leg4 * t37;
-        let t40 = gproximal_wx_leg1 * gproximal_wx_leg1
-            + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
-            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
-            + gproximal_wx_leg4 * gproximal_wx_leg4;
-        ::overact::guard::platform(t40, 1.0000000000000002, "actuators")?;
-        ::overact::guard::platform(t40, 1.0000000000000002, "actuators")?;
-        ::overact::guard::platform(t40, 1.0000000000000002, "actuators")?;
-        let t41 = 1.0 / t40;
-        let t48 = gproximal_wx_leg1 * actuator_velocities[0]
-            - minus_gproximal_wx_leg2 * actuator_velocities[1]
-            - minus_gproximal_wx_leg3 * actuator_velocities[2]
-            + gproximal_wx_leg4 * actuator_velocities[3];
-        let gproximal_wy_leg1 = minus_s_proximal_leg1 * c_distal_leg1 * t8;
-        let t53 = 0.7071067811865476 * minus_c_proximal_leg2;
-        let t54 = t53 * c_distal_leg2;
-        let t55 = 0.7071067811865476 * minus_s_distal_leg2;
-        let gproximal_wy_leg2 = (t54 + t55) * t16;
-        let minus_gproximal_wy_leg3 = minus_s_proximal_leg3 * c_distal_leg3 * t28;
-        let t64 = 0.7071067811865476 * minus_c_proximal_leg4;
-        let t65 = t64 * c_distal_leg4;
-        let t66 = 0.7071067811865476 * minus_s_distal_leg4;
-        let minus_gproximal_wy_leg4 = (t65 + t66) * t37;
-        let t70 = gproximal_wx_leg1 * gproximal_wy_leg1
-            - minus_gproximal_wx_leg2 * gproximal_wy_leg2
+        let t0 = 2.0 * pose[2];
+        let t1 = pose[2] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = 1.0 - t1 - t4;
+        let t6 = 2.0 * pose[1];
+        let t7 = pose[3] * t6;
+        let t8 = pose[0] * t0;
+        let t9 = t7 + t8;
+        let t10 = t5 - t9;
+        let t11 = t7 - t8;
+        let t13 = 1.0 - pose[1] * t6;
+        let t14 = t13 - t1;
+        let t15 = t11 - t14;
+        let t16 = t10 + t15;
+        let minus_s_distal_leg1 = 0.5 * t16;
+        let t20 = 1.0 - 0.25 * (t16 * t16);
+        ::overact::guard::reach(t20, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t20);
+        let t26 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
+        let t27 = pose[2] * t6;
+        let t28 = pose[0] * t3;
+        let t29 = t27 + t28;
+        let t30 = pose[3] * t0;
+        let t31 = pose[0] * t6;
+        let t32 = t30 - t31;
+        let t33 = t29 - t32;
+        let t34 = t10 - t15;
+        let s_proximal_leg1 = t26 * (0.35355339059327373 * (t33 * t34));
+        let c_proximal_leg1 = t26 * (0.25 * (t34 * t34));
+        let t46 = 0.7071067811865475 * t33;
+        let t49 = 0.5 * (t15 * c_proximal_leg1)
+            - (0.5 * (t10 * c_proximal_leg1) + t46 * s_proximal_leg1);
+        ::overact::guard::leg(t49, 1.0, "leg1")?;
+        let t50 = 1.0 / t49;
+        let gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t50;
+        let t53 = t30 + t31;
+        let t54 = t53 - t14;
+        let t55 = 0.7071067811865475 * t54;
+        let t56 = t13 - t4;
+        let t57 = t56 - t32;
+        let t58 = t57 + t54;
+        let t61 = 1.0 - 0.25 * (t58 * t58);
+        ::overact::guard::reach(t61, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t61);
+        let t67 = 1.0 / (0.5 * (t57 * c_distal_leg2 - t54 * c_distal_leg2));
+        let t68 = t57 - t54;
+        let c_proximal_leg2 = t67 * (0.25 * (t68 * t68));
+        let t73 = t27 - t28;
+        let t74 = t73 - t9;
+        let minus_s_proximal_leg2 = t67 * (0.35355339059327373 * (t74 * t68));
+        let t79 = 0.5 * (t74 * minus_s_proximal_leg2);
+        let t83 = 0.7071067811865475 * t74;
+        let t88 = 0.5 * (t54 * c_proximal_leg2)
+            - (t83 * minus_s_proximal_leg2 + 0.5 * (t57 * c_proximal_leg2));
+        ::overact::guard::leg(t88, 1.0, "leg2")?;
+        let t89 = 1.0 / t88;
+        let gproximal_wy_leg2 = (t55 * c_proximal_leg2 - t79) * t89;
+        let t93 = t11 + t14;
+        let t94 = t5 + t9;
+        let t95 = t93 - t94;
+        let s_distal_leg3 = 0.5 * t95;
+        let t99 = 1.0 - 0.25 * (t95 * t95);
+        ::overact::guard::reach(t99, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t99);
+        let t105 = 1.0 / (0.5 * (t94 * c_distal_leg3 + t93 * c_distal_leg3));
+        let t106 = t29 + t32;
+        let t107 = t94 + t93;
+        let s_proximal_leg3 = t105 * (0.35355339059327373 * (t106 * t107));
+        let c_proximal_leg3 = t105 * (0.25 * (t107 * t107));
+        let t117 = 0.7071067811865475 * t106;
+        let t122 = 0.5 * (t94 * c_proximal_leg3) + t117 * s_proximal_leg3
+            + 0.5 * (t93 * c_proximal_leg3);
+        ::overact::guard::leg(t122, 1.0, "leg3")?;
+        let t123 = 1.0 / t122;
+        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t123;
+        let t127 = t73 + t9;
+        let t128 = t56 + t32;
+        let t129 = t53 + t14;
+        let t130 = t129 - t128;
+        let t133 = 1.0 - 0.25 * (t130 * t130);
+        ::overact::guard::reach(t133, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t133);
+        let t139 = 1.0 / (0.5 * (t128 * c_distal_leg4 + t129 * c_distal_leg4));
+        let t140 = t128 + t129;
+        let minus_s_proximal_leg4 = t139 * (0.35355339059327373 * (t127 * t140));
+        let t145 = 0.5 * (t127 * minus_s_proximal_leg4);
+        let t146 = 0.7071067811865475 * t129;
+        let c_proximal_leg4 = t139 * (0.25 * (t140 * t140));
+        let t152 = 0.7071067811865475 * t127;
+        let t159 = t152 * minus_s_proximal_leg4 + 0.5 * (t128 * c_proximal_leg4)
+            + 0.5 * (t129 * c_proximal_leg4);
+        ::overact::guard::leg(t159, 1.0, "leg4")?;
+        let t160 = 1.0 / t159;
+        let minus_gproximal_wy_leg4 = (t145 + t146 * c_proximal_leg4) * t160;
+        let minus_s_distal_leg2 = 0.5 * t58;
+        let gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t89;
+        let t169 = 0.5 * (t33 * s_proximal_leg1);
+        let t170 = 0.7071067811865475 * t15;
+        let minus_gproximal_wx_leg1 = (t169 - t170 * c_proximal_leg1) * t50;
+        let t177 = 0.5 * (t106 * s_proximal_leg3);
+        let t178 = 0.7071067811865475 * t93;
+        let minus_gproximal_wx_leg3 = (t177 + t178 * c_proximal_leg3) * t123;
+        let s_distal_leg4 = 0.5 * t130;
+        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t160;
+        let t188 = gproximal_wx_leg2 * gproximal_wy_leg2
+            - minus_gproximal_wx_leg1 * gproximal_wy_leg1
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
-            - gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t71 = t70 * t41;
-        let t80 = gproximal_wy_leg1 * gproximal_wy_leg1
+            + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
+        let t195 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+            + gproximal_wx_leg2 * gproximal_wx_leg2
+            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
+        ::overact::guard::platform(t195, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t195, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t195, 0.9999999999999998, "actuators")?;
+        let t196 = 1.0 / t195;
+        let t197 = t188 * t196;
+        let t199 = gproximal_wy_leg1 * gproximal_wy_leg1
             + gproximal_wy_leg2 * gproximal_wy_leg2
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t70 * t71;
-        ::overact::guard::platform(t80, 1.0000000000000002, "actuators")?;
-        ::overact::guard::platform(t80, 1.0000000000000002, "actuators")?;
-        ::overact::guard::platform(t80, 1.0000000000000002, "actuators")?;
-        let t81 = 1.0 / t80;
-        let t90 = gproximal_wy_leg1 * actuator_velocities[0]
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t188 * t197;
+        ::overact::guard::platform(t199, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t199, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t199, 0.9999999999999998, "actuators")?;
+        let t200 = 1.0 / t199;
+        let t201 = 0.5 * t50;
+        let gdistal_wx_leg1 = t33 * t201;
+        let t209 = gproximal_wx_leg2 * actuator_velocities[1]
+            - minus_gproximal_wx_leg1 * actuator_velocities[0]
+            - minus_gproximal_wx_leg3 * actuator_velocities[2]
+            - minus_gproximal_wx_leg4 * actuator_velocities[3];
+        let t219 = gproximal_wy_leg1 * actuator_velocities[0]
             + gproximal_wy_leg2 * actuator_velocities[1]
             - minus_gproximal_wy_leg3 * actuator_velocities[2]
-            - minus_gproximal_wy_leg4 * actuator_velocities[3] - t48 * t71;
-        let t92 = t25 - t26;
-        let minus_gproximal_wz_leg3 = t92 * t28;
-        let t95 = t5 - t6;
-        let minus_gproximal_wz_leg1 = t95 * t8;
-        let t98 = t54 - t55;
-        let minus_gproximal_wz_leg2 = t98 * t16;
-        let t103 = t65 - t66;
-        let minus_gproximal_wz_leg4 = t103 * t37;
-        let t113 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
-            - gproximal_wx_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
-            - gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t114 = t113 * t41;
-        let t116 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
-            - (gproximal_wy_leg1 * minus_gproximal_wz_leg1
-                + gproximal_wy_leg2 * minus_gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t70 * t114;
-        let t117 = t116 * t81;
-        let t128 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wy_leg4 * actuator_velocities[3] - t209 * t197;
+        let t221 = 0.7071067811865475 * t10;
+        let minus_gproximal_wz_leg1 = (t221 * c_proximal_leg1 + t169) * t50;
+        let t226 = 0.7071067811865475 * t57;
+        let minus_gproximal_wz_leg2 = (t226 * c_proximal_leg2 + t79) * t89;
+        let t232 = 0.7071067811865475 * t94;
+        let gproximal_wz_leg3 = (t232 * c_proximal_leg3 + t177) * t123;
+        let t238 = 0.7071067811865475 * t128;
+        let gproximal_wz_leg4 = (t238 * c_proximal_leg4 + t145) * t160;
+        let t250 = minus_gproximal_wx_leg1 * minus_gproximal_wz_leg1
+            - gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wx_leg3 * gproximal_wz_leg3
+            - minus_gproximal_wx_leg4 * gproximal_wz_leg4;
+        let t251 = t250 * t196;
+        let t253 = gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            + gproximal_wy_leg2 * minus_gproximal_wz_leg2
+            + minus_gproximal_wy_leg3 * gproximal_wz_leg3
+            + minus_gproximal_wy_leg4 * gproximal_wz_leg4 + t188 * t251;
+        let t254 = t253 * t200;
+        let t265 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
             + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t113 * t114
-            - t116 * t117;
-        ::overact::guard::platform(t128, 2.0000000000000004, "actuators")?;
-        ::overact::guard::platform(t128, 2.0000000000000004, "actuators")?;
-        ::overact::guard::platform(t128, 2.0000000000000004, "actuators")?;
-        let t129 = 1.0 / t128;
-        let t140 = minus_gproximal_wz_leg1 * actuator_velocities[0]
-            + minus_gproximal_wz_leg2 * actuator_velocities[1]
-            + minus_gproximal_wz_leg3 * actuator_velocities[2]
-            + minus_gproximal_wz_leg4 * actuator_velocities[3] + t48 * t114 + t117 * t90;
-        let t141 = t129 * t140;
-        let t143 = t81 * t90 + t117 * t141;
-        let t147 = t48 * t41 - t71 * t143 + t114 * t141;
-        let rate_proximal_leg1 = gproximal_wx_leg1 * t147 + gproximal_wy_leg1 * t143
-            + minus_gproximal_wz_leg1 * t141;
-        let t153 = 0.7071067811865476 * rate_proximal_leg1;
-        let minus_gdistal_wx_leg1 = 0.7071067811865476 * minus_s_proximal_leg1;
-        let rate_distal_leg1 = minus_c_proximal_leg1 * t143
-            - minus_gdistal_wx_leg1 * t147 - minus_gdistal_wx_leg1 * t141;
-        let t160 = minus_c_proximal_leg1 * rate_distal_leg1;
-        let t161 = t153 * t160;
-        let t162 = t2 * minus_s_distal_leg1;
-        let t163 = 0.7071067811865476 * c_distal_leg1;
-        let t164 = t162 + t163;
-        let gwrist_wx_leg1 = t2 * t8;
-        let gwrist_wy_leg1 = minus_s_proximal_leg1 * t8;
-        let rate_wrist_leg1 = gwrist_wx_leg1 * t147 + gwrist_wy_leg1 * t143
-            + gwrist_wx_leg1 * t141;
-        let t172 = t164 * rate_wrist_leg1;
-        let t174 = minus_gdistal_wx_leg1 * rate_distal_leg1;
-        let t175 = t153 + t174;
-        let t177 = minus_s_proximal_leg1 * minus_s_distal_leg1 * rate_wrist_leg1;
-        let t180 = t161 + t160 * t172 + t175 * t177;
-        let t182 = t153 - t174;
-        let t185 = (t163 - t162) * rate_wrist_leg1;
-        let t190 = t182 * t172 - t175 * t185 - 2.0 * (t153 * t174);
-        let t196 = t161 + t182 * t177 + t160 * t185;
-        let rate_dot_proximal_leg1 = gproximal_wx_leg1 * t180 - gproximal_wy_leg1 * t190
-            + minus_gproximal_wz_leg1 * t196;
-        let t199 = actuator_accelerations[0] - rate_dot_proximal_leg1;
-        let rate_proximal_leg2 = gproximal_wy_leg2 * t143
-            - minus_gproximal_wx_leg2 * t147 + minus_gproximal_wz_leg2 * t141;
-        let t206 = 0.7071067811865476 * rate_proximal_leg2;
-        let minus_gdistal_wy_leg2 = 0.7071067811865476 * minus_s_proximal_leg2;
-        let minus_rate_distal_leg2 = minus_c_proximal_leg2 * t147
-            + minus_gdistal_wy_leg2 * t143 + minus_gdistal_wy_leg2 * t141;
-        let t213 = minus_gdistal_wy_leg2 * minus_rate_distal_leg2;
-        let t214 = t206 - t213;
-        let t215 = 0.7071067811865476 * c_distal_leg2;
-        let t216 = t53 * minus_s_distal_leg2;
-        let gwrist_wy_leg2 = t53 * t16;
-        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t16;
-        let rate_wrist_leg2 = gwrist_wy_leg2 * t143 - minus_gwrist_wx_leg2 * t147
-            + gwrist_wy_leg2 * t141;
-        let t225 = (t215 - t216) * rate_wrist_leg2;
-        let t227 = t206 + t213;
-        let t228 = t216 + t215;
-        let t229 = t228 * rate_wrist_leg2;
-        let t234 = t214 * t225 - t227 * t229 - 2.0 * (t206 * t213);
-        let t236 = minus_c_proximal_leg2 * minus_rate_distal_leg2;
-        let t237 = t206 * t236;
-        let t240 = minus_s_proximal_leg2 * minus_s_distal_leg2 * rate_wrist_leg2;
-        let t243 = t237 + t236 * t229 - t214 * t240;
-        let t249 = t227 * t240 - t236 * t225 - t237;
-        let rate_dot_proximal_leg2 = minus_gproximal_wx_leg2 * t234
-            - gproximal_wy_leg2 * t243 + minus_gproximal_wz_leg2 * t249;
-        let t252 = actuator_accelerations[1] - rate_dot_proximal_leg2;
-        let rate_proximal_leg3 = minus_gproximal_wz_leg3 * t141
-            - (minus_gproximal_wx_leg3 * t147 + minus_gproximal_wy_leg3 * t143);
-        let t260 = 0.7071067811865476 * rate_proximal_leg3;
-        let gdistal_wx_leg3 = 0.7071067811865476 * minus_s_proximal_leg3;
-        let rate_distal_leg3 = gdistal_wx_leg3 * t147 - minus_c_proximal_leg3 * t143
-            - gdistal_wx_leg3 * t141;
-        let t267 = minus_c_proximal_leg3 * rate_distal_leg3;
-        let t268 = t260 * t267;
-        let t269 = t22 * minus_s_distal_leg3;
-        let t270 = 0.7071067811865476 * c_distal_leg3;
-        let t271 = t269 + t270;
-        let minus_gwrist_wx_leg3 = t22 * t28;
-        let minus_gwrist_wy_leg3 = minus_s_proximal_leg3 * t28;
-        let rate_wrist_leg3 = minus_gwrist_wx_leg3 * t141
-            - (minus_gwrist_wx_leg3 * t147 + minus_gwrist_wy_leg3 * t143);
-        let t279 = t271 * rate_wrist_leg3;
-        let t281 = gdistal_wx_leg3 * rate_distal_leg3;
-        let t282 = t260 + t281;
-        let t284 = minus_s_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let t287 = t268 + t267 * t279 + t282 * t284;
-        let t291 = t281 - t260;
-        let t294 = (t269 - t270) * rate_wrist_leg3;
-        let t297 = 2.0 * (t260 * t281) + t291 * t279 - t282 * t294;
-        let t303 = t268 - (t291 * t284 + t267 * t294);
-        let rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t287
-            + minus_gproximal_wy_leg3 * t297 + minus_gproximal_wz_leg3 * t303;
-        let t306 = actuator_accelerations[2] - rate_dot_proximal_leg3;
-        let rate_proximal_leg4 = gproximal_wx_leg4 * t147
-            - minus_gproximal_wy_leg4 * t143 + minus_gproximal_wz_leg4 * t141;
-        let t314 = 0.7071067811865476 * rate_proximal_leg4;
-        let gdistal_wy_leg4 = 0.7071067811865476 * minus_s_proximal_leg4;
-        let rate_distal_leg4 = minus_c_proximal_leg4 * t147 + gdistal_wy_leg4 * t143
-            - gdistal_wy_leg4 * t141;
-        let t321 = minus_c_proximal_leg4 * rate_distal_leg4;
-        let t322 = t314 * t321;
-        let t323 = gdistal_wy_leg4 * rate_distal_leg4;
-        let t324 = t314 + t323;
-        let gwrist_wx_leg4 = minus_s_proximal_leg4 * t37;
-        let minus_gwrist_wy_leg4 = t64 * t37;
-        let rate_wrist_leg4 = gwrist_wx_leg4 * t147 - minus_gwrist_wy_leg4 * t143
-            + minus_gwrist_wy_leg4 * t141;
-        let t333 = minus_s_proximal_leg4 * minus_s_distal_leg4 * rate_wrist_leg4;
-        let t335 = t64 * minus_s_distal_leg4;
-        let t336 = 0.7071067811865476 * c_distal_leg4;
-        let t337 = t335 + t336;
-        let t338 = t337 * rate_wrist_leg4;
-        let t341 = t322 + t324 * t333 + t321 * t338;
-        let t344 = (t335 - t336) * rate_wrist_leg4;
-        let t346 = t323 - t314;
-        let t351 = t324 * t344 - t346 * t338 - 2.0 * (t314 * t323);
-        let t357 = t322 - (t321 * t344 + t346 * t333);
-        let rate_dot_proximal_leg4 = minus_gproximal_wy_leg4 * t341
-            - gproximal_wx_leg4 * t351 + minus_gproximal_wz_leg4 * t357;
-        let t360 = actuator_accelerations[3] - rate_dot_proximal_leg4;
-        let t362 = gproximal_wx_leg1 * t199 - minus_gproximal_wx_leg2 * t252
-            - minus_gproximal_wx_leg3 * t306 + gproximal_wx_leg4 * t360;
-        let t372 = gproximal_wy_leg1 * t199 + gproximal_wy_leg2 * t252
-            - minus_gproximal_wy_leg3 * t306 - minus_gproximal_wy_leg4 * t360
-            - t71 * t362;
-        let t384 = minus_gproximal_wz_leg1 * t199 + minus_gproximal_wz_leg2 * t252
-            + minus_gproximal_wz_leg3 * t306 + minus_gproximal_wz_leg4 * t360
-            + t114 * t362 + t117 * t372;
-        let t385 = t129 * t384;
-        let t387 = t81 * t372 + t117 * t385;
-        let t391 = t41 * t362 - t71 * t387 + t114 * t385;
-        let t392 = t391 + t180;
-        let t394 = t387 - t190;
-        let t397 = t385 + t196;
-        let rate_dot_proximal_leg1_2 = gproximal_wx_leg1 * t392
-            + gproximal_wy_leg1 * t394 + minus_gproximal_wz_leg1 * t397;
-        let t401 = 6.9367175234400325 * minus_s_proximal_leg1;
-        let t413 = parameters[0] * rate_dot_proximal_leg1_2 - t401 * parameters[1]
-            - 6.9367175234400325 * minus_c_proximal_leg1 * parameters[2]
-            + parameters[3] * rate_dot_proximal_leg1_2
+            + gproximal_wz_leg3 * gproximal_wz_leg3
+            + gproximal_wz_leg4 * gproximal_wz_leg4 - t250 * t251 - t253 * t254;
+        ::overact::guard::platform(t265, 1.9999999999999996, "actuators")?;
+        ::overact::guard::platform(t265, 1.9999999999999996, "actuators")?;
+        ::overact::guard::platform(t265, 1.9999999999999996, "actuators")?;
+        let t266 = 1.0 / t265;
+        let t277 = gproximal_wz_leg3 * actuator_velocities[2]
+            - (minus_gproximal_wz_leg1 * actuator_velocities[0]
+                + minus_gproximal_wz_leg2 * actuator_velocities[1])
+            + gproximal_wz_leg4 * actuator_velocities[3] - t209 * t251 + t254 * t219;
+        let t278 = t266 * t277;
+        let t280 = t200 * t219 + t254 * t278;
+        let t284 = t209 * t196 - t197 * t280 - t251 * t278;
+        let minus_gdistal_wy_leg1 = t34 * t201;
+        let rate_distal_leg1 = gdistal_wx_leg1 * t284 - minus_gdistal_wy_leg1 * t280
+            - gdistal_wx_leg1 * t278;
+        let t291 = c_proximal_leg1 * rate_distal_leg1;
+        let minus_gwrist_wx_leg1 = 0.7071067811865475 * c_proximal_leg1 * t50;
+        let minus_gwrist_wy_leg1 = s_proximal_leg1 * t50;
+        let rate_wrist_leg1 = minus_gwrist_wx_leg1 * t278
+            - (minus_gwrist_wx_leg1 * t284 + minus_gwrist_wy_leg1 * t280);
+        let t300 = t170 * rate_wrist_leg1;
+        let rate_proximal_leg1 = gproximal_wy_leg1 * t280
+            - minus_gproximal_wx_leg1 * t284 - minus_gproximal_wz_leg1 * t278;
+        let t307 = 0.7071067811865475 * rate_proximal_leg1;
+        let t309 = 0.7071067811865475 * s_proximal_leg1 * rate_distal_leg1;
+        let t310 = t307 + t309;
+        let t311 = t46 * rate_wrist_leg1;
+        let t314 = t307 * t291;
+        let t315 = t291 * t300 - t310 * t311 - t314;
+        let t317 = t221 * rate_wrist_leg1;
+        let t319 = t307 - t309;
+        let t324 = t310 * t317 - t319 * t300 - 2.0 * (t307 * t309);
+        let t330 = t314 + t319 * t311 - t291 * t317;
+        let rate_dot_proximal_leg1 = minus_gproximal_wx_leg1 * t315
+            - gproximal_wy_leg1 * t324 + minus_gproximal_wz_leg1 * t330;
+        let t333 = actuator_accelerations[0] - rate_dot_proximal_leg1;
+        let rate_proximal_leg2 = gproximal_wx_leg2 * t284 + gproximal_wy_leg2 * t280
+            - minus_gproximal_wz_leg2 * t278;
+        let t340 = 0.7071067811865475 * rate_proximal_leg2;
+        let t341 = 0.5 * t89;
+        let gdistal_wx_leg2 = t68 * t341;
+        let minus_gdistal_wy_leg2 = t74 * t341;
+        let rate_distal_leg2 = gdistal_wx_leg2 * t284 - minus_gdistal_wy_leg2 * t280
+            + minus_gdistal_wy_leg2 * t278;
+        let t349 = c_proximal_leg2 * rate_distal_leg2;
+        let t350 = t340 * t349;
+        let minus_gwrist_wy_leg2 = 0.7071067811865475 * c_proximal_leg2 * t89;
+        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t89;
+        let rate_wrist_leg2 = minus_gwrist_wy_leg2 * t278
+            - (minus_gwrist_wx_leg2 * t284 + minus_gwrist_wy_leg2 * t280);
+        let t359 = t226 * rate_wrist_leg2;
+        let t362 = 0.7071067811865475 * minus_s_proximal_leg2 * rate_distal_leg2;
+        let t363 = t340 + t362;
+        let t364 = t83 * rate_wrist_leg2;
+        let t367 = t350 - (t349 * t359 + t363 * t364);
+        let t369 = t55 * rate_wrist_leg2;
+        let t371 = t340 - t362;
+        let t376 = t363 * t369 - t371 * t359 - 2.0 * (t340 * t362);
+        let t381 = t371 * t364 + t349 * t369 - t350;
+        let rate_dot_proximal_leg2 = minus_gproximal_wz_leg2 * t367
+            - (gproximal_wx_leg2 * t376 + gproximal_wy_leg2 * t381);
+        let t385 = actuator_accelerations[1] - rate_dot_proximal_leg2;
+        let rate_proximal_leg3 = gproximal_wz_leg3 * t278
+            - (minus_gproximal_wx_leg3 * t284 + minus_gproximal_wy_leg3 * t280);
+        let t393 = 0.7071067811865475 * rate_proximal_leg3;
+        let t394 = 0.5 * t123;
+        let gdistal_wx_leg3 = t106 * t394;
+        let minus_gdistal_wy_leg3 = t107 * t394;
+        let rate_distal_leg3 = gdistal_wx_leg3 * t284 - minus_gdistal_wy_leg3 * t280
+            + gdistal_wx_leg3 * t278;
+        let t402 = c_proximal_leg3 * rate_distal_leg3;
+        let t403 = t393 * t402;
+        let minus_gwrist_wx_leg3 = 0.7071067811865475 * c_proximal_leg3 * t123;
+        let minus_gwrist_wy_leg3 = s_proximal_leg3 * t123;
+        let minus_rate_wrist_leg3 = minus_gwrist_wx_leg3 * t284
+            + minus_gwrist_wy_leg3 * t280 + minus_gwrist_wx_leg3 * t278;
+        let t412 = t178 * minus_rate_wrist_leg3;
+        let t415 = 0.7071067811865475 * s_proximal_leg3 * rate_distal_leg3;
+        let t416 = t393 + t415;
+        let t417 = t117 * minus_rate_wrist_leg3;
+        let t420 = t403 - (t402 * t412 + t416 * t417);
+        let t424 = t232 * minus_rate_wrist_leg3;
+        let t426 = t415 - t393;
+        let t429 = 2.0 * (t393 * t415) + t416 * t424 - t426 * t412;
+        let t435 = t403 + t426 * t417 + t402 * t424;
+        let rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t420
+            + minus_gproximal_wy_leg3 * t429 - gproximal_wz_leg3 * t435;
+        let t438 = actuator_accelerations[2] - rate_dot_proximal_leg3;
+        let rate_proximal_leg4 = gproximal_wz_leg4 * t278
+            - (minus_gproximal_wx_leg4 * t284 + minus_gproximal_wy_leg4 * t280);
+        let t446 = 0.7071067811865475 * rate_proximal_leg4;
+        let t448 = 0.5 * t160;
+        let gdistal_wx_leg4 = t140 * t448;
+        let minus_gdistal_wy_leg4 = t127 * t448;
+        let rate_distal_leg4 = gdistal_wx_leg4 * t284 - minus_gdistal_wy_leg4 * t280
+            - minus_gdistal_wy_leg4 * t278;
+        let t456 = 0.7071067811865475 * minus_s_proximal_leg4 * rate_distal_leg4;
+        let t459 = t446 + t456;
+        let minus_gwrist_wx_leg4 = minus_s_proximal_leg4 * t160;
+        let minus_gwrist_wy_leg4 = 0.7071067811865475 * c_proximal_leg4 * t160;
+        let minus_rate_wrist_leg4 = minus_gwrist_wx_leg4 * t284
+            + minus_gwrist_wy_leg4 * t280 + minus_gwrist_wy_leg4 * t278;
+        let t468 = t146 * minus_rate_wrist_leg4;
+        let t470 = t446 - t456;
+        let t471 = t238 * minus_rate_wrist_leg4;
+        let t474 = 2.0 * (t446 * t456) - (t459 * t468 + t470 * t471);
+        let t476 = c_proximal_leg4 * rate_distal_leg4;
+        let t477 = t446 * t476;
+        let t478 = t152 * minus_rate_wrist_leg4;
+        let t482 = t477 + t470 * t478 - t476 * t468;
+        let t488 = t477 + t476 * t471 + t459 * t478;
+        let rate_dot_proximal_leg4 = minus_gproximal_wx_leg4 * t474
+            + minus_gproximal_wy_leg4 * t482 - gproximal_wz_leg4 * t488;
+        let t491 = actuator_accelerations[3] - rate_dot_proximal_leg4;
+        let t500 = gproximal_wx_leg2 * t385 - minus_gproximal_wx_leg1 * t333
+            - minus_gproximal_wx_leg3 * t438 - minus_gproximal_wx_leg4 * t491;
+        let t502 = gproximal_wy_leg1 * t333 + gproximal_wy_leg2 * t385
+            - minus_gproximal_wy_leg3 * t438 - minus_gproximal_wy_leg4 * t491
+            - t197 * t500;
+        let t514 = gproximal_wz_leg3 * t438
+            - (minus_gproximal_wz_leg1 * t333 + minus_gproximal_wz_leg2 * t385)
+            + gproximal_wz_leg4 * t491 - t251 * t500 + t254 * t502;
+        let t515 = t266 * t514;
+        let t517 = t200 * t502 + t254 * t515;
+        let t518 = t517 - t324;
+        let t524 = t196 * t500 - t197 * t517 - t251 * t515;
+        let t525 = t524 - t315;
+        let t528 = t515 - t330;
+        let rate_dot_proximal_leg1_2 = gproximal_wy_leg1 * t518
+            - minus_gproximal_wx_leg1 * t525 - minus_gproximal_wz_leg1 * t528;
+        let t532 = 6.936717523440031 * s_proximal_leg1;
+        let t535 = 6.936717523440031 * c_proximal_leg1;
+        let t544 = parameters[0] * rate_dot_proximal_leg1_2 - t532 * parameters[1]
+            - t535 * parameters[2] + parameters[3] * rate_dot_proximal_leg1_2
             + rate_proximal_leg1 * parameters[4]
             + ::overact::math::signed(parameters[5], rate_proximal_leg1) + parameters[6];
-        let t414 = c_distal_leg1 * rate_proximal_leg1;
-        let t415 = rate_distal_leg1 * t414;
-        let t416 = minus_s_distal_leg1 * rate_dot_proximal_leg1_2;
-        let t417 = t415 - t416;
-        let t420 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t421 = rate_distal_leg1 * t420;
-        let t424 = rate_distal_leg1 * rate_distal_leg1;
-        let t425 = t420 * t420;
-        let t429 = c_distal_leg1 * rate_dot_proximal_leg1_2;
-        let t430 = t429 + t421;
-        let t433 = t420 * t414;
-        let rate_dot_distal_leg1 = minus_c_proximal_leg1 * t394
-            - minus_gdistal_wx_leg1 * t392 - minus_gdistal_wx_leg1 * t397;
-        let t441 = parameters[8] * (t415 + t417) - t421 * parameters[7]
-            + parameters[9] * (t424 - t425) + parameters[10] * t430
-            + parameters[11] * (t433 + rate_dot_distal_leg1);
-        let t446 = 9.81 * t95;
-        let t459 = t414 * t414;
-        let t462 = parameters[7] * t417 + parameters[8] * (t421 + t430)
-            + parameters[9] * (rate_dot_distal_leg1 - t433) - t415 * parameters[10]
-            + parameters[11] * (t459 - t424);
-        let t467 = 9.81 * t164;
-        let t471 = c_distal_leg1
-            * (t441 + t421 * parameters[12] - t401 * parameters[13]
-                + t446 * parameters[15])
-            - minus_s_distal_leg1
-                * (t462 + t415 * parameters[12] + t401 * parameters[14]
-                    - t467 * parameters[15]);
-        let t472 = t413 + t471;
-        let t483 = t433 * parameters[7] + parameters[8] * (t425 - t459)
-            - parameters[9] * t416 - t433 * parameters[10] + parameters[11] * t429;
-        let t489 = t483 + parameters[12] * rate_dot_distal_leg1 + t467 * parameters[13]
-            - t446 * parameters[14];
-        let t490 = minus_gdistal_wx_leg1 * t489;
-        let t492 = t387 - t243;
-        let t494 = t391 - t234;
-        let t497 = t385 + t249;
-        let rate_dot_proximal_leg2_2 = gproximal_wy_leg2 * t492
-            - minus_gproximal_wx_leg2 * t494 + minus_gproximal_wz_leg2 * t497;
-        let t501 = 6.9367175234400325 * minus_s_proximal_leg2;
-        let t513 = parameters[16] * rate_dot_proximal_leg2_2 - t501 * parameters[17]
-            - 6.9367175234400325 * minus_c_proximal_leg2 * parameters[18]
-            + parameters[19] * rate_dot_proximal_leg2_2
+        let t545 = c_distal_leg1 * rate_proximal_leg1;
+        let t546 = rate_distal_leg1 * t545;
+        let t547 = minus_s_distal_leg1 * rate_dot_proximal_leg1_2;
+        let t548 = t546 - t547;
+        let t551 = c_distal_leg1 * rate_dot_proximal_leg1_2;
+        let t552 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t553 = rate_distal_leg1 * t552;
+        let t554 = t551 + t553;
+        let t557 = t545 * t552;
+        let rate_dot_distal_leg1 = gdistal_wx_leg1 * t525 - minus_gdistal_wy_leg1 * t518
+            - gdistal_wx_leg1 * t528;
+        let t568 = t552 * t552;
+        let t569 = rate_distal_leg1 * rate_distal_leg1;
+        let t572 = parameters[8] * (t546 + t548) - parameters[7] * t554
+            + parameters[9] * (t557 + rate_dot_distal_leg1) + t553 * parameters[10]
+            + parameters[11] * (t568 - t569);
+        let t579 = c_distal_leg1 * t535 - 3.4683587617200153 * t16;
+        let t583 = t545 * t545;
+        let t595 = parameters[9] * (t569 - t583)
+            - (t546 * parameters[7] + parameters[8] * (t553 + t554))
+            + parameters[10] * t548 - parameters[11] * (t557 - rate_dot_distal_leg1);
+        let t602 = 6.936717523440031
+            * (minus_s_distal_leg1 * c_proximal_leg1 + c_distal_leg1);
+        let t606 = c_distal_leg1
+            * (t572 - t553 * parameters[12] + t532 * parameters[14]
+                - t579 * parameters[15])
+            + minus_s_distal_leg1
+                * (t595 + t546 * parameters[12] - t532 * parameters[13]
+                    - t602 * parameters[15]);
+        let t607 = t544 - t606;
+        let t618 = parameters[8] * (t583 - t568) - t557 * parameters[7]
+            - parameters[9] * t551 + t557 * parameters[10] - parameters[11] * t547;
+        let t624 = t618 + parameters[12] * rate_dot_distal_leg1 + t579 * parameters[13]
+            + t602 * parameters[14];
+        let t627 = t524 - t376;
+        let t629 = t517 - t381;
+        let t632 = t515 - t367;
+        let rate_dot_proximal_leg2_2 = gproximal_wx_leg2 * t627
+            + gproximal_wy_leg2 * t629 - minus_gproximal_wz_leg2 * t632;
+        let t636 = 6.936717523440031 * minus_s_proximal_leg2;
+        let t639 = 6.936717523440031 * c_proximal_leg2;
+        let t648 = parameters[16] * rate_dot_proximal_leg2_2 + t636 * parameters[17]
+            - t639 * parameters[18] + parameters[19] * rate_dot_proximal_leg2_2
             + rate_proximal_leg2 * parameters[20]
             + ::overact::math::signed(parameters[21], rate_proximal_leg2)
             + parameters[22];
-        let t514 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t515 = minus_rate_distal_leg2 * t514;
-        let t517 = c_distal_leg2 * rate_proximal_leg2;
-        let t518 = minus_rate_distal_leg2 * t517;
-        let t519 = minus_s_distal_leg2 * rate_dot_proximal_leg2_2;
-        let t520 = t519 + t518;
-        let t524 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t525 = t514 * t514;
-        let t529 = c_distal_leg2 * rate_dot_proximal_leg2_2;
-        let t530 = t529 - t515;
-        let minus_rate_dot_distal_leg2 = minus_c_proximal_leg2 * t494
-            + minus_gdistal_wy_leg2 * t492 + minus_gdistal_wy_leg2 * t497;
-        let t538 = t514 * t517;
-        let t541 = t515 * parameters[23] - parameters[24] * (t518 + t520)
-            + parameters[25] * (t524 - t525) + parameters[26] * t530
-            - parameters[27] * (minus_rate_dot_distal_leg2 - t538);
-        let t546 = 9.81 * t98;
-        let t559 = t517 * t517;
-        let t562 = t518 * parameters[26]
-            - (parameters[23] * t520 + parameters[24] * (t515 - t530)
-                + parameters[25] * (t538 + minus_rate_dot_distal_leg2))
-            + parameters[27] * (t559 - t524);
-        let t567 = 9.81 * t228;
-        let t571 = c_distal_leg2
-            * (t541 - t515 * parameters[28] - t501 * parameters[29]
-                + t546 * parameters[31])
-            - minus_s_distal_leg2
-                * (t562 - t518 * parameters[28] + t501 * parameters[30]
-                    - t567 * parameters[31]);
-        let t572 = t513 + t571;
-        let t583 = t538 * parameters[23] + parameters[24] * (t525 - t559)
-            - parameters[25] * t519 - t538 * parameters[26] + parameters[27] * t529;
-        let t589 = t583 - parameters[28] * minus_rate_dot_distal_leg2
-            + t567 * parameters[29] - t546 * parameters[30];
-        let t593 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t594 = c_distal_leg3 * rate_proximal_leg3;
-        let t595 = t593 * t594;
-        let t597 = t593 * t593;
-        let t598 = t594 * t594;
-        let t602 = t385 + t303;
-        let t604 = t391 - t287;
-        let t606 = t387 - t297;
-        let rate_dot_proximal_leg3_2 = minus_gproximal_wz_leg3 * t602
-            - (minus_gproximal_wx_leg3 * t604 + minus_gproximal_wy_leg3 * t606);
-        let t610 = minus_s_distal_leg3 * rate_dot_proximal_leg3_2;
-        let t615 = c_distal_leg3 * rate_dot_proximal_leg3_2;
-        let t617 = t595 * parameters[39] + parameters[40] * (t597 - t598)
-            - parameters[41] * t610 - t595 * parameters[42] + parameters[43] * t615;
-        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t604 - minus_c_proximal_leg3 * t606
-            - gdistal_wx_leg3 * t602;
-        let t625 = 9.81 * t271;
-        let t628 = 9.81 * t92;
-        let t630 = t617 + parameters[44] * rate_dot_distal_leg3 + t625 * parameters[45]
-            - t628 * parameters[46];
-        let t631 = gdistal_wx_leg3 * t630;
-        let t633 = 6.9367175234400325 * minus_s_proximal_leg3;
-        let t645 = parameters[32] * rate_dot_proximal_leg3_2 - t633 * parameters[33]
-            - 6.9367175234400325 * minus_c_proximal_leg3 * parameters[34]
-            + parameters[35] * rate_dot_proximal_leg3_2
+        let t649 = c_distal_leg2 * rate_proximal_leg2;
+        let t650 = rate_distal_leg2 * t649;
+        let t651 = minus_s_distal_leg2 * rate_dot_proximal_leg2_2;
+        let t652 = t650 - t651;
+        let t655 = c_distal_leg2 * rate_dot_proximal_leg2_2;
+        let t656 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t657 = rate_distal_leg2 * t656;
+        let t658 = t655 + t657;
+        let t661 = t649 * t656;
+        let rate_dot_distal_leg2 = gdistal_wx_leg2 * t627 - minus_gdistal_wy_leg2 * t629
+            + minus_gdistal_wy_leg2 * t632;
+        let t672 = t656 * t656;
+        let t673 = rate_distal_leg2 * rate_distal_leg2;
+        let t676 = parameters[24] * (t650 + t652) - parameters[23] * t658
+            + parameters[25] * (t661 + rate_dot_distal_leg2) + t657 * parameters[26]
+            + parameters[27] * (t672 - t673);
+        let t683 = c_distal_leg2 * t639 - 3.4683587617200153 * t58;
+        let t687 = t649 * t649;
+        let t699 = parameters[25] * (t673 - t687)
+            - (t650 * parameters[23] + parameters[24] * (t657 + t658))
+            + parameters[26] * t652 - parameters[27] * (t661 - rate_dot_distal_leg2);
+        let t706 = 6.936717523440031
+            * (minus_s_distal_leg2 * c_proximal_leg2 + c_distal_leg2);
+        let t710 = c_distal_leg2
+            * (t676 - t657 * parameters[28] - t636 * parameters[30]
+                - t683 * parameters[31])
+            + minus_s_distal_leg2
+                * (t699 + t650 * parameters[28] + t636 * parameters[29]
+                    - t706 * parameters[31]);
+        let t711 = t648 - t710;
+        let t722 = parameters[24] * (t687 - t672) - t661 * parameters[23]
+            - parameters[25] * t655 + t661 * parameters[26] - parameters[27] * t651;
+        let t728 = t722 + parameters[28] * rate_dot_distal_leg2 + t683 * parameters[29]
+            + t706 * parameters[30];
+        let t729 = minus_gdistal_wy_leg2 * t728;
+        let t732 = t515 - t435;
+        let t734 = t524 - t420;
+        let t736 = t517 - t429;
+        let rate_dot_proximal_leg3_2 = gproximal_wz_leg3 * t732
+            - (minus_gproximal_wx_leg3 * t734 + minus_gproximal_wy_leg3 * t736);
+        let t741 = 6.936717523440031 * s_proximal_leg3;
+        let t744 = 6.936717523440031 * c_proximal_leg3;
+        let t753 = parameters[32] * rate_dot_proximal_leg3_2 - t741 * parameters[33]
+            - t744 * parameters[34] + parameters[35] * rate_dot_proximal_leg3_2
             + rate_proximal_leg3 * parameters[36]
             + ::overact::math::signed(parameters[37], rate_proximal_leg3)
             + parameters[38];
-        let t646 = rate_distal_leg3 * t594;
-        let t647 = t646 - t610;
-        let t650 = rate_distal_leg3 * t593;
-        let t653 = rate_distal_leg3 * rate_distal_leg3;
-        let t657 = t615 + t650;
-        let t662 = parameters[40] * (t646 + t647) - t650 * parameters[39]
-            + parameters[41] * (t653 - t597) + parameters[42] * t657
-            + parameters[43] * (t595 + rate_dot_distal_leg3);
-        let t681 = parameters[39] * t647 + parameters[40] * (t650 + t657)
-            + parameters[41] * (rate_dot_distal_leg3 - t595) - t646 * parameters[42]
-            + parameters[43] * (t598 - t653);
-        let t689 = c_distal_leg3
-            * (t662 + t650 * parameters[44] - t633 * parameters[45]
-                + t628 * parameters[47])
-            - minus_s_distal_leg3
-                * (t681 + t646 * parameters[44] + t633 * parameters[46]
-                    - t625 * parameters[47]);
-        let t690 = t645 + t689;
-        let t694 = t391 - t351;
-        let t696 = t387 - t341;
-        let t699 = t385 + t357;
-        let rate_dot_proximal_leg4_2 = gproximal_wx_leg4 * t694
-            - minus_gproximal_wy_leg4 * t696 + minus_gproximal_wz_leg4 * t699;
-        let t703 = 6.9367175234400325 * minus_s_proximal_leg4;
-        let t715 = parameters[48] * rate_dot_proximal_leg4_2 - t703 * parameters[49]
-            - 6.9367175234400325 * minus_c_proximal_leg4 * parameters[50]
-            + parameters[51] * rate_dot_proximal_leg4_2
+        let t754 = s_distal_leg3 * rate_proximal_leg3;
+        let t755 = rate_distal_leg3 * t754;
+        let t756 = c_distal_leg3 * rate_dot_proximal_leg3_2;
+        let t757 = t755 - t756;
+        let t760 = c_distal_leg3 * rate_proximal_leg3;
+        let t761 = rate_distal_leg3 * t760;
+        let t764 = rate_distal_leg3 * rate_distal_leg3;
+        let t765 = t760 * t760;
+        let t769 = s_distal_leg3 * rate_dot_proximal_leg3_2;
+        let t770 = t769 + t761;
+        let t773 = t760 * t754;
+        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t734 - minus_gdistal_wy_leg3 * t736
+            + gdistal_wx_leg3 * t732;
+        let t781 = parameters[40] * (t755 + t757) - t761 * parameters[39]
+            + parameters[41] * (t764 - t765) + parameters[42] * t770
+            + parameters[43] * (t773 + rate_dot_distal_leg3);
+        let t788 = 6.936717523440031 * (s_distal_leg3 * c_proximal_leg3 - c_distal_leg3);
+        let t801 = t754 * t754;
+        let t804 = parameters[39] * t757 + parameters[40] * (t761 + t770)
+            + parameters[41] * (rate_dot_distal_leg3 - t773) - t755 * parameters[42]
+            + parameters[43] * (t801 - t764);
+        let t811 = c_distal_leg3 * t744 + 3.4683587617200153 * t95;
+        let t815 = s_distal_leg3
+            * (t781 + t761 * parameters[44] - t741 * parameters[45]
+                + t788 * parameters[47])
+            - c_distal_leg3
+                * (t804 + t755 * parameters[44] + t741 * parameters[46]
+                    - t811 * parameters[47]);
+        let t816 = t753 + t815;
+        let t827 = t773 * parameters[39] + parameters[40] * (t765 - t801)
+            - parameters[41] * t756 - t773 * parameters[42] + parameters[43] * t769;
+        let t833 = t827 + parameters[44] * rate_dot_distal_leg3 + t811 * parameters[45]
+            - t788 * parameters[46];
+        let t836 = gproximal_wy_leg1 * t607 - minus_gdistal_wy_leg1 * t624
+            + gproximal_wy_leg2 * t711 - t729
+            - (minus_gproximal_wy_leg3 * t816 + minus_gdistal_wy_leg3 * t833);
+        let t837 = t515 - t488;
+        let t839 = t524 - t474;
+        let t841 = t517 - t482;
+        let rate_dot_proximal_leg4_2 = gproximal_wz_leg4 * t837
+            - (minus_gproximal_wx_leg4 * t839 + minus_gproximal_wy_leg4 * t841);
+        let t846 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t849 = 6.936717523440031 * c_proximal_leg4;
+        let t858 = parameters[48] * rate_dot_proximal_leg4_2 + t846 * parameters[49]
+            - t849 * parameters[50] + parameters[51] * rate_dot_proximal_leg4_2
             + rate_proximal_leg4 * parameters[52]
             + ::overact::math::signed(parameters[53], rate_proximal_leg4)
             + parameters[54];
-        let t716 = c_distal_leg4 * rate_proximal_leg4;
-        let t717 = rate_distal_leg4 * t716;
-        let t718 = minus_s_distal_leg4 * rate_dot_proximal_leg4_2;
-        let t719 = t717 - t718;
-        let t722 = minus_s_distal_leg4 * rate_proximal_leg4;
-        let t723 = rate_distal_leg4 * t722;
-        let t726 = rate_distal_leg4 * rate_distal_leg4;
-        let t727 = t722 * t722;
-        let t731 = c_distal_leg4 * rate_dot_proximal_leg4_2;
-        let t732 = t731 + t723;
-        let t735 = t722 * t716;
-        let rate_dot_distal_leg4 = minus_c_proximal_leg4 * t694 + gdistal_wy_leg4 * t696
-            - gdistal_wy_leg4 * t699;
-        let t743 = parameters[56] * (t717 + t719) - t723 * parameters[55]
-            + parameters[57] * (t726 - t727) + parameters[58] * t732
-            + parameters[59] * (t735 + rate_dot_distal_leg4);
-        let t748 = 9.81 * t103;
-        let t761 = t716 * t716;
-        let t764 = parameters[55] * t719 + parameters[56] * (t723 + t732)
-            + parameters[57] * (rate_dot_distal_leg4 - t735) - t717 * parameters[58]
-            + parameters[59] * (t761 - t726);
-        let t769 = 9.81 * t337;
-        let t773 = c_distal_leg4
-            * (t743 + t723 * parameters[60] - t703 * parameters[61]
-                + t748 * parameters[63])
-            - minus_s_distal_leg4
-                * (t764 + t717 * parameters[60] + t703 * parameters[62]
-                    - t769 * parameters[63]);
-        let t774 = t715 + t773;
-        let t785 = t735 * parameters[55] + parameters[56] * (t727 - t761)
-            - parameters[57] * t718 - t735 * parameters[58] + parameters[59] * t731;
-        let t791 = t785 + parameters[60] * rate_dot_distal_leg4 + t769 * parameters[61]
-            - t748 * parameters[62];
-        let t794 = gproximal_wx_leg1 * t472 - t490
-            - (minus_gproximal_wx_leg2 * t572 + minus_c_proximal_leg2 * t589) + t631
-            - minus_gproximal_wx_leg3 * t690 + gproximal_wx_leg4 * t774
-            + minus_c_proximal_leg4 * t791;
-        let t795 = 2.0 * pose[2];
-        let t796 = pose[2] * t795;
-        let t798 = 2.0 * pose[3];
-        let t799 = pose[3] * t798;
-        let t800 = 1.0 - t796 - t799;
-        let t802 = 2.0 * pose[1];
-        let t803 = pose[2] * t802;
-        let t804 = pose[0] * t798;
-        let t805 = t803 + t804;
-        let t808 = pose[3] * t802;
-        let t809 = pose[0] * t795;
-        let t810 = t808 - t809;
-        let t812 = t800 * t391 + t805 * t387 - t810 * t385;
-        let t818 = t800 * t147 + t805 * t143 - t810 * t141;
-        let t819 = t808 + t809;
-        let t821 = pose[3] * t795;
-        let t822 = pose[0] * t802;
-        let t823 = t821 - t822;
-        let t827 = 1.0 - pose[1] * t802;
-        let t828 = t827 - t796;
-        let t830 = t819 * t147 + t823 * t143 - t828 * t141;
-        let t831 = t818 * t830;
-        let t832 = t803 - t804;
-        let t834 = t827 - t799;
-        let t837 = t821 + t822;
-        let t839 = t832 * t391 + t834 * t387 - t837 * t385;
-        let t847 = t832 * t147 + t834 * t143 - t837 * t141;
-        let t848 = t818 * t847;
-        let t853 = t819 * t391 + t823 * t387 - t828 * t385;
-        let t857 = t847 * t830;
-        let t860 = t847 * t847;
-        let t861 = t830 * t830;
-        let t864 = parameters[64] * t812 - parameters[65] * (t831 - t839)
-            + parameters[66] * (t848 + t853) - t857 * parameters[67]
-            + parameters[68] * (t860 - t861);
-        let t867 = 9.81 * t828;
-        let t870 = 9.81 * t837;
-        let t872 = t864 + t857 * parameters[69] + t867 * parameters[71]
-            - t870 * parameters[72];
-        let t878 = t818 * t818;
-        let t886 = t831 * parameters[64] + parameters[65] * (t857 + t812)
-            + parameters[66] * (t861 - t878) + parameters[67] * t839
-            - parameters[68] * (t848 - t853);
-        let t891 = 9.81 * t810;
-        let t893 = t886 - t831 * parameters[69] - t867 * parameters[70]
-            + t891 * parameters[72];
-        let t907 = parameters[65] * (t878 - t860) - t848 * parameters[64]
-            - parameters[66] * (t857 - t812) + t848 * parameters[67]
-            + parameters[68] * (t831 + t839);
-        let t913 = t907 + parameters[69] * t853 + t870 * parameters[70]
-            - t891 * parameters[71];
-        let t916 = t794 + t800 * t872 + t832 * t893 + t819 * t913;
-        let t922 = minus_gdistal_wy_leg2 * t589;
-        let t928 = gproximal_wy_leg1 * t472 + minus_c_proximal_leg1 * t489
-            + gproximal_wy_leg2 * t572 - t922
-            - (minus_gproximal_wy_leg3 * t690 + minus_c_proximal_leg3 * t630);
-        let t929 = gdistal_wy_leg4 * t791;
-        let t940 = t928 + t929 - minus_gproximal_wy_leg4 * t774 + t805 * t872
-            + t834 * t893 + t823 * t913 - t71 * t916;
-        let t952 = t490 - minus_gproximal_wz_leg1 * t472 + t922
-            - minus_gproximal_wz_leg2 * t572 + t631 - minus_gproximal_wz_leg3 * t690
-            + t929 - minus_gproximal_wz_leg4 * t774;
-        let t962 = t952 + t810 * t872 + t837 * t893 + t828 * t913 - t114 * t916
-            - t117 * t940;
-        let t963 = t129 * t962;
-        let t965 = t81 * t940 - t117 * t963;
-        let t969 = t41 * t916 - t71 * t965 - t114 * t963;
+        let t859 = s_distal_leg4 * rate_proximal_leg4;
+        let t860 = rate_distal_leg4 * t859;
+        let t861 = c_distal_leg4 * rate_dot_proximal_leg4_2;
+        let t862 = t860 - t861;
+        let t865 = c_distal_leg4 * rate_proximal_leg4;
+        let t866 = rate_distal_leg4 * t865;
+        let t869 = rate_distal_leg4 * rate_distal_leg4;
+        let t870 = t865 * t865;
+        let t874 = s_distal_leg4 * rate_dot_proximal_leg4_2;
+        let t875 = t874 + t866;
+        let t878 = t865 * t859;
+        let rate_dot_distal_leg4 = gdistal_wx_leg4 * t839 - minus_gdistal_wy_leg4 * t841
+            - minus_gdistal_wy_leg4 * t837;
+        let t886 = parameters[56] * (t860 + t862) - t866 * parameters[55]
+            + parameters[57] * (t869 - t870) + parameters[58] * t875
+            + parameters[59] * (t878 + rate_dot_distal_leg4);
+        let t893 = 6.936717523440031 * (s_distal_leg4 * c_proximal_leg4 - c_distal_leg4);
+        let t906 = t859 * t859;
+        let t909 = parameters[55] * t862 + parameters[56] * (t866 + t875)
+            + parameters[57] * (rate_dot_distal_leg4 - t878) - t860 * parameters[58]
+            + parameters[59] * (t906 - t869);
+        let t916 = c_distal_leg4 * t849 + 3.4683587617200153 * t130;
+        let t920 = s_distal_leg4
+            * (t886 + t866 * parameters[60] + t846 * parameters[61]
+                + t893 * parameters[63])
+            - c_distal_leg4
+                * (t909 + t860 * parameters[60] - t846 * parameters[62]
+                    - t916 * parameters[63]);
+        let t921 = t858 + t920;
+        let t932 = t878 * parameters[55] + parameters[56] * (t870 - t906)
+            - parameters[57] * t861 - t878 * parameters[58] + parameters[59] * t874;
+        let t938 = t932 + parameters[60] * rate_dot_distal_leg4 + t916 * parameters[61]
+            - t893 * parameters[62];
+        let t939 = minus_gdistal_wy_leg4 * t938;
+        let t946 = t5 * t524 + t29 * t517 + t11 * t515;
+        let t952 = t5 * t284 + t29 * t280 + t11 * t278;
+        let t957 = t9 * t284 + t32 * t280 + t14 * t278;
+        let t958 = t952 * t957;
+        let t963 = t73 * t524 + t56 * t517 + t53 * t515;
+        let t971 = t73 * t284 + t56 * t280 + t53 * t278;
+        let t972 = t952 * t971;
+        let t977 = t9 * t524 + t32 * t517 + t14 * t515;
+        let t981 = t971 * t957;
+        let t984 = t971 * t971;
+        let t985 = t957 * t957;
+        let t988 = parameters[64] * t946 - parameters[65] * (t958 - t963)
+            + parameters[66] * (t972 + t977) - t981 * parameters[67]
+            + parameters[68] * (t984 - t985);
+        let t991 = 9.81 * t14;
+        let t994 = 9.81 * t53;
+        let t996 = t988 + t981 * parameters[69] + t991 * parameters[71]
+            - t994 * parameters[72];
+        let t1002 = t952 * t952;
+        let t1010 = t958 * parameters[64] + parameters[65] * (t981 + t946)
+            + parameters[66] * (t985 - t1002) + parameters[67] * t963
+            - parameters[68] * (t972 - t977);
+        let t1015 = 9.81 * t11;
+        let t1017 = t1010 - t958 * parameters[69] - t991 * parameters[70]
+            + t1015 * parameters[72];
+        let t1031 = parameters[65] * (t1002 - t984) - t972 * parameters[64]
+            - parameters[66] * (t981 - t946) + t972 * parameters[67]
+            + parameters[68] * (t958 + t963);
+        let t1037 = t1031 + parameters[69] * t977 + t994 * parameters[70]
+            - t1015 * parameters[71];
+        let t1041 = gdistal_wx_leg1 * t624;
+        let t1048 = gdistal_wx_leg3 * t833;
+        let t1055 = t1041 - minus_gproximal_wx_leg1 * t607 + gproximal_wx_leg2 * t711
+            + gdistal_wx_leg2 * t728 + t1048 - minus_gproximal_wx_leg3 * t816
+            + gdistal_wx_leg4 * t938 - minus_gproximal_wx_leg4 * t921;
+        let t1061 = t1055 + t5 * t996 + t73 * t1017 + t9 * t1037;
+        let t1063 = t836 - (minus_gproximal_wy_leg4 * t921 + t939) + t29 * t996
+            + t56 * t1017 + t32 * t1037 - t197 * t1061;
+        let t1075 = t729 - minus_gproximal_wz_leg2 * t711
+            - (minus_gproximal_wz_leg1 * t607 + t1041) + gproximal_wz_leg3 * t816 + t1048
+            + gproximal_wz_leg4 * t921 - t939;
+        let t1085 = t1075 + t11 * t996 + t53 * t1017 + t14 * t1037 - t251 * t1061
+            + t254 * t1063;
+        let t1086 = t266 * t1085;
+        let t1088 = t200 * t1063 + t254 * t1086;
+        let t1094 = t196 * t1061 - t197 * t1088 - t251 * t1086;
         Ok([
-            gproximal_wx_leg1 * t969 + gproximal_wy_leg1 * t965
-                - minus_gproximal_wz_leg1 * t963,
-            gproximal_wy_leg2 * t965 - minus_gproximal_wx_leg2 * t969
-                - minus_gproximal_wz_leg2 * t963,
-            -(minus_gproximal_wx_leg3 * t969 + minus_gproximal_wy_leg3 * t965
-                + minus_gproximal_wz_leg3 * t963),
-            gproximal_wx_leg4 * t969 - minus_gproximal_wy_leg4 * t965
-                - minus_gproximal_wz_leg4 * t963,
+            gproximal_wy_leg1 * t1088 - minus_gproximal_wx_leg1 * t1094
+                - minus_gproximal_wz_leg1 * t1086,
+            gproximal_wx_leg2 * t1094 + gproximal_wy_leg2 * t1088
+                - minus_gproximal_wz_leg2 * t1086,
+            gproximal_wz_leg3 * t1086
+                - (minus_gproximal_wx_leg3 * t1094 + minus_gproximal_wy_leg3 * t1088),
+            gproximal_wz_leg4 * t1086
+                - (minus_gproximal_wx_leg4 * t1094 + minus_gproximal_wy_leg4 * t1088),
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -7291,7 +10609,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 498 operations (205 additions, 289 multiplications, 4 divisions), 0 square roots, 8 trigonometric pairs, 0 signs, 508 intermediates.
+    /// 642 operations (241 additions, 393 multiplications, 8 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 640 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7299,256 +10617,301 @@ impl Spherical4Rrr {
         pose: &[f64; 4],
         parameters: &[f64; 73],
     ) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t5 = 0.7071067811865476 * minus_c_proximal_leg1 * c_distal_leg1;
-        let t6 = 0.7071067811865476 * minus_s_distal_leg1;
-        let t7 = t5 + t6;
-        let t8 = 1.0 / minus_s_distal_leg1;
-        let gproximal_wx_leg1 = t7 * t8;
-        let t13 = c_distal_leg1 * gproximal_wx_leg1;
-        let minus_gdistal_wx_leg1 = 0.7071067811865476 * minus_s_proximal_leg1;
-        let t18 = minus_gdistal_wx_leg1 * parameters[11];
-        let t24 = minus_gdistal_wx_leg1 * parameters[9];
-        let t27 = c_distal_leg1 * (parameters[10] * t13 - t7 * parameters[8] - t18)
-            - minus_s_distal_leg1 * (parameters[8] * t13 - t7 * parameters[7] - t24);
-        let t33 = minus_gdistal_wx_leg1 * parameters[12];
-        let t36 = gproximal_wx_leg1
-            * (gproximal_wx_leg1 * parameters[0] + gproximal_wx_leg1 * parameters[3]
-                + t27)
-            - minus_gdistal_wx_leg1 * (parameters[11] * t13 - t7 * parameters[9] - t33);
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let t41 = minus_s_proximal_leg2 * c_distal_leg2;
-        let t42 = 1.0 / minus_s_distal_leg2;
-        let minus_gproximal_wx_leg2 = t41 * t42;
-        let t45 = c_distal_leg2 * minus_gproximal_wx_leg2;
-        let t57 = c_distal_leg2
-            * (t41 * parameters[24] - parameters[26] * t45
-                - minus_c_proximal_leg2 * parameters[27])
-            - minus_s_distal_leg2
-                * (t41 * parameters[23] - parameters[24] * t45
-                    - minus_c_proximal_leg2 * parameters[25]);
-        let t69 = minus_gproximal_wx_leg2
-            * (t57
-                - (minus_gproximal_wx_leg2 * parameters[19]
-                    + minus_gproximal_wx_leg2 * parameters[16]))
-            + minus_c_proximal_leg2
-                * (t41 * parameters[25] - parameters[27] * t45
-                    - minus_c_proximal_leg2 * parameters[28]);
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let gdistal_wx_leg3 = 0.7071067811865476 * minus_s_proximal_leg3;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let t77 = 0.7071067811865476 * minus_c_proximal_leg3 * c_distal_leg3;
-        let t78 = 0.7071067811865476 * minus_s_distal_leg3;
-        let t79 = t77 + t78;
-        let t81 = 1.0 / minus_s_distal_leg3;
-        let minus_gproximal_wx_leg3 = t79 * t81;
-        let t83 = c_distal_leg3 * minus_gproximal_wx_leg3;
-        let t86 = gdistal_wx_leg3 * parameters[44];
-        let t92 = gdistal_wx_leg3 * parameters[43];
-        let t98 = gdistal_wx_leg3 * parameters[41];
-        let t101 = c_distal_leg3 * (t79 * parameters[40] - parameters[42] * t83 + t92)
-            - minus_s_distal_leg3 * (t79 * parameters[39] - parameters[40] * t83 + t98);
-        let t107 = gdistal_wx_leg3 * (t79 * parameters[41] - parameters[43] * t83 + t86)
+        let t0 = 2.0 * pose[1];
+        let t1 = pose[2] * t0;
+        let t2 = 2.0 * pose[3];
+        let t3 = pose[0] * t2;
+        let t4 = t1 + t3;
+        let t5 = 2.0 * pose[2];
+        let t6 = pose[3] * t5;
+        let t7 = pose[0] * t0;
+        let t8 = t6 - t7;
+        let t9 = t4 - t8;
+        let t10 = pose[3] * t0;
+        let t11 = pose[0] * t5;
+        let t12 = t10 - t11;
+        let t14 = 1.0 - pose[1] * t0;
+        let t15 = pose[2] * t5;
+        let t16 = t14 - t15;
+        let t17 = t12 - t16;
+        let t19 = pose[3] * t2;
+        let t20 = 1.0 - t15 - t19;
+        let t21 = t10 + t11;
+        let t22 = t20 - t21;
+        let t23 = t22 + t17;
+        let t26 = 1.0 - 0.25 * (t23 * t23);
+        ::overact::guard::reach(t26, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t26);
+        let t32 = 1.0 / (0.5 * (t22 * c_distal_leg1 - t17 * c_distal_leg1));
+        let t33 = t22 - t17;
+        let c_proximal_leg1 = t32 * (0.25 * (t33 * t33));
+        let s_proximal_leg1 = t32 * (0.35355339059327373 * (t9 * t33));
+        let t47 = 0.5 * (t17 * c_proximal_leg1)
+            - (0.5 * (t22 * c_proximal_leg1)
+                + 0.7071067811865475 * t9 * s_proximal_leg1);
+        ::overact::guard::leg(t47, 1.0, "leg1")?;
+        let t48 = 1.0 / t47;
+        let t49 = 0.5 * t48;
+        let gdistal_wx_leg1 = t9 * t49;
+        let t52 = 0.5 * (t9 * s_proximal_leg1);
+        let minus_gproximal_wx_leg1 = (t52 - 0.7071067811865475 * t17 * c_proximal_leg1)
+            * t48;
+        let t57 = c_distal_leg1 * minus_gproximal_wx_leg1;
+        let minus_s_distal_leg1 = 0.5 * t23;
+        let t60 = minus_s_distal_leg1 * minus_gproximal_wx_leg1;
+        let t63 = gdistal_wx_leg1 * parameters[12];
+        let t72 = gdistal_wx_leg1 * parameters[9];
+        let t78 = gdistal_wx_leg1 * parameters[11];
+        let t81 = c_distal_leg1 * (parameters[7] * t57 + parameters[8] * t60 + t72)
+            + minus_s_distal_leg1 * (parameters[8] * t57 + parameters[10] * t60 + t78);
+        let t84 = gdistal_wx_leg1 * (parameters[9] * t57 + parameters[11] * t60 + t63)
+            + minus_gproximal_wx_leg1
+                * (minus_gproximal_wx_leg1 * parameters[3]
+                    + minus_gproximal_wx_leg1 * parameters[0] + t81);
+        let t85 = t14 - t19;
+        let t86 = t85 - t8;
+        let t87 = t6 + t7;
+        let t88 = t87 - t16;
+        let t89 = t86 + t88;
+        let minus_s_distal_leg2 = 0.5 * t89;
+        let t93 = 1.0 - 0.25 * (t89 * t89);
+        ::overact::guard::reach(t93, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t93);
+        let t99 = 1.0 / (0.5 * (t86 * c_distal_leg2 - t88 * c_distal_leg2));
+        let t100 = t1 - t3;
+        let t101 = t100 - t21;
+        let t102 = t86 - t88;
+        let minus_s_proximal_leg2 = t99 * (0.35355339059327373 * (t101 * t102));
+        let c_proximal_leg2 = t99 * (0.25 * (t102 * t102));
+        let t117 = 0.5 * (t88 * c_proximal_leg2)
+            - (0.7071067811865475 * t101 * minus_s_proximal_leg2
+                + 0.5 * (t86 * c_proximal_leg2));
+        ::overact::guard::leg(t117, 1.0, "leg2")?;
+        let t118 = 1.0 / t117;
+        let gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t118;
+        let t123 = 0.5 * t118;
+        let gdistal_wx_leg2 = t102 * t123;
+        let t126 = c_distal_leg2 * gproximal_wx_leg2;
+        let t128 = minus_s_distal_leg2 * gproximal_wx_leg2;
+        let t139 = c_distal_leg2
+            * (gdistal_wx_leg2 * parameters[25]
+                - (parameters[23] * t126 + parameters[24] * t128))
+            + minus_s_distal_leg2
+                * (gdistal_wx_leg2 * parameters[27]
+                    - (parameters[24] * t126 + parameters[26] * t128));
+        let t148 = gproximal_wx_leg2
+            * (gproximal_wx_leg2 * parameters[16] + gproximal_wx_leg2 * parameters[19]
+                - t139)
+            + gdistal_wx_leg2
+                * (gdistal_wx_leg2 * parameters[28]
+                    - (parameters[25] * t126 + parameters[27] * t128));
+        let t150 = t4 + t8;
+        let t151 = t20 + t21;
+        let t152 = t12 + t16;
+        let t153 = t152 - t151;
+        let t156 = 1.0 - 0.25 * (t153 * t153);
+        ::overact::guard::reach(t156, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t156);
+        let t162 = 1.0 / (0.5 * (t151 * c_distal_leg3 + t152 * c_distal_leg3));
+        let t163 = t151 + t152;
+        let c_proximal_leg3 = t162 * (0.25 * (t163 * t163));
+        let s_proximal_leg3 = t162 * (0.35355339059327373 * (t150 * t163));
+        let t177 = 0.5 * (t151 * c_proximal_leg3)
+            + 0.7071067811865475 * t150 * s_proximal_leg3
+            + 0.5 * (t152 * c_proximal_leg3);
+        ::overact::guard::leg(t177, 1.0, "leg3")?;
+        let t178 = 1.0 / t177;
+        let t179 = 0.5 * t178;
+        let gdistal_wx_leg3 = t150 * t179;
+        let t182 = 0.5 * (t150 * s_proximal_leg3);
+        let minus_gproximal_wx_leg3 = (t182
+            + 0.7071067811865475 * t152 * c_proximal_leg3) * t178;
+        let t187 = c_distal_leg3 * minus_gproximal_wx_leg3;
+        let s_distal_leg3 = 0.5 * t153;
+        let t190 = s_distal_leg3 * minus_gproximal_wx_leg3;
+        let t193 = gdistal_wx_leg3 * parameters[44];
+        let t199 = gdistal_wx_leg3 * parameters[43];
+        let t205 = gdistal_wx_leg3 * parameters[41];
+        let t208 = s_distal_leg3 * (parameters[40] * t187 - parameters[42] * t190 + t199)
+            - c_distal_leg3 * (parameters[39] * t187 - parameters[40] * t190 + t205);
+        let t214 = gdistal_wx_leg3
+            * (parameters[41] * t187 - parameters[43] * t190 + t193)
             - minus_gproximal_wx_leg3
-                * (t101
-                    - (minus_gproximal_wx_leg3 * parameters[35]
-                        + minus_gproximal_wx_leg3 * parameters[32]));
-        let (minus_s_proximal_leg4, minus_c_proximal_leg4) = ::overact::math::sin_cos(
-            joints[9],
-        );
-        let (c_distal_leg4, minus_s_distal_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(minus_s_distal_leg4, 1.0, "leg4")?;
-        let t113 = minus_s_proximal_leg4 * c_distal_leg4;
-        let t114 = 1.0 / minus_s_distal_leg4;
-        let gproximal_wx_leg4 = t113 * t114;
-        let t119 = c_distal_leg4 * gproximal_wx_leg4;
-        let t132 = c_distal_leg4
-            * (parameters[58] * t119 - t113 * parameters[56]
-                + minus_c_proximal_leg4 * parameters[59])
-            - minus_s_distal_leg4
-                * (parameters[56] * t119 - t113 * parameters[55]
-                    + minus_c_proximal_leg4 * parameters[57]);
-        let t141 = gproximal_wx_leg4
-            * (gproximal_wx_leg4 * parameters[51] + gproximal_wx_leg4 * parameters[48]
-                + t132)
-            + minus_c_proximal_leg4
-                * (parameters[59] * t119 - t113 * parameters[57]
-                    + minus_c_proximal_leg4 * parameters[60]);
-        let t143 = 2.0 * pose[2];
-        let t144 = pose[2] * t143;
-        let t146 = 2.0 * pose[3];
-        let t147 = pose[3] * t146;
-        let t148 = 1.0 - t144 - t147;
-        let t150 = 2.0 * pose[1];
-        let t151 = pose[2] * t150;
-        let t152 = pose[0] * t146;
-        let t153 = t151 - t152;
-        let t156 = pose[3] * t150;
-        let t157 = pose[0] * t143;
-        let t158 = t156 + t157;
-        let t168 = t148
-            * (t148 * parameters[64] + t153 * parameters[65] + t158 * parameters[66])
-            + t153
-                * (t148 * parameters[65] + t153 * parameters[67]
-                    + t158 * parameters[68]);
-        let t176 = t36 - t69 + t107 + t141 + t168
-            + t158
-                * (t148 * parameters[66] + t153 * parameters[68]
-                    + t158 * parameters[69]);
-        let t177 = minus_s_proximal_leg1 * c_distal_leg1;
-        let gproximal_wy_leg1 = t177 * t8;
-        let t182 = c_distal_leg1 * gproximal_wy_leg1;
-        let t195 = c_distal_leg1
-            * (parameters[10] * t182 - t177 * parameters[8]
-                + minus_c_proximal_leg1 * parameters[11])
-            - minus_s_distal_leg1
-                * (parameters[8] * t182 - t177 * parameters[7]
-                    + minus_c_proximal_leg1 * parameters[9]);
-        let t196 = gproximal_wy_leg1 * parameters[0] + gproximal_wy_leg1 * parameters[3]
-            + t195;
-        let t202 = parameters[11] * t182 - t177 * parameters[9]
-            + minus_c_proximal_leg1 * parameters[12];
-        let t206 = 0.7071067811865476 * minus_c_proximal_leg2 * c_distal_leg2;
-        let t207 = 0.7071067811865476 * minus_s_distal_leg2;
-        let t208 = t206 + t207;
-        let gproximal_wy_leg2 = t208 * t42;
-        let t213 = c_distal_leg2 * gproximal_wy_leg2;
-        let minus_gdistal_wy_leg2 = 0.7071067811865476 * minus_s_proximal_leg2;
-        let t218 = minus_gdistal_wy_leg2 * parameters[27];
-        let t224 = minus_gdistal_wy_leg2 * parameters[25];
-        let t227 = c_distal_leg2 * (parameters[26] * t213 - t208 * parameters[24] - t218)
-            - minus_s_distal_leg2
-                * (parameters[24] * t213 - t208 * parameters[23] - t224);
-        let t228 = gproximal_wy_leg2 * parameters[19]
-            + gproximal_wy_leg2 * parameters[16] + t227;
-        let t233 = minus_gdistal_wy_leg2 * parameters[28];
-        let t234 = parameters[27] * t213 - t208 * parameters[25] - t233;
-        let t238 = minus_s_proximal_leg3 * c_distal_leg3;
-        let minus_gproximal_wy_leg3 = t238 * t81;
-        let t241 = c_distal_leg3 * minus_gproximal_wy_leg3;
-        let t245 = t238 * parameters[41] - parameters[43] * t241
-            - minus_c_proximal_leg3 * parameters[44];
-        let t259 = c_distal_leg3
-            * (t238 * parameters[40] - parameters[42] * t241
-                - minus_c_proximal_leg3 * parameters[43])
-            - minus_s_distal_leg3
-                * (t238 * parameters[39] - parameters[40] * t241
-                    - minus_c_proximal_leg3 * parameters[41]);
-        let t263 = t259
-            - (minus_gproximal_wy_leg3 * parameters[35]
-                + minus_gproximal_wy_leg3 * parameters[32]);
-        let t266 = gproximal_wx_leg1 * t196 - minus_gdistal_wx_leg1 * t202
-            - (minus_gproximal_wx_leg2 * t228 + minus_c_proximal_leg2 * t234)
-            + gdistal_wx_leg3 * t245 - minus_gproximal_wx_leg3 * t263;
-        let t268 = 0.7071067811865476 * minus_c_proximal_leg4 * c_distal_leg4;
-        let t269 = 0.7071067811865476 * minus_s_distal_leg4;
-        let t270 = t268 + t269;
-        let minus_gproximal_wy_leg4 = t270 * t114;
-        let t273 = c_distal_leg4 * minus_gproximal_wy_leg4;
-        let gdistal_wy_leg4 = 0.7071067811865476 * minus_s_proximal_leg4;
-        let t277 = gdistal_wy_leg4 * parameters[59];
-        let t283 = gdistal_wy_leg4 * parameters[57];
-        let t286 = c_distal_leg4 * (t270 * parameters[56] - parameters[58] * t273 + t277)
-            - minus_s_distal_leg4
-                * (t270 * parameters[55] - parameters[56] * t273 + t283);
-        let t290 = t286
-            - (minus_gproximal_wy_leg4 * parameters[51]
-                + minus_gproximal_wy_leg4 * parameters[48]);
-        let t295 = gdistal_wy_leg4 * parameters[60];
-        let t296 = t270 * parameters[57] - parameters[59] * t273 + t295;
-        let t300 = t151 + t152;
-        let t303 = 1.0 - pose[1] * t150;
-        let t304 = t303 - t147;
-        let t307 = pose[3] * t143;
-        let t308 = pose[0] * t150;
-        let t309 = t307 - t308;
-        let t311 = t300 * parameters[64] + t304 * parameters[65] + t309 * parameters[66];
-        let t317 = t300 * parameters[65] + t304 * parameters[67] + t309 * parameters[68];
-        let t324 = t300 * parameters[66] + t304 * parameters[68] + t309 * parameters[69];
-        let t327 = t266 + gproximal_wx_leg4 * t290 + minus_c_proximal_leg4 * t296
-            + t148 * t311 + t153 * t317 + t158 * t324;
-        let t328 = t5 - t6;
-        let minus_gproximal_wz_leg1 = t328 * t8;
-        let t331 = c_distal_leg1 * minus_gproximal_wz_leg1;
-        let t341 = c_distal_leg1 * (t328 * parameters[8] - parameters[10] * t331 + t18)
-            - minus_s_distal_leg1 * (t328 * parameters[7] - parameters[8] * t331 + t24);
-        let t345 = t341
-            - (minus_gproximal_wz_leg1 * parameters[0]
-                + minus_gproximal_wz_leg1 * parameters[3]);
-        let t350 = t328 * parameters[9] - parameters[11] * t331 + t33;
-        let t351 = minus_gdistal_wx_leg1 * t350;
-        let t353 = t206 - t207;
-        let minus_gproximal_wz_leg2 = t353 * t42;
-        let t356 = c_distal_leg2 * minus_gproximal_wz_leg2;
-        let t366 = c_distal_leg2 * (t353 * parameters[24] - parameters[26] * t356 + t218)
-            - minus_s_distal_leg2
-                * (t353 * parameters[23] - parameters[24] * t356 + t224);
-        let t370 = t366
-            - (minus_gproximal_wz_leg2 * parameters[19]
-                + minus_gproximal_wz_leg2 * parameters[16]);
-        let t375 = t353 * parameters[25] - parameters[27] * t356 + t233;
-        let t379 = t77 - t78;
-        let minus_gproximal_wz_leg3 = t379 * t81;
-        let t382 = c_distal_leg3 * minus_gproximal_wz_leg3;
-        let t385 = t379 * parameters[41] - parameters[43] * t382 + t86;
-        let t386 = gdistal_wx_leg3 * t385;
-        let t397 = c_distal_leg3 * (t379 * parameters[40] - parameters[42] * t382 + t92)
-            - minus_s_distal_leg3
-                * (t379 * parameters[39] - parameters[40] * t382 + t98);
-        let t401 = t397
-            - (minus_gproximal_wz_leg3 * parameters[35]
-                + minus_gproximal_wz_leg3 * parameters[32]);
-        let t405 = t268 - t269;
-        let minus_gproximal_wz_leg4 = t405 * t114;
-        let t408 = c_distal_leg4 * minus_gproximal_wz_leg4;
-        let t418 = c_distal_leg4 * (t405 * parameters[56] - parameters[58] * t408 + t277)
-            - minus_s_distal_leg4
-                * (t405 * parameters[55] - parameters[56] * t408 + t283);
-        let t422 = t418
-            - (minus_gproximal_wz_leg4 * parameters[51]
-                + minus_gproximal_wz_leg4 * parameters[48]);
-        let t427 = t405 * parameters[57] - parameters[59] * t408 + t295;
-        let t430 = gproximal_wx_leg1 * t345 - t351
-            - (minus_gproximal_wx_leg2 * t370 + minus_c_proximal_leg2 * t375) + t386
-            - minus_gproximal_wx_leg3 * t401 + gproximal_wx_leg4 * t422
-            + minus_c_proximal_leg4 * t427;
-        let t431 = t156 - t157;
-        let t433 = t307 + t308;
-        let t436 = t303 - t144;
-        let t438 = t431 * parameters[64] + t433 * parameters[65] + t436 * parameters[66];
-        let t444 = t431 * parameters[65] + t433 * parameters[67] + t436 * parameters[68];
-        let t451 = t431 * parameters[66] + t433 * parameters[68] + t436 * parameters[69];
-        let t454 = t430 + t148 * t438 + t153 * t444 + t158 * t451;
-        let t465 = gproximal_wy_leg1 * t196 + minus_c_proximal_leg1 * t202
-            + gproximal_wy_leg2 * t228 - minus_gdistal_wy_leg2 * t234
-            - (minus_gproximal_wy_leg3 * t263 + minus_c_proximal_leg3 * t245);
-        let t475 = t465 + gdistal_wy_leg4 * t296 - minus_gproximal_wy_leg4 * t290
-            + t300 * t311 + t304 * t317 + t309 * t324;
-        let t480 = minus_gdistal_wy_leg2 * t375;
-        let t486 = gproximal_wy_leg1 * t345 + minus_c_proximal_leg1 * t350
-            + gproximal_wy_leg2 * t370 - t480
-            - (minus_gproximal_wy_leg3 * t401 + minus_c_proximal_leg3 * t385);
-        let t487 = gdistal_wy_leg4 * t427;
-        let t496 = t486 + t487 - minus_gproximal_wy_leg4 * t422 + t300 * t438
-            + t304 * t444 + t309 * t451;
-        let t507 = t351 - minus_gproximal_wz_leg1 * t345 + t480
-            - minus_gproximal_wz_leg2 * t370 + t386 - minus_gproximal_wz_leg3 * t401
-            + t487 - minus_gproximal_wz_leg4 * t422;
+                * (t208
+                    - (minus_gproximal_wx_leg3 * parameters[32]
+                        + minus_gproximal_wx_leg3 * parameters[35]));
+        let t216 = t85 + t8;
+        let t217 = t87 + t16;
+        let t218 = t216 + t217;
+        let t219 = t100 + t21;
+        let t221 = t217 - t216;
+        let t224 = 1.0 - 0.25 * (t221 * t221);
+        ::overact::guard::reach(t224, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t224);
+        let t230 = 1.0 / (0.5 * (t216 * c_distal_leg4 + t217 * c_distal_leg4));
+        let minus_s_proximal_leg4 = t230 * (0.35355339059327373 * (t219 * t218));
+        let c_proximal_leg4 = t230 * (0.25 * (t218 * t218));
+        let t243 = 0.7071067811865475 * t219 * minus_s_proximal_leg4
+            + 0.5 * (t216 * c_proximal_leg4) + 0.5 * (t217 * c_proximal_leg4);
+        ::overact::guard::leg(t243, 1.0, "leg4")?;
+        let t244 = 1.0 / t243;
+        let t245 = 0.5 * t244;
+        let gdistal_wx_leg4 = t218 * t245;
+        let s_distal_leg4 = 0.5 * t221;
+        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t244;
+        let t250 = c_distal_leg4 * minus_gproximal_wx_leg4;
+        let t252 = s_distal_leg4 * minus_gproximal_wx_leg4;
+        let t270 = s_distal_leg4
+            * (parameters[56] * t250 - parameters[58] * t252
+                + gdistal_wx_leg4 * parameters[59])
+            - c_distal_leg4
+                * (parameters[55] * t250 - parameters[56] * t252
+                    + gdistal_wx_leg4 * parameters[57]);
+        let t276 = gdistal_wx_leg4
+            * (parameters[57] * t250 - parameters[59] * t252
+                + gdistal_wx_leg4 * parameters[60])
+            - minus_gproximal_wx_leg4
+                * (t270
+                    - (minus_gproximal_wx_leg4 * parameters[48]
+                        + minus_gproximal_wx_leg4 * parameters[51]));
+        let t290 = t20
+            * (t20 * parameters[64] + t100 * parameters[65] + t21 * parameters[66])
+            + t100
+                * (t20 * parameters[65] + t100 * parameters[67] + t21 * parameters[68]);
+        let t298 = t84 + t148 + t214 + t276 + t290
+            + t21
+                * (t20 * parameters[66] + t100 * parameters[68] + t21 * parameters[69]);
+        let t302 = 0.5 * (t101 * minus_s_proximal_leg2);
+        let gproximal_wy_leg2 = (0.7071067811865475 * t88 * c_proximal_leg2 - t302)
+            * t118;
+        let minus_gdistal_wy_leg2 = t101 * t123;
+        let t309 = minus_gdistal_wy_leg2 * parameters[25];
+        let t310 = c_distal_leg2 * gproximal_wy_leg2;
+        let t312 = minus_s_distal_leg2 * gproximal_wy_leg2;
+        let t317 = minus_gdistal_wy_leg2 * parameters[27];
+        let t323 = c_distal_leg2 * (t309 + parameters[23] * t310 + parameters[24] * t312)
+            + minus_s_distal_leg2
+                * (t317 + parameters[24] * t310 + parameters[26] * t312);
+        let t324 = gproximal_wy_leg2 * parameters[16]
+            + gproximal_wy_leg2 * parameters[19] + t323;
+        let t326 = minus_gdistal_wy_leg2 * parameters[28];
+        let t330 = t326 + parameters[25] * t310 + parameters[27] * t312;
+        let gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t48;
+        let t335 = c_distal_leg1 * gproximal_wy_leg1;
+        let t337 = minus_s_distal_leg1 * gproximal_wy_leg1;
+        let minus_gdistal_wy_leg1 = t33 * t49;
+        let t342 = parameters[9] * t335 + parameters[11] * t337
+            + minus_gdistal_wy_leg1 * parameters[12];
+        let t359 = c_distal_leg1
+            * (parameters[7] * t335 + parameters[8] * t337
+                + minus_gdistal_wy_leg1 * parameters[9])
+            + minus_s_distal_leg1
+                * (parameters[8] * t335 + parameters[10] * t337
+                    + minus_gdistal_wy_leg1 * parameters[11]);
+        let t360 = gproximal_wy_leg1 * parameters[3] + gproximal_wy_leg1 * parameters[0]
+            + t359;
+        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t178;
+        let t366 = c_distal_leg3 * minus_gproximal_wy_leg3;
+        let t368 = s_distal_leg3 * minus_gproximal_wy_leg3;
+        let minus_gdistal_wy_leg3 = t163 * t179;
+        let t373 = parameters[41] * t366 - parameters[43] * t368
+            - minus_gdistal_wy_leg3 * parameters[44];
+        let t387 = s_distal_leg3
+            * (parameters[40] * t366 - parameters[42] * t368
+                - minus_gdistal_wy_leg3 * parameters[43])
+            - c_distal_leg3
+                * (parameters[39] * t366 - parameters[40] * t368
+                    - minus_gdistal_wy_leg3 * parameters[41]);
+        let t391 = t387
+            - (minus_gproximal_wy_leg3 * parameters[32]
+                + minus_gproximal_wy_leg3 * parameters[35]);
+        let t394 = gproximal_wx_leg2 * t324 - gdistal_wx_leg2 * t330
+            - (gdistal_wx_leg1 * t342 + minus_gproximal_wx_leg1 * t360)
+            + gdistal_wx_leg3 * t373 - minus_gproximal_wx_leg3 * t391;
+        let t396 = 0.5 * (t219 * minus_s_proximal_leg4);
+        let minus_gproximal_wy_leg4 = (t396
+            + 0.7071067811865475 * t217 * c_proximal_leg4) * t244;
+        let t401 = c_distal_leg4 * minus_gproximal_wy_leg4;
+        let t403 = s_distal_leg4 * minus_gproximal_wy_leg4;
+        let minus_gdistal_wy_leg4 = t219 * t245;
+        let t407 = minus_gdistal_wy_leg4 * parameters[60];
+        let t408 = parameters[57] * t401 - parameters[59] * t403 - t407;
+        let t413 = minus_gdistal_wy_leg4 * parameters[59];
+        let t419 = minus_gdistal_wy_leg4 * parameters[57];
+        let t422 = s_distal_leg4 * (parameters[56] * t401 - parameters[58] * t403 - t413)
+            - c_distal_leg4 * (parameters[55] * t401 - parameters[56] * t403 - t419);
+        let t426 = t422
+            - (minus_gproximal_wy_leg4 * parameters[48]
+                + minus_gproximal_wy_leg4 * parameters[51]);
+        let t434 = t4 * parameters[64] + t85 * parameters[65] + t8 * parameters[66];
+        let t440 = t4 * parameters[65] + t85 * parameters[67] + t8 * parameters[68];
+        let t447 = t4 * parameters[66] + t85 * parameters[68] + t8 * parameters[69];
+        let t450 = t394 + gdistal_wx_leg4 * t408 - minus_gproximal_wx_leg4 * t426
+            + t20 * t434 + t100 * t440 + t21 * t447;
+        let minus_gproximal_wz_leg1 = (0.7071067811865475 * t22 * c_proximal_leg1 + t52)
+            * t48;
+        let t455 = c_distal_leg1 * minus_gproximal_wz_leg1;
+        let t457 = minus_s_distal_leg1 * minus_gproximal_wz_leg1;
+        let t460 = parameters[9] * t455 + parameters[11] * t457 - t63;
+        let t461 = gdistal_wx_leg1 * t460;
+        let t475 = c_distal_leg1 * (parameters[7] * t455 + parameters[8] * t457 - t72)
+            + minus_s_distal_leg1 * (parameters[8] * t455 + parameters[10] * t457 - t78);
+        let t476 = minus_gproximal_wz_leg1 * parameters[3]
+            + minus_gproximal_wz_leg1 * parameters[0] + t475;
+        let minus_gproximal_wz_leg2 = (0.7071067811865475 * t86 * c_proximal_leg2 + t302)
+            * t118;
+        let t483 = c_distal_leg2 * minus_gproximal_wz_leg2;
+        let t485 = minus_s_distal_leg2 * minus_gproximal_wz_leg2;
+        let t488 = t326 + parameters[25] * t483 + parameters[27] * t485;
+        let t503 = c_distal_leg2 * (t309 + parameters[23] * t483 + parameters[24] * t485)
+            + minus_s_distal_leg2
+                * (t317 + parameters[24] * t483 + parameters[26] * t485);
+        let t504 = minus_gproximal_wz_leg2 * parameters[16]
+            + minus_gproximal_wz_leg2 * parameters[19] + t503;
+        let gproximal_wz_leg3 = (0.7071067811865475 * t151 * c_proximal_leg3 + t182)
+            * t178;
+        let t512 = s_distal_leg3 * gproximal_wz_leg3;
+        let t514 = c_distal_leg3 * gproximal_wz_leg3;
+        let t517 = parameters[43] * t512 - parameters[41] * t514 + t193;
+        let t518 = gdistal_wx_leg3 * t517;
+        let t532 = s_distal_leg3 * (parameters[42] * t512 - parameters[40] * t514 + t199)
+            - c_distal_leg3 * (parameters[40] * t512 - parameters[39] * t514 + t205);
+        let t533 = gproximal_wz_leg3 * parameters[32]
+            + gproximal_wz_leg3 * parameters[35] + t532;
+        let gproximal_wz_leg4 = (0.7071067811865475 * t216 * c_proximal_leg4 + t396)
+            * t244;
+        let t541 = s_distal_leg4 * gproximal_wz_leg4;
+        let t543 = c_distal_leg4 * gproximal_wz_leg4;
+        let t546 = parameters[59] * t541 - parameters[57] * t543 - t407;
+        let t561 = s_distal_leg4 * (parameters[58] * t541 - parameters[56] * t543 - t413)
+            - c_distal_leg4 * (parameters[56] * t541 - parameters[55] * t543 - t419);
+        let t562 = gproximal_wz_leg4 * parameters[48]
+            + gproximal_wz_leg4 * parameters[51] + t561;
+        let t565 = t461 + minus_gproximal_wx_leg1 * t476 + gdistal_wx_leg2 * t488
+            - gproximal_wx_leg2 * t504 + t518 - minus_gproximal_wx_leg3 * t533
+            + gdistal_wx_leg4 * t546 - minus_gproximal_wx_leg4 * t562;
+        let t570 = t12 * parameters[64] + t87 * parameters[65] + t16 * parameters[66];
+        let t576 = t12 * parameters[65] + t87 * parameters[67] + t16 * parameters[68];
+        let t583 = t12 * parameters[66] + t87 * parameters[68] + t16 * parameters[69];
+        let t586 = t565 + t20 * t570 + t100 * t576 + t21 * t583;
+        let t597 = gproximal_wy_leg1 * t360 + minus_gdistal_wy_leg1 * t342
+            + gproximal_wy_leg2 * t324 + minus_gdistal_wy_leg2 * t330
+            - (minus_gproximal_wy_leg3 * t391 + minus_gdistal_wy_leg3 * t373);
+        let t607 = t597 - (minus_gproximal_wy_leg4 * t426 + minus_gdistal_wy_leg4 * t408)
+            + t4 * t434 + t85 * t440 + t8 * t447;
+        let t617 = minus_gdistal_wy_leg2 * t488;
+        let t623 = gproximal_wy_leg1 * t476 + minus_gdistal_wy_leg1 * t460
+            + gproximal_wy_leg2 * t504 + t617 + minus_gproximal_wy_leg3 * t533
+            + minus_gdistal_wy_leg3 * t517;
+        let t625 = minus_gdistal_wy_leg4 * t546;
+        let t628 = t4 * t570 + t85 * t576 + t8 * t583
+            - (t623 + minus_gproximal_wy_leg4 * t562 + t625);
+        let t639 = t617 + minus_gproximal_wz_leg2 * t504
+            - (t461 - minus_gproximal_wz_leg1 * t476) + gproximal_wz_leg3 * t533 + t518
+            + gproximal_wz_leg4 * t562 - t625;
         Ok([
-            [t176, t327, t454], [t327, t475, t496],
-            [t454, t496, t507 + t431 * t438 + t433 * t444 + t436 * t451],
+            [t298, t450, t586], [t450, t607, t628],
+            [t586, t628, t639 + t12 * t570 + t87 * t576 + t16 * t583],
         ])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -7560,7 +10923,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 3.
     ///
-    /// 776 operations (320 additions, 452 multiplications, 4 divisions), 0 square roots, 8 trigonometric pairs, 4 signs, 793 intermediates.
+    /// 880 operations (344 additions, 528 multiplications, 8 divisions), 4 square roots, 0 trigonometric pairs, 4 signs, 885 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7569,395 +10932,420 @@ impl Spherical4Rrr {
         twist: &[f64; 3],
         parameters: &[f64; 73],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let t2 = 0.7071067811865476 * minus_c_proximal_leg1;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t5 = t2 * c_distal_leg1;
-        let t6 = 0.7071067811865476 * minus_s_distal_leg1;
-        let t7 = t5 + t6;
-        let t8 = 1.0 / minus_s_distal_leg1;
-        let gproximal_wx_leg1 = t7 * t8;
-        let t11 = minus_s_proximal_leg1 * c_distal_leg1;
-        let gproximal_wy_leg1 = t11 * t8;
-        let t15 = t5 - t6;
-        let minus_gproximal_wz_leg1 = t15 * t8;
-        let rate_proximal_leg1 = gproximal_wx_leg1 * twist[0]
-            + gproximal_wy_leg1 * twist[1] - minus_gproximal_wz_leg1 * twist[2];
-        let t19 = 0.7071067811865476 * rate_proximal_leg1;
-        let minus_gdistal_wx_leg1 = 0.7071067811865476 * minus_s_proximal_leg1;
-        let rate_distal_leg1 = minus_c_proximal_leg1 * twist[1]
-            - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let t26 = minus_c_proximal_leg1 * rate_distal_leg1;
-        let t27 = t19 * t26;
-        let t28 = t2 * minus_s_distal_leg1;
-        let t29 = 0.7071067811865476 * c_distal_leg1;
-        let t30 = t28 + t29;
-        let gwrist_wx_leg1 = t2 * t8;
-        let gwrist_wy_leg1 = minus_s_proximal_leg1 * t8;
-        let rate_wrist_leg1 = gwrist_wx_leg1 * twist[0] + gwrist_wy_leg1 * twist[1]
-            - gwrist_wx_leg1 * twist[2];
-        let t38 = t30 * rate_wrist_leg1;
-        let t40 = minus_gdistal_wx_leg1 * rate_distal_leg1;
-        let t41 = t19 + t40;
-        let t43 = minus_s_proximal_leg1 * minus_s_distal_leg1 * rate_wrist_leg1;
-        let t46 = t27 + t26 * t38 + t41 * t43;
-        let t48 = t19 - t40;
-        let t51 = (t29 - t28) * rate_wrist_leg1;
-        let t56 = t48 * t38 - t41 * t51 - 2.0 * (t19 * t40);
-        let t62 = t27 + t48 * t43 + t26 * t51;
-        let rate_dot_proximal_leg1 = gproximal_wx_leg1 * t46 - gproximal_wy_leg1 * t56
-            + minus_gproximal_wz_leg1 * t62;
-        let t66 = 6.9367175234400325 * minus_s_proximal_leg1;
-        let t78 = parameters[0] * rate_dot_proximal_leg1 - parameters[1] * t66
-            - parameters[2] * (6.9367175234400325 * minus_c_proximal_leg1)
-            + parameters[3] * rate_dot_proximal_leg1 + parameters[4] * rate_proximal_leg1
+        let t0 = 2.0 * pose[1];
+        let t1 = pose[2] * t0;
+        let t2 = 2.0 * pose[3];
+        let t3 = pose[0] * t2;
+        let t4 = t1 + t3;
+        let t5 = 2.0 * pose[2];
+        let t6 = pose[3] * t5;
+        let t7 = pose[0] * t0;
+        let t8 = t6 - t7;
+        let t9 = t4 - t8;
+        let t10 = pose[3] * t0;
+        let t11 = pose[0] * t5;
+        let t12 = t10 - t11;
+        let t14 = 1.0 - pose[1] * t0;
+        let t15 = pose[2] * t5;
+        let t16 = t14 - t15;
+        let t17 = t12 - t16;
+        let t19 = pose[3] * t2;
+        let t20 = 1.0 - t15 - t19;
+        let t21 = t10 + t11;
+        let t22 = t20 - t21;
+        let t23 = t22 + t17;
+        let t26 = 1.0 - 0.25 * (t23 * t23);
+        ::overact::guard::reach(t26, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t26);
+        let t32 = 1.0 / (0.5 * (t22 * c_distal_leg1 - t17 * c_distal_leg1));
+        let t33 = t22 - t17;
+        let c_proximal_leg1 = t32 * (0.25 * (t33 * t33));
+        let t41 = 0.7071067811865475 * t9;
+        let s_proximal_leg1 = t32 * (0.35355339059327373 * (t9 * t33));
+        let t47 = 0.5 * (t17 * c_proximal_leg1)
+            - (0.5 * (t22 * c_proximal_leg1) + t41 * s_proximal_leg1);
+        ::overact::guard::leg(t47, 1.0, "leg1")?;
+        let t48 = 1.0 / t47;
+        let t49 = 0.5 * t48;
+        let gdistal_wx_leg1 = t9 * t49;
+        let minus_s_distal_leg1 = 0.5 * t23;
+        let gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t48;
+        let t56 = 0.5 * (t9 * s_proximal_leg1);
+        let t57 = 0.7071067811865475 * t17;
+        let minus_gproximal_wx_leg1 = (t56 - t57 * c_proximal_leg1) * t48;
+        let t63 = 0.7071067811865475 * t22;
+        let minus_gproximal_wz_leg1 = (t63 * c_proximal_leg1 + t56) * t48;
+        let rate_proximal_leg1 = gproximal_wy_leg1 * twist[1]
+            - minus_gproximal_wx_leg1 * twist[0] - minus_gproximal_wz_leg1 * twist[2];
+        let t69 = c_distal_leg1 * rate_proximal_leg1;
+        let t70 = t69 * t69;
+        let t71 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t72 = t71 * t71;
+        let t75 = t69 * t71;
+        let minus_gdistal_wy_leg1 = t33 * t49;
+        let rate_distal_leg1 = gdistal_wx_leg1 * twist[0]
+            - minus_gdistal_wy_leg1 * twist[1] - gdistal_wx_leg1 * twist[2];
+        let t84 = c_proximal_leg1 * rate_distal_leg1;
+        let minus_gwrist_wx_leg1 = 0.7071067811865475 * c_proximal_leg1 * t48;
+        let minus_gwrist_wy_leg1 = s_proximal_leg1 * t48;
+        let rate_wrist_leg1 = minus_gwrist_wx_leg1 * twist[2]
+            - (minus_gwrist_wx_leg1 * twist[0] + minus_gwrist_wy_leg1 * twist[1]);
+        let t93 = t57 * rate_wrist_leg1;
+        let t95 = 0.7071067811865475 * rate_proximal_leg1;
+        let t97 = 0.7071067811865475 * s_proximal_leg1 * rate_distal_leg1;
+        let t98 = t95 + t97;
+        let t99 = t41 * rate_wrist_leg1;
+        let t102 = t95 * t84;
+        let t103 = t84 * t93 - t98 * t99 - t102;
+        let t105 = t63 * rate_wrist_leg1;
+        let t107 = t95 - t97;
+        let t112 = t98 * t105 - t107 * t93 - 2.0 * (t95 * t97);
+        let t118 = t102 + t107 * t99 - t84 * t105;
+        let rate_dot_proximal_leg1 = minus_gproximal_wx_leg1 * t103
+            - gproximal_wy_leg1 * t112 + minus_gproximal_wz_leg1 * t118;
+        let t121 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t126 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t128 = parameters[8] * (t70 - t72) - parameters[7] * t75
+            - parameters[9] * t121 + parameters[10] * t75 - parameters[11] * t126;
+        let rate_dot_distal_leg1 = minus_gdistal_wy_leg1 * t112 - gdistal_wx_leg1 * t103
+            + gdistal_wx_leg1 * t118;
+        let t136 = 6.936717523440031 * c_proximal_leg1;
+        let t139 = c_distal_leg1 * t136 - 3.4683587617200153 * t23;
+        let t144 = 6.936717523440031
+            * (minus_s_distal_leg1 * c_proximal_leg1 + c_distal_leg1);
+        let t146 = t128 + parameters[12] * rate_dot_distal_leg1 + parameters[13] * t139
+            + parameters[14] * t144;
+        let t147 = gdistal_wx_leg1 * t146;
+        let t149 = 6.936717523440031 * s_proximal_leg1;
+        let t160 = parameters[0] * rate_dot_proximal_leg1 - parameters[1] * t149
+            - parameters[2] * t136 + parameters[3] * rate_dot_proximal_leg1
+            + parameters[4] * rate_proximal_leg1
             + ::overact::math::signed(parameters[5], rate_proximal_leg1) + parameters[6];
-        let t79 = c_distal_leg1 * rate_proximal_leg1;
-        let t80 = rate_distal_leg1 * t79;
-        let t85 = t11 * t56 - t7 * t46 - t15 * t62;
-        let t86 = t85 + t80;
-        let t89 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t90 = rate_distal_leg1 * t89;
-        let t93 = rate_distal_leg1 * rate_distal_leg1;
-        let t94 = t89 * t89;
-        let rate_dot_wrist_leg1 = gwrist_wx_leg1 * t46 - gwrist_wy_leg1 * t56
-            + gwrist_wx_leg1 * t62;
-        let minus_rate_dot_distal_leg1 = minus_gdistal_wx_leg1 * t46
-            + minus_c_proximal_leg1 * t56 + minus_gdistal_wx_leg1 * t62;
-        let t110 = t89 * t79;
-        let t113 = parameters[8] * (t80 + t86) - parameters[7] * t90
-            + parameters[9] * (t93 - t94) + parameters[10] * rate_dot_wrist_leg1
-            - parameters[11] * (minus_rate_dot_distal_leg1 - t110);
-        let t118 = 9.81 * t15;
-        let t131 = t79 * t79;
-        let t134 = parameters[7] * t86 + parameters[8] * (t90 + rate_dot_wrist_leg1)
-            - parameters[9] * (t110 + minus_rate_dot_distal_leg1) - parameters[10] * t80
-            + parameters[11] * (t131 - t93);
-        let t139 = 9.81 * t30;
-        let t143 = c_distal_leg1
-            * (t113 + parameters[12] * t90 - parameters[13] * t66
-                + parameters[15] * t118)
-            - minus_s_distal_leg1
-                * (t134 + parameters[12] * t80 + parameters[14] * t66
-                    - parameters[15] * t139);
-        let t144 = t78 + t143;
-        let t156 = parameters[7] * t110 + parameters[8] * (t94 - t131)
-            + parameters[9] * t85 - parameters[10] * t110
-            + parameters[11] * (c_distal_leg1 * rate_dot_proximal_leg1);
-        let t162 = t156 - parameters[12] * minus_rate_dot_distal_leg1
-            + parameters[13] * t139 - parameters[14] * t118;
-        let t163 = minus_gdistal_wx_leg1 * t162;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let t169 = minus_s_proximal_leg2 * c_distal_leg2;
-        let t170 = 1.0 / minus_s_distal_leg2;
-        let minus_gproximal_wx_leg2 = t169 * t170;
-        let t172 = 0.7071067811865476 * minus_c_proximal_leg2;
-        let t173 = t172 * c_distal_leg2;
-        let t174 = 0.7071067811865476 * minus_s_distal_leg2;
-        let t175 = t173 + t174;
-        let gproximal_wy_leg2 = t175 * t170;
-        let t180 = t173 - t174;
-        let minus_gproximal_wz_leg2 = t180 * t170;
-        let rate_proximal_leg2 = gproximal_wy_leg2 * twist[1]
-            - minus_gproximal_wx_leg2 * twist[0] - minus_gproximal_wz_leg2 * twist[2];
-        let t184 = 0.7071067811865476 * rate_proximal_leg2;
-        let minus_gdistal_wy_leg2 = 0.7071067811865476 * minus_s_proximal_leg2;
-        let rate_distal_leg2 = minus_gdistal_wy_leg2 * twist[2]
-            - (minus_c_proximal_leg2 * twist[0] + minus_gdistal_wy_leg2 * twist[1]);
-        let t191 = minus_gdistal_wy_leg2 * rate_distal_leg2;
-        let t194 = t184 + t191;
-        let t195 = 0.7071067811865476 * c_distal_leg2;
-        let t196 = t172 * minus_s_distal_leg2;
-        let gwrist_wy_leg2 = t172 * t170;
-        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t170;
-        let rate_wrist_leg2 = gwrist_wy_leg2 * twist[1] - minus_gwrist_wx_leg2 * twist[0]
-            - gwrist_wy_leg2 * twist[2];
-        let t205 = (t195 - t196) * rate_wrist_leg2;
-        let t207 = t184 - t191;
-        let t208 = t196 + t195;
-        let t209 = t208 * rate_wrist_leg2;
-        let t212 = 2.0 * (t184 * t191) + t194 * t205 - t207 * t209;
-        let t214 = minus_c_proximal_leg2 * rate_distal_leg2;
-        let t215 = t184 * t214;
-        let t217 = minus_s_proximal_leg2 * minus_s_distal_leg2 * rate_wrist_leg2;
-        let t221 = t215 + t194 * t217 + t214 * t209;
-        let t227 = t215 + t214 * t205 + t207 * t217;
-        let rate_dot_proximal_leg2 = minus_gproximal_wx_leg2 * t212
-            + gproximal_wy_leg2 * t221 + minus_gproximal_wz_leg2 * t227;
-        let t231 = 6.9367175234400325 * minus_s_proximal_leg2;
-        let t243 = parameters[16] * rate_dot_proximal_leg2 - parameters[17] * t231
-            - parameters[18] * (6.9367175234400325 * minus_c_proximal_leg2)
-            + parameters[19] * rate_dot_proximal_leg2
+        let t161 = rate_distal_leg1 * t69;
+        let t162 = t161 - t126;
+        let t165 = rate_distal_leg1 * t71;
+        let t166 = t121 + t165;
+        let t174 = rate_distal_leg1 * rate_distal_leg1;
+        let t177 = parameters[8] * (t161 + t162) - parameters[7] * t166
+            + parameters[9] * (t75 + rate_dot_distal_leg1) + parameters[10] * t165
+            + parameters[11] * (t72 - t174);
+        let t196 = parameters[9] * (t174 - t70)
+            - (parameters[7] * t161 + parameters[8] * (t165 + t166))
+            + parameters[10] * t162 - parameters[11] * (t75 - rate_dot_distal_leg1);
+        let t204 = c_distal_leg1
+            * (t177 - parameters[12] * t165 + parameters[14] * t149
+                - parameters[15] * t139)
+            + minus_s_distal_leg1
+                * (t196 + parameters[12] * t161 - parameters[13] * t149
+                    - parameters[15] * t144);
+        let t205 = t160 - t204;
+        let t208 = t14 - t19;
+        let t209 = t208 - t8;
+        let t210 = t6 + t7;
+        let t211 = t210 - t16;
+        let t212 = t209 + t211;
+        let minus_s_distal_leg2 = 0.5 * t212;
+        let t216 = 1.0 - 0.25 * (t212 * t212);
+        ::overact::guard::reach(t216, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t216);
+        let t222 = 1.0 / (0.5 * (t209 * c_distal_leg2 - t211 * c_distal_leg2));
+        let t223 = t1 - t3;
+        let t224 = t223 - t21;
+        let t225 = t209 - t211;
+        let minus_s_proximal_leg2 = t222 * (0.35355339059327373 * (t224 * t225));
+        let c_proximal_leg2 = t222 * (0.25 * (t225 * t225));
+        let t235 = 0.7071067811865475 * t224;
+        let t240 = 0.5 * (t211 * c_proximal_leg2)
+            - (t235 * minus_s_proximal_leg2 + 0.5 * (t209 * c_proximal_leg2));
+        ::overact::guard::leg(t240, 1.0, "leg2")?;
+        let t241 = 1.0 / t240;
+        let gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t241;
+        let t243 = 0.7071067811865475 * t209;
+        let t246 = 0.5 * (t224 * minus_s_proximal_leg2);
+        let minus_gproximal_wz_leg2 = (t243 * c_proximal_leg2 + t246) * t241;
+        let t250 = 0.7071067811865475 * t211;
+        let gproximal_wy_leg2 = (t250 * c_proximal_leg2 - t246) * t241;
+        let rate_proximal_leg2 = gproximal_wx_leg2 * twist[0]
+            + gproximal_wy_leg2 * twist[1] - minus_gproximal_wz_leg2 * twist[2];
+        let t258 = 0.7071067811865475 * rate_proximal_leg2;
+        let t259 = 0.5 * t241;
+        let gdistal_wx_leg2 = t225 * t259;
+        let minus_gdistal_wy_leg2 = t224 * t259;
+        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
+            - minus_gdistal_wy_leg2 * twist[1] + minus_gdistal_wy_leg2 * twist[2];
+        let t267 = c_proximal_leg2 * rate_distal_leg2;
+        let t268 = t258 * t267;
+        let minus_gwrist_wy_leg2 = 0.7071067811865475 * c_proximal_leg2 * t241;
+        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t241;
+        let rate_wrist_leg2 = minus_gwrist_wy_leg2 * twist[2]
+            - (minus_gwrist_wx_leg2 * twist[0] + minus_gwrist_wy_leg2 * twist[1]);
+        let t277 = t243 * rate_wrist_leg2;
+        let t280 = 0.7071067811865475 * minus_s_proximal_leg2 * rate_distal_leg2;
+        let t281 = t258 + t280;
+        let t282 = t235 * rate_wrist_leg2;
+        let t285 = t268 - (t267 * t277 + t281 * t282);
+        let t287 = t250 * rate_wrist_leg2;
+        let t289 = t258 - t280;
+        let t294 = t281 * t287 - t289 * t277 - 2.0 * (t258 * t280);
+        let t299 = t289 * t282 + t267 * t287 - t268;
+        let rate_dot_proximal_leg2 = minus_gproximal_wz_leg2 * t285
+            - (gproximal_wx_leg2 * t294 + gproximal_wy_leg2 * t299);
+        let t304 = 6.936717523440031 * minus_s_proximal_leg2;
+        let t307 = 6.936717523440031 * c_proximal_leg2;
+        let t316 = parameters[16] * rate_dot_proximal_leg2 + parameters[17] * t304
+            - parameters[18] * t307 + parameters[19] * rate_dot_proximal_leg2
             + parameters[20] * rate_proximal_leg2
             + ::overact::math::signed(parameters[21], rate_proximal_leg2)
             + parameters[22];
-        let t244 = c_distal_leg2 * rate_proximal_leg2;
-        let t245 = rate_distal_leg2 * t244;
-        let t250 = t169 * t212 + t175 * t221 + t180 * t227;
-        let t251 = t245 - t250;
-        let t254 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t255 = rate_distal_leg2 * t254;
-        let t258 = rate_distal_leg2 * rate_distal_leg2;
-        let t259 = t254 * t254;
-        let rate_dot_wrist_leg2 = minus_gwrist_wx_leg2 * t212 + gwrist_wy_leg2 * t221
-            + gwrist_wy_leg2 * t227;
-        let t270 = t254 * t244;
-        let rate_dot_distal_leg2 = minus_c_proximal_leg2 * t212
-            - minus_gdistal_wy_leg2 * t221 - minus_gdistal_wy_leg2 * t227;
-        let t278 = parameters[24] * (t245 + t251) - parameters[23] * t255
-            + parameters[25] * (t258 - t259) + parameters[26] * rate_dot_wrist_leg2
-            + parameters[27] * (t270 + rate_dot_distal_leg2);
-        let t283 = 9.81 * t180;
-        let t296 = t244 * t244;
-        let t299 = parameters[23] * t251 + parameters[24] * (t255 + rate_dot_wrist_leg2)
-            + parameters[25] * (rate_dot_distal_leg2 - t270) - parameters[26] * t245
-            + parameters[27] * (t296 - t258);
-        let t304 = 9.81 * t208;
-        let t308 = c_distal_leg2
-            * (t278 + parameters[28] * t255 - parameters[29] * t231
-                + parameters[31] * t283)
-            - minus_s_distal_leg2
-                * (t299 + parameters[28] * t245 + parameters[30] * t231
-                    - parameters[31] * t304);
-        let t309 = t243 + t308;
-        let t321 = parameters[23] * t270 + parameters[24] * (t259 - t296)
-            - parameters[25] * t250 - parameters[26] * t270
-            + parameters[27] * (c_distal_leg2 * rate_dot_proximal_leg2);
-        let t327 = t321 + parameters[28] * rate_dot_distal_leg2 + parameters[29] * t304
-            - parameters[30] * t283;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let gdistal_wx_leg3 = 0.7071067811865476 * minus_s_proximal_leg3;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let t336 = 0.7071067811865476 * minus_c_proximal_leg3;
-        let t337 = t336 * c_distal_leg3;
-        let t338 = 0.7071067811865476 * minus_s_distal_leg3;
-        let t339 = t337 + t338;
-        let t340 = 1.0 / minus_s_distal_leg3;
-        let minus_gproximal_wx_leg3 = t339 * t340;
-        let t343 = minus_s_proximal_leg3 * c_distal_leg3;
-        let minus_gproximal_wy_leg3 = t343 * t340;
-        let t347 = t337 - t338;
-        let minus_gproximal_wz_leg3 = t347 * t340;
-        let minus_rate_proximal_leg3 = minus_gproximal_wx_leg3 * twist[0]
-            + minus_gproximal_wy_leg3 * twist[1] + minus_gproximal_wz_leg3 * twist[2];
-        let t351 = minus_s_distal_leg3 * minus_rate_proximal_leg3;
-        let t352 = c_distal_leg3 * minus_rate_proximal_leg3;
-        let t353 = t351 * t352;
-        let t355 = t351 * t351;
-        let t356 = t352 * t352;
-        let t360 = 0.7071067811865476 * minus_rate_proximal_leg3;
+        let t317 = c_distal_leg2 * rate_proximal_leg2;
+        let t318 = rate_distal_leg2 * t317;
+        let t319 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t320 = t318 - t319;
+        let t323 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t324 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t325 = rate_distal_leg2 * t324;
+        let t326 = t323 + t325;
+        let t329 = t317 * t324;
+        let rate_dot_distal_leg2 = minus_gdistal_wy_leg2 * t299 - gdistal_wx_leg2 * t294
+            - minus_gdistal_wy_leg2 * t285;
+        let t340 = t324 * t324;
+        let t341 = rate_distal_leg2 * rate_distal_leg2;
+        let t344 = parameters[24] * (t318 + t320) - parameters[23] * t326
+            + parameters[25] * (t329 + rate_dot_distal_leg2) + parameters[26] * t325
+            + parameters[27] * (t340 - t341);
+        let t351 = c_distal_leg2 * t307 - 3.4683587617200153 * t212;
+        let t355 = t317 * t317;
+        let t367 = parameters[25] * (t341 - t355)
+            - (parameters[23] * t318 + parameters[24] * (t325 + t326))
+            + parameters[26] * t320 - parameters[27] * (t329 - rate_dot_distal_leg2);
+        let t374 = 6.936717523440031
+            * (minus_s_distal_leg2 * c_proximal_leg2 + c_distal_leg2);
+        let t378 = c_distal_leg2
+            * (t344 - parameters[28] * t325 - parameters[30] * t304
+                - parameters[31] * t351)
+            + minus_s_distal_leg2
+                * (t367 + parameters[28] * t318 + parameters[29] * t304
+                    - parameters[31] * t374);
+        let t379 = t316 - t378;
+        let t390 = parameters[24] * (t355 - t340) - parameters[23] * t329
+            - parameters[25] * t323 + parameters[26] * t329 - parameters[27] * t319;
+        let t396 = t390 + parameters[28] * rate_dot_distal_leg2 + parameters[29] * t351
+            + parameters[30] * t374;
+        let t400 = t4 + t8;
+        let t401 = t20 + t21;
+        let t402 = t12 + t16;
+        let t403 = t402 - t401;
+        let t406 = 1.0 - 0.25 * (t403 * t403);
+        ::overact::guard::reach(t406, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t406);
+        let t412 = 1.0 / (0.5 * (t401 * c_distal_leg3 + t402 * c_distal_leg3));
+        let t413 = t401 + t402;
+        let c_proximal_leg3 = t412 * (0.25 * (t413 * t413));
+        let t419 = 0.7071067811865475 * t400;
+        let s_proximal_leg3 = t412 * (0.35355339059327373 * (t400 * t413));
+        let t427 = 0.5 * (t401 * c_proximal_leg3) + t419 * s_proximal_leg3
+            + 0.5 * (t402 * c_proximal_leg3);
+        ::overact::guard::leg(t427, 1.0, "leg3")?;
+        let t428 = 1.0 / t427;
+        let t429 = 0.5 * t428;
+        let gdistal_wx_leg3 = t400 * t429;
+        let t431 = 0.7071067811865475 * t401;
+        let t434 = 0.5 * (t400 * s_proximal_leg3);
+        let gproximal_wz_leg3 = (t431 * c_proximal_leg3 + t434) * t428;
+        let t438 = 0.7071067811865475 * t402;
+        let minus_gproximal_wx_leg3 = (t434 + t438 * c_proximal_leg3) * t428;
+        let s_distal_leg3 = 0.5 * t403;
+        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t428;
+        let rate_proximal_leg3 = gproximal_wz_leg3 * twist[2]
+            - (minus_gproximal_wx_leg3 * twist[0] + minus_gproximal_wy_leg3 * twist[1]);
+        let t449 = c_distal_leg3 * rate_proximal_leg3;
+        let t450 = s_distal_leg3 * rate_proximal_leg3;
+        let t451 = t449 * t450;
+        let t453 = t449 * t449;
+        let t454 = t450 * t450;
+        let t458 = 0.7071067811865475 * rate_proximal_leg3;
+        let minus_gdistal_wy_leg3 = t413 * t429;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0]
-            - minus_c_proximal_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
-        let t366 = minus_c_proximal_leg3 * rate_distal_leg3;
-        let t367 = t360 * t366;
-        let t368 = t336 * minus_s_distal_leg3;
-        let t369 = 0.7071067811865476 * c_distal_leg3;
-        let t370 = t368 + t369;
-        let minus_gwrist_wx_leg3 = t336 * t340;
-        let minus_gwrist_wy_leg3 = minus_s_proximal_leg3 * t340;
+            - minus_gdistal_wy_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
+        let t465 = c_proximal_leg3 * rate_distal_leg3;
+        let t466 = t458 * t465;
+        let minus_gwrist_wx_leg3 = 0.7071067811865475 * c_proximal_leg3 * t428;
+        let minus_gwrist_wy_leg3 = s_proximal_leg3 * t428;
         let minus_rate_wrist_leg3 = minus_gwrist_wx_leg3 * twist[0]
             + minus_gwrist_wy_leg3 * twist[1] + minus_gwrist_wx_leg3 * twist[2];
-        let t378 = t370 * minus_rate_wrist_leg3;
-        let t380 = gdistal_wx_leg3 * rate_distal_leg3;
-        let t381 = t380 - t360;
-        let t383 = minus_s_proximal_leg3 * minus_s_distal_leg3 * minus_rate_wrist_leg3;
-        let t386 = t367 + t366 * t378 + t381 * t383;
-        let t389 = (t368 - t369) * minus_rate_wrist_leg3;
-        let t391 = t360 + t380;
-        let t396 = t381 * t389 - t391 * t378 - 2.0 * (t360 * t380);
-        let t402 = t391 * t383 + t366 * t389 - t367;
-        let t404 = t339 * t386 - t343 * t396 - t347 * t402;
-        let rate_dot_proximal_leg3 = minus_gproximal_wy_leg3 * t396
-            - minus_gproximal_wx_leg3 * t386 + minus_gproximal_wz_leg3 * t402;
-        let t416 = parameters[39] * t353 + parameters[40] * (t355 - t356)
-            + parameters[41] * t404 - parameters[42] * t353
-            + parameters[43] * (c_distal_leg3 * rate_dot_proximal_leg3);
-        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t386 + minus_c_proximal_leg3 * t396
-            - gdistal_wx_leg3 * t402;
-        let t424 = 9.81 * t370;
-        let t427 = 9.81 * t347;
-        let t429 = t416 + parameters[44] * rate_dot_distal_leg3 + parameters[45] * t424
-            - parameters[46] * t427;
-        let t430 = gdistal_wx_leg3 * t429;
-        let t432 = 6.9367175234400325 * minus_s_proximal_leg3;
-        let t444 = parameters[32] * rate_dot_proximal_leg3 - parameters[33] * t432
-            - parameters[34] * (6.9367175234400325 * minus_c_proximal_leg3)
-            + parameters[35] * rate_dot_proximal_leg3
-            - parameters[36] * minus_rate_proximal_leg3
-            - ::overact::math::signed(parameters[37], minus_rate_proximal_leg3)
+        let t475 = t438 * minus_rate_wrist_leg3;
+        let t478 = 0.7071067811865475 * s_proximal_leg3 * rate_distal_leg3;
+        let t479 = t458 + t478;
+        let t480 = t419 * minus_rate_wrist_leg3;
+        let t483 = t466 - (t465 * t475 + t479 * t480);
+        let t487 = t431 * minus_rate_wrist_leg3;
+        let t489 = t478 - t458;
+        let t492 = 2.0 * (t458 * t478) + t479 * t487 - t489 * t475;
+        let t498 = t466 + t489 * t480 + t465 * t487;
+        let rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t483
+            + minus_gproximal_wy_leg3 * t492 - gproximal_wz_leg3 * t498;
+        let t501 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t506 = s_distal_leg3 * rate_dot_proximal_leg3;
+        let t508 = parameters[39] * t451 + parameters[40] * (t453 - t454)
+            - parameters[41] * t501 - parameters[42] * t451 + parameters[43] * t506;
+        let rate_dot_distal_leg3 = minus_gdistal_wy_leg3 * t492 - gdistal_wx_leg3 * t483
+            - gdistal_wx_leg3 * t498;
+        let t516 = 6.936717523440031 * c_proximal_leg3;
+        let t519 = c_distal_leg3 * t516 + 3.4683587617200153 * t403;
+        let t524 = 6.936717523440031 * (s_distal_leg3 * c_proximal_leg3 - c_distal_leg3);
+        let t526 = t508 + parameters[44] * rate_dot_distal_leg3 + parameters[45] * t519
+            - parameters[46] * t524;
+        let t527 = gdistal_wx_leg3 * t526;
+        let t529 = 6.936717523440031 * s_proximal_leg3;
+        let t540 = parameters[32] * rate_dot_proximal_leg3 - parameters[33] * t529
+            - parameters[34] * t516 + parameters[35] * rate_dot_proximal_leg3
+            + parameters[36] * rate_proximal_leg3
+            + ::overact::math::signed(parameters[37], rate_proximal_leg3)
             + parameters[38];
-        let t445 = rate_distal_leg3 * t351;
-        let t447 = rate_distal_leg3 * t352;
-        let t448 = t404 - t447;
-        let t452 = rate_distal_leg3 * rate_distal_leg3;
-        let rate_dot_wrist_leg3 = minus_gwrist_wy_leg3 * t396
-            - minus_gwrist_wx_leg3 * t386 + minus_gwrist_wx_leg3 * t402;
-        let t465 = parameters[39] * t445 + parameters[40] * (t448 - t447)
-            + parameters[41] * (t452 - t355) + parameters[42] * rate_dot_wrist_leg3
-            + parameters[43] * (t353 + rate_dot_distal_leg3);
-        let t484 = parameters[39] * t448 - parameters[40] * (t445 - rate_dot_wrist_leg3)
-            + parameters[41] * (rate_dot_distal_leg3 - t353) + parameters[42] * t447
-            + parameters[43] * (t356 - t452);
-        let t492 = c_distal_leg3
-            * (t465 - parameters[44] * t445 - parameters[45] * t432
-                + parameters[47] * t427)
-            - minus_s_distal_leg3
-                * (t484 - parameters[44] * t447 + parameters[46] * t432
-                    - parameters[47] * t424);
-        let t493 = t444 + t492;
-        let (minus_s_proximal_leg4, minus_c_proximal_leg4) = ::overact::math::sin_cos(
-            joints[9],
-        );
-        let (c_distal_leg4, minus_s_distal_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(minus_s_distal_leg4, 1.0, "leg4")?;
-        let t501 = minus_s_proximal_leg4 * c_distal_leg4;
-        let t502 = 1.0 / minus_s_distal_leg4;
-        let gproximal_wx_leg4 = t501 * t502;
-        let t504 = 0.7071067811865476 * minus_c_proximal_leg4;
-        let t505 = t504 * c_distal_leg4;
-        let t506 = 0.7071067811865476 * minus_s_distal_leg4;
-        let t507 = t505 + t506;
-        let minus_gproximal_wy_leg4 = t507 * t502;
-        let t512 = t505 - t506;
-        let minus_gproximal_wz_leg4 = t512 * t502;
-        let rate_proximal_leg4 = gproximal_wx_leg4 * twist[0]
-            - minus_gproximal_wy_leg4 * twist[1] - minus_gproximal_wz_leg4 * twist[2];
-        let t516 = 0.7071067811865476 * rate_proximal_leg4;
-        let gdistal_wy_leg4 = 0.7071067811865476 * minus_s_proximal_leg4;
-        let rate_distal_leg4 = minus_c_proximal_leg4 * twist[0]
-            + gdistal_wy_leg4 * twist[1] + gdistal_wy_leg4 * twist[2];
-        let t523 = minus_c_proximal_leg4 * rate_distal_leg4;
-        let t524 = t516 * t523;
-        let t525 = gdistal_wy_leg4 * rate_distal_leg4;
-        let t526 = t516 + t525;
-        let gwrist_wx_leg4 = minus_s_proximal_leg4 * t502;
-        let minus_gwrist_wy_leg4 = t504 * t502;
-        let rate_wrist_leg4 = gwrist_wx_leg4 * twist[0] - minus_gwrist_wy_leg4 * twist[1]
-            - minus_gwrist_wy_leg4 * twist[2];
-        let t535 = minus_s_proximal_leg4 * minus_s_distal_leg4 * rate_wrist_leg4;
-        let t537 = t504 * minus_s_distal_leg4;
-        let t538 = 0.7071067811865476 * c_distal_leg4;
-        let t539 = t537 + t538;
-        let t540 = t539 * rate_wrist_leg4;
-        let t543 = t524 + t526 * t535 + t523 * t540;
-        let t546 = (t537 - t538) * rate_wrist_leg4;
-        let t548 = t525 - t516;
-        let t553 = t526 * t546 - t548 * t540 - 2.0 * (t516 * t525);
-        let t559 = t524 - (t523 * t546 + t548 * t535);
-        let rate_dot_proximal_leg4 = minus_gproximal_wy_leg4 * t543
-            - gproximal_wx_leg4 * t553 + minus_gproximal_wz_leg4 * t559;
-        let t563 = 6.9367175234400325 * minus_s_proximal_leg4;
-        let t575 = parameters[48] * rate_dot_proximal_leg4 - parameters[49] * t563
-            - parameters[50] * (6.9367175234400325 * minus_c_proximal_leg4)
-            + parameters[51] * rate_dot_proximal_leg4
+        let t541 = rate_distal_leg3 * t450;
+        let t542 = t541 - t501;
+        let t545 = rate_distal_leg3 * t449;
+        let t548 = rate_distal_leg3 * rate_distal_leg3;
+        let t552 = t506 + t545;
+        let t557 = parameters[40] * (t541 + t542) - parameters[39] * t545
+            + parameters[41] * (t548 - t453) + parameters[42] * t552
+            + parameters[43] * (t451 + rate_dot_distal_leg3);
+        let t576 = parameters[39] * t542 + parameters[40] * (t545 + t552)
+            + parameters[41] * (rate_dot_distal_leg3 - t451) - parameters[42] * t541
+            + parameters[43] * (t454 - t548);
+        let t584 = s_distal_leg3
+            * (t557 + parameters[44] * t545 - parameters[45] * t529
+                + parameters[47] * t524)
+            - c_distal_leg3
+                * (t576 + parameters[44] * t541 + parameters[46] * t529
+                    - parameters[47] * t519);
+        let t585 = t540 + t584;
+        let t589 = t208 + t8;
+        let t590 = t210 + t16;
+        let t591 = t589 + t590;
+        let t592 = t223 + t21;
+        let t593 = 0.7071067811865475 * t592;
+        let t594 = t590 - t589;
+        let t597 = 1.0 - 0.25 * (t594 * t594);
+        ::overact::guard::reach(t597, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t597);
+        let t603 = 1.0 / (0.5 * (t589 * c_distal_leg4 + t590 * c_distal_leg4));
+        let minus_s_proximal_leg4 = t603 * (0.35355339059327373 * (t592 * t591));
+        let c_proximal_leg4 = t603 * (0.25 * (t591 * t591));
+        let t616 = t593 * minus_s_proximal_leg4 + 0.5 * (t589 * c_proximal_leg4)
+            + 0.5 * (t590 * c_proximal_leg4);
+        ::overact::guard::leg(t616, 1.0, "leg4")?;
+        let t617 = 1.0 / t616;
+        let t618 = 0.5 * t617;
+        let gdistal_wx_leg4 = t591 * t618;
+        let t620 = 0.7071067811865475 * t589;
+        let t623 = 0.5 * (t592 * minus_s_proximal_leg4);
+        let gproximal_wz_leg4 = (t620 * c_proximal_leg4 + t623) * t617;
+        let s_distal_leg4 = 0.5 * t594;
+        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t617;
+        let t631 = 0.7071067811865475 * t590;
+        let minus_gproximal_wy_leg4 = (t623 + t631 * c_proximal_leg4) * t617;
+        let rate_proximal_leg4 = gproximal_wz_leg4 * twist[2]
+            - (minus_gproximal_wx_leg4 * twist[0] + minus_gproximal_wy_leg4 * twist[1]);
+        let t638 = c_distal_leg4 * rate_proximal_leg4;
+        let t639 = s_distal_leg4 * rate_proximal_leg4;
+        let t640 = t638 * t639;
+        let t642 = t638 * t638;
+        let t643 = t639 * t639;
+        let t647 = 0.7071067811865475 * rate_proximal_leg4;
+        let minus_gdistal_wy_leg4 = t592 * t618;
+        let rate_distal_leg4 = gdistal_wx_leg4 * twist[0]
+            - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
+        let t655 = 0.7071067811865475 * minus_s_proximal_leg4 * rate_distal_leg4;
+        let t658 = t647 + t655;
+        let minus_gwrist_wx_leg4 = minus_s_proximal_leg4 * t617;
+        let minus_gwrist_wy_leg4 = 0.7071067811865475 * c_proximal_leg4 * t617;
+        let minus_rate_wrist_leg4 = minus_gwrist_wx_leg4 * twist[0]
+            + minus_gwrist_wy_leg4 * twist[1] + minus_gwrist_wy_leg4 * twist[2];
+        let t667 = t631 * minus_rate_wrist_leg4;
+        let t669 = t647 - t655;
+        let t670 = t620 * minus_rate_wrist_leg4;
+        let t673 = 2.0 * (t647 * t655) - (t658 * t667 + t669 * t670);
+        let t675 = c_proximal_leg4 * rate_distal_leg4;
+        let t676 = t647 * t675;
+        let t677 = t593 * minus_rate_wrist_leg4;
+        let t681 = t676 + t669 * t677 - t675 * t667;
+        let t687 = t676 + t675 * t670 + t658 * t677;
+        let rate_dot_proximal_leg4 = minus_gproximal_wx_leg4 * t673
+            + minus_gproximal_wy_leg4 * t681 - gproximal_wz_leg4 * t687;
+        let t690 = c_distal_leg4 * rate_dot_proximal_leg4;
+        let t695 = s_distal_leg4 * rate_dot_proximal_leg4;
+        let t697 = parameters[55] * t640 + parameters[56] * (t642 - t643)
+            - parameters[57] * t690 - parameters[58] * t640 + parameters[59] * t695;
+        let rate_dot_distal_leg4 = minus_gdistal_wy_leg4 * t681 - gdistal_wx_leg4 * t673
+            + minus_gdistal_wy_leg4 * t687;
+        let t705 = 6.936717523440031 * c_proximal_leg4;
+        let t708 = c_distal_leg4 * t705 + 3.4683587617200153 * t594;
+        let t713 = 6.936717523440031 * (s_distal_leg4 * c_proximal_leg4 - c_distal_leg4);
+        let t715 = t697 + parameters[60] * rate_dot_distal_leg4 + parameters[61] * t708
+            - parameters[62] * t713;
+        let t718 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t729 = parameters[48] * rate_dot_proximal_leg4 + parameters[49] * t718
+            - parameters[50] * t705 + parameters[51] * rate_dot_proximal_leg4
             + parameters[52] * rate_proximal_leg4
             + ::overact::math::signed(parameters[53], rate_proximal_leg4)
             + parameters[54];
-        let t576 = c_distal_leg4 * rate_proximal_leg4;
-        let t577 = rate_distal_leg4 * t576;
-        let t582 = t507 * t543 - t501 * t553 + t512 * t559;
-        let t583 = t577 - t582;
-        let t586 = minus_s_distal_leg4 * rate_proximal_leg4;
-        let t587 = rate_distal_leg4 * t586;
-        let t590 = rate_distal_leg4 * rate_distal_leg4;
-        let t591 = t586 * t586;
-        let rate_dot_wrist_leg4 = minus_gwrist_wy_leg4 * t543 - gwrist_wx_leg4 * t553
-            + minus_gwrist_wy_leg4 * t559;
-        let minus_rate_dot_distal_leg4 = minus_c_proximal_leg4 * t553
-            + gdistal_wy_leg4 * t543 + gdistal_wy_leg4 * t559;
-        let t607 = t586 * t576;
-        let t610 = parameters[56] * (t577 + t583) - parameters[55] * t587
-            + parameters[57] * (t590 - t591) + parameters[58] * rate_dot_wrist_leg4
-            - parameters[59] * (minus_rate_dot_distal_leg4 - t607);
-        let t615 = 9.81 * t512;
-        let t628 = t576 * t576;
-        let t631 = parameters[55] * t583 + parameters[56] * (t587 + rate_dot_wrist_leg4)
-            - parameters[57] * (t607 + minus_rate_dot_distal_leg4)
-            - parameters[58] * t577 + parameters[59] * (t628 - t590);
-        let t636 = 9.81 * t539;
-        let t640 = c_distal_leg4
-            * (t610 + parameters[60] * t587 - parameters[61] * t563
-                + parameters[63] * t615)
-            - minus_s_distal_leg4
-                * (t631 + parameters[60] * t577 + parameters[62] * t563
-                    - parameters[63] * t636);
-        let t641 = t575 + t640;
-        let t653 = parameters[55] * t607 + parameters[56] * (t591 - t628)
-            - parameters[57] * t582 - parameters[58] * t607
-            + parameters[59] * (c_distal_leg4 * rate_dot_proximal_leg4);
-        let t659 = t653 - parameters[60] * minus_rate_dot_distal_leg4
-            + parameters[61] * t636 - parameters[62] * t615;
-        let t662 = gproximal_wx_leg1 * t144 - t163
-            - (minus_gproximal_wx_leg2 * t309 + minus_c_proximal_leg2 * t327) + t430
-            - minus_gproximal_wx_leg3 * t493 + gproximal_wx_leg4 * t641
-            + minus_c_proximal_leg4 * t659;
-        let t663 = 2.0 * pose[2];
-        let t664 = pose[2] * t663;
-        let t666 = 2.0 * pose[3];
-        let t667 = pose[3] * t666;
-        let t668 = 1.0 - t664 - t667;
-        let t670 = 2.0 * pose[1];
-        let t671 = pose[2] * t670;
-        let t672 = pose[0] * t666;
-        let t673 = t671 + t672;
-        let t676 = pose[3] * t670;
-        let t677 = pose[0] * t663;
-        let t678 = t676 - t677;
-        let t680 = t668 * twist[0] + t673 * twist[1] + t678 * twist[2];
-        let t681 = t671 - t672;
-        let t684 = 1.0 - pose[1] * t670;
-        let t685 = t684 - t667;
-        let t688 = pose[3] * t663;
-        let t689 = pose[0] * t670;
-        let t690 = t688 + t689;
-        let t692 = t681 * twist[0] + t685 * twist[1] + t690 * twist[2];
-        let t693 = t680 * t692;
-        let t695 = t676 + t677;
-        let t697 = t688 - t689;
-        let t700 = t684 - t664;
-        let t702 = t695 * twist[0] + t697 * twist[1] + t700 * twist[2];
-        let t703 = t680 * t702;
-        let t706 = t692 * t702;
-        let t709 = t692 * t692;
-        let t710 = t702 * t702;
-        let t715 = parameters[66] * t693 - parameters[65] * t703 - parameters[67] * t706
-            + parameters[68] * (t709 - t710) + parameters[69] * t706;
-        let t716 = 9.81 * t700;
-        let t719 = 9.81 * t690;
-        let t721 = t715 + parameters[71] * t716 - parameters[72] * t719;
-        let t726 = t680 * t680;
-        let t733 = parameters[64] * t703 + parameters[65] * t706
-            + parameters[66] * (t710 - t726) - parameters[68] * t693
-            - parameters[69] * t703;
-        let t736 = 9.81 * t678;
-        let t738 = t733 - parameters[70] * t716 + parameters[72] * t736;
-        let t750 = parameters[65] * (t726 - t709) - parameters[64] * t693
-            - parameters[66] * t706 + parameters[67] * t693 + parameters[68] * t703;
-        let t754 = t750 + parameters[70] * t719 - parameters[71] * t736;
-        let t762 = minus_gdistal_wy_leg2 * t327;
-        let t768 = gproximal_wy_leg1 * t144 + minus_c_proximal_leg1 * t162
-            + gproximal_wy_leg2 * t309 - t762
-            - (minus_gproximal_wy_leg3 * t493 + minus_c_proximal_leg3 * t429);
-        let t769 = gdistal_wy_leg4 * t659;
-        let t789 = t163 - minus_gproximal_wz_leg1 * t144 + t762
-            - minus_gproximal_wz_leg2 * t309 + t430 - minus_gproximal_wz_leg3 * t493
-            + t769 - minus_gproximal_wz_leg4 * t641;
+        let t730 = rate_distal_leg4 * t639;
+        let t731 = t730 - t690;
+        let t734 = rate_distal_leg4 * t638;
+        let t737 = rate_distal_leg4 * rate_distal_leg4;
+        let t741 = t695 + t734;
+        let t746 = parameters[56] * (t730 + t731) - parameters[55] * t734
+            + parameters[57] * (t737 - t642) + parameters[58] * t741
+            + parameters[59] * (t640 + rate_dot_distal_leg4);
+        let t765 = parameters[55] * t731 + parameters[56] * (t734 + t741)
+            + parameters[57] * (rate_dot_distal_leg4 - t640) - parameters[58] * t730
+            + parameters[59] * (t643 - t737);
+        let t773 = s_distal_leg4
+            * (t746 + parameters[60] * t734 + parameters[61] * t718
+                + parameters[63] * t713)
+            - c_distal_leg4
+                * (t765 + parameters[60] * t730 - parameters[62] * t718
+                    - parameters[63] * t708);
+        let t774 = t729 + t773;
+        let t777 = t147 - minus_gproximal_wx_leg1 * t205 + gproximal_wx_leg2 * t379
+            + gdistal_wx_leg2 * t396 + t527 - minus_gproximal_wx_leg3 * t585
+            + gdistal_wx_leg4 * t715 - minus_gproximal_wx_leg4 * t774;
+        let t782 = t20 * twist[0] + t4 * twist[1] + t12 * twist[2];
+        let t787 = t223 * twist[0] + t208 * twist[1] + t210 * twist[2];
+        let t788 = t782 * t787;
+        let t794 = t21 * twist[0] + t8 * twist[1] + t16 * twist[2];
+        let t795 = t782 * t794;
+        let t798 = t787 * t794;
+        let t801 = t787 * t787;
+        let t802 = t794 * t794;
+        let t807 = parameters[66] * t788 - parameters[65] * t795 - parameters[67] * t798
+            + parameters[68] * (t801 - t802) + parameters[69] * t798;
+        let t808 = 9.81 * t16;
+        let t811 = 9.81 * t210;
+        let t813 = t807 + parameters[71] * t808 - parameters[72] * t811;
+        let t818 = t782 * t782;
+        let t825 = parameters[64] * t795 + parameters[65] * t798
+            + parameters[66] * (t802 - t818) - parameters[68] * t788
+            - parameters[69] * t795;
+        let t828 = 9.81 * t12;
+        let t830 = t825 - parameters[70] * t808 + parameters[72] * t828;
+        let t842 = parameters[65] * (t818 - t801) - parameters[64] * t788
+            - parameters[66] * t798 + parameters[67] * t788 + parameters[68] * t795;
+        let t846 = t842 + parameters[70] * t811 - parameters[71] * t828;
+        let t854 = minus_gdistal_wy_leg2 * t396;
+        let t860 = gproximal_wy_leg1 * t205 - minus_gdistal_wy_leg1 * t146
+            + gproximal_wy_leg2 * t379 - t854
+            - (minus_gproximal_wy_leg3 * t585 + minus_gdistal_wy_leg3 * t526);
+        let t862 = minus_gdistal_wy_leg4 * t715;
+        let t881 = t854 - minus_gproximal_wz_leg2 * t379
+            - (minus_gproximal_wz_leg1 * t205 + t147) + gproximal_wz_leg3 * t585 + t527
+            + gproximal_wz_leg4 * t774 - t862;
         Ok([
-            t662 + t668 * t721 + t681 * t738 + t695 * t754,
-            t768 + t769 - minus_gproximal_wy_leg4 * t641 + t673 * t721 + t685 * t738
-                + t697 * t754,
-            t789 + t678 * t721 + t690 * t738 + t700 * t754,
+            t777 + t20 * t813 + t223 * t830 + t21 * t846,
+            t860 - (minus_gproximal_wy_leg4 * t774 + t862) + t4 * t813 + t208 * t830
+                + t8 * t846,
+            t881 + t12 * t813 + t210 * t830 + t16 * t846,
         ])
     }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
@@ -7971,7 +11359,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 4.
     ///
-    /// 922 operations (390 additions, 524 multiplications, 8 divisions), 1 square roots, 8 trigonometric pairs, 4 signs, 939 intermediates.
+    /// 1058 operations (426 additions, 620 multiplications, 12 divisions), 5 square roots, 0 trigonometric pairs, 4 signs, 1063 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7982,464 +11370,498 @@ impl Spherical4Rrr {
         parameters: &[f64; 73],
         preload: &[f64; 1],
     ) -> Result<[f64; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let t2 = 0.7071067811865476 * minus_c_proximal_leg1;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t5 = t2 * c_distal_leg1;
-        let t6 = 0.7071067811865476 * minus_s_distal_leg1;
-        let t8 = 1.0 / minus_s_distal_leg1;
-        let gproximal_wx_leg1 = (t5 + t6) * t8;
-        let gproximal_wy_leg1 = minus_s_proximal_leg1 * c_distal_leg1 * t8;
-        let t15 = t5 - t6;
-        let minus_gproximal_wz_leg1 = t15 * t8;
-        let rate_proximal_leg1 = gproximal_wx_leg1 * twist[0]
-            + gproximal_wy_leg1 * twist[1] - minus_gproximal_wz_leg1 * twist[2];
-        let t19 = 0.7071067811865476 * rate_proximal_leg1;
-        let minus_gdistal_wx_leg1 = 0.7071067811865476 * minus_s_proximal_leg1;
-        let rate_distal_leg1 = minus_c_proximal_leg1 * twist[1]
-            - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let t26 = minus_c_proximal_leg1 * rate_distal_leg1;
-        let t27 = t19 * t26;
-        let t28 = t2 * minus_s_distal_leg1;
-        let t29 = 0.7071067811865476 * c_distal_leg1;
-        let t30 = t28 + t29;
-        let gwrist_wx_leg1 = t2 * t8;
-        let gwrist_wy_leg1 = minus_s_proximal_leg1 * t8;
-        let rate_wrist_leg1 = gwrist_wx_leg1 * twist[0] + gwrist_wy_leg1 * twist[1]
-            - gwrist_wx_leg1 * twist[2];
-        let t38 = t30 * rate_wrist_leg1;
-        let t40 = minus_gdistal_wx_leg1 * rate_distal_leg1;
-        let t41 = t19 + t40;
-        let t43 = minus_s_proximal_leg1 * minus_s_distal_leg1 * rate_wrist_leg1;
-        let t47 = acceleration[0] + t27 + t26 * t38 + t41 * t43;
-        let t49 = t19 - t40;
-        let t52 = (t29 - t28) * rate_wrist_leg1;
-        let t58 = acceleration[1] - (t49 * t38 - t41 * t52 - 2.0 * (t19 * t40));
-        let t65 = acceleration[2] - (t27 + t49 * t43 + t26 * t52);
-        let rate_dot_proximal_leg1 = gproximal_wx_leg1 * t47 + gproximal_wy_leg1 * t58
-            - minus_gproximal_wz_leg1 * t65;
-        let t69 = 6.9367175234400325 * minus_s_proximal_leg1;
-        let t81 = parameters[0] * rate_dot_proximal_leg1 - parameters[1] * t69
-            - parameters[2] * (6.9367175234400325 * minus_c_proximal_leg1)
-            + parameters[3] * rate_dot_proximal_leg1 + parameters[4] * rate_proximal_leg1
+        let t0 = 2.0 * pose[2];
+        let t1 = pose[2] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = 1.0 - t1 - t4;
+        let t6 = 2.0 * pose[1];
+        let t7 = pose[3] * t6;
+        let t8 = pose[0] * t0;
+        let t9 = t7 + t8;
+        let t10 = t5 - t9;
+        let t11 = t7 - t8;
+        let t13 = 1.0 - pose[1] * t6;
+        let t14 = t13 - t1;
+        let t15 = t11 - t14;
+        let t16 = t10 + t15;
+        let minus_s_distal_leg1 = 0.5 * t16;
+        let t20 = 1.0 - 0.25 * (t16 * t16);
+        ::overact::guard::reach(t20, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t20);
+        let t26 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
+        let t27 = pose[2] * t6;
+        let t28 = pose[0] * t3;
+        let t29 = t27 + t28;
+        let t30 = pose[3] * t0;
+        let t31 = pose[0] * t6;
+        let t32 = t30 - t31;
+        let t33 = t29 - t32;
+        let t34 = t10 - t15;
+        let s_proximal_leg1 = t26 * (0.35355339059327373 * (t33 * t34));
+        let c_proximal_leg1 = t26 * (0.25 * (t34 * t34));
+        let t46 = 0.7071067811865475 * t33;
+        let t49 = 0.5 * (t15 * c_proximal_leg1)
+            - (0.5 * (t10 * c_proximal_leg1) + t46 * s_proximal_leg1);
+        ::overact::guard::leg(t49, 1.0, "leg1")?;
+        let t50 = 1.0 / t49;
+        let gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t50;
+        let t53 = t30 + t31;
+        let t54 = t53 - t14;
+        let t55 = 0.7071067811865475 * t54;
+        let t56 = t13 - t4;
+        let t57 = t56 - t32;
+        let t58 = t57 + t54;
+        let t61 = 1.0 - 0.25 * (t58 * t58);
+        ::overact::guard::reach(t61, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t61);
+        let t67 = 1.0 / (0.5 * (t57 * c_distal_leg2 - t54 * c_distal_leg2));
+        let t68 = t57 - t54;
+        let c_proximal_leg2 = t67 * (0.25 * (t68 * t68));
+        let t73 = t27 - t28;
+        let t74 = t73 - t9;
+        let minus_s_proximal_leg2 = t67 * (0.35355339059327373 * (t74 * t68));
+        let t79 = 0.5 * (t74 * minus_s_proximal_leg2);
+        let t83 = 0.7071067811865475 * t74;
+        let t88 = 0.5 * (t54 * c_proximal_leg2)
+            - (t83 * minus_s_proximal_leg2 + 0.5 * (t57 * c_proximal_leg2));
+        ::overact::guard::leg(t88, 1.0, "leg2")?;
+        let t89 = 1.0 / t88;
+        let gproximal_wy_leg2 = (t55 * c_proximal_leg2 - t79) * t89;
+        let t93 = t11 + t14;
+        let t94 = t5 + t9;
+        let t95 = t93 - t94;
+        let s_distal_leg3 = 0.5 * t95;
+        let t99 = 1.0 - 0.25 * (t95 * t95);
+        ::overact::guard::reach(t99, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t99);
+        let t105 = 1.0 / (0.5 * (t94 * c_distal_leg3 + t93 * c_distal_leg3));
+        let t106 = t29 + t32;
+        let t107 = t94 + t93;
+        let s_proximal_leg3 = t105 * (0.35355339059327373 * (t106 * t107));
+        let c_proximal_leg3 = t105 * (0.25 * (t107 * t107));
+        let t117 = 0.7071067811865475 * t106;
+        let t122 = 0.5 * (t94 * c_proximal_leg3) + t117 * s_proximal_leg3
+            + 0.5 * (t93 * c_proximal_leg3);
+        ::overact::guard::leg(t122, 1.0, "leg3")?;
+        let t123 = 1.0 / t122;
+        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t123;
+        let t127 = t73 + t9;
+        let t128 = t56 + t32;
+        let t129 = t53 + t14;
+        let t130 = t129 - t128;
+        let t133 = 1.0 - 0.25 * (t130 * t130);
+        ::overact::guard::reach(t133, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t133);
+        let t139 = 1.0 / (0.5 * (t128 * c_distal_leg4 + t129 * c_distal_leg4));
+        let t140 = t128 + t129;
+        let minus_s_proximal_leg4 = t139 * (0.35355339059327373 * (t127 * t140));
+        let t145 = 0.5 * (t127 * minus_s_proximal_leg4);
+        let t146 = 0.7071067811865475 * t129;
+        let c_proximal_leg4 = t139 * (0.25 * (t140 * t140));
+        let t152 = 0.7071067811865475 * t127;
+        let t159 = t152 * minus_s_proximal_leg4 + 0.5 * (t128 * c_proximal_leg4)
+            + 0.5 * (t129 * c_proximal_leg4);
+        ::overact::guard::leg(t159, 1.0, "leg4")?;
+        let t160 = 1.0 / t159;
+        let minus_gproximal_wy_leg4 = (t145 + t146 * c_proximal_leg4) * t160;
+        let minus_s_distal_leg2 = 0.5 * t58;
+        let gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t89;
+        let t169 = 0.5 * (t33 * s_proximal_leg1);
+        let t170 = 0.7071067811865475 * t15;
+        let minus_gproximal_wx_leg1 = (t169 - t170 * c_proximal_leg1) * t50;
+        let t177 = 0.5 * (t106 * s_proximal_leg3);
+        let t178 = 0.7071067811865475 * t93;
+        let minus_gproximal_wx_leg3 = (t177 + t178 * c_proximal_leg3) * t123;
+        let s_distal_leg4 = 0.5 * t130;
+        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t160;
+        let t188 = gproximal_wx_leg2 * gproximal_wy_leg2
+            - minus_gproximal_wx_leg1 * gproximal_wy_leg1
+            + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+            + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
+        let t195 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+            + gproximal_wx_leg2 * gproximal_wx_leg2
+            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
+        ::overact::guard::platform(t195, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t195, 0.9999999999999998, "actuators")?;
+        let t196 = 1.0 / t195;
+        let t197 = t188 * t196;
+        let t199 = gproximal_wy_leg1 * gproximal_wy_leg1
+            + gproximal_wy_leg2 * gproximal_wy_leg2
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t188 * t197;
+        ::overact::guard::platform(t199, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t199, 0.9999999999999998, "actuators")?;
+        let t200 = 1.0 / t199;
+        let t204 = 0.7071067811865475 * t10;
+        let minus_gproximal_wz_leg1 = (t204 * c_proximal_leg1 + t169) * t50;
+        let rate_proximal_leg1 = gproximal_wy_leg1 * twist[1]
+            - minus_gproximal_wx_leg1 * twist[0] - minus_gproximal_wz_leg1 * twist[2];
+        let t210 = 0.7071067811865475 * rate_proximal_leg1;
+        let t212 = 0.5 * t50;
+        let gdistal_wx_leg1 = t33 * t212;
+        let minus_gdistal_wy_leg1 = t34 * t212;
+        let rate_distal_leg1 = gdistal_wx_leg1 * twist[0]
+            - minus_gdistal_wy_leg1 * twist[1] - gdistal_wx_leg1 * twist[2];
+        let t220 = 0.7071067811865475 * s_proximal_leg1 * rate_distal_leg1;
+        let t221 = t210 + t220;
+        let minus_gwrist_wx_leg1 = 0.7071067811865475 * c_proximal_leg1 * t50;
+        let minus_gwrist_wy_leg1 = s_proximal_leg1 * t50;
+        let rate_wrist_leg1 = minus_gwrist_wx_leg1 * twist[2]
+            - (minus_gwrist_wx_leg1 * twist[0] + minus_gwrist_wy_leg1 * twist[1]);
+        let t230 = t204 * rate_wrist_leg1;
+        let t232 = t210 - t220;
+        let t233 = t170 * rate_wrist_leg1;
+        let t239 = acceleration[1] - (t221 * t230 - t232 * t233 - 2.0 * (t210 * t220));
+        let t241 = c_proximal_leg1 * rate_distal_leg1;
+        let t243 = t46 * rate_wrist_leg1;
+        let t246 = t210 * t241;
+        let t248 = acceleration[0] - (t241 * t233 - t221 * t243 - t246);
+        let t255 = acceleration[2] - (t246 + t232 * t243 - t241 * t230);
+        let rate_dot_proximal_leg1 = gproximal_wy_leg1 * t239
+            - minus_gproximal_wx_leg1 * t248 - minus_gproximal_wz_leg1 * t255;
+        let t259 = 6.936717523440031 * s_proximal_leg1;
+        let t262 = 6.936717523440031 * c_proximal_leg1;
+        let t271 = parameters[0] * rate_dot_proximal_leg1 - parameters[1] * t259
+            - parameters[2] * t262 + parameters[3] * rate_dot_proximal_leg1
+            + parameters[4] * rate_proximal_leg1
             + ::overact::math::signed(parameters[5], rate_proximal_leg1) + parameters[6];
-        let t82 = c_distal_leg1 * rate_proximal_leg1;
-        let t83 = rate_distal_leg1 * t82;
-        let t84 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
-        let t85 = t83 - t84;
-        let t88 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t89 = rate_distal_leg1 * t88;
-        let t92 = rate_distal_leg1 * rate_distal_leg1;
-        let t93 = t88 * t88;
-        let t97 = c_distal_leg1 * rate_dot_proximal_leg1;
-        let t98 = t97 + t89;
-        let t101 = t88 * t82;
-        let rate_dot_distal_leg1 = minus_c_proximal_leg1 * t58
-            - minus_gdistal_wx_leg1 * t47 + minus_gdistal_wx_leg1 * t65;
-        let t109 = parameters[8] * (t83 + t85) - parameters[7] * t89
-            + parameters[9] * (t92 - t93) + parameters[10] * t98
-            + parameters[11] * (t101 + rate_dot_distal_leg1);
-        let t114 = 9.81 * t15;
-        let t127 = t82 * t82;
-        let t130 = parameters[7] * t85 + parameters[8] * (t89 + t98)
-            + parameters[9] * (rate_dot_distal_leg1 - t101) - parameters[10] * t83
-            + parameters[11] * (t127 - t92);
-        let t135 = 9.81 * t30;
-        let t139 = c_distal_leg1
-            * (t109 + parameters[12] * t89 - parameters[13] * t69
-                + parameters[15] * t114)
-            - minus_s_distal_leg1
-                * (t130 + parameters[12] * t83 + parameters[14] * t69
-                    - parameters[15] * t135);
-        let t140 = t81 + t139;
-        let t151 = parameters[7] * t101 + parameters[8] * (t93 - t127)
-            - parameters[9] * t84 - parameters[10] * t101 + parameters[11] * t97;
-        let t157 = t151 + parameters[12] * rate_dot_distal_leg1 + parameters[13] * t135
-            - parameters[14] * t114;
-        let t158 = minus_gdistal_wx_leg1 * t157;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let t165 = 1.0 / minus_s_distal_leg2;
-        let minus_gproximal_wx_leg2 = minus_s_proximal_leg2 * c_distal_leg2 * t165;
-        let t167 = 0.7071067811865476 * minus_c_proximal_leg2;
-        let t168 = t167 * c_distal_leg2;
-        let t169 = 0.7071067811865476 * minus_s_distal_leg2;
-        let gproximal_wy_leg2 = (t168 + t169) * t165;
-        let t175 = t168 - t169;
-        let minus_gproximal_wz_leg2 = t175 * t165;
-        let rate_proximal_leg2 = gproximal_wy_leg2 * twist[1]
-            - minus_gproximal_wx_leg2 * twist[0] - minus_gproximal_wz_leg2 * twist[2];
-        let t179 = 0.7071067811865476 * rate_proximal_leg2;
-        let minus_gdistal_wy_leg2 = 0.7071067811865476 * minus_s_proximal_leg2;
-        let rate_distal_leg2 = minus_gdistal_wy_leg2 * twist[2]
-            - (minus_c_proximal_leg2 * twist[0] + minus_gdistal_wy_leg2 * twist[1]);
-        let t186 = minus_c_proximal_leg2 * rate_distal_leg2;
-        let t187 = t179 * t186;
-        let t188 = minus_gdistal_wy_leg2 * rate_distal_leg2;
-        let t189 = t179 + t188;
-        let gwrist_wy_leg2 = t167 * t165;
-        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t165;
-        let rate_wrist_leg2 = gwrist_wy_leg2 * twist[1] - minus_gwrist_wx_leg2 * twist[0]
-            - gwrist_wy_leg2 * twist[2];
-        let t198 = minus_s_proximal_leg2 * minus_s_distal_leg2 * rate_wrist_leg2;
-        let t200 = t167 * minus_s_distal_leg2;
-        let t201 = 0.7071067811865476 * c_distal_leg2;
-        let t202 = t200 + t201;
-        let t203 = t202 * rate_wrist_leg2;
-        let t207 = acceleration[1] + t187 + t189 * t198 + t186 * t203;
-        let t212 = (t201 - t200) * rate_wrist_leg2;
-        let t214 = t179 - t188;
-        let t218 = acceleration[0] - (2.0 * (t179 * t188) + t189 * t212 - t214 * t203);
-        let t225 = acceleration[2] - (t187 + t186 * t212 + t214 * t198);
-        let rate_dot_proximal_leg2 = gproximal_wy_leg2 * t207
-            - minus_gproximal_wx_leg2 * t218 - minus_gproximal_wz_leg2 * t225;
-        let t229 = 6.9367175234400325 * minus_s_proximal_leg2;
-        let t241 = parameters[16] * rate_dot_proximal_leg2 - parameters[17] * t229
-            - parameters[18] * (6.9367175234400325 * minus_c_proximal_leg2)
-            + parameters[19] * rate_dot_proximal_leg2
+        let t272 = c_distal_leg1 * rate_proximal_leg1;
+        let t273 = rate_distal_leg1 * t272;
+        let t274 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t275 = t273 - t274;
+        let t278 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t279 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t280 = rate_distal_leg1 * t279;
+        let t281 = t278 + t280;
+        let t284 = t272 * t279;
+        let rate_dot_distal_leg1 = gdistal_wx_leg1 * t248 - minus_gdistal_wy_leg1 * t239
+            - gdistal_wx_leg1 * t255;
+        let t295 = t279 * t279;
+        let t296 = rate_distal_leg1 * rate_distal_leg1;
+        let t299 = parameters[8] * (t273 + t275) - parameters[7] * t281
+            + parameters[9] * (t284 + rate_dot_distal_leg1) + parameters[10] * t280
+            + parameters[11] * (t295 - t296);
+        let t306 = c_distal_leg1 * t262 - 3.4683587617200153 * t16;
+        let t310 = t272 * t272;
+        let t322 = parameters[9] * (t296 - t310)
+            - (parameters[7] * t273 + parameters[8] * (t280 + t281))
+            + parameters[10] * t275 - parameters[11] * (t284 - rate_dot_distal_leg1);
+        let t329 = 6.936717523440031
+            * (minus_s_distal_leg1 * c_proximal_leg1 + c_distal_leg1);
+        let t333 = c_distal_leg1
+            * (t299 - parameters[12] * t280 + parameters[14] * t259
+                - parameters[15] * t306)
+            + minus_s_distal_leg1
+                * (t322 + parameters[12] * t273 - parameters[13] * t259
+                    - parameters[15] * t329);
+        let t334 = t271 - t333;
+        let t345 = parameters[8] * (t310 - t295) - parameters[7] * t284
+            - parameters[9] * t278 + parameters[10] * t284 - parameters[11] * t274;
+        let t351 = t345 + parameters[12] * rate_dot_distal_leg1 + parameters[13] * t306
+            + parameters[14] * t329;
+        let t357 = 0.7071067811865475 * t57;
+        let minus_gproximal_wz_leg2 = (t357 * c_proximal_leg2 + t79) * t89;
+        let rate_proximal_leg2 = gproximal_wx_leg2 * twist[0]
+            + gproximal_wy_leg2 * twist[1] - minus_gproximal_wz_leg2 * twist[2];
+        let t363 = 0.7071067811865475 * rate_proximal_leg2;
+        let t365 = 0.5 * t89;
+        let gdistal_wx_leg2 = t68 * t365;
+        let minus_gdistal_wy_leg2 = t74 * t365;
+        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
+            - minus_gdistal_wy_leg2 * twist[1] + minus_gdistal_wy_leg2 * twist[2];
+        let t373 = 0.7071067811865475 * minus_s_proximal_leg2 * rate_distal_leg2;
+        let t374 = t363 + t373;
+        let minus_gwrist_wy_leg2 = 0.7071067811865475 * c_proximal_leg2 * t89;
+        let minus_gwrist_wx_leg2 = minus_s_proximal_leg2 * t89;
+        let rate_wrist_leg2 = minus_gwrist_wy_leg2 * twist[2]
+            - (minus_gwrist_wx_leg2 * twist[0] + minus_gwrist_wy_leg2 * twist[1]);
+        let t383 = t55 * rate_wrist_leg2;
+        let t385 = t363 - t373;
+        let t386 = t357 * rate_wrist_leg2;
+        let t392 = acceleration[0] - (t374 * t383 - t385 * t386 - 2.0 * (t363 * t373));
+        let t394 = t83 * rate_wrist_leg2;
+        let t396 = c_proximal_leg2 * rate_distal_leg2;
+        let t399 = t363 * t396;
+        let t401 = acceleration[1] - (t385 * t394 + t396 * t383 - t399);
+        let t408 = acceleration[2] - (t399 - (t396 * t386 + t374 * t394));
+        let rate_dot_proximal_leg2 = gproximal_wx_leg2 * t392 + gproximal_wy_leg2 * t401
+            - minus_gproximal_wz_leg2 * t408;
+        let t412 = 6.936717523440031 * minus_s_proximal_leg2;
+        let t415 = 6.936717523440031 * c_proximal_leg2;
+        let t424 = parameters[16] * rate_dot_proximal_leg2 + parameters[17] * t412
+            - parameters[18] * t415 + parameters[19] * rate_dot_proximal_leg2
             + parameters[20] * rate_proximal_leg2
             + ::overact::math::signed(parameters[21], rate_proximal_leg2)
             + parameters[22];
-        let t242 = c_distal_leg2 * rate_proximal_leg2;
-        let t243 = rate_distal_leg2 * t242;
-        let t244 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t245 = t243 - t244;
-        let t248 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t249 = rate_distal_leg2 * t248;
-        let t252 = rate_distal_leg2 * rate_distal_leg2;
-        let t253 = t248 * t248;
-        let t257 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t258 = t257 + t249;
-        let t261 = t248 * t242;
-        let rate_dot_distal_leg2 = minus_gdistal_wy_leg2 * t225
-            - (minus_c_proximal_leg2 * t218 + minus_gdistal_wy_leg2 * t207);
-        let t269 = parameters[24] * (t243 + t245) - parameters[23] * t249
-            + parameters[25] * (t252 - t253) + parameters[26] * t258
-            + parameters[27] * (t261 + rate_dot_distal_leg2);
-        let t274 = 9.81 * t175;
-        let t287 = t242 * t242;
-        let t290 = parameters[23] * t245 + parameters[24] * (t249 + t258)
-            + parameters[25] * (rate_dot_distal_leg2 - t261) - parameters[26] * t243
-            + parameters[27] * (t287 - t252);
-        let t295 = 9.81 * t202;
-        let t299 = c_distal_leg2
-            * (t269 + parameters[28] * t249 - parameters[29] * t229
-                + parameters[31] * t274)
-            - minus_s_distal_leg2
-                * (t290 + parameters[28] * t243 + parameters[30] * t229
-                    - parameters[31] * t295);
-        let t300 = t241 + t299;
-        let t311 = parameters[23] * t261 + parameters[24] * (t253 - t287)
-            - parameters[25] * t244 - parameters[26] * t261 + parameters[27] * t257;
-        let t317 = t311 + parameters[28] * rate_dot_distal_leg2 + parameters[29] * t295
-            - parameters[30] * t274;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let gdistal_wx_leg3 = 0.7071067811865476 * minus_s_proximal_leg3;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let t326 = 0.7071067811865476 * minus_c_proximal_leg3;
-        let t327 = t326 * c_distal_leg3;
-        let t328 = 0.7071067811865476 * minus_s_distal_leg3;
-        let t330 = 1.0 / minus_s_distal_leg3;
-        let minus_gproximal_wx_leg3 = (t327 + t328) * t330;
-        let minus_gproximal_wy_leg3 = minus_s_proximal_leg3 * c_distal_leg3 * t330;
-        let t337 = t327 - t328;
-        let minus_gproximal_wz_leg3 = t337 * t330;
-        let minus_rate_proximal_leg3 = minus_gproximal_wx_leg3 * twist[0]
-            + minus_gproximal_wy_leg3 * twist[1] + minus_gproximal_wz_leg3 * twist[2];
-        let t341 = minus_s_distal_leg3 * minus_rate_proximal_leg3;
-        let t342 = c_distal_leg3 * minus_rate_proximal_leg3;
-        let t343 = t341 * t342;
-        let t345 = t341 * t341;
-        let t346 = t342 * t342;
-        let t350 = 0.7071067811865476 * minus_rate_proximal_leg3;
+        let t425 = c_distal_leg2 * rate_proximal_leg2;
+        let t426 = rate_distal_leg2 * t425;
+        let t427 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t428 = t426 - t427;
+        let t431 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t432 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t433 = rate_distal_leg2 * t432;
+        let t434 = t431 + t433;
+        let t437 = t425 * t432;
+        let rate_dot_distal_leg2 = gdistal_wx_leg2 * t392 - minus_gdistal_wy_leg2 * t401
+            + minus_gdistal_wy_leg2 * t408;
+        let t448 = t432 * t432;
+        let t449 = rate_distal_leg2 * rate_distal_leg2;
+        let t452 = parameters[24] * (t426 + t428) - parameters[23] * t434
+            + parameters[25] * (t437 + rate_dot_distal_leg2) + parameters[26] * t433
+            + parameters[27] * (t448 - t449);
+        let t459 = c_distal_leg2 * t415 - 3.4683587617200153 * t58;
+        let t463 = t425 * t425;
+        let t475 = parameters[25] * (t449 - t463)
+            - (parameters[23] * t426 + parameters[24] * (t433 + t434))
+            + parameters[26] * t428 - parameters[27] * (t437 - rate_dot_distal_leg2);
+        let t482 = 6.936717523440031
+            * (minus_s_distal_leg2 * c_proximal_leg2 + c_distal_leg2);
+        let t486 = c_distal_leg2
+            * (t452 - parameters[28] * t433 - parameters[30] * t412
+                - parameters[31] * t459)
+            + minus_s_distal_leg2
+                * (t475 + parameters[28] * t426 + parameters[29] * t412
+                    - parameters[31] * t482);
+        let t487 = t424 - t486;
+        let t498 = parameters[24] * (t463 - t448) - parameters[23] * t437
+            - parameters[25] * t431 + parameters[26] * t437 - parameters[27] * t427;
+        let t504 = t498 + parameters[28] * rate_dot_distal_leg2 + parameters[29] * t459
+            + parameters[30] * t482;
+        let t505 = minus_gdistal_wy_leg2 * t504;
+        let t508 = 0.7071067811865475 * t94;
+        let gproximal_wz_leg3 = (t508 * c_proximal_leg3 + t177) * t123;
+        let rate_proximal_leg3 = gproximal_wz_leg3 * twist[2]
+            - (minus_gproximal_wx_leg3 * twist[0] + minus_gproximal_wy_leg3 * twist[1]);
+        let t517 = 0.7071067811865475 * rate_proximal_leg3;
+        let t518 = 0.5 * t123;
+        let gdistal_wx_leg3 = t106 * t518;
+        let minus_gdistal_wy_leg3 = t107 * t518;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0]
-            - minus_c_proximal_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
-        let t356 = minus_c_proximal_leg3 * rate_distal_leg3;
-        let t357 = t350 * t356;
-        let t358 = t326 * minus_s_distal_leg3;
-        let t359 = 0.7071067811865476 * c_distal_leg3;
-        let t360 = t358 + t359;
-        let minus_gwrist_wx_leg3 = t326 * t330;
-        let minus_gwrist_wy_leg3 = minus_s_proximal_leg3 * t330;
+            - minus_gdistal_wy_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
+        let t526 = c_proximal_leg3 * rate_distal_leg3;
+        let t527 = t517 * t526;
+        let t529 = 0.7071067811865475 * s_proximal_leg3 * rate_distal_leg3;
+        let t530 = t529 - t517;
+        let minus_gwrist_wx_leg3 = 0.7071067811865475 * c_proximal_leg3 * t123;
+        let minus_gwrist_wy_leg3 = s_proximal_leg3 * t123;
         let minus_rate_wrist_leg3 = minus_gwrist_wx_leg3 * twist[0]
             + minus_gwrist_wy_leg3 * twist[1] + minus_gwrist_wx_leg3 * twist[2];
-        let t368 = t360 * minus_rate_wrist_leg3;
-        let t370 = gdistal_wx_leg3 * rate_distal_leg3;
-        let t371 = t370 - t350;
-        let t373 = minus_s_proximal_leg3 * minus_s_distal_leg3 * minus_rate_wrist_leg3;
-        let t377 = acceleration[0] + t357 + t356 * t368 + t371 * t373;
-        let t380 = (t358 - t359) * minus_rate_wrist_leg3;
-        let t382 = t350 + t370;
-        let t388 = acceleration[1] - (t371 * t380 - t382 * t368 - 2.0 * (t350 * t370));
-        let t395 = acceleration[2] - (t382 * t373 + t356 * t380 - t357);
-        let minus_rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t377
-            + minus_gproximal_wy_leg3 * t388 + minus_gproximal_wz_leg3 * t395;
-        let t398 = minus_s_distal_leg3 * minus_rate_dot_proximal_leg3;
-        let t403 = c_distal_leg3 * minus_rate_dot_proximal_leg3;
-        let t405 = parameters[39] * t343 + parameters[40] * (t345 - t346)
-            + parameters[41] * t398 - parameters[42] * t343 - parameters[43] * t403;
-        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t377 - minus_c_proximal_leg3 * t388
-            + gdistal_wx_leg3 * t395;
-        let t413 = 9.81 * t360;
-        let t416 = 9.81 * t337;
-        let t418 = t405 + parameters[44] * rate_dot_distal_leg3 + parameters[45] * t413
-            - parameters[46] * t416;
-        let t419 = gdistal_wx_leg3 * t418;
-        let t427 = 6.9367175234400325 * minus_s_proximal_leg3;
-        let t433 = parameters[38]
-            - (parameters[35] * minus_rate_dot_proximal_leg3
-                + parameters[36] * minus_rate_proximal_leg3
-                + ::overact::math::signed(parameters[37], minus_rate_proximal_leg3))
-            - (parameters[32] * minus_rate_dot_proximal_leg3 + parameters[33] * t427
-                + parameters[34] * (6.9367175234400325 * minus_c_proximal_leg3));
-        let t434 = rate_distal_leg3 * t341;
-        let t436 = rate_distal_leg3 * t342;
-        let t437 = t398 - t436;
-        let t441 = rate_distal_leg3 * rate_distal_leg3;
-        let t445 = t403 + t434;
-        let t450 = parameters[39] * t434 + parameters[40] * (t437 - t436)
-            + parameters[41] * (t441 - t345) - parameters[42] * t445
-            + parameters[43] * (t343 + rate_dot_distal_leg3);
-        let t469 = parameters[39] * t437 - parameters[40] * (t434 + t445)
-            + parameters[41] * (rate_dot_distal_leg3 - t343) + parameters[42] * t436
-            + parameters[43] * (t346 - t441);
-        let t477 = c_distal_leg3
-            * (t450 - parameters[44] * t434 - parameters[45] * t427
-                + parameters[47] * t416)
-            - minus_s_distal_leg3
-                * (t469 - parameters[44] * t436 + parameters[46] * t427
-                    - parameters[47] * t413);
-        let t478 = t433 + t477;
-        let (minus_s_proximal_leg4, minus_c_proximal_leg4) = ::overact::math::sin_cos(
-            joints[9],
-        );
-        let (c_distal_leg4, minus_s_distal_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(minus_s_distal_leg4, 1.0, "leg4")?;
-        let t487 = 1.0 / minus_s_distal_leg4;
-        let gproximal_wx_leg4 = minus_s_proximal_leg4 * c_distal_leg4 * t487;
-        let t490 = 0.7071067811865476 * minus_c_proximal_leg4;
-        let t491 = t490 * c_distal_leg4;
-        let t492 = 0.7071067811865476 * minus_s_distal_leg4;
-        let minus_gproximal_wy_leg4 = (t491 + t492) * t487;
-        let t497 = t491 - t492;
-        let minus_gproximal_wz_leg4 = t497 * t487;
-        let rate_proximal_leg4 = gproximal_wx_leg4 * twist[0]
-            - minus_gproximal_wy_leg4 * twist[1] - minus_gproximal_wz_leg4 * twist[2];
-        let t501 = 0.7071067811865476 * rate_proximal_leg4;
-        let gdistal_wy_leg4 = 0.7071067811865476 * minus_s_proximal_leg4;
-        let rate_distal_leg4 = minus_c_proximal_leg4 * twist[0]
-            + gdistal_wy_leg4 * twist[1] + gdistal_wy_leg4 * twist[2];
-        let t508 = gdistal_wy_leg4 * rate_distal_leg4;
-        let t509 = t501 + t508;
-        let t510 = t490 * minus_s_distal_leg4;
-        let t511 = 0.7071067811865476 * c_distal_leg4;
-        let gwrist_wx_leg4 = minus_s_proximal_leg4 * t487;
-        let minus_gwrist_wy_leg4 = t490 * t487;
-        let rate_wrist_leg4 = gwrist_wx_leg4 * twist[0] - minus_gwrist_wy_leg4 * twist[1]
-            - minus_gwrist_wy_leg4 * twist[2];
-        let t520 = (t510 - t511) * rate_wrist_leg4;
-        let t522 = t508 - t501;
-        let t523 = t510 + t511;
-        let t524 = t523 * rate_wrist_leg4;
-        let t530 = acceleration[0] - (t509 * t520 - t522 * t524 - 2.0 * (t501 * t508));
-        let t532 = minus_c_proximal_leg4 * rate_distal_leg4;
-        let t533 = t501 * t532;
-        let t535 = minus_s_proximal_leg4 * minus_s_distal_leg4 * rate_wrist_leg4;
-        let t540 = acceleration[1] - (t533 + t509 * t535 + t532 * t524);
-        let t547 = acceleration[2] - (t533 - (t532 * t520 + t522 * t535));
-        let rate_dot_proximal_leg4 = gproximal_wx_leg4 * t530
-            - minus_gproximal_wy_leg4 * t540 - minus_gproximal_wz_leg4 * t547;
-        let t551 = 6.9367175234400325 * minus_s_proximal_leg4;
-        let t563 = parameters[48] * rate_dot_proximal_leg4 - parameters[49] * t551
-            - parameters[50] * (6.9367175234400325 * minus_c_proximal_leg4)
-            + parameters[51] * rate_dot_proximal_leg4
+        let t539 = t117 * minus_rate_wrist_leg3;
+        let t541 = t508 * minus_rate_wrist_leg3;
+        let t545 = acceleration[2] - (t527 + t530 * t539 + t526 * t541);
+        let t547 = t178 * minus_rate_wrist_leg3;
+        let t549 = t517 + t529;
+        let t553 = acceleration[0] - (t527 - (t526 * t547 + t549 * t539));
+        let t561 = acceleration[1] - (2.0 * (t517 * t529) + t549 * t541 - t530 * t547);
+        let rate_dot_proximal_leg3 = gproximal_wz_leg3 * t545
+            - (minus_gproximal_wx_leg3 * t553 + minus_gproximal_wy_leg3 * t561);
+        let t566 = 6.936717523440031 * s_proximal_leg3;
+        let t569 = 6.936717523440031 * c_proximal_leg3;
+        let t578 = parameters[32] * rate_dot_proximal_leg3 - parameters[33] * t566
+            - parameters[34] * t569 + parameters[35] * rate_dot_proximal_leg3
+            + parameters[36] * rate_proximal_leg3
+            + ::overact::math::signed(parameters[37], rate_proximal_leg3)
+            + parameters[38];
+        let t579 = s_distal_leg3 * rate_proximal_leg3;
+        let t580 = rate_distal_leg3 * t579;
+        let t581 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t582 = t580 - t581;
+        let t585 = c_distal_leg3 * rate_proximal_leg3;
+        let t586 = rate_distal_leg3 * t585;
+        let t589 = rate_distal_leg3 * rate_distal_leg3;
+        let t590 = t585 * t585;
+        let t594 = s_distal_leg3 * rate_dot_proximal_leg3;
+        let t595 = t594 + t586;
+        let t598 = t585 * t579;
+        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t553 - minus_gdistal_wy_leg3 * t561
+            + gdistal_wx_leg3 * t545;
+        let t606 = parameters[40] * (t580 + t582) - parameters[39] * t586
+            + parameters[41] * (t589 - t590) + parameters[42] * t595
+            + parameters[43] * (t598 + rate_dot_distal_leg3);
+        let t613 = 6.936717523440031 * (s_distal_leg3 * c_proximal_leg3 - c_distal_leg3);
+        let t626 = t579 * t579;
+        let t629 = parameters[39] * t582 + parameters[40] * (t586 + t595)
+            + parameters[41] * (rate_dot_distal_leg3 - t598) - parameters[42] * t580
+            + parameters[43] * (t626 - t589);
+        let t636 = c_distal_leg3 * t569 + 3.4683587617200153 * t95;
+        let t640 = s_distal_leg3
+            * (t606 + parameters[44] * t586 - parameters[45] * t566
+                + parameters[47] * t613)
+            - c_distal_leg3
+                * (t629 + parameters[44] * t580 + parameters[46] * t566
+                    - parameters[47] * t636);
+        let t641 = t578 + t640;
+        let t652 = parameters[39] * t598 + parameters[40] * (t590 - t626)
+            - parameters[41] * t581 - parameters[42] * t598 + parameters[43] * t594;
+        let t658 = t652 + parameters[44] * rate_dot_distal_leg3 + parameters[45] * t636
+            - parameters[46] * t613;
+        let t661 = gproximal_wy_leg1 * t334 - minus_gdistal_wy_leg1 * t351
+            + gproximal_wy_leg2 * t487 - t505
+            - (minus_gproximal_wy_leg3 * t641 + minus_gdistal_wy_leg3 * t658);
+        let t662 = 0.7071067811865475 * t128;
+        let gproximal_wz_leg4 = (t662 * c_proximal_leg4 + t145) * t160;
+        let rate_proximal_leg4 = gproximal_wz_leg4 * twist[2]
+            - (minus_gproximal_wx_leg4 * twist[0] + minus_gproximal_wy_leg4 * twist[1]);
+        let t671 = 0.7071067811865475 * rate_proximal_leg4;
+        let t672 = 0.5 * t160;
+        let gdistal_wx_leg4 = t140 * t672;
+        let minus_gdistal_wy_leg4 = t127 * t672;
+        let rate_distal_leg4 = gdistal_wx_leg4 * twist[0]
+            - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
+        let t680 = c_proximal_leg4 * rate_distal_leg4;
+        let t681 = t671 * t680;
+        let minus_gwrist_wx_leg4 = minus_s_proximal_leg4 * t160;
+        let minus_gwrist_wy_leg4 = 0.7071067811865475 * c_proximal_leg4 * t160;
+        let minus_rate_wrist_leg4 = minus_gwrist_wx_leg4 * twist[0]
+            + minus_gwrist_wy_leg4 * twist[1] + minus_gwrist_wy_leg4 * twist[2];
+        let t690 = t662 * minus_rate_wrist_leg4;
+        let t693 = 0.7071067811865475 * minus_s_proximal_leg4 * rate_distal_leg4;
+        let t694 = t671 + t693;
+        let t695 = t152 * minus_rate_wrist_leg4;
+        let t699 = acceleration[2] - (t681 + t680 * t690 + t694 * t695);
+        let t703 = t146 * minus_rate_wrist_leg4;
+        let t705 = t671 - t693;
+        let t709 = acceleration[0] - (2.0 * (t671 * t693) - (t694 * t703 + t705 * t690));
+        let t715 = acceleration[1] - (t681 + t705 * t695 - t680 * t703);
+        let rate_dot_proximal_leg4 = gproximal_wz_leg4 * t699
+            - (minus_gproximal_wx_leg4 * t709 + minus_gproximal_wy_leg4 * t715);
+        let t720 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t723 = 6.936717523440031 * c_proximal_leg4;
+        let t732 = parameters[48] * rate_dot_proximal_leg4 + parameters[49] * t720
+            - parameters[50] * t723 + parameters[51] * rate_dot_proximal_leg4
             + parameters[52] * rate_proximal_leg4
             + ::overact::math::signed(parameters[53], rate_proximal_leg4)
             + parameters[54];
-        let t564 = c_distal_leg4 * rate_proximal_leg4;
-        let t565 = rate_distal_leg4 * t564;
-        let t566 = minus_s_distal_leg4 * rate_dot_proximal_leg4;
-        let t567 = t565 - t566;
-        let t570 = minus_s_distal_leg4 * rate_proximal_leg4;
-        let t571 = rate_distal_leg4 * t570;
-        let t574 = rate_distal_leg4 * rate_distal_leg4;
-        let t575 = t570 * t570;
-        let t579 = c_distal_leg4 * rate_dot_proximal_leg4;
-        let t580 = t579 + t571;
-        let t583 = t570 * t564;
-        let rate_dot_distal_leg4 = minus_c_proximal_leg4 * t530 + gdistal_wy_leg4 * t540
-            + gdistal_wy_leg4 * t547;
-        let t591 = parameters[56] * (t565 + t567) - parameters[55] * t571
-            + parameters[57] * (t574 - t575) + parameters[58] * t580
-            + parameters[59] * (t583 + rate_dot_distal_leg4);
-        let t596 = 9.81 * t497;
-        let t609 = t564 * t564;
-        let t612 = parameters[55] * t567 + parameters[56] * (t571 + t580)
-            + parameters[57] * (rate_dot_distal_leg4 - t583) - parameters[58] * t565
-            + parameters[59] * (t609 - t574);
-        let t617 = 9.81 * t523;
-        let t621 = c_distal_leg4
-            * (t591 + parameters[60] * t571 - parameters[61] * t551
-                + parameters[63] * t596)
-            - minus_s_distal_leg4
-                * (t612 + parameters[60] * t565 + parameters[62] * t551
-                    - parameters[63] * t617);
-        let t622 = t563 + t621;
-        let t633 = parameters[55] * t583 + parameters[56] * (t575 - t609)
-            - parameters[57] * t566 - parameters[58] * t583 + parameters[59] * t579;
-        let t639 = t633 + parameters[60] * rate_dot_distal_leg4 + parameters[61] * t617
-            - parameters[62] * t596;
-        let t642 = gproximal_wx_leg1 * t140 - t158
-            - (minus_gproximal_wx_leg2 * t300 + minus_c_proximal_leg2 * t317) + t419
-            - minus_gproximal_wx_leg3 * t478 + gproximal_wx_leg4 * t622
-            + minus_c_proximal_leg4 * t639;
-        let t643 = 2.0 * pose[2];
-        let t644 = pose[2] * t643;
-        let t646 = 2.0 * pose[3];
-        let t647 = pose[3] * t646;
-        let t648 = 1.0 - t644 - t647;
-        let t650 = 2.0 * pose[1];
-        let t651 = pose[2] * t650;
-        let t652 = pose[0] * t646;
-        let t653 = t651 + t652;
-        let t656 = pose[3] * t650;
-        let t657 = pose[0] * t643;
-        let t658 = t656 - t657;
-        let t660 = t648 * acceleration[0] + t653 * acceleration[1]
-            + t658 * acceleration[2];
-        let t666 = t648 * twist[0] + t653 * twist[1] + t658 * twist[2];
-        let t667 = t656 + t657;
-        let t669 = pose[3] * t643;
-        let t670 = pose[0] * t650;
-        let t671 = t669 - t670;
-        let t675 = 1.0 - pose[1] * t650;
-        let t676 = t675 - t644;
-        let t678 = t667 * twist[0] + t671 * twist[1] + t676 * twist[2];
-        let t679 = t666 * t678;
-        let t680 = t651 - t652;
-        let t682 = t675 - t647;
-        let t685 = t669 + t670;
-        let t687 = t680 * acceleration[0] + t682 * acceleration[1]
-            + t685 * acceleration[2];
-        let t695 = t680 * twist[0] + t682 * twist[1] + t685 * twist[2];
-        let t696 = t666 * t695;
-        let t701 = t667 * acceleration[0] + t671 * acceleration[1]
-            + t676 * acceleration[2];
-        let t705 = t695 * t678;
-        let t708 = t695 * t695;
-        let t709 = t678 * t678;
-        let t712 = parameters[64] * t660 - parameters[65] * (t679 - t687)
-            + parameters[66] * (t696 + t701) - parameters[67] * t705
-            + parameters[68] * (t708 - t709);
-        let t715 = 9.81 * t676;
-        let t718 = 9.81 * t685;
-        let t720 = t712 + parameters[69] * t705 + parameters[71] * t715
-            - parameters[72] * t718;
-        let t726 = t666 * t666;
-        let t734 = parameters[64] * t679 + parameters[65] * (t705 + t660)
-            + parameters[66] * (t709 - t726) + parameters[67] * t687
-            - parameters[68] * (t696 - t701);
-        let t739 = 9.81 * t658;
-        let t741 = t734 - parameters[69] * t679 - parameters[70] * t715
-            + parameters[72] * t739;
-        let t755 = parameters[65] * (t726 - t708) - parameters[64] * t696
-            - parameters[66] * (t705 - t660) + parameters[67] * t696
-            + parameters[68] * (t679 + t687);
-        let t761 = t755 + parameters[69] * t701 + parameters[70] * t718
-            - parameters[71] * t739;
-        let t764 = t642 + t648 * t720 + t680 * t741 + t667 * t761;
-        let t771 = gproximal_wx_leg1 * gproximal_wx_leg1
-            + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
-            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
-            + gproximal_wx_leg4 * gproximal_wx_leg4;
-        ::overact::guard::platform(t771, 1.0000000000000002, "actuators")?;
-        ::overact::guard::platform(t771, 1.0000000000000002, "actuators")?;
-        let t772 = 1.0 / t771;
-        let t780 = gproximal_wx_leg1 * gproximal_wy_leg1
-            - minus_gproximal_wx_leg2 * gproximal_wy_leg2
-            + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
-            - gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t781 = t780 * t772;
-        let t790 = gproximal_wy_leg1 * gproximal_wy_leg1
-            + gproximal_wy_leg2 * gproximal_wy_leg2
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t780 * t781;
-        ::overact::guard::platform(t790, 1.0000000000000002, "actuators")?;
-        ::overact::guard::platform(t790, 1.0000000000000002, "actuators")?;
-        let t791 = 1.0 / t790;
-        let t796 = minus_gdistal_wy_leg2 * t317;
-        let t802 = gproximal_wy_leg1 * t140 + minus_c_proximal_leg1 * t157
-            + gproximal_wy_leg2 * t300 - t796
-            - (minus_gproximal_wy_leg3 * t478 + minus_c_proximal_leg3 * t418);
-        let t803 = gdistal_wy_leg4 * t639;
-        let t814 = t802 + t803 - minus_gproximal_wy_leg4 * t622 + t653 * t720
-            + t682 * t741 + t671 * t761 - t764 * t781;
-        let t829 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
-            - gproximal_wx_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
-            - gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t830 = t829 * t772;
-        let t832 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
-            - (gproximal_wy_leg1 * minus_gproximal_wz_leg1
-                + gproximal_wy_leg2 * minus_gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t780 * t830;
-        let t833 = t832 * t791;
-        let t844 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+        let t733 = s_distal_leg4 * rate_proximal_leg4;
+        let t734 = rate_distal_leg4 * t733;
+        let t735 = c_distal_leg4 * rate_dot_proximal_leg4;
+        let t736 = t734 - t735;
+        let t739 = c_distal_leg4 * rate_proximal_leg4;
+        let t740 = rate_distal_leg4 * t739;
+        let t743 = rate_distal_leg4 * rate_distal_leg4;
+        let t744 = t739 * t739;
+        let t748 = s_distal_leg4 * rate_dot_proximal_leg4;
+        let t749 = t748 + t740;
+        let t752 = t739 * t733;
+        let rate_dot_distal_leg4 = gdistal_wx_leg4 * t709 - minus_gdistal_wy_leg4 * t715
+            - minus_gdistal_wy_leg4 * t699;
+        let t760 = parameters[56] * (t734 + t736) - parameters[55] * t740
+            + parameters[57] * (t743 - t744) + parameters[58] * t749
+            + parameters[59] * (t752 + rate_dot_distal_leg4);
+        let t767 = 6.936717523440031 * (s_distal_leg4 * c_proximal_leg4 - c_distal_leg4);
+        let t780 = t733 * t733;
+        let t783 = parameters[55] * t736 + parameters[56] * (t740 + t749)
+            + parameters[57] * (rate_dot_distal_leg4 - t752) - parameters[58] * t734
+            + parameters[59] * (t780 - t743);
+        let t790 = c_distal_leg4 * t723 + 3.4683587617200153 * t130;
+        let t794 = s_distal_leg4
+            * (t760 + parameters[60] * t740 + parameters[61] * t720
+                + parameters[63] * t767)
+            - c_distal_leg4
+                * (t783 + parameters[60] * t734 - parameters[62] * t720
+                    - parameters[63] * t790);
+        let t795 = t732 + t794;
+        let t806 = parameters[55] * t752 + parameters[56] * (t744 - t780)
+            - parameters[57] * t735 - parameters[58] * t752 + parameters[59] * t748;
+        let t812 = t806 + parameters[60] * rate_dot_distal_leg4 + parameters[61] * t790
+            - parameters[62] * t767;
+        let t813 = minus_gdistal_wy_leg4 * t812;
+        let t820 = t5 * acceleration[0] + t29 * acceleration[1] + t11 * acceleration[2];
+        let t826 = t5 * twist[0] + t29 * twist[1] + t11 * twist[2];
+        let t831 = t9 * twist[0] + t32 * twist[1] + t14 * twist[2];
+        let t832 = t826 * t831;
+        let t837 = t73 * acceleration[0] + t56 * acceleration[1] + t53 * acceleration[2];
+        let t845 = t73 * twist[0] + t56 * twist[1] + t53 * twist[2];
+        let t846 = t826 * t845;
+        let t851 = t9 * acceleration[0] + t32 * acceleration[1] + t14 * acceleration[2];
+        let t855 = t845 * t831;
+        let t858 = t845 * t845;
+        let t859 = t831 * t831;
+        let t862 = parameters[64] * t820 - parameters[65] * (t832 - t837)
+            + parameters[66] * (t846 + t851) - parameters[67] * t855
+            + parameters[68] * (t858 - t859);
+        let t865 = 9.81 * t14;
+        let t868 = 9.81 * t53;
+        let t870 = t862 + parameters[69] * t855 + parameters[71] * t865
+            - parameters[72] * t868;
+        let t876 = t826 * t826;
+        let t884 = parameters[64] * t832 + parameters[65] * (t855 + t820)
+            + parameters[66] * (t859 - t876) + parameters[67] * t837
+            - parameters[68] * (t846 - t851);
+        let t889 = 9.81 * t11;
+        let t891 = t884 - parameters[69] * t832 - parameters[70] * t865
+            + parameters[72] * t889;
+        let t905 = parameters[65] * (t876 - t858) - parameters[64] * t846
+            - parameters[66] * (t855 - t820) + parameters[67] * t846
+            + parameters[68] * (t832 + t837);
+        let t911 = t905 + parameters[69] * t851 + parameters[70] * t868
+            - parameters[71] * t889;
+        let t915 = gdistal_wx_leg1 * t351;
+        let t922 = gdistal_wx_leg3 * t658;
+        let t929 = t915 - minus_gproximal_wx_leg1 * t334 + gproximal_wx_leg2 * t487
+            + gdistal_wx_leg2 * t504 + t922 - minus_gproximal_wx_leg3 * t641
+            + gdistal_wx_leg4 * t812 - minus_gproximal_wx_leg4 * t795;
+        let t935 = t929 + t5 * t870 + t73 * t891 + t9 * t911;
+        let t937 = t661 - (minus_gproximal_wy_leg4 * t795 + t813) + t29 * t870
+            + t56 * t891 + t32 * t911 - t935 * t197;
+        let t952 = minus_gproximal_wx_leg1 * minus_gproximal_wz_leg1
+            - gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wx_leg3 * gproximal_wz_leg3
+            - minus_gproximal_wx_leg4 * gproximal_wz_leg4;
+        let t953 = t952 * t196;
+        let t955 = gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            + gproximal_wy_leg2 * minus_gproximal_wz_leg2
+            + minus_gproximal_wy_leg3 * gproximal_wz_leg3
+            + minus_gproximal_wy_leg4 * gproximal_wz_leg4 + t188 * t953;
+        let t956 = t955 * t200;
+        let t967 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
             + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t829 * t830
-            - t832 * t833;
-        ::overact::guard::platform(t844, 2.0000000000000004, "actuators")?;
-        ::overact::guard::platform(t844, 2.0000000000000004, "actuators")?;
-        let t845 = 1.0 / t844;
-        let t856 = t158 - minus_gproximal_wz_leg1 * t140 + t796
-            - minus_gproximal_wz_leg2 * t300 + t419 - minus_gproximal_wz_leg3 * t478
-            + t803 - minus_gproximal_wz_leg4 * t622;
-        let t866 = t856 + t658 * t720 + t685 * t741 + t676 * t761 - t764 * t830
-            - t833 * t814;
-        let t867 = t845 * t866;
-        let t869 = t791 * t814 - t833 * t867;
-        let t873 = t764 * t772 - t781 * t869 - t830 * t867;
-        let t881 = minus_gproximal_wy_leg4 + gproximal_wx_leg4 * t781;
-        let t887 = t845
-            * (t833 * t881 - (minus_gproximal_wz_leg4 + gproximal_wx_leg4 * t830));
-        let t889 = t791 * t881 + t833 * t887;
-        let t893 = gproximal_wx_leg4 * t772 + t781 * t889 - t830 * t887;
-        let t905 = ::overact::math::sqrt(
+            + gproximal_wz_leg3 * gproximal_wz_leg3
+            + gproximal_wz_leg4 * gproximal_wz_leg4 - t952 * t953 - t955 * t956;
+        ::overact::guard::platform(t967, 1.9999999999999996, "actuators")?;
+        ::overact::guard::platform(t967, 1.9999999999999996, "actuators")?;
+        let t968 = 1.0 / t967;
+        let t979 = t505 - minus_gproximal_wz_leg2 * t487
+            - (minus_gproximal_wz_leg1 * t334 + t915) + gproximal_wz_leg3 * t641 + t922
+            + gproximal_wz_leg4 * t795 - t813;
+        let t989 = t979 + t11 * t870 + t53 * t891 + t14 * t911 - t935 * t953
+            + t956 * t937;
+        let t990 = t968 * t989;
+        let t992 = t200 * t937 + t956 * t990;
+        let t998 = t935 * t196 - t197 * t992 - t953 * t990;
+        let t1005 = minus_gproximal_wx_leg4 * t197 - minus_gproximal_wy_leg4;
+        let t1011 = t968
+            * (gproximal_wz_leg4 + minus_gproximal_wx_leg4 * t953 + t956 * t1005);
+        let t1013 = t200 * t1005 + t956 * t1011;
+        let t1017 = minus_gproximal_wx_leg4 * t196 + t197 * t1013 + t953 * t1011;
+        let t1029 = ::overact::math::sqrt(
             1.0
-                - (gproximal_wx_leg4 * t893 + minus_gproximal_wy_leg4 * t889
-                    - minus_gproximal_wz_leg4 * t887),
+                - (minus_gproximal_wx_leg4 * t1017 - minus_gproximal_wy_leg4 * t1013
+                    + gproximal_wz_leg4 * t1011),
         );
-        let t906 = 1.0 / t905;
-        let t909 = gproximal_wx_leg1 * t873 + gproximal_wy_leg1 * t869
-            - minus_gproximal_wz_leg1 * t867
+        let t1030 = 1.0 / t1029;
+        let t1033 = gproximal_wy_leg1 * t992 - minus_gproximal_wx_leg1 * t998
+            - minus_gproximal_wz_leg1 * t990
             - preload[0]
-                * ((gproximal_wx_leg1 * t893 - gproximal_wy_leg1 * t889
-                    - minus_gproximal_wz_leg1 * t887) * t906);
-        let t922 = gproximal_wy_leg2 * t869 - minus_gproximal_wx_leg2 * t873
-            - minus_gproximal_wz_leg2 * t867
-            + preload[0]
-                * ((minus_gproximal_wx_leg2 * t893 + gproximal_wy_leg2 * t889
-                    + minus_gproximal_wz_leg2 * t887) * t906);
-        let t935 = minus_gproximal_wx_leg3 * t873 + minus_gproximal_wy_leg3 * t869
-            + minus_gproximal_wz_leg3 * t867
-            + preload[0]
-                * ((minus_gproximal_wy_leg3 * t889 - minus_gproximal_wx_leg3 * t893
-                    - minus_gproximal_wz_leg3 * t887) * t906);
+                * ((minus_gproximal_wx_leg1 * t1017 + gproximal_wy_leg1 * t1013
+                    - minus_gproximal_wz_leg1 * t1011) * t1030);
+        let t1046 = gproximal_wx_leg2 * t998 + gproximal_wy_leg2 * t992
+            - minus_gproximal_wz_leg2 * t990
+            - preload[0]
+                * ((gproximal_wy_leg2 * t1013 - gproximal_wx_leg2 * t1017
+                    - minus_gproximal_wz_leg2 * t1011) * t1030);
+        let t1059 = gproximal_wz_leg3 * t990
+            - (minus_gproximal_wx_leg3 * t998 + minus_gproximal_wy_leg3 * t992)
+            - preload[0]
+                * ((minus_gproximal_wx_leg3 * t1017 - minus_gproximal_wy_leg3 * t1013
+                    + gproximal_wz_leg3 * t1011) * t1030);
         Ok([
-            t909, t922, -t935,
-            gproximal_wx_leg4 * t873 - minus_gproximal_wy_leg4 * t869
-                - minus_gproximal_wz_leg4 * t867 + preload[0] * t905,
+            t1033, t1046, t1059,
+            gproximal_wz_leg4 * t990
+                - (minus_gproximal_wx_leg4 * t998 + minus_gproximal_wy_leg4 * t992)
+                + preload[0] * t1029,
         ])
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50).
@@ -8450,7 +11872,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 4.
     ///
-    /// 151 operations (53 additions, 91 multiplications, 7 divisions), 0 square roots, 8 trigonometric pairs, 0 signs, 163 intermediates.
+    /// 298 operations (100 additions, 187 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 298 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -8458,104 +11880,171 @@ impl Spherical4Rrr {
         pose: &[f64; 4],
         torques: &[f64; 4],
     ) -> Result<[f64; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t5 = 0.7071067811865476 * minus_c_proximal_leg1 * c_distal_leg1;
-        let t6 = 0.7071067811865476 * minus_s_distal_leg1;
-        let t8 = 1.0 / minus_s_distal_leg1;
-        let gproximal_wx_leg1 = (t5 + t6) * t8;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let t16 = 1.0 / minus_s_distal_leg2;
-        let minus_gproximal_wx_leg2 = minus_s_proximal_leg2 * c_distal_leg2 * t16;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let t25 = 0.7071067811865476 * minus_c_proximal_leg3 * c_distal_leg3;
-        let t26 = 0.7071067811865476 * minus_s_distal_leg3;
-        let t28 = 1.0 / minus_s_distal_leg3;
-        let minus_gproximal_wx_leg3 = (t25 + t26) * t28;
-        let (minus_s_proximal_leg4, minus_c_proximal_leg4) = ::overact::math::sin_cos(
-            joints[9],
-        );
-        let (c_distal_leg4, minus_s_distal_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(minus_s_distal_leg4, 1.0, "leg4")?;
-        let t37 = 1.0 / minus_s_distal_leg4;
-        let gproximal_wx_leg4 = minus_s_proximal_leg4 * c_distal_leg4 * t37;
-        let t40 = gproximal_wx_leg1 * torques[0] - minus_gproximal_wx_leg2 * torques[1]
-            - minus_gproximal_wx_leg3 * torques[2] + gproximal_wx_leg4 * torques[3];
-        let t47 = gproximal_wx_leg1 * gproximal_wx_leg1
-            + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
-            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
-            + gproximal_wx_leg4 * gproximal_wx_leg4;
-        ::overact::guard::platform(t47, 1.0000000000000002, "actuators")?;
-        let t48 = 1.0 / t47;
-        let gproximal_wy_leg1 = minus_s_proximal_leg1 * c_distal_leg1 * t8;
-        let t54 = 0.7071067811865476 * minus_c_proximal_leg2 * c_distal_leg2;
-        let t55 = 0.7071067811865476 * minus_s_distal_leg2;
-        let gproximal_wy_leg2 = (t54 + t55) * t16;
-        let minus_gproximal_wy_leg3 = minus_s_proximal_leg3 * c_distal_leg3 * t28;
-        let t65 = 0.7071067811865476 * minus_c_proximal_leg4 * c_distal_leg4;
-        let t66 = 0.7071067811865476 * minus_s_distal_leg4;
-        let minus_gproximal_wy_leg4 = (t65 + t66) * t37;
-        let t70 = gproximal_wx_leg1 * gproximal_wy_leg1
-            - minus_gproximal_wx_leg2 * gproximal_wy_leg2
+        let t0 = 2.0 * pose[2];
+        let t1 = pose[2] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = 1.0 - t1 - t4;
+        let t6 = 2.0 * pose[1];
+        let t7 = pose[3] * t6;
+        let t8 = pose[0] * t0;
+        let t9 = t7 + t8;
+        let t10 = t5 - t9;
+        let t11 = t7 - t8;
+        let t13 = 1.0 - pose[1] * t6;
+        let t14 = t13 - t1;
+        let t15 = t11 - t14;
+        let t16 = t10 + t15;
+        let minus_s_distal_leg1 = 0.5 * t16;
+        let t20 = 1.0 - 0.25 * (t16 * t16);
+        ::overact::guard::reach(t20, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t20);
+        let t26 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
+        let t27 = pose[2] * t6;
+        let t28 = pose[0] * t3;
+        let t29 = t27 + t28;
+        let t30 = pose[3] * t0;
+        let t31 = pose[0] * t6;
+        let t32 = t30 - t31;
+        let t33 = t29 - t32;
+        let t34 = t10 - t15;
+        let s_proximal_leg1 = t26 * (0.35355339059327373 * (t33 * t34));
+        let c_proximal_leg1 = t26 * (0.25 * (t34 * t34));
+        let t49 = 0.5 * (t15 * c_proximal_leg1)
+            - (0.5 * (t10 * c_proximal_leg1)
+                + 0.7071067811865475 * t33 * s_proximal_leg1);
+        ::overact::guard::leg(t49, 1.0, "leg1")?;
+        let t50 = 1.0 / t49;
+        let gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t50;
+        let t53 = t30 + t31;
+        let t54 = t53 - t14;
+        let t56 = t13 - t4;
+        let t57 = t56 - t32;
+        let t58 = t57 + t54;
+        let t61 = 1.0 - 0.25 * (t58 * t58);
+        ::overact::guard::reach(t61, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t61);
+        let t67 = 1.0 / (0.5 * (t57 * c_distal_leg2 - t54 * c_distal_leg2));
+        let t68 = t57 - t54;
+        let c_proximal_leg2 = t67 * (0.25 * (t68 * t68));
+        let t73 = t27 - t28;
+        let t74 = t73 - t9;
+        let minus_s_proximal_leg2 = t67 * (0.35355339059327373 * (t74 * t68));
+        let t79 = 0.5 * (t74 * minus_s_proximal_leg2);
+        let t88 = 0.5 * (t54 * c_proximal_leg2)
+            - (0.7071067811865475 * t74 * minus_s_proximal_leg2
+                + 0.5 * (t57 * c_proximal_leg2));
+        ::overact::guard::leg(t88, 1.0, "leg2")?;
+        let t89 = 1.0 / t88;
+        let gproximal_wy_leg2 = (0.7071067811865475 * t54 * c_proximal_leg2 - t79) * t89;
+        let t93 = t11 + t14;
+        let t94 = t5 + t9;
+        let t95 = t93 - t94;
+        let s_distal_leg3 = 0.5 * t95;
+        let t99 = 1.0 - 0.25 * (t95 * t95);
+        ::overact::guard::reach(t99, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t99);
+        let t105 = 1.0 / (0.5 * (t94 * c_distal_leg3 + t93 * c_distal_leg3));
+        let t106 = t29 + t32;
+        let t107 = t94 + t93;
+        let s_proximal_leg3 = t105 * (0.35355339059327373 * (t106 * t107));
+        let c_proximal_leg3 = t105 * (0.25 * (t107 * t107));
+        let t122 = 0.5 * (t94 * c_proximal_leg3)
+            + 0.7071067811865475 * t106 * s_proximal_leg3
+            + 0.5 * (t93 * c_proximal_leg3);
+        ::overact::guard::leg(t122, 1.0, "leg3")?;
+        let t123 = 1.0 / t122;
+        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t123;
+        let t127 = t73 + t9;
+        let t128 = t56 + t32;
+        let t129 = t53 + t14;
+        let t130 = t129 - t128;
+        let t133 = 1.0 - 0.25 * (t130 * t130);
+        ::overact::guard::reach(t133, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t133);
+        let t139 = 1.0 / (0.5 * (t128 * c_distal_leg4 + t129 * c_distal_leg4));
+        let t140 = t128 + t129;
+        let minus_s_proximal_leg4 = t139 * (0.35355339059327373 * (t127 * t140));
+        let t145 = 0.5 * (t127 * minus_s_proximal_leg4);
+        let c_proximal_leg4 = t139 * (0.25 * (t140 * t140));
+        let t159 = 0.7071067811865475 * t127 * minus_s_proximal_leg4
+            + 0.5 * (t128 * c_proximal_leg4) + 0.5 * (t129 * c_proximal_leg4);
+        ::overact::guard::leg(t159, 1.0, "leg4")?;
+        let t160 = 1.0 / t159;
+        let minus_gproximal_wy_leg4 = (t145
+            + 0.7071067811865475 * t129 * c_proximal_leg4) * t160;
+        let minus_s_distal_leg2 = 0.5 * t58;
+        let gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t89;
+        let t169 = 0.5 * (t33 * s_proximal_leg1);
+        let minus_gproximal_wx_leg1 = (t169 - 0.7071067811865475 * t15 * c_proximal_leg1)
+            * t50;
+        let t177 = 0.5 * (t106 * s_proximal_leg3);
+        let minus_gproximal_wx_leg3 = (t177 + 0.7071067811865475 * t93 * c_proximal_leg3)
+            * t123;
+        let s_distal_leg4 = 0.5 * t130;
+        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t160;
+        let t188 = gproximal_wx_leg2 * gproximal_wy_leg2
+            - minus_gproximal_wx_leg1 * gproximal_wy_leg1
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
-            - gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t71 = t70 * t48;
-        let t80 = gproximal_wy_leg1 * gproximal_wy_leg1
+            + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
+        let t195 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+            + gproximal_wx_leg2 * gproximal_wx_leg2
+            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
+        ::overact::guard::platform(t195, 0.9999999999999998, "actuators")?;
+        let t196 = 1.0 / t195;
+        let t197 = t188 * t196;
+        let t199 = gproximal_wy_leg1 * gproximal_wy_leg1
             + gproximal_wy_leg2 * gproximal_wy_leg2
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t70 * t71;
-        ::overact::guard::platform(t80, 1.0000000000000002, "actuators")?;
-        let t81 = 1.0 / t80;
-        let t90 = gproximal_wy_leg1 * torques[0] + gproximal_wy_leg2 * torques[1]
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t188 * t197;
+        ::overact::guard::platform(t199, 0.9999999999999998, "actuators")?;
+        let t200 = 1.0 / t199;
+        let t214 = gproximal_wx_leg2 * torques[1] - minus_gproximal_wx_leg1 * torques[0]
+            - minus_gproximal_wx_leg3 * torques[2]
+            - minus_gproximal_wx_leg4 * torques[3];
+        let t216 = gproximal_wy_leg1 * torques[0] + gproximal_wy_leg2 * torques[1]
             - minus_gproximal_wy_leg3 * torques[2] - minus_gproximal_wy_leg4 * torques[3]
-            - t40 * t71;
-        let minus_gproximal_wz_leg3 = (t25 - t26) * t28;
-        let minus_gproximal_wz_leg1 = (t5 - t6) * t8;
-        let minus_gproximal_wz_leg2 = (t54 - t55) * t16;
-        let minus_gproximal_wz_leg4 = (t65 - t66) * t37;
-        let t113 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
-            - gproximal_wx_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
-            - gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t114 = t113 * t48;
-        let t116 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
-            - (gproximal_wy_leg1 * minus_gproximal_wz_leg1
-                + gproximal_wy_leg2 * minus_gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t70 * t114;
-        let t117 = t116 * t81;
-        let t128 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            - t214 * t197;
+        let minus_gproximal_wz_leg1 = (0.7071067811865475 * t10 * c_proximal_leg1 + t169)
+            * t50;
+        let minus_gproximal_wz_leg2 = (0.7071067811865475 * t57 * c_proximal_leg2 + t79)
+            * t89;
+        let gproximal_wz_leg3 = (0.7071067811865475 * t94 * c_proximal_leg3 + t177)
+            * t123;
+        let gproximal_wz_leg4 = (0.7071067811865475 * t128 * c_proximal_leg4 + t145)
+            * t160;
+        let t247 = minus_gproximal_wx_leg1 * minus_gproximal_wz_leg1
+            - gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wx_leg3 * gproximal_wz_leg3
+            - minus_gproximal_wx_leg4 * gproximal_wz_leg4;
+        let t248 = t247 * t196;
+        let t250 = gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            + gproximal_wy_leg2 * minus_gproximal_wz_leg2
+            + minus_gproximal_wy_leg3 * gproximal_wz_leg3
+            + minus_gproximal_wy_leg4 * gproximal_wz_leg4 + t188 * t248;
+        let t251 = t250 * t200;
+        let t262 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
             + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t113 * t114
-            - t116 * t117;
-        ::overact::guard::platform(t128, 2.0000000000000004, "actuators")?;
-        let t139 = minus_gproximal_wz_leg1 * torques[0]
-            + minus_gproximal_wz_leg2 * torques[1] + minus_gproximal_wz_leg3 * torques[2]
-            + minus_gproximal_wz_leg4 * torques[3] + t40 * t114 + t117 * t90;
-        let t140 = t139 / t128;
-        let t142 = t81 * t90 + t117 * t140;
-        let t146 = t40 * t48 - t71 * t142 + t114 * t140;
+            + gproximal_wz_leg3 * gproximal_wz_leg3
+            + gproximal_wz_leg4 * gproximal_wz_leg4 - t247 * t248 - t250 * t251;
+        ::overact::guard::platform(t262, 1.9999999999999996, "actuators")?;
+        let t273 = gproximal_wz_leg3 * torques[2]
+            - (minus_gproximal_wz_leg1 * torques[0]
+                + minus_gproximal_wz_leg2 * torques[1]) + gproximal_wz_leg4 * torques[3]
+            - t214 * t248 + t251 * t216;
+        let t274 = t273 / t262;
+        let t276 = t200 * t216 + t251 * t274;
+        let t282 = t214 * t196 - t197 * t276 - t248 * t274;
         Ok([
-            gproximal_wx_leg1 * t146 + gproximal_wy_leg1 * t142
-                + minus_gproximal_wz_leg1 * t140,
-            gproximal_wy_leg2 * t142 - minus_gproximal_wx_leg2 * t146
-                + minus_gproximal_wz_leg2 * t140,
-            minus_gproximal_wz_leg3 * t140
-                - (minus_gproximal_wx_leg3 * t146 + minus_gproximal_wy_leg3 * t142),
-            gproximal_wx_leg4 * t146 - minus_gproximal_wy_leg4 * t142
-                + minus_gproximal_wz_leg4 * t140,
+            gproximal_wy_leg1 * t276 - minus_gproximal_wx_leg1 * t282
+                - minus_gproximal_wz_leg1 * t274,
+            gproximal_wx_leg2 * t282 + gproximal_wy_leg2 * t276
+                - minus_gproximal_wz_leg2 * t274,
+            gproximal_wz_leg3 * t274
+                - (minus_gproximal_wx_leg3 * t282 + minus_gproximal_wy_leg3 * t276),
+            gproximal_wz_leg4 * t274
+                - (minus_gproximal_wx_leg4 * t282 + minus_gproximal_wy_leg4 * t276),
         ])
     }
     /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.
@@ -8565,114 +12054,180 @@ impl Spherical4Rrr {
     ///
     /// Output: 4 x 1.
     ///
-    /// 135 operations (45 additions, 82 multiplications, 8 divisions), 1 square roots, 8 trigonometric pairs, 0 signs, 148 intermediates.
+    /// 282 operations (92 additions, 178 multiplications, 12 divisions), 5 square roots, 0 trigonometric pairs, 0 signs, 283 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn null_space(pose: &[f64; 4]) -> Result<[[f64; 1]; 4], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t5 = 0.7071067811865476 * minus_c_proximal_leg1 * c_distal_leg1;
-        let t6 = 0.7071067811865476 * minus_s_distal_leg1;
-        let t8 = 1.0 / minus_s_distal_leg1;
-        let gproximal_wx_leg1 = (t5 + t6) * t8;
-        let (minus_s_proximal_leg4, minus_c_proximal_leg4) = ::overact::math::sin_cos(
-            joints[9],
-        );
-        let (c_distal_leg4, minus_s_distal_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(minus_s_distal_leg4, 1.0, "leg4")?;
-        let t15 = 1.0 / minus_s_distal_leg4;
-        let gproximal_wx_leg4 = minus_s_proximal_leg4 * c_distal_leg4 * t15;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let t23 = 1.0 / minus_s_distal_leg2;
-        let minus_gproximal_wx_leg2 = minus_s_proximal_leg2 * c_distal_leg2 * t23;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let t32 = 0.7071067811865476 * minus_c_proximal_leg3 * c_distal_leg3;
-        let t33 = 0.7071067811865476 * minus_s_distal_leg3;
-        let t35 = 1.0 / minus_s_distal_leg3;
-        let minus_gproximal_wx_leg3 = (t32 + t33) * t35;
-        let t40 = gproximal_wx_leg1 * gproximal_wx_leg1
-            + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+        let t0 = 2.0 * pose[1];
+        let t1 = pose[2] * t0;
+        let t2 = 2.0 * pose[3];
+        let t3 = pose[0] * t2;
+        let t4 = t1 + t3;
+        let t5 = 2.0 * pose[2];
+        let t6 = pose[3] * t5;
+        let t7 = pose[0] * t0;
+        let t8 = t6 - t7;
+        let t9 = t4 - t8;
+        let t10 = pose[2] * t5;
+        let t12 = pose[3] * t2;
+        let t13 = 1.0 - t10 - t12;
+        let t14 = pose[3] * t0;
+        let t15 = pose[0] * t5;
+        let t16 = t14 + t15;
+        let t17 = t13 - t16;
+        let t18 = t14 - t15;
+        let t20 = 1.0 - pose[1] * t0;
+        let t21 = t20 - t10;
+        let t22 = t18 - t21;
+        let t23 = t17 + t22;
+        let t26 = 1.0 - 0.25 * (t23 * t23);
+        ::overact::guard::reach(t26, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t26);
+        let t32 = 1.0 / (0.5 * (t17 * c_distal_leg1 - t22 * c_distal_leg1));
+        let t33 = t17 - t22;
+        let s_proximal_leg1 = t32 * (0.35355339059327373 * (t9 * t33));
+        let t38 = 0.5 * (t9 * s_proximal_leg1);
+        let c_proximal_leg1 = t32 * (0.25 * (t33 * t33));
+        let t52 = 0.5 * (t22 * c_proximal_leg1)
+            - (0.5 * (t17 * c_proximal_leg1)
+                + 0.7071067811865475 * t9 * s_proximal_leg1);
+        ::overact::guard::leg(t52, 1.0, "leg1")?;
+        let t53 = 1.0 / t52;
+        let minus_gproximal_wx_leg1 = (t38 - 0.7071067811865475 * t22 * c_proximal_leg1)
+            * t53;
+        let t55 = t6 + t7;
+        let t56 = t55 + t21;
+        let t57 = t20 - t12;
+        let t58 = t57 + t8;
+        let t59 = t56 - t58;
+        let s_distal_leg4 = 0.5 * t59;
+        let t63 = 1.0 - 0.25 * (t59 * t59);
+        ::overact::guard::reach(t63, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t63);
+        let t69 = 1.0 / (0.5 * (t58 * c_distal_leg4 + t56 * c_distal_leg4));
+        let t70 = t1 - t3;
+        let t71 = t70 + t16;
+        let t72 = t58 + t56;
+        let minus_s_proximal_leg4 = t69 * (0.35355339059327373 * (t71 * t72));
+        let c_proximal_leg4 = t69 * (0.25 * (t72 * t72));
+        let t87 = 0.7071067811865475 * t71 * minus_s_proximal_leg4
+            + 0.5 * (t58 * c_proximal_leg4) + 0.5 * (t56 * c_proximal_leg4);
+        ::overact::guard::leg(t87, 1.0, "leg4")?;
+        let t88 = 1.0 / t87;
+        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t88;
+        let t91 = t57 - t8;
+        let t92 = t55 - t21;
+        let t93 = t91 + t92;
+        let minus_s_distal_leg2 = 0.5 * t93;
+        let t97 = 1.0 - 0.25 * (t93 * t93);
+        ::overact::guard::reach(t97, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t97);
+        let t103 = 1.0 / (0.5 * (t91 * c_distal_leg2 - t92 * c_distal_leg2));
+        let t104 = t70 - t16;
+        let t105 = t91 - t92;
+        let minus_s_proximal_leg2 = t103 * (0.35355339059327373 * (t104 * t105));
+        let c_proximal_leg2 = t103 * (0.25 * (t105 * t105));
+        let t120 = 0.5 * (t92 * c_proximal_leg2)
+            - (0.7071067811865475 * t104 * minus_s_proximal_leg2
+                + 0.5 * (t91 * c_proximal_leg2));
+        ::overact::guard::leg(t120, 1.0, "leg2")?;
+        let t121 = 1.0 / t120;
+        let gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t121;
+        let t125 = t4 + t8;
+        let t126 = t13 + t16;
+        let t127 = t18 + t21;
+        let t128 = t127 - t126;
+        let t131 = 1.0 - 0.25 * (t128 * t128);
+        ::overact::guard::reach(t131, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t131);
+        let t137 = 1.0 / (0.5 * (t126 * c_distal_leg3 + t127 * c_distal_leg3));
+        let t138 = t126 + t127;
+        let s_proximal_leg3 = t137 * (0.35355339059327373 * (t125 * t138));
+        let t143 = 0.5 * (t125 * s_proximal_leg3);
+        let c_proximal_leg3 = t137 * (0.25 * (t138 * t138));
+        let t157 = 0.5 * (t126 * c_proximal_leg3)
+            + 0.7071067811865475 * t125 * s_proximal_leg3
+            + 0.5 * (t127 * c_proximal_leg3);
+        ::overact::guard::leg(t157, 1.0, "leg3")?;
+        let t158 = 1.0 / t157;
+        let minus_gproximal_wx_leg3 = (t143
+            + 0.7071067811865475 * t127 * c_proximal_leg3) * t158;
+        let t163 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+            + gproximal_wx_leg2 * gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
-            + gproximal_wx_leg4 * gproximal_wx_leg4;
-        ::overact::guard::platform(t40, 1.0000000000000002, "actuators")?;
-        let t41 = 1.0 / t40;
-        let gproximal_wy_leg1 = minus_s_proximal_leg1 * c_distal_leg1 * t8;
-        let t47 = 0.7071067811865476 * minus_c_proximal_leg2 * c_distal_leg2;
-        let t48 = 0.7071067811865476 * minus_s_distal_leg2;
-        let gproximal_wy_leg2 = (t47 + t48) * t23;
-        let minus_gproximal_wy_leg3 = minus_s_proximal_leg3 * c_distal_leg3 * t35;
-        let t58 = 0.7071067811865476 * minus_c_proximal_leg4 * c_distal_leg4;
-        let t59 = 0.7071067811865476 * minus_s_distal_leg4;
-        let minus_gproximal_wy_leg4 = (t58 + t59) * t15;
-        let t63 = gproximal_wx_leg1 * gproximal_wy_leg1
-            - minus_gproximal_wx_leg2 * gproximal_wy_leg2
+            + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
+        ::overact::guard::platform(t163, 0.9999999999999998, "actuators")?;
+        let t164 = 1.0 / t163;
+        let t169 = 0.5 * (t104 * minus_s_proximal_leg2);
+        let gproximal_wy_leg2 = (0.7071067811865475 * t92 * c_proximal_leg2 - t169)
+            * t121;
+        let minus_s_distal_leg1 = 0.5 * t23;
+        let gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t53;
+        let s_distal_leg3 = 0.5 * t128;
+        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t158;
+        let t184 = 0.5 * (t71 * minus_s_proximal_leg4);
+        let minus_gproximal_wy_leg4 = (t184 + 0.7071067811865475 * t56 * c_proximal_leg4)
+            * t88;
+        let t190 = gproximal_wx_leg2 * gproximal_wy_leg2
+            - minus_gproximal_wx_leg1 * gproximal_wy_leg1
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
-            - gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t64 = t63 * t41;
-        let t73 = gproximal_wy_leg1 * gproximal_wy_leg1
+            + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
+        let t191 = t190 * t164;
+        let t200 = gproximal_wy_leg1 * gproximal_wy_leg1
             + gproximal_wy_leg2 * gproximal_wy_leg2
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t63 * t64;
-        ::overact::guard::platform(t73, 1.0000000000000002, "actuators")?;
-        let t74 = 1.0 / t73;
-        let t76 = minus_gproximal_wy_leg4 + gproximal_wx_leg4 * t64;
-        let minus_gproximal_wz_leg3 = (t32 - t33) * t35;
-        let minus_gproximal_wz_leg1 = (t5 - t6) * t8;
-        let minus_gproximal_wz_leg2 = (t47 - t48) * t23;
-        let minus_gproximal_wz_leg4 = (t58 - t59) * t15;
-        let t99 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
-            - gproximal_wx_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
-            - gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t100 = t99 * t41;
-        let t102 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
-            - (gproximal_wy_leg1 * minus_gproximal_wz_leg1
-                + gproximal_wy_leg2 * minus_gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t63 * t100;
-        let t103 = t102 * t74;
-        let t114 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t190 * t191;
+        ::overact::guard::platform(t200, 0.9999999999999998, "actuators")?;
+        let t201 = 1.0 / t200;
+        let t203 = minus_gproximal_wx_leg4 * t191 - minus_gproximal_wy_leg4;
+        let minus_gproximal_wz_leg1 = (0.7071067811865475 * t17 * c_proximal_leg1 + t38)
+            * t53;
+        let minus_gproximal_wz_leg2 = (0.7071067811865475 * t91 * c_proximal_leg2 + t169)
+            * t121;
+        let gproximal_wz_leg3 = (0.7071067811865475 * t126 * c_proximal_leg3 + t143)
+            * t158;
+        let gproximal_wz_leg4 = (0.7071067811865475 * t58 * c_proximal_leg4 + t184)
+            * t88;
+        let t234 = minus_gproximal_wx_leg1 * minus_gproximal_wz_leg1
+            - gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wx_leg3 * gproximal_wz_leg3
+            - minus_gproximal_wx_leg4 * gproximal_wz_leg4;
+        let t235 = t234 * t164;
+        let t237 = gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            + gproximal_wy_leg2 * minus_gproximal_wz_leg2
+            + minus_gproximal_wy_leg3 * gproximal_wz_leg3
+            + minus_gproximal_wy_leg4 * gproximal_wz_leg4 + t190 * t235;
+        let t238 = t237 * t201;
+        let t249 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
             + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t99 * t100
-            - t102 * t103;
-        ::overact::guard::platform(t114, 2.0000000000000004, "actuators")?;
-        let t119 = (t103 * t76 - (minus_gproximal_wz_leg4 + gproximal_wx_leg4 * t100))
-            / t114;
-        let t121 = t74 * t76 + t103 * t119;
-        let t125 = gproximal_wx_leg4 * t41 + t64 * t121 - t100 * t119;
-        let t137 = ::overact::math::sqrt(
+            + gproximal_wz_leg3 * gproximal_wz_leg3
+            + gproximal_wz_leg4 * gproximal_wz_leg4 - t234 * t235 - t237 * t238;
+        ::overact::guard::platform(t249, 1.9999999999999996, "actuators")?;
+        let t254 = (gproximal_wz_leg4 + minus_gproximal_wx_leg4 * t235 + t238 * t203)
+            / t249;
+        let t256 = t201 * t203 + t238 * t254;
+        let t260 = minus_gproximal_wx_leg4 * t164 + t191 * t256 + t235 * t254;
+        let t272 = ::overact::math::sqrt(
             1.0
-                - (gproximal_wx_leg4 * t125 + minus_gproximal_wy_leg4 * t121
-                    - minus_gproximal_wz_leg4 * t119),
+                - (minus_gproximal_wx_leg4 * t260 - minus_gproximal_wy_leg4 * t256
+                    + gproximal_wz_leg4 * t254),
         );
-        let t138 = 1.0 / t137;
+        let t273 = 1.0 / t272;
         Ok([
             [
-                -((gproximal_wx_leg1 * t125 - gproximal_wy_leg1 * t121
-                    - minus_gproximal_wz_leg1 * t119) * t138),
+                -((minus_gproximal_wx_leg1 * t260 + gproximal_wy_leg1 * t256
+                    - minus_gproximal_wz_leg1 * t254) * t273),
             ],
             [
-                (minus_gproximal_wx_leg2 * t125 + gproximal_wy_leg2 * t121
-                    + minus_gproximal_wz_leg2 * t119) * t138,
+                -((gproximal_wy_leg2 * t256 - gproximal_wx_leg2 * t260
+                    - minus_gproximal_wz_leg2 * t254) * t273),
             ],
             [
-                -((minus_gproximal_wy_leg3 * t121 - minus_gproximal_wx_leg3 * t125
-                    - minus_gproximal_wz_leg3 * t119) * t138),
+                -((minus_gproximal_wx_leg3 * t260 - minus_gproximal_wy_leg3 * t256
+                    + gproximal_wz_leg3 * t254) * t273),
             ],
-            [t137],
+            [t272],
         ])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
@@ -8685,26 +12240,27 @@ impl Spherical4Rrr {
     ) -> Result<[f64; Self::POSE], ::overact::Error> {
         let mut pose = *start;
         ::overact::forward::gauss_newton(
-            ::overact::forward::Measured {
-                positions: actuators,
-                is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
-            },
-            &mut pose,
-            ::overact::forward::Workspace {
-                actuators: &mut [0.0; Self::ACTUATORS],
-                inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
-                normal: &mut [0.0; Self::DOF * Self::DOF],
-                step: &mut [0.0; Self::DOF],
-            },
-            |pose, positions, jacobian| {
-                let pose = ::overact::block::array(pose)?;
-                positions.copy_from_slice(&Self::actuator_positions(pose)?);
-                jacobian.copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
-                Ok(())
-            },
-            ::overact::forward::displace_quaternion,
-        )?;
-        Ok(pose)
+                ::overact::forward::Measured {
+                    positions: actuators,
+                    is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
+                },
+                &mut pose,
+                ::overact::forward::Workspace {
+                    actuators: &mut [0.0; Self::ACTUATORS],
+                    inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
+                    normal: &mut [0.0; Self::DOF * Self::DOF],
+                    step: &mut [0.0; Self::DOF],
+                },
+                |pose, positions, jacobian| {
+                    let pose = ::overact::block::array(pose)?;
+                    positions.copy_from_slice(&Self::actuator_positions(pose)?);
+                    jacobian
+                        .copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
+                    Ok(())
+                },
+                ::overact::forward::displace_quaternion,
+            )
+            .map(|()| pose)
     }
 }
 impl ::overact::Model for Spherical4Rrr {

@@ -131,6 +131,33 @@ impl ThreeLegPoint {
             BaseParameter::new("fs_2_leg3", "fs_2_leg3", &[]),
         ]
     };
+    /// The pose from the actuators in closed form, in the assembly mode of the home configuration; of redundant actuators only some are used.
+    ///
+    /// From the actuators' positions.
+    /// - `actuators`: q, positions of the actuated joints (m, rad)
+    ///
+    /// Output: 2.
+    ///
+    /// 29 operations (13 additions, 15 multiplications, 1 divisions), 1 square roots, 2 trigonometric pairs, 0 signs, 32 intermediates.
+    ///
+    /// # Errors
+    /// A pose out of reach, or a singular configuration.
+    pub fn pose_in_closed_form(
+        actuators: &[f64; 3],
+    ) -> Result<[f64; 2], ::overact::Error> {
+        let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(actuators[1]);
+        let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(actuators[0]);
+        let t9 = 0.24 * s1_leg1;
+        let t10 = 0.24 * (0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2)
+            - 0.3031088913245535 + t9;
+        let t19 = 0.35 + 0.24 * c1_leg1;
+        let t20 = 0.175 + 0.24 * (0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2) + t19;
+        let t23 = t10 * t10 + t20 * t20;
+        let t26 = (0.0576 - 0.25 * t23) / t23;
+        ::overact::guard::reach(t26, "leg1")?;
+        let t27 = ::overact::math::sqrt(t26);
+        Ok([0.5 * t10 - t9 + t20 * t27, t19 - 0.5 * t20 + t10 * t27])
+    }
     /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
     ///
     /// From the platform's pose and motion.
@@ -4223,7 +4250,7 @@ impl ThreeLegPoint {
             [-((g1_vx_leg2 * t105 - minus_g1_vy_leg2 * t101) * t113)], [t111 * t113],
         ])
     }
-    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
+    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. Where the iteration fails from there, it starts again from `pose_in_closed_form`.
     ///
     /// # Errors
     /// No convergence, or a singular or unreachable configuration on the way.
@@ -4231,28 +4258,37 @@ impl ThreeLegPoint {
         actuators: &[f64; Self::ACTUATORS],
         start: &[f64; Self::POSE],
     ) -> Result<[f64; Self::POSE], ::overact::Error> {
-        let mut pose = *start;
-        ::overact::forward::gauss_newton(
-            ::overact::forward::Measured {
-                positions: actuators,
-                is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
-            },
-            &mut pose,
-            ::overact::forward::Workspace {
-                actuators: &mut [0.0; Self::ACTUATORS],
-                inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
-                normal: &mut [0.0; Self::DOF * Self::DOF],
-                step: &mut [0.0; Self::DOF],
-            },
-            |pose, positions, jacobian| {
-                let pose = ::overact::block::array(pose)?;
-                positions.copy_from_slice(&Self::actuator_positions(pose)?);
-                jacobian.copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
-                Ok(())
-            },
-            ::overact::forward::displace,
-        )?;
-        Ok(pose)
+        let from = |mut pose: [f64; Self::POSE]| {
+            ::overact::forward::gauss_newton(
+                    ::overact::forward::Measured {
+                        positions: actuators,
+                        is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
+                    },
+                    &mut pose,
+                    ::overact::forward::Workspace {
+                        actuators: &mut [0.0; Self::ACTUATORS],
+                        inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
+                        normal: &mut [0.0; Self::DOF * Self::DOF],
+                        step: &mut [0.0; Self::DOF],
+                    },
+                    |pose, positions, jacobian| {
+                        let pose = ::overact::block::array(pose)?;
+                        positions.copy_from_slice(&Self::actuator_positions(pose)?);
+                        jacobian
+                            .copy_from_slice(
+                                Self::inverse_jacobian(pose)?.as_flattened(),
+                            );
+                        Ok(())
+                    },
+                    ::overact::forward::displace,
+                )
+                .map(|()| pose)
+        };
+        from(*start)
+            .or_else(|error| match Self::pose_in_closed_form(actuators) {
+                Ok(pose) => from(pose),
+                Err(_) => Err(error),
+            })
     }
 }
 impl ::overact::Model for ThreeLegPoint {

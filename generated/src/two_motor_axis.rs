@@ -71,46 +71,17 @@ impl TwoMotorAxis {
             BaseParameter::new("off_1_leftR", "off_1_left", &[("off_1_right", -1.0)]),
         ]
     };
-    /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration; by Newton's method.
+    /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
     ///
-    /// # Errors
-    /// A pose out of reach, or a singular configuration on the way from home.
-    pub fn joints(
-        pose: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::JOINTS], ::overact::Error> {
-        let mut joints = Self::HOME_JOINTS;
-        ::overact::inverse::solve(
-            ::overact::inverse::Legs {
-                names: &Self::LEGS,
-                joints: &[1, 1],
-                home_pose: &Self::HOME_POSE,
-                home_joints: &Self::HOME_JOINTS,
-                has_quaternion: false,
-            },
-            pose,
-            &mut joints,
-            ::overact::inverse::Workspace {
-                error: &mut [0.0; Self::JOINTS],
-                jacobian: &mut [0.0; Self::JOINTS * Self::JOINTS],
-                pose: &mut [0.0; Self::POSE],
-            },
-            |pose, joints, error, jacobian| {
-                let (pose, joints) = (
-                    ::overact::block::array(pose)?,
-                    ::overact::block::array(joints)?,
-                );
-                ::overact::block::write(
-                    &Self::closure_error_from_joints(pose, joints),
-                    error,
-                );
-                ::overact::block::write(
-                    &Self::legs_jacobian_from_joints(pose, joints),
-                    jacobian,
-                );
-                Ok(())
-            },
-        )?;
-        Ok(joints)
+    /// From the platform's pose and motion.
+    /// - `pose`: x = `[x]` (m, rad), in the base frame
+    ///
+    /// Output: 2.
+    ///
+    /// 2 operations (2 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    #[must_use]
+    pub fn joints(pose: &[f64; 1]) -> [f64; 2] {
+        [pose[0] + 0.3, -(pose[0] - 0.3)]
     }
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
@@ -119,13 +90,10 @@ impl TwoMotorAxis {
     ///
     /// Output: 2.
     ///
-    /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
-    ///
-    /// # Errors
-    /// A pose out of reach, or a singular configuration.
-    pub fn actuator_positions(pose: &[f64; 1]) -> Result<[f64; 2], ::overact::Error> {
-        let joints = &Self::joints(pose)?;
-        Ok([joints[0], joints[1]])
+    /// 2 operations (2 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    #[must_use]
+    pub fn actuator_positions(pose: &[f64; 1]) -> [f64; 2] {
+        [pose[0] + 0.3, -(pose[0] - 0.3)]
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -230,19 +198,6 @@ impl TwoMotorAxis {
         _joints: &[f64; 2],
     ) -> [[f64; 2]; 2] {
         [[-1.0, 0.0], [0.0, 1.0]]
-    }
-    /// By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m, rad).
-    ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = `[x]` (m, rad), in the base frame
-    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    ///
-    /// Output: 2.
-    ///
-    /// 4 operations (4 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 2 intermediates.
-    #[must_use]
-    pub fn closure_error_from_joints(pose: &[f64; 1], joints: &[f64; 2]) -> [f64; 2] {
-        [pose[0] + 0.3 - joints[0], pose[0] - 0.3 + joints[1]]
     }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
@@ -825,26 +780,27 @@ impl TwoMotorAxis {
     ) -> Result<[f64; Self::POSE], ::overact::Error> {
         let mut pose = *start;
         ::overact::forward::gauss_newton(
-            ::overact::forward::Measured {
-                positions: actuators,
-                is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
-            },
-            &mut pose,
-            ::overact::forward::Workspace {
-                actuators: &mut [0.0; Self::ACTUATORS],
-                inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
-                normal: &mut [0.0; Self::DOF * Self::DOF],
-                step: &mut [0.0; Self::DOF],
-            },
-            |pose, positions, jacobian| {
-                let pose = ::overact::block::array(pose)?;
-                positions.copy_from_slice(&Self::actuator_positions(pose)?);
-                jacobian.copy_from_slice(Self::inverse_jacobian(pose).as_flattened());
-                Ok(())
-            },
-            ::overact::forward::displace,
-        )?;
-        Ok(pose)
+                ::overact::forward::Measured {
+                    positions: actuators,
+                    is_revolute: &Self::ACTUATOR_IS_REVOLUTE,
+                },
+                &mut pose,
+                ::overact::forward::Workspace {
+                    actuators: &mut [0.0; Self::ACTUATORS],
+                    inverse_jacobian: &mut [0.0; Self::ACTUATORS * Self::DOF],
+                    normal: &mut [0.0; Self::DOF * Self::DOF],
+                    step: &mut [0.0; Self::DOF],
+                },
+                |pose, positions, jacobian| {
+                    let pose = ::overact::block::array(pose)?;
+                    positions.copy_from_slice(&Self::actuator_positions(pose));
+                    jacobian
+                        .copy_from_slice(Self::inverse_jacobian(pose).as_flattened());
+                    Ok(())
+                },
+                ::overact::forward::displace,
+            )
+            .map(|()| pose)
     }
 }
 impl ::overact::Model for TwoMotorAxis {
@@ -879,10 +835,15 @@ impl ::overact::Model for TwoMotorAxis {
     ) -> Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
-                ::overact::block::map1(2, inputs, output, Self::joints)
+                ::overact::block::map1(2, inputs, output, |pose| Ok(Self::joints(pose)))
             }
             ::overact::Function::ActuatorPositions => {
-                ::overact::block::map1(2, inputs, output, Self::actuator_positions)
+                ::overact::block::map1(
+                    2,
+                    inputs,
+                    output,
+                    |pose| Ok(Self::actuator_positions(pose)),
+                )
             }
             ::overact::Function::InverseJacobian => {
                 ::overact::block::map1(
