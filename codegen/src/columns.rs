@@ -25,7 +25,7 @@ pub fn present(
     family: Family,
 ) -> Result<Vec<BodyParameter>, Underivable> {
     let arena = Arena::new();
-    let robot = Robot::new(&arena, mechanism, From::Joints)?;
+    let robot = Robot::new(&arena, mechanism, From::Joints, &[])?;
     let payload = family == Family::IdmRedPayload;
     let all = if payload {
         robot.payload_parameters()

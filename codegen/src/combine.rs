@@ -141,7 +141,29 @@ fn groups(mechanism: &Mechanism, candidates: &[Combination]) -> Vec<Vec<Combinat
     let mut sorted: Vec<&Combination> = candidates.iter().collect();
     sorted.sort_by_key(|c| (key(c), c.parameter));
     let groups = sorted.chunk_by(|a, b| key(a) == key(b));
-    groups
-        .map(|group| group.iter().map(|c| (*c).clone()).collect())
-        .collect()
+    let mut merged: Vec<Vec<Combination>> = Vec::new();
+    for group in groups {
+        let group = group.iter().map(|c| (*c).clone());
+        // Columns that are the same combination stand or fall together: left out of one of them, its
+        // own expression would serve for all.
+        let first = group.clone().next();
+        let same = |other: &Vec<Combination>| {
+            let pair = first.as_ref().zip(other.first());
+            pair.is_some_and(|(a, b)| is_multiple(&a.of, &b.of))
+        };
+        match merged.iter_mut().find(|other| same(other)) {
+            Some(other) => other.extend(group),
+            None => merged.push(group.collect()),
+        }
+    }
+    merged
+}
+
+/// Whether two combinations differ by a constant factor.
+fn is_multiple(a: &[(BodyParameter, Number)], b: &[(BodyParameter, Number)]) -> bool {
+    let mut ratios = a.iter().zip(b).map(|((_, x), (_, y))| *x / *y);
+    let first = ratios.next();
+    a.len() == b.len()
+        && a.iter().zip(b).all(|((p, _), (q, _))| p == q)
+        && ratios.all(|ratio| Some(ratio) == first)
 }

@@ -1,6 +1,6 @@
 //! The stages of the generator, in order.
 
-use crate::assemble::{cheapest, joints_by};
+use crate::assemble::{cheapest, cheapest_stations, joints_by};
 use crate::columns::{base_parameters, present};
 use crate::combine::cheaper_columns;
 use crate::derivation::{Columns, Family, Selection, Underivable};
@@ -35,6 +35,7 @@ pub fn model(mechanism: Mechanism) -> Result<RobotModel, Underivable> {
         Family::IdmRedPlatform(Columns::Standard),
     )?;
     selection.payload = present(&mechanism, &selection, Family::IdmRedPayload)?;
+    selection.stations = cheapest_stations(&mechanism, &selection)?;
     let (base, exact) = base_parameters(&mechanism, &selection)?;
     selection.base = base.iter().map(|b| b.parameter).collect();
     selection.combined = cheaper_columns(&mechanism, &selection, &exact)?;

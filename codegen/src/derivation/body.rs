@@ -8,7 +8,7 @@
 
 use super::configuration::Configuration;
 use super::leg::{joint_turn, link_vector};
-use super::platform::constant_rotation;
+use super::platform::{centripetal, constant_rotation};
 use super::rates::{Rates, parallel};
 use crate::cas::{Angle, Arena, Direction, Expr, Matrix3, Ratio, Vector3};
 use crate::description::StandardParameter;
@@ -38,7 +38,7 @@ impl<'a> BodyMotion<'a> {
         acceleration: Vector3<'a>,
         partials: Vec<[Vector3<'a>; 2]>,
     ) -> Self {
-        let u_matrix = u_matrix(omega, alpha);
+        let u_matrix = centripetal(omega, alpha);
         Self {
             omega,
             alpha,
@@ -92,18 +92,6 @@ impl<'a> BodyMotion<'a> {
             P::Ia | P::Fv | P::Fs | P::Off => [zero; 2],
         }
     }
-}
-
-/// `[ω̇]× + [ω]×[ω]×`, with the products ω_i ω_j shared.
-fn u_matrix<'a>(omega: Vector3<'a>, alpha: Vector3<'a>) -> Matrix3<'a> {
-    let ([x, y, z], [ax, ay, az]) = (omega.0, alpha.0);
-    let (xx, yy, zz) = (x * x, y * y, z * z);
-    let (xy, xz, yz) = (x * y, x * z, y * z);
-    Matrix3([
-        [-(yy + zz), xy - az, xz + ay],
-        [xy + az, -(xx + zz), yz - ax],
-        [xz - ay, yz + ax, -(xx + yy)],
-    ])
 }
 
 /// Motion of all bodies of a leg for quasi-velocities u and their derivatives. `None` if a sine or

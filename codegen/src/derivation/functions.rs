@@ -34,6 +34,10 @@ pub struct Selection {
     pub payload: Vec<BodyParameter>,
     /// Kept actuators of case 2.
     pub kept_actuators: Vec<usize>,
+    /// The axes in which the closure of each leg is written, see
+    /// [`Orientation::stations`](super::orientation::Orientation::stations); 0, and none, are the
+    /// base's.
+    pub stations: Vec<usize>,
     /// Dependent columns that are had more cheaply from others than from their definition.
     pub combined: Vec<Combination>,
 }
@@ -75,7 +79,7 @@ pub fn derive<'a>(
         (From::Pose | From::Actuators, JointsBy::Rule) => From::Pose,
         _ => From::Joints,
     };
-    let robot = Robot::new(arena, mechanism, configuration)?;
+    let robot = Robot::new(arena, mechanism, configuration, &selection.stations)?;
     let mut sheet = Sheet {
         inputs: robot.configuration_inputs(configuration),
         robot,

@@ -13,18 +13,15 @@
 use super::bias::BiasTerm;
 use super::configuration::Configuration;
 use super::elimination::{Inverse, Rows, inverse};
-use super::platform::{PlatformMotion, PlatformPose, constant_rotation};
-use super::rates::{Rates, parallel};
-use crate::cas::{Angle, Arena, Direction, Expr, Matrix3, Number, Ratio, Vector3};
-use crate::mechanism::{End, Joint, JointKind, Leg, TwistCoordinate};
+use super::orientation::Orientation;
+use super::platform::{PlatformMotion, PlatformPose};
+use super::rates::Rates;
+use crate::cas::{Arena, Direction, Expr, Matrix3, Number, Vector3};
+use crate::mechanism::{End, JointKind, Leg, TwistCoordinate};
 
-/// Position and orientation of a joint's frame in the base frame.
+/// Position and orientation of a joint's frame, written in the axes that were chosen for its leg.
 #[derive(Debug, Clone)]
 pub struct Frame<'a> {
-    /// Orientation before the last turn about z.
-    prefix: Matrix3<'a>,
-    /// The last turn about z, of all joints of the parallel run.
-    turn: Direction,
     /// The frame's orientation.
     pub rotation: Matrix3<'a>,
     /// From the antecedent frame's origin to this one's.
@@ -42,56 +39,55 @@ impl<'a> Frame<'a> {
 }
 
 /// The frames of a leg.
+///
+/// All vectors are written in one set of axes: those of the base, or of a frame on the way along the
+/// leg. In the axes of a joint near the middle most components of the leg's Jacobian are zero, and what
+/// is left is triangular, at the price of turning the end's motion into them.
 #[derive(Debug, Clone)]
 pub struct LegFrames<'a> {
     /// One per joint.
     pub frames: Vec<Frame<'a>>,
+    /// The orientation of the axes in the robot's base frame.
+    pub axes: Matrix3<'a>,
 }
 
 impl<'a> LegFrames<'a> {
-    /// Frames of all joints; `None` if a sine or cosine does not follow from the configuration.
+    /// Frames of all joints in the axes of the station of that number ([`Orientation::stations`]; 0
+    /// is the base). `None` if there is no such station or a sine or cosine does not follow from the
+    /// configuration.
     #[must_use]
     pub fn new(
         arena: &'a Arena,
         leg: &Leg,
         first_joint: usize,
         configuration: &Configuration<'a>,
+        station: usize,
     ) -> Option<Self> {
-        let base = constant_rotation(arena, leg.base.rotation);
+        let orientations = Orientation::of_leg(leg, first_joint, configuration)?;
+        let axes = Orientation::stations(&orientations).get(station)?.clone();
+        let in_axes = |of: &Orientation| of.relative(&axes, arena, configuration);
+        let base = in_axes(&Orientation::fixed(leg.base.rotation))?;
         let mut frames: Vec<Frame<'a>> = Vec::new();
         for (index, joint) in leg.joints.iter().enumerate() {
-            let (from_prefix, from_turn, from_rotation, from_origin) = match joint.antecedent {
-                Some(a) => {
-                    let f = &frames[a];
-                    (f.prefix, f.turn.clone(), f.rotation, f.origin)
-                }
-                None => (
-                    base,
-                    Direction::constant(Angle::ZERO),
-                    base,
-                    Vector3::zero(arena),
-                ),
-            };
-            let theta = joint_turn(leg, index, first_joint, configuration)?;
             // The joint's own sine and cosine come first: what turns out to be equal to them, a
             // determinant for instance, is then written as them.
+            let theta = joint_turn(leg, index, first_joint, configuration)?;
             let _ = configuration.unit(&theta.plus(&Direction::constant(joint.gamma))?)?;
-            let (prefix, before) =
-                before_turn(arena, joint, (from_prefix, &from_turn), configuration)?;
-            let turn = before.plus(&theta)?;
-            let (cosine, sine) = configuration.unit(&turn)?;
-            let rotation = prefix * Matrix3::rotation(2, cosine, sine);
+            let (from_rotation, from_origin) = match joint.antecedent {
+                Some(a) => (frames[a].rotation, frames[a].origin),
+                None => (base, Vector3::zero(arena)),
+            };
+            let rotation = in_axes(&orientations[index])?;
             let link = from_rotation * link_vector(arena, leg, index, first_joint, configuration)?;
             let origin = from_origin + link;
             frames.push(Frame {
-                prefix,
-                turn,
                 rotation,
                 link,
                 origin,
             });
         }
-        Some(Self { frames })
+        let axes = axes.relative(&Orientation::default(), arena, configuration)?;
+        Some(Self { frames, axes })
     }
 
     /// The vector from the origin of joint `index` to that of the last joint, along the links.
@@ -108,27 +104,6 @@ impl<'a> LegFrames<'a> {
         }
         sum
     }
-}
-
-/// Orientation of a joint's frame before its own turn θ, as prefix and turn about z, from the same of
-/// its antecedent. Turns about parallel axes add up.
-pub(super) fn before_turn<'a>(
-    arena: &'a Arena,
-    joint: &Joint,
-    (prefix, turn): (Matrix3<'a>, &Direction),
-    configuration: &Configuration<'a>,
-) -> Option<(Matrix3<'a>, Direction)> {
-    let turned = turn.plus(&Direction::constant(joint.gamma))?;
-    let tilt = constant_rotation(arena, [joint.alpha, Angle::ZERO, Angle::ZERO]);
-    Some(match parallel(joint.alpha) {
-        Some(sign) if sign == Ratio::ONE => (prefix, turned),
-        Some(_) => (prefix * tilt, turned.negative()),
-        None => {
-            let (cosine, sine) = configuration.unit(&turned)?;
-            let turned = prefix * Matrix3::rotation(2, cosine, sine);
-            (turned * tilt, Direction::constant(Angle::ZERO))
-        }
-    })
 }
 
 /// The turn θ of a joint about its z axis.
@@ -207,22 +182,22 @@ pub struct Wrench<'a> {
 /// The closure of a leg: its Jacobian's inverse as wrenches.
 #[derive(Debug, Clone)]
 pub struct LegClosure<'a> {
-    /// ∂Ṗ/∂q̇ and ∂ω/∂q̇ of every joint of the leg, in the base frame.
-    pub joint_columns: Vec<[Vector3<'a>; 2]>,
-    /// The rows of the six-vector (Ṗ, ω) that are inverted.
-    pub rows: Vec<usize>,
-    /// f_i of every u_i.
+    /// f_i of every u_i, in the base frame.
     pub forces: Vec<Vector3<'a>>,
-    /// n_i of every u_i.
+    /// n_i of every u_i, in the base frame.
     pub moments: Vec<Vector3<'a>>,
-    /// The same wrenches with the reciprocals of the determinants taken out.
+    /// The same wrenches in the leg's axes, with the reciprocals of the determinants taken out.
     pub wrenches: Vec<Wrench<'a>>,
     /// The determinant that each row was divided by.
     pub determinants: Vec<Expr<'a>>,
     /// The determinant of the leg's Jacobian J_k.
     pub determinant: Expr<'a>,
+    /// P in the platform frame.
+    pub at: [Number; 3],
     /// From the platform's origin to P, in the base frame.
     pub arm: Vector3<'a>,
+    /// The orientation of the leg's axes in the base frame.
+    pub axes: Matrix3<'a>,
 }
 
 impl<'a> LegClosure<'a> {
@@ -255,10 +230,10 @@ impl<'a> LegClosure<'a> {
             .map(|&row| columns.iter().map(|c| c[row / 3].0[row % 3]).collect())
             .collect();
         let Inverse {
-            rows: inverse,
             scaled,
             determinants,
             determinant,
+            ..
         } = inverse(&matrix, home)?;
         let wrench = |part: usize, entries: &Vec<Expr<'a>>| {
             let mut vector = Vector3::zero(arena);
@@ -269,61 +244,93 @@ impl<'a> LegClosure<'a> {
             }
             vector
         };
-        let arm = match leg.end.as_ref()? {
-            End::Rigid(placement) => platform.arm(placement.at),
-            End::Point(at) => platform.arm(*at),
+        let at = match leg.end.as_ref()? {
+            End::Rigid(placement) => placement.at,
+            End::Point(at) => *at,
         };
+        let arm = platform.arm(at);
+        let wrenches: Vec<Wrench<'a>> = scaled
+            .iter()
+            .map(|row| Wrench {
+                factor: row.factor,
+                force: wrench(0, &row.entries),
+                moment: wrench(1, &row.entries),
+            })
+            .collect();
+        let in_base = |vector: Vector3<'a>, factor| (frames.axes * vector).scaled(factor);
         Some(Self {
-            joint_columns,
-            rows: rows.to_vec(),
-            forces: inverse.iter().map(|entries| wrench(0, entries)).collect(),
-            moments: inverse.iter().map(|entries| wrench(1, entries)).collect(),
-            wrenches: scaled
+            forces: wrenches
                 .iter()
-                .map(|row| Wrench {
-                    factor: row.factor,
-                    force: wrench(0, &row.entries),
-                    moment: wrench(1, &row.entries),
-                })
+                .map(|w| in_base(w.force, w.factor))
                 .collect(),
+            moments: wrenches
+                .iter()
+                .map(|w| in_base(w.moment, w.factor))
+                .collect(),
+            wrenches,
             determinants,
             determinant,
+            at,
             arm,
+            axes: frames.axes,
         })
     }
 
     /// ∂u_i/∂v for all u, r numbers each.
     #[must_use]
     pub fn reduced_jacobian(&self, twist: &[TwistCoordinate]) -> Rows<'a> {
-        let row = |(force, moment): (&Vector3<'a>, &Vector3<'a>)| {
-            let turned = self.arm.cross(*force) + *moment;
-            let entry = |c: &TwistCoordinate| match c {
-                TwistCoordinate::Linear(axis) => force.0[*axis],
-                TwistCoordinate::Angular(axis) => turned.0[*axis],
-            };
-            twist.iter().map(entry).collect()
-        };
+        let row =
+            |(force, moment): (&Vector3<'a>, &Vector3<'a>)| self.on_twist(twist, *force, *moment);
         self.forces.iter().zip(&self.moments).map(row).collect()
     }
 
-    /// ∂Ṗ/∂q̇ and ∂ω/∂q̇ of the independent joints, dependent ones added to those they follow.
+    /// Whether the forces s on the u are projected with fewer products as one force at the leg's end
+    /// than row by row: not with a moment at the end, nor where few rows take part.
     #[must_use]
-    pub fn independent_columns(&self, leg: &Leg, arena: &'a Arena) -> Vec<[Vector3<'a>; 2]> {
-        leg.independent()
-            .map(|own| {
-                let mut sum = [Vector3::zero(arena); 2];
-                for (joint, columns) in leg.joints.iter().zip(&self.joint_columns) {
-                    for (of, factor) in &joint.variable {
-                        if *of == own {
-                            let factor = arena.number(Number::ratio(*factor));
-                            sum[0] = sum[0] + columns[0].scaled(factor);
-                            sum[1] = sum[1] + columns[1].scaled(factor);
-                        }
-                    }
-                }
-                sum
-            })
-            .collect()
+    pub fn is_shorter_at_end(&self, rows: &Rows<'a>, forces: &[Expr<'a>]) -> bool {
+        let parts = || (0..forces.len()).filter(|&i| !forces[i].is_zero());
+        if parts().any(|i| !self.moments[i].is_zero()) {
+            return false;
+        }
+        let sum_of = |products: usize| (2 * products).saturating_sub(1);
+        let width = rows.first().map_or(0, Vec::len);
+        let by_rows = |c: usize| sum_of(parts().filter(|&i| !rows[i][c].is_zero()).count());
+        let on_axis = |axis: usize| {
+            parts()
+                .filter(|&i| !self.forces[i].0[axis].is_zero())
+                .count()
+        };
+        let arms = |axis: usize| {
+            (1..3)
+                .filter(|k| !self.arm.0[(axis + k) % 3].is_zero())
+                .count()
+        };
+        let at_end: usize = (0..3).map(|a| sum_of(on_axis(a)) + sum_of(arms(a))).sum();
+        at_end < (0..width).map(by_rows).sum()
+    }
+
+    /// (F, p × F) of the forces s on the u, F = Σ s_i f_i.
+    #[must_use]
+    pub fn project_at_end(&self, twist: &[TwistCoordinate], forces: &[Expr<'a>]) -> Vec<Expr<'a>> {
+        let zero = Vector3::zero(self.determinant.arena());
+        let parts = self.forces.iter().zip(forces);
+        let force = parts.fold(zero, |sum, (f, s)| sum + f.scaled(*s));
+        self.on_twist(twist, force, zero)
+    }
+
+    /// The components of a force and a moment at P on the twist coordinates.
+    fn on_twist(
+        &self,
+        twist: &[TwistCoordinate],
+        force: Vector3<'a>,
+        moment: Vector3<'a>,
+    ) -> Vec<Expr<'a>> {
+        let turned = self.arm.cross(force) + moment;
+        let entry = |c: &TwistCoordinate| match c {
+            TwistCoordinate::Linear(axis) => force.0[*axis],
+            TwistCoordinate::Angular(axis) => turned.0[*axis],
+        };
+        twist.iter().map(entry).collect()
     }
 
     /// A row of the six-vector (Ṗ, ω) of the platform point per twist coordinate.
@@ -350,7 +357,10 @@ impl<'a> LegClosure<'a> {
     #[must_use]
     pub fn velocities(&self, motion: &PlatformMotion<'a>) -> Vec<Expr<'a>> {
         let velocity = motion.point_velocity(self.arm);
-        self.apply(velocity, motion.angular_velocity)
+        self.apply(
+            self.turned_in(velocity),
+            self.turned_in(motion.angular_velocity),
+        )
     }
 
     /// The derivatives u̇ for a platform motion and the bias accelerations of the leg's end.
@@ -365,8 +375,8 @@ impl<'a> LegClosure<'a> {
         motion: &PlatformMotion<'a>,
         bias: &[BiasTerm<'a>],
     ) -> Vec<Expr<'a>> {
-        let linear = motion.point_acceleration(self.arm);
-        let angular = motion.angular_acceleration;
+        let linear = self.turned_in(motion.point_acceleration(self.at, self.arm));
+        let angular = self.turned_in(motion.angular_acceleration);
         if let Some(products) = self.bias_products(arena, bias) {
             let wrenches = self.wrenches.iter().zip(products);
             return wrenches
@@ -404,11 +414,26 @@ impl<'a> LegClosure<'a> {
         self.wrenches.iter().map(row).collect()
     }
 
+    /// Σ of the wrenches' products with a motion of the leg's end, all in the leg's axes.
     fn apply(&self, linear: Vector3<'a>, angular: Vector3<'a>) -> Vec<Expr<'a>> {
-        let wrenches = self.forces.iter().zip(&self.moments);
-        wrenches
-            .map(|(force, moment)| force.dot(linear) + moment.dot(angular))
-            .collect()
+        let one = |wrench: &Wrench<'a>| {
+            if self.is_in_base() {
+                // Factor and force are multiplied anyway, for the reduced Jacobian.
+                let (f, n) = (wrench.force, wrench.moment);
+                let k = wrench.factor;
+                return f.scaled(k).dot(linear) + n.scaled(k).dot(angular);
+            }
+            wrench.factor * (wrench.force.dot(linear) + wrench.moment.dot(angular))
+        };
+        self.wrenches.iter().map(one).collect()
+    }
+
+    fn is_in_base(&self) -> bool {
+        self.axes == Matrix3::identity(self.determinant.arena())
+    }
+
+    fn turned_in(&self, vector: Vector3<'a>) -> Vector3<'a> {
+        self.axes.transposed() * vector
     }
 }
 
@@ -425,6 +450,30 @@ fn joint_columns<'a>(arena: &'a Arena, leg: &Leg, frames: &LegFrames<'a>) -> Vec
         };
     }
     columns
+}
+
+/// ∂Ṗ/∂q̇ and ∂ω/∂q̇ of the independent joints, dependent ones added to those they follow.
+pub(super) fn independent_columns<'a>(
+    arena: &'a Arena,
+    leg: &Leg,
+    frames: &LegFrames<'a>,
+) -> Vec<[Vector3<'a>; 2]> {
+    let joint_columns = joint_columns(arena, leg, frames);
+    leg.independent()
+        .map(|own| {
+            let mut sum = [Vector3::zero(arena); 2];
+            for (joint, columns) in leg.joints.iter().zip(&joint_columns) {
+                for (of, factor) in &joint.variable {
+                    if *of == own {
+                        let factor = arena.number(Number::ratio(*factor));
+                        sum[0] = sum[0] + columns[0].scaled(factor);
+                        sum[1] = sum[1] + columns[1].scaled(factor);
+                    }
+                }
+            }
+            sum
+        })
+        .collect()
 }
 
 /// The joints from the base to the end.

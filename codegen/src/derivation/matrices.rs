@@ -2,6 +2,7 @@
 
 use super::elimination::Rows;
 use super::functions::{Sheet, column};
+use super::leg::independent_columns;
 use crate::cas::{Expr, Number, Ratio, Vector3};
 use crate::mechanism::End;
 
@@ -36,11 +37,12 @@ impl<'a> Sheet<'a, '_> {
     pub(super) fn closure_error(&mut self) -> Rows<'a> {
         let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
         let mut errors = Vec::new();
-        for (leg, state) in mechanism.legs.iter().zip(&self.robot.legs) {
+        for (index, (leg, state)) in mechanism.legs.iter().zip(&self.robot.legs).enumerate() {
             let (Some(closure), Some(platform)) = (&state.closure, &self.robot.platform) else {
                 continue;
             };
-            let Some(last) = state.frames.frames.last() else {
+            let frames = self.robot.base_frames(index);
+            let Some(last) = frames.as_ref().and_then(|f| f.frames.last()) else {
                 continue;
             };
             let base = Vector3::constant(arena, leg.base.at);
@@ -55,8 +57,8 @@ impl<'a> Sheet<'a, '_> {
                 }
                 _ => Vector3::zero(arena),
             };
-            let rows = closure.rows.iter();
-            errors.extend(rows.map(|&row| [position, turn][row / 3].0[row % 3]));
+            let rows = mechanism.closure_rows(index).into_iter();
+            errors.extend(rows.map(|row| [position, turn][row / 3].0[row % 3]));
         }
         column(errors)
     }
@@ -66,12 +68,13 @@ impl<'a> Sheet<'a, '_> {
         let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
         let total = mechanism.joints().len();
         let (mut legs, mut platform) = (Vec::new(), Vec::new());
-        for (leg, state) in mechanism.legs.iter().zip(&self.robot.legs) {
-            let Some(closure) = &state.closure else {
+        for (index, (leg, state)) in mechanism.legs.iter().zip(&self.robot.legs).enumerate() {
+            let (Some(closure), Some(frames)) = (&state.closure, self.robot.base_frames(index))
+            else {
                 continue;
             };
-            let columns = closure.independent_columns(leg, arena);
-            for &row in &closure.rows {
+            let columns = independent_columns(arena, leg, &frames);
+            for row in mechanism.closure_rows(index) {
                 let mut entries = vec![arena.zero(); total];
                 for (k, column) in columns.iter().enumerate() {
                     entries[state.first_joint + k] = column[row / 3].0[row % 3];

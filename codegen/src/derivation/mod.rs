@@ -1,7 +1,7 @@
 //! From the mechanism to symbolic kinematics, Jacobians and regressors.
 //!
 //! [`leg`] opens the robot at its platform and closes it again, eqs. (9) to (13): quasi-velocities
-//! ([`rates`]), frames, and the wrenches that feel one joint alone ([`elimination`], [`bias`]). [`body`]
+//! ([`rates`]), frames in the axes that suit the leg ([`orientation`]), and the wrenches that feel one joint alone ([`elimination`], [`bias`]). [`body`]
 //! runs the recursion of Newton and Euler in the bodies' own frames. [`regressor`] projects what each
 //! standard parameter produces on the platform, eq. (30), or on kept actuators, eq. (36). [`robot`] holds
 //! one derivation together. [`inverse_kinematics`] finds joints from a pose and [`forward_kinematics`] a
@@ -20,6 +20,7 @@ pub mod inverse_kinematics;
 pub mod leg;
 pub mod linear;
 mod matrices;
+pub mod orientation;
 pub mod platform;
 pub mod rates;
 pub mod regressor;
@@ -28,5 +29,6 @@ pub mod robot;
 pub use configuration::From;
 pub use family::{Columns, Family};
 pub use functions::{Combination, Derived, JointsBy, Selection, derive};
+pub use orientation::station_count;
 pub use regressor::BodyParameter;
 pub use robot::{Guard, GuardKind, Robot, Underivable};

@@ -27,6 +27,9 @@ pub struct PlatformMotion<'a> {
     pub acceleration: Vector3<'a>,
     /// Angular acceleration, rad/s².
     pub angular_acceleration: Vector3<'a>,
+    /// `([ω̇]× + [ω]×[ω]×) R`, where the platform turns about more than one axis: its columns are also
+    /// the forces that the first moments produce.
+    pub centripetal: Option<Matrix3<'a>>,
 }
 
 impl<'a> PlatformPose<'a> {
@@ -89,7 +92,11 @@ impl<'a> PlatformPose<'a> {
         };
         let (velocity, angular_velocity) = spread(twist);
         let (linear_acceleration, angular_acceleration) = spread(acceleration);
+        let turns_freely = self.motion.has_quaternion();
+        let centripetal = turns_freely
+            .then(|| centripetal(angular_velocity, angular_acceleration) * self.rotation);
         PlatformMotion {
+            centripetal,
             velocity,
             angular_velocity,
             acceleration: linear_acceleration,
@@ -105,12 +112,29 @@ impl<'a> PlatformMotion<'a> {
         self.velocity + self.angular_velocity.cross(arm)
     }
 
-    /// Acceleration of the point at `arm` from the origin.
+    /// Acceleration of the platform point `at` (platform frame), which is at `arm` from the origin.
     #[must_use]
-    pub fn point_acceleration(&self, arm: Vector3<'a>) -> Vector3<'a> {
+    pub fn point_acceleration(&self, at: [Number; 3], arm: Vector3<'a>) -> Vector3<'a> {
+        if let Some(matrix) = self.centripetal {
+            let at = Vector3::constant(self.acceleration.x().arena(), at);
+            return self.acceleration + matrix * at;
+        }
         let omega = self.angular_velocity;
         self.acceleration + self.angular_acceleration.cross(arm) + omega.cross(omega.cross(arm))
     }
+}
+
+/// `[ω̇]× + [ω]×[ω]×`, with the products ω_i ω_j shared.
+#[must_use]
+pub fn centripetal<'a>(omega: Vector3<'a>, alpha: Vector3<'a>) -> Matrix3<'a> {
+    let ([x, y, z], [ax, ay, az]) = (omega.0, alpha.0);
+    let (xx, yy, zz) = (x * x, y * y, z * z);
+    let (xy, xz, yz) = (x * y, x * z, y * z);
+    Matrix3([
+        [-(yy + zz), xy - az, xz + ay],
+        [xy + az, -(xx + zz), yz - ax],
+        [xz - ay, yz + ax, -(xx + yy)],
+    ])
 }
 
 /// The rotation matrix of a unit quaternion (w, x, y, z).

@@ -35,6 +35,8 @@ pub enum BodyParameter {
 pub struct Projection<'a> {
     /// ∂u/∂(projected coordinates) of every leg.
     legs: Vec<Rows<'a>>,
+    /// Whether the projected coordinates are the platform's.
+    on_platform: bool,
     /// The same of the platform's twist coordinates.
     platform: Rows<'a>,
     /// The determinants that were divided by.
@@ -61,6 +63,7 @@ impl<'a> Robot<'a> {
         let legs = self.legs.iter().map(|l| l.rows.clone()).collect();
         Projection {
             legs,
+            on_platform: true,
             platform: identity,
             determinants: Vec::new(),
         }
@@ -82,6 +85,7 @@ impl<'a> Robot<'a> {
             .collect();
         Ok(Projection {
             legs,
+            on_platform: false,
             platform: inverted.rows,
             determinants: inverted.determinants,
         })
@@ -139,7 +143,7 @@ impl<'a> Robot<'a> {
                 self.arena.enter(&self.mechanism.legs[leg].name);
                 let body = &motion.bodies[leg][joint];
                 let forces = body.project(body.unit_wrench(self.arena, symbol));
-                self.combine(&projection.legs[leg], &forces)
+                self.project_leg(projection, leg, &forces)
             }
             BodyParameter::Leg { leg, joint, symbol } => {
                 self.arena.enter(&self.mechanism.legs[leg].name);
@@ -205,6 +209,24 @@ impl<'a> Robot<'a> {
             StandardParameter::Fv => rate(),
             StandardParameter::Fs => rate().sign(),
             _ => self.arena.one(),
+        }
+    }
+
+    /// Σ s_i ∂u_i/∂v of a leg's generalised forces s.
+    ///
+    /// On the platform the same forces are F = Σ s_i f_i at the leg's end, with the moment p × F about
+    /// the platform's origin: where several s_i are there, that is fewer products.
+    fn project_leg(
+        &self,
+        projection: &Projection<'a>,
+        leg: usize,
+        forces: &[Expr<'a>],
+    ) -> Vec<Expr<'a>> {
+        let rows = &projection.legs[leg];
+        let at_end = self.legs[leg].closure.as_ref();
+        match at_end.filter(|c| projection.on_platform && c.is_shorter_at_end(rows, forces)) {
+            Some(closure) => closure.project_at_end(&self.twist, forces),
+            None => self.combine(rows, forces),
         }
     }
 

@@ -107,7 +107,9 @@ pub struct Robot<'a> {
 }
 
 impl<'a> Robot<'a> {
-    /// Derives configuration and closures.
+    /// Derives configuration and closures. `stations` are the axes in which the legs' closures are
+    /// written ([`Orientation::stations`](super::orientation::Orientation::stations)); legs
+    /// without one are written in the base's.
     ///
     /// # Errors
     /// A leg whose joints do not follow from the pose by rule, or a structurally singular leg.
@@ -115,6 +117,7 @@ impl<'a> Robot<'a> {
         arena: &'a Arena,
         mechanism: &'a Mechanism,
         from: From,
+        stations: &[usize],
     ) -> Result<Self, Underivable> {
         let motion = mechanism.platform.as_ref().map(|p| p.motion);
         // The configuration of a tree is its joints, whatever it is called.
@@ -131,12 +134,12 @@ impl<'a> Robot<'a> {
             guards: Vec::new(),
         };
         for leg in 0..mechanism.legs.len() {
-            robot.derive_leg(leg)?;
+            robot.derive_leg(leg, stations.get(leg).copied().unwrap_or_default())?;
         }
         Ok(robot)
     }
 
-    fn derive_leg(&mut self, index: usize) -> Result<(), Underivable> {
+    fn derive_leg(&mut self, index: usize, station: usize) -> Result<(), Underivable> {
         let (arena, leg) = (self.arena, &self.mechanism.legs[index]);
         arena.enter(&leg.name);
         let first_joint = self.mechanism.leg_range(index).start;
@@ -155,7 +158,7 @@ impl<'a> Robot<'a> {
             });
             self.guards.extend(guards);
         }
-        let frames = LegFrames::new(arena, leg, first_joint, &self.configuration)
+        let frames = LegFrames::new(arena, leg, first_joint, &self.configuration, station)
             .ok_or_else(|| Underivable::InverseKinematics { leg: name() })?;
         let rates = Rates::new(leg, self.platform.is_some());
         let (closure, rows) = match &self.platform {
@@ -186,6 +189,14 @@ impl<'a> Robot<'a> {
         });
         arena.enter("");
         Ok(())
+    }
+
+    /// The frames of a leg in the base's axes.
+    #[must_use]
+    pub fn base_frames(&self, index: usize) -> Option<LegFrames<'a>> {
+        let leg = &self.mechanism.legs[index];
+        let first_joint = self.legs[index].first_joint;
+        LegFrames::new(self.arena, leg, first_joint, &self.configuration, 0)
     }
 
     fn guard_leg(&mut self, closure: &LegClosure<'a>, leg: &str) {

@@ -7,10 +7,12 @@
 //! last frame g_i, and (X - O_F) · e_i = Q · g_i.
 
 use super::super::configuration::Configuration;
-use super::super::leg::{before_turn, joint_slide, joint_turn, path_to_end};
+use super::super::leg::{joint_slide, joint_turn, path_to_end};
 use super::super::platform::constant_rotation;
+use super::super::rates::parallel;
 use super::Task;
-use crate::cas::{Angle, Direction, Expr, Matrix3, Vector3};
+use crate::cas::{Angle, Arena, Direction, Expr, Matrix3, Ratio, Vector3};
+use crate::mechanism::Joint;
 
 /// Orientation, as prefix and turn about z, and origin of a frame.
 #[derive(Debug, Clone)]
@@ -121,5 +123,26 @@ fn step_over<'a>(
         turn: before.turn.plus(&turn)?,
         origin: before.origin + before.prefix.column(2).scaled(slide),
         prefix: before.prefix,
+    })
+}
+
+/// Orientation of a joint's frame before its own turn θ, as prefix and turn about z, from the same of
+/// its antecedent. Turns about parallel axes add up.
+fn before_turn<'a>(
+    arena: &'a Arena,
+    joint: &Joint,
+    (prefix, turn): (Matrix3<'a>, &Direction),
+    configuration: &Configuration<'a>,
+) -> Option<(Matrix3<'a>, Direction)> {
+    let turned = turn.plus(&Direction::constant(joint.gamma))?;
+    let tilt = constant_rotation(arena, [joint.alpha, Angle::ZERO, Angle::ZERO]);
+    Some(match parallel(joint.alpha) {
+        Some(sign) if sign == Ratio::ONE => (prefix, turned),
+        Some(_) => (prefix * tilt, turned.negative()),
+        None => {
+            let (cosine, sine) = configuration.unit(&turned)?;
+            let turned = prefix * Matrix3::rotation(2, cosine, sine);
+            (turned * tilt, Direction::constant(Angle::ZERO))
+        }
     })
 }

@@ -1,0 +1,145 @@
+//! Orientations as products of turns about z and constant tilts, so that the orientation of one frame
+//! in another is multiplied out between the two alone, wherever the legs start.
+
+use super::configuration::{Configuration, From};
+use super::leg::joint_turn;
+use super::platform::constant_rotation;
+use super::rates::parallel;
+use crate::cas::{Angle, Arena, Direction, Matrix3, Ratio};
+use crate::mechanism::{Leg, Mechanism};
+
+/// A factor of an orientation.
+#[derive(Debug, Clone, PartialEq)]
+enum Part {
+    /// Rz(rz) Ry(ry) Rx(rx) of constant angles.
+    Tilt([Angle; 3]),
+    /// A turn about z, of all joints of a run of parallel axes.
+    Turn(Direction),
+}
+
+/// A frame's orientation in the robot's base frame.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Orientation(Vec<Part>);
+
+impl Orientation {
+    /// The orientations of all frames of a leg; `None` if a constant overflows.
+    #[must_use]
+    pub fn of_leg(
+        leg: &Leg,
+        first_joint: usize,
+        configuration: &Configuration<'_>,
+    ) -> Option<Vec<Self>> {
+        let mut all: Vec<Self> = Vec::new();
+        for (index, joint) in leg.joints.iter().enumerate() {
+            let mut parts = match joint.antecedent {
+                Some(a) => all[a].0.clone(),
+                None => Self::fixed(leg.base.rotation).0,
+            };
+            let from = match parts.pop_if(|part| matches!(part, Part::Turn(_))) {
+                Some(Part::Turn(turn)) => turn,
+                _ => Direction::constant(Angle::ZERO),
+            };
+            let turned = from.plus(&Direction::constant(joint.gamma))?;
+            let theta = joint_turn(leg, index, first_joint, configuration)?;
+            let tilt = Part::Tilt([joint.alpha, Angle::ZERO, Angle::ZERO]);
+            match parallel(joint.alpha) {
+                Some(sign) if sign == Ratio::ONE => parts.push(Part::Turn(turned.plus(&theta)?)),
+                Some(_) => {
+                    parts.extend([tilt, Part::Turn(turned.negative().plus(&theta)?)]);
+                }
+                None => parts.extend([Part::Turn(turned), tilt, Part::Turn(theta)]),
+            }
+            all.push(Self(parts));
+        }
+        Some(all)
+    }
+
+    /// A constant orientation, as that of a leg's base.
+    #[must_use]
+    pub fn fixed(rotation: [Angle; 3]) -> Self {
+        let is_turned = rotation.iter().any(|angle| !angle.is_zero());
+        Self(
+            is_turned
+                .then_some(Part::Tilt(rotation))
+                .into_iter()
+                .collect(),
+        )
+    }
+
+    /// The frames that can be met on the way from the base to a leg's frames, the base frame first.
+    #[must_use]
+    pub fn stations(frames: &[Self]) -> Vec<Self> {
+        let mut stations: Vec<Self> = Vec::new();
+        for frame in frames {
+            for length in 0..=frame.0.len() {
+                let station = Self(frame.0[..length].to_vec());
+                if !stations.contains(&station) {
+                    stations.push(station);
+                }
+            }
+        }
+        stations
+    }
+
+    /// The orientation of `self` in the frame `from`; `None` if a sine or cosine does not follow from
+    /// the configuration.
+    #[must_use]
+    pub fn relative<'a>(
+        &self,
+        from: &Self,
+        arena: &'a Arena,
+        configuration: &Configuration<'a>,
+    ) -> Option<Matrix3<'a>> {
+        let shared = self.0.iter().zip(&from.0).take_while(|(a, b)| a == b);
+        let shared = shared.count();
+        let (mut forth, mut back) = (&self.0[shared..], &from.0[shared..]);
+        let mut middle = Matrix3::identity(arena);
+        if let ([Part::Turn(to), rest @ ..], [Part::Turn(of), others @ ..]) = (forth, back) {
+            let turn = to.plus(&of.negative())?;
+            middle = Part::Turn(turn).matrix(arena, configuration)?;
+            (forth, back) = (rest, others);
+        }
+        let product = |start: Matrix3<'a>, parts: &[Part]| {
+            parts.iter().try_fold(start, |product, part| {
+                Some(product * part.matrix(arena, configuration)?)
+            })
+        };
+        let back = product(Matrix3::identity(arena), back)?.transposed();
+        product(back * middle, forth)
+    }
+}
+
+/// How many stations a leg has to choose axes from. Only the base, if the closure is of some components
+/// of the end's velocity or angular velocity alone: those are the base's.
+#[must_use]
+pub fn station_count(mechanism: &Mechanism, leg: usize) -> usize {
+    let rows = mechanism.closure_rows(leg);
+    let whole = |part: usize| {
+        let count = rows.iter().filter(|&&row| row / 3 == part).count();
+        count == 0 || count == 3
+    };
+    if !whole(0) || !whole(1) {
+        return 1;
+    }
+    let arena = Arena::new();
+    let configuration = Configuration::new(&arena, mechanism, From::Joints);
+    let first_joint = mechanism.leg_range(leg).start;
+    Orientation::of_leg(&mechanism.legs[leg], first_joint, &configuration)
+        .map_or(1, |frames| Orientation::stations(&frames).len())
+}
+
+impl Part {
+    fn matrix<'a>(
+        &self,
+        arena: &'a Arena,
+        configuration: &Configuration<'a>,
+    ) -> Option<Matrix3<'a>> {
+        match self {
+            Self::Tilt(angles) => Some(constant_rotation(arena, *angles)),
+            Self::Turn(turn) => {
+                let (cosine, sine) = configuration.unit(turn)?;
+                Some(Matrix3::rotation(2, cosine, sine))
+            }
+        }
+    }
+}
