@@ -27,6 +27,21 @@ pub enum Error {
         /// How many times smaller the determinant is than at the home configuration.
         condition: f64,
     },
+    /// Other actuators than those of the description are kept in case 2, and they do not determine the
+    /// platform's motion; see [`crate::partition`].
+    SingularPartition {
+        /// The kept actuators.
+        kept: Actuators,
+        /// Condition number of their rows of J_p^inv.
+        condition: f64,
+    },
+    /// There is no actuator of this number.
+    NoActuator {
+        /// The number, counted from 0.
+        index: usize,
+        /// How many actuators there are.
+        actuators: usize,
+    },
     /// The forward kinematics did not converge from the start pose.
     NoConvergence {
         /// Largest remaining difference of an actuator's position, m or rad.
@@ -65,6 +80,14 @@ impl fmt::Display for Error {
                 f,
                 "the {actuators} do not determine the platform's motion here: their determinant is {condition:.1e} times smaller than at home"
             ),
+            Self::SingularPartition { kept, condition } => write!(
+                f,
+                "the kept actuators {kept} do not determine the platform's motion here: their Jacobian has the condition number {condition:.1e}"
+            ),
+            Self::NoActuator { index, actuators } => write!(
+                f,
+                "there is no actuator {index}: the robot has {actuators}, counted from 0"
+            ),
             Self::NoConvergence { residual } => write!(
                 f,
                 "the forward kinematics did not converge (an actuator is off by {residual:.1e})"
@@ -81,6 +104,35 @@ impl fmt::Display for Error {
 }
 
 impl core::error::Error for Error {}
+
+/// A set of actuators, by their numbers in the order of q and τ, counted from 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Actuators(u64);
+
+impl Actuators {
+    /// The set of the given actuators. Numbers from 64 on are left out: the set serves messages.
+    #[must_use]
+    pub fn new(numbers: &[usize]) -> Self {
+        let bit = |at: &usize| u32::try_from(*at).ok().and_then(|at| 1_u64.checked_shl(at));
+        Self(numbers.iter().filter_map(bit).fold(0, |set, bit| set | bit))
+    }
+
+    /// The numbers in ascending order.
+    pub fn iter(self) -> impl Iterator<Item = usize> {
+        (0..64).filter(move |at| self.0 >> at & 1 == 1)
+    }
+}
+
+impl fmt::Display for Actuators {
+    /// `0, 1, 3 (counted from 0)`
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (place, number) in self.iter().enumerate() {
+            let comma = if place == 0 { "" } else { ", " };
+            write!(f, "{comma}{number}")?;
+        }
+        write!(f, " (counted from 0)")
+    }
+}
 
 /// An [`Error`] and the sample of a block at which it occurred.
 #[derive(Debug, Clone, Copy, PartialEq)]

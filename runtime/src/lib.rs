@@ -1,6 +1,6 @@
 //! What a generated robot model needs at run time, and nothing more: the [`Model`] trait, [`Error`],
 //! a few functions of [`math`], forward kinematics in [`forward`], numeric
-//! inverse kinematics in [`inverse`], and the macro
+//! inverse kinematics in [`inverse`], case 2 for any kept actuators in [`partition`], and the macro
 //! `#[redundant_robot("robot.toml")]`.
 //!
 //! The crate is `no_std` and allocates nothing. With the feature `std` (default) square roots and
@@ -14,6 +14,7 @@ pub mod guard;
 pub mod inverse;
 pub mod math;
 pub mod model;
+pub mod partition;
 
 pub use error::{Error, SampleError};
 pub use model::{BaseParameter, Body, Function, Info, Input, Model, Parameter, Sizes, Symbol};

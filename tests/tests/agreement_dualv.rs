@@ -7,6 +7,7 @@ use overact_codegen::compile;
 use overact_codegen::derivation::Family;
 use overact_tests::reference::Mechanism;
 use overact_tests::reference::robots;
+use overact_tests::support::agreement::unwound;
 use overact_tests::support::expected::{Expected, with_joints_of_model};
 use overact_tests::support::sample::samples;
 use overact_tests::support::{Agreement, Backend, Evaluated, Failure, Sample, dualv};
@@ -72,12 +73,6 @@ fn agree(
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
     Ok(())
-}
-
-/// The angle that differs from `angle` by whole turns and is nearest to another.
-fn unwound(angle: f64, near: f64) -> f64 {
-    let turn = std::f64::consts::TAU;
-    angle - turn * ((angle - near) / turn).round()
 }
 
 fn case_1(is_chosen: impl Fn(Family) -> bool) -> Result<(), Failure> {

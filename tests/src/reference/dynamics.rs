@@ -21,6 +21,7 @@ use super::linear::{condition, pseudo_inverse};
 use super::mechanism::Mechanism;
 use super::newton_euler::{projected_platform_wrench, regressor, tree_torques};
 use nalgebra::{DMatrix, DVector};
+use std::cell::OnceCell;
 
 /// Largest relative residual that counts as rounding.
 const CONSISTENCY: f64 = 1e-8;
@@ -36,6 +37,8 @@ pub struct Dynamics<'a> {
     pub state: &'a State,
     /// Its Jacobians in this state.
     pub jacobians: Jacobians,
+    /// The system of end wrenches and torques with its pseudo-inverse, once something needs it.
+    system: OnceCell<[DMatrix<f64>; 2]>,
 }
 
 /// Case 2: what multiplies the parameters and the projected torques (36).
@@ -62,6 +65,7 @@ impl<'a> Dynamics<'a> {
             mechanism,
             state,
             jacobians: state.jacobians(mechanism)?,
+            system: OnceCell::new(),
         })
     }
 
@@ -123,6 +127,22 @@ impl<'a> Dynamics<'a> {
     /// Actuator torques, of some overconstraint, for right-hand sides of (16), by the
     /// pseudo-inverse of the equations with end wrenches and torques as unknowns.
     fn any_torques(&self, loads: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
+        let [system, inverse] = self.system.get_or_init(|| {
+            let system = self.wrenches_and_torques();
+            let inverse = pseudo_inverse(&system);
+            [system, inverse]
+        });
+        let solution = inverse * loads;
+        let residual = (system * &solution - loads).amax() / (1.0 + loads.amax());
+        if residual > CONSISTENCY {
+            return Err(Error::Singular("the constrained system"));
+        }
+        let wrenches = self.jacobians.ends.nrows();
+        Ok(solution.rows_range(wrenches..).into_owned())
+    }
+
+    /// Matrix of (15), (16) with end wrenches and torques as unknowns.
+    fn wrenches_and_torques(&self) -> DMatrix<f64> {
         let jacobians = &self.jacobians;
         let (wrenches, joints) = jacobians.ends.shape();
         let (dof, actuators) = (self.mechanism.dof(), jacobians.actuated.len());
@@ -136,12 +156,7 @@ impl<'a> Dynamics<'a> {
         for (column, &row) in jacobians.actuated.iter().enumerate() {
             system[(row, wrenches + column)] = 1.0;
         }
-        let solution = pseudo_inverse(&system) * loads;
-        let residual = (&system * &solution - loads).amax() / (1.0 + loads.amax());
-        if residual > CONSISTENCY {
-            return Err(Error::Singular("the constrained system"));
-        }
-        Ok(solution.rows(wrenches, actuators).into_owned())
+        system
     }
 
     /// Aᵀ of (16): multipliers λ₁ of the legs, λ₂ of the reduced closure.
@@ -179,18 +194,31 @@ impl<'a> Dynamics<'a> {
     ///
     /// If the partition is singular in this state.
     pub fn idm_red_actuators(&self, kept: &[usize]) -> Result<Partition, Error> {
+        self.partition(kept, &self.tree_and_platform_regressor())
+    }
+
+    /// The same for given right-hand sides of (16) in place of all parameters' ones.
+    ///
+    /// # Errors
+    ///
+    /// If the partition is singular in this state.
+    pub fn partition(&self, kept: &[usize], loads: &DMatrix<f64>) -> Result<Partition, Error> {
         let actuators = self.jacobians.actuated.len();
         let projected: Vec<usize> = (0..actuators).filter(|at| !kept.contains(at)).collect();
         let matrix = self.partition_matrix(&projected);
         let condition = condition(&matrix);
-        let loads = self.tree_and_platform_regressor();
+        if condition > SINGULAR {
+            return Err(Error::Singular("the partition"));
+        }
         let (extra, size) = (projected.len(), matrix.nrows());
         let mut sides = DMatrix::zeros(size, extra + loads.ncols());
         sides.view_mut((0, 0), (extra, extra)).fill_with_identity();
         sides
             .view_mut((extra, extra), loads.shape())
-            .copy_from(&loads);
-        let outputs = self.torque_rows(kept) * solve(&matrix, &sides)?;
+            .copy_from(loads);
+        let multipliers = matrix.lu().solve(&sides);
+        let multipliers = multipliers.ok_or(Error::Singular("the partition"))?;
+        let outputs = self.torque_rows(kept) * multipliers;
         Ok(Partition {
             projection: outputs.columns(0, extra).into_owned(),
             regressor: outputs.columns(extra, loads.ncols()).into_owned(),
@@ -221,6 +249,7 @@ impl<'a> Dynamics<'a> {
         parameters: &DVector<f64>,
     ) -> Result<(DMatrix<f64>, DVector<f64>), Error> {
         let dof = self.mechanism.dof();
+        // The configuration is this state's, and with it the system and its inverse.
         let inputs = |acceleration: &DVector<f64>| {
             let state = State::with_joints(
                 self.mechanism,
@@ -229,7 +258,11 @@ impl<'a> Dynamics<'a> {
                 &self.state.twist,
                 acceleration,
             )?;
-            Dynamics::new(self.mechanism, &state)?.platform_inputs(parameters)
+            let moved = Dynamics {
+                state: &state,
+                ..self.clone()
+            };
+            moved.platform_inputs(parameters)
         };
         let bias = inputs(&DVector::zeros(dof))?;
         let mut mass = DMatrix::zeros(dof, dof);

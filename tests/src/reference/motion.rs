@@ -12,8 +12,13 @@ use nalgebra::{DMatrix, DVector, Quaternion, Rotation3, UnitQuaternion, Vector3,
 pub enum Motion {
     /// No platform: a serial or tree robot. Pose and twist coordinates are the joints'.
     None,
-    /// Translation along a fixed direction through the base origin. Pose: one distance.
-    Slide(Vector3<f64>),
+    /// Translation along a fixed axis. Pose: the distance from a point of it.
+    Slide {
+        /// Point of the axis.
+        point: Vector3<f64>,
+        /// Unit direction of the axis.
+        direction: Vector3<f64>,
+    },
     /// Rotation about a fixed axis through a point, where the platform's origin stays. Pose: angle.
     Hinge {
         /// Point of the axis.
@@ -21,14 +26,15 @@ pub enum Motion {
         /// Unit direction of the axis.
         direction: Vector3<f64>,
     },
-    /// A point in the plane z = 0. Pose: x, y.
-    Point,
-    /// Motion in the plane z = 0. Pose: x, y, φ about z.
-    Planar,
+    /// A point in the plane normal to a coordinate axis. Pose: the two coordinates after it in cyclic
+    /// order, x, y for z.
+    Point(usize),
+    /// Motion in the plane normal to a coordinate axis. Pose: the same, and φ about the axis.
+    Planar(usize),
     /// Translations. Pose: x, y, z.
     Translation,
-    /// Translations and rotation about z. Pose: x, y, z, φ.
-    Schoenflies,
+    /// Translations and rotation about a coordinate axis. Pose: x, y, z, φ.
+    Schoenflies(usize),
     /// Rotations about the base origin. Pose: unit quaternion w, x, y, z.
     Spherical,
     /// Any motion. Pose: x, y, z and unit quaternion w, x, y, z.
@@ -45,16 +51,16 @@ impl Motion {
     /// Matrix D of t = D v, 6 x r (14).
     #[must_use]
     pub fn twist_basis(&self) -> DMatrix<f64> {
-        let rows: &[usize] = match self {
-            Self::None => &[],
-            Self::Slide(direction) => return column(*direction, Vector3::zeros()),
+        let rows: Vec<usize> = match self {
+            Self::None => Vec::new(),
+            Self::Slide { direction, .. } => return column(*direction, Vector3::zeros()),
             Self::Hinge { direction, .. } => return column(Vector3::zeros(), *direction),
-            Self::Point => &[0, 1],
-            Self::Planar => &[0, 1, 5],
-            Self::Translation => &[0, 1, 2],
-            Self::Schoenflies => &[0, 1, 2, 5],
-            Self::Spherical => &[3, 4, 5],
-            Self::Spatial => &[0, 1, 2, 3, 4, 5],
+            Self::Point(axis) => plane(*axis).to_vec(),
+            Self::Planar(axis) => [&plane(*axis)[..], &[3 + axis]].concat(),
+            Self::Translation => (0..3).collect(),
+            Self::Schoenflies(axis) => vec![0, 1, 2, 3 + axis],
+            Self::Spherical => (3..6).collect(),
+            Self::Spatial => (0..6).collect(),
         };
         let mut basis = DMatrix::zeros(6, rows.len());
         for (at, &row) in rows.iter().enumerate() {
@@ -68,14 +74,14 @@ impl Motion {
     pub fn placement(&self, pose: &[f64]) -> Frame {
         match *self {
             Self::None => Frame::identity(),
-            Self::Slide(direction) => Frame::new(Frame::identity().rotation, direction * pose[0]),
+            Self::Slide { point, direction } => still(point + direction * pose[0]),
             Self::Hinge { point, direction } => {
                 Frame::new(Rotation3::new(direction * pose[0]).into_inner(), point)
             }
-            Self::Point => Frame::at(pose[0], pose[1], 0.0),
-            Self::Planar => Frame::at(pose[0], pose[1], 0.0) * Frame::about_z(pose[2]),
+            Self::Point(axis) => still(in_plane(axis, pose)),
+            Self::Planar(axis) => still(in_plane(axis, pose)) * about(axis, pose[2]),
             Self::Translation => Frame::at(pose[0], pose[1], pose[2]),
-            Self::Schoenflies => Frame::at(pose[0], pose[1], pose[2]) * Frame::about_z(pose[3]),
+            Self::Schoenflies(axis) => Frame::at(pose[0], pose[1], pose[2]) * about(axis, pose[3]),
             Self::Spherical => Frame::new(orientation(pose).into_inner(), Vector3::zeros()),
             Self::Spatial => Frame::new(
                 orientation(&pose[3..]).into_inner(),
@@ -125,6 +131,29 @@ impl Motion {
         let both = Vector6::new(shift.x, shift.y, shift.z, turn.x, turn.y, turn.z);
         self.twist_basis().transpose() * both
     }
+}
+
+/// The two coordinate axes after `axis` in cyclic order.
+fn plane(axis: usize) -> [usize; 2] {
+    [(axis + 1) % 3, (axis + 2) % 3]
+}
+
+fn in_plane(axis: usize, pose: &[f64]) -> Vector3<f64> {
+    let mut point = Vector3::zeros();
+    for (of, value) in plane(axis).into_iter().zip(pose) {
+        point[of] = *value;
+    }
+    point
+}
+
+fn still(position: Vector3<f64>) -> Frame {
+    Frame::new(Frame::identity().rotation, position)
+}
+
+fn about(axis: usize, angle: f64) -> Frame {
+    let mut turn = Vector3::zeros();
+    turn[axis] = angle;
+    Frame::new(Rotation3::new(turn).into_inner(), Vector3::zeros())
 }
 
 fn column(linear: Vector3<f64>, angular: Vector3<f64>) -> DMatrix<f64> {

@@ -82,6 +82,13 @@ impl fmt::Display for Agreement {
     }
 }
 
+/// The angle that differs from `angle` by whole turns and is nearest to another.
+#[must_use]
+pub fn unwound(angle: f64, near: f64) -> f64 {
+    let turn = std::f64::consts::TAU;
+    angle - turn * ((angle - near) / turn).round()
+}
+
 fn larger(kept: &mut Option<DMatrix<f64>>, new: DMatrix<f64>) {
     *kept = Some(match kept.take() {
         Some(old) => old.zip_map(&new, f64::max),

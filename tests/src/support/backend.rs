@@ -34,11 +34,16 @@ impl Backend for Evaluated<'_> {
             .ok_or_else(|| format!("no function `{function}`"))?
             .program;
         let output = evaluate(program, &|name| sample.input(name).ok())?;
-        let (rows, columns) = match program.output.shape[..] {
-            [rows, columns] => (rows, columns),
-            _ => (program.output.len(), 1),
-        };
-        Ok(DMatrix::from_row_slice(rows, columns, &output))
+        Ok(matrix(program, &output))
+    }
+}
+
+/// A program's output as a matrix; a vector is one of one column.
+#[must_use]
+pub fn matrix(program: &Program, output: &[f64]) -> DMatrix<f64> {
+    match program.output.shape[..] {
+        [rows, columns] => DMatrix::from_row_slice(rows, columns, output),
+        _ => DMatrix::from_row_slice(output.len(), 1, output),
     }
 }
 

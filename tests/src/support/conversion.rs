@@ -1,6 +1,5 @@
 //! A checked mechanism as the numeric reference's plain data, with nothing derived.
 
-use super::Failure;
 use crate::reference::{End, Frame, Joint, JointKind, Leg, Mechanism, Motion};
 use nalgebra::{Rotation3, Vector3};
 use overact_codegen::cas::{Angle, Number};
@@ -8,20 +7,14 @@ use overact_codegen::mechanism;
 
 /// The reference's data of a mechanism. The workspace, in twist coordinates, is the caller's choice:
 /// descriptions have none.
-///
-/// # Errors
-///
-/// If the reference has no such motion: its planes are normal to z.
-pub fn reference(
-    mechanism: &mechanism::Mechanism,
-    workspace: Vec<f64>,
-) -> Result<Mechanism, Failure> {
+#[must_use]
+pub fn reference(mechanism: &mechanism::Mechanism, workspace: Vec<f64>) -> Mechanism {
     let first = |leg: usize| mechanism.leg_range(leg);
     let legs = mechanism.legs.iter().enumerate();
-    Ok(Mechanism {
+    Mechanism {
         gravity: vector(mechanism.gravity),
         motion: match &mechanism.platform {
-            Some(platform) => motion(platform.motion)?,
+            Some(platform) => motion(platform.motion),
             None => Motion::None,
         },
         home: mechanism.home.pose.clone(),
@@ -29,25 +22,27 @@ pub fn reference(
         legs: legs
             .map(|(k, own)| leg(own, &mechanism.home.joints[first(k)]))
             .collect(),
-    })
+    }
 }
 
-fn motion(motion: mechanism::Motion) -> Result<Motion, Failure> {
+fn motion(motion: mechanism::Motion) -> Motion {
     use mechanism::Motion as Described;
-    Ok(match motion {
+    match motion {
         Described::FixedAxis { axis } => {
             let mut direction = Vector3::zeros();
             direction[axis] = 1.0;
-            Motion::Slide(direction)
+            Motion::Slide {
+                point: Vector3::zeros(),
+                direction,
+            }
         }
-        Described::Point { axis: 2 } => Motion::Point,
-        Described::Planar { axis: 2 } => Motion::Planar,
+        Described::Point { axis } => Motion::Point(axis),
+        Described::Planar { axis } => Motion::Planar(axis),
         Described::Translation => Motion::Translation,
-        Described::Schoenflies { axis: 2 } => Motion::Schoenflies,
+        Described::Schoenflies { axis } => Motion::Schoenflies(axis),
         Described::Spherical => Motion::Spherical,
         Described::Spatial => Motion::Spatial,
-        other => return Err(format!("the reference has no motion {other:?}").into()),
-    })
+    }
 }
 
 fn leg(leg: &mechanism::Leg, start: &[f64]) -> Leg {

@@ -2,12 +2,14 @@
 
 use super::sample::fitted_acceleration;
 use super::{Failure, Sample};
+use crate::reference::dynamics::Partition;
 use crate::reference::linear::pseudo_inverse;
 use crate::reference::parameters::{BODY, INERTIAL, leg_start, names, platform_start};
 use crate::reference::{Dynamics, Mechanism, State};
 use nalgebra::{DMatrix, DVector};
 use overact_codegen::RobotModel;
 use overact_codegen::derivation::{BodyParameter, Columns, Family, From};
+use std::cell::OnceCell;
 
 /// The reference of a robot, its columns arranged as the model arranges them.
 #[derive(Clone, Debug)]
@@ -77,6 +79,27 @@ impl Expected {
         [&self.standard[..], &self.payload].concat()
     }
 
+    /// What the reference says at a sample.
+    ///
+    /// # Errors
+    ///
+    /// If the reference can't compute the Jacobians there.
+    pub fn at<'a>(&'a self, sample: &'a Sample) -> Result<Truth<'a>, Failure> {
+        let side = |state| -> Result<Side<'a>, Failure> {
+            Ok(Side {
+                dynamics: Dynamics::new(&self.mechanism, state)?,
+                platform: OnceCell::new(),
+                loads: OnceCell::new(),
+            })
+        };
+        Ok(Truth {
+            expected: self,
+            sample,
+            here: side(&sample.state)?,
+            fitted: side(&sample.fitted)?,
+        })
+    }
+
     /// The reference's output of a function at a sample.
     ///
     /// # Errors
@@ -88,63 +111,7 @@ impl Expected {
         from: From,
         sample: &Sample,
     ) -> Result<DMatrix<f64>, Failure> {
-        let dynamic = matches!(
-            family,
-            Family::IdmRedPlatform(_)
-                | Family::IdmRedActuators(_)
-                | Family::IdmRedPayload
-                | Family::InverseDynamics
-        );
-        let state = if dynamic && from == From::Actuators {
-            &sample.fitted
-        } else {
-            &sample.state
-        };
-        let dynamics = Dynamics::new(&self.mechanism, state)?;
-        match kinematic(&dynamics, family, sample)? {
-            Some(matrix) => Ok(matrix),
-            None => self.dynamic(&dynamics, family, sample),
-        }
-    }
-
-    fn dynamic(
-        &self,
-        dynamics: &Dynamics<'_>,
-        family: Family,
-        sample: &Sample,
-    ) -> Result<DMatrix<f64>, Failure> {
-        let chi = &sample.all_parameters;
-        let torques = DVector::from_column_slice(&sample.torques);
-        let least_norm = || dynamics.least_norm_torques(chi);
-        Ok(match family {
-            Family::IdmRedPlatform(columns) => dynamics
-                .idm_red_platform()?
-                .select_columns(self.chosen(columns)),
-            Family::IdmRedActuators(columns) => {
-                let partition = dynamics.idm_red_actuators(&self.kept)?;
-                partition.regressor.select_columns(self.chosen(columns))
-            }
-            Family::IdmRedPayload => dynamics.idm_red_platform()?.select_columns(&self.payload),
-            Family::IdmRedPayloadActuators => {
-                let partition = dynamics.idm_red_actuators(&self.kept)?;
-                partition.regressor.select_columns(&self.payload)
-            }
-            Family::ProjectActuators => {
-                let partition = dynamics.idm_red_actuators(&self.kept)?;
-                let projected = torques.select_rows(&partition.projected);
-                vector(&(torques.select_rows(&self.kept) - partition.projection * projected))
-            }
-            Family::InverseDynamics => vector(&least_norm()?),
-            Family::InverseDynamicsPreloaded => {
-                let preload = DVector::from_column_slice(&sample.preload);
-                vector(&(least_norm()? + self.null_space(dynamics) * preload))
-            }
-            Family::MassMatrix => dynamics.mass_matrix_and_bias(chi)?.0,
-            Family::Bias => vector(&dynamics.mass_matrix_and_bias(chi)?.1),
-            Family::ProjectTorques => vector(&dynamics.project_torques(&torques)),
-            Family::NullSpace => self.null_space(dynamics),
-            other => return Err(format!("the reference has no {other:?}").into()),
-        })
+        self.at(sample)?.output(family, from)
     }
 
     fn chosen(&self, columns: Columns) -> &[usize] {
@@ -154,15 +121,136 @@ impl Expected {
         }
     }
 
-    /// The null space of a robot with one redundant actuator: a direction, positive on the actuator
-    /// that case 2 projects.
+    /// The orthonormal basis that the model chooses of the null space of (J_p^inv)ᵀ: the unit torques
+    /// of the projected actuators, one after the other, without what moves the platform and without
+    /// the part along the vectors before.
     fn null_space(&self, dynamics: &Dynamics<'_>) -> DMatrix<f64> {
-        let mut basis = dynamics.internal_loads();
-        let projected = (0..basis.nrows()).find(|at| !self.kept.contains(at));
-        if basis.ncols() == 1 && projected.is_some_and(|at| basis[(at, 0)] < 0.0) {
-            basis.neg_mut();
+        let any = dynamics.internal_loads();
+        let mut basis = DMatrix::zeros(any.nrows(), 0);
+        for projected in (0..any.nrows()).filter(|at| !self.kept.contains(at)) {
+            let mut inside = &any * any.row(projected).transpose();
+            inside -= &basis * (basis.transpose() * &inside);
+            let last = basis.ncols();
+            basis = basis.insert_column(last, 0.0);
+            basis.set_column(last, &inside.normalize());
         }
         basis
+    }
+}
+
+/// The reference at one sample; what several functions need is computed once.
+#[derive(Debug)]
+pub struct Truth<'a> {
+    expected: &'a Expected,
+    sample: &'a Sample,
+    here: Side<'a>,
+    fitted: Side<'a>,
+}
+
+/// The reference in the sample's state, or in the one that fits its actuators.
+#[derive(Debug)]
+struct Side<'a> {
+    dynamics: Dynamics<'a>,
+    /// IDM_red of case 1, all columns.
+    platform: OnceCell<DMatrix<f64>>,
+    /// Right-hand sides of (16), all columns.
+    loads: OnceCell<DMatrix<f64>>,
+}
+
+impl Side<'_> {
+    fn platform(&self) -> Result<&DMatrix<f64>, Failure> {
+        if let Some(known) = self.platform.get() {
+            return Ok(known);
+        }
+        let computed = self.dynamics.idm_red_platform()?;
+        Ok(self.platform.get_or_init(|| computed))
+    }
+
+    fn partition(&self, kept: &[usize]) -> Result<Partition, Failure> {
+        let loads = self
+            .loads
+            .get_or_init(|| self.dynamics.tree_and_platform_regressor());
+        Ok(self.dynamics.partition(kept, loads)?)
+    }
+}
+
+impl Truth<'_> {
+    /// The reference in the sample's state.
+    #[must_use]
+    pub const fn dynamics(&self) -> &Dynamics<'_> {
+        &self.here.dynamics
+    }
+
+    /// The reference's columns of the model's standard parameters.
+    #[must_use]
+    pub fn standard(&self) -> &[usize] {
+        &self.expected.standard
+    }
+
+    /// Case 2 in the sample's state, for any kept actuators, with all columns.
+    ///
+    /// # Errors
+    ///
+    /// If the partition is singular there.
+    pub fn partition(&self, kept: &[usize]) -> Result<Partition, Failure> {
+        self.here.partition(kept)
+    }
+
+    /// The output of a function.
+    ///
+    /// # Errors
+    ///
+    /// If the reference can't compute it.
+    pub fn output(&self, family: Family, from: From) -> Result<DMatrix<f64>, Failure> {
+        let dynamic = matches!(
+            family,
+            Family::IdmRedPlatform(_)
+                | Family::IdmRedActuators(_)
+                | Family::IdmRedPayload
+                | Family::InverseDynamics
+        );
+        let fitted = dynamic && from == From::Actuators;
+        let side = if fitted { &self.fitted } else { &self.here };
+        match kinematic(&side.dynamics, family, self.sample)? {
+            Some(matrix) => Ok(matrix),
+            None => self.dynamic(side, family),
+        }
+    }
+
+    fn dynamic(&self, side: &Side<'_>, family: Family) -> Result<DMatrix<f64>, Failure> {
+        let (expected, dynamics) = (self.expected, &side.dynamics);
+        let chi = &self.sample.all_parameters;
+        let torques = DVector::from_column_slice(&self.sample.torques);
+        let least_norm = || dynamics.least_norm_torques(chi);
+        Ok(match family {
+            Family::IdmRedPlatform(columns) => {
+                side.platform()?.select_columns(expected.chosen(columns))
+            }
+            Family::IdmRedActuators(columns) => {
+                let partition = side.partition(&expected.kept)?;
+                partition.regressor.select_columns(expected.chosen(columns))
+            }
+            Family::IdmRedPayload => side.platform()?.select_columns(&expected.payload),
+            Family::IdmRedPayloadActuators => {
+                let partition = side.partition(&expected.kept)?;
+                partition.regressor.select_columns(&expected.payload)
+            }
+            Family::ProjectActuators => {
+                let partition = side.partition(&expected.kept)?;
+                let projected = torques.select_rows(&partition.projected);
+                vector(&(torques.select_rows(&expected.kept) - partition.projection * projected))
+            }
+            Family::InverseDynamics => vector(&least_norm()?),
+            Family::InverseDynamicsPreloaded => {
+                let preload = DVector::from_column_slice(&self.sample.preload);
+                vector(&(least_norm()? + expected.null_space(dynamics) * preload))
+            }
+            Family::MassMatrix => dynamics.mass_matrix_and_bias(chi)?.0,
+            Family::Bias => vector(&dynamics.mass_matrix_and_bias(chi)?.1),
+            Family::ProjectTorques => vector(&dynamics.project_torques(&torques)),
+            Family::NullSpace => expected.null_space(dynamics),
+            other => return Err(format!("the reference has no {other:?}").into()),
+        })
     }
 }
 

@@ -4,12 +4,15 @@ pub mod agreement;
 pub mod backend;
 pub mod conversion;
 pub mod expected;
+pub mod library;
 pub mod rank;
 pub mod sample;
+pub mod served;
 
 pub use agreement::Agreement;
 pub use backend::{Backend, Evaluated};
 pub use sample::Sample;
+pub use served::Served;
 
 use overact_codegen::{RobotModel, Source, compile};
 use std::error::Error;

@@ -63,7 +63,7 @@ pub fn dualv() -> Mechanism {
     };
     Mechanism {
         gravity: Vector3::new(0.0, 0.0, -9.81),
-        motion: Motion::Planar,
+        motion: Motion::Planar(2),
         home: vec![0.0; 3],
         workspace: vec![0.1, 0.1, 0.4],
         legs: (0..4).map(leg).collect(),

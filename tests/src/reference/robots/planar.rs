@@ -67,7 +67,10 @@ pub fn two_slides() -> Mechanism {
     };
     Mechanism {
         gravity: Vector3::new(0.0, 0.0, -9.81),
-        motion: Motion::Slide(Vector3::x()),
+        motion: Motion::Slide {
+            point: Vector3::zeros(),
+            direction: Vector3::x(),
+        },
         home: vec![0.1],
         workspace: vec![0.3],
         legs: vec![direct, inclined],
@@ -105,7 +108,7 @@ fn rr_leg(base: [f64; 2], start_deg: [f64; 2]) -> Leg {
 fn point_robot(legs: Vec<Leg>, home: Vec<f64>, gravity: [f64; 3]) -> Mechanism {
     Mechanism {
         gravity: Vector3::from(gravity),
-        motion: Motion::Point,
+        motion: Motion::Point(2),
         home,
         workspace: vec![0.1, 0.1],
         legs,

@@ -46,7 +46,7 @@ pub fn spherical_4ups() -> Mechanism {
 pub fn schoenflies_5ups() -> Mechanism {
     let base = [0.0, 70.0, 145.0, 216.0, 290.0];
     let platform = [50.0, 30.0, 190.0, 170.0, 330.0];
-    ups_robot(Motion::Schoenflies, &base, &platform, 0.6)
+    ups_robot(Motion::Schoenflies(2), &base, &platform, 0.6)
 }
 
 /// Two UPS legs on a platform that turns about an inclined axis: one actuator more than freedoms.
@@ -70,7 +70,7 @@ fn ups_robot(motion: Motion, base: &[f64], platform: &[f64], height: f64) -> Mec
     let (home, workspace) = match motion {
         Motion::Spherical => (vec![1.0, 0.0, 0.0, 0.0], vec![0.35; 3]),
         Motion::Hinge { .. } => (vec![0.1], vec![0.5]),
-        Motion::Schoenflies => (vec![0.0, 0.0, height, 0.0], vec![0.15, 0.15, 0.1, 0.4]),
+        Motion::Schoenflies(_) => (vec![0.0, 0.0, height, 0.0], vec![0.15, 0.15, 0.1, 0.4]),
         _ => (
             vec![0.0, 0.0, height, 1.0, 0.0, 0.0, 0.0],
             vec![0.12, 0.12, 0.1, 0.3, 0.3, 0.3],

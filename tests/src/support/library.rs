@@ -1,0 +1,95 @@
+//! The robots of `robots/`: one test per robot, compiled and described.
+
+use super::conversion::reference;
+use super::expected::Expected;
+use super::{Failure, description, model_of, repository};
+use overact_codegen::RobotModel;
+use overact_codegen::mechanism::{JointKind, TwistCoordinate};
+
+/// One test per robot of the library, `check(stem, &Robot)`, and one that none is left out.
+#[macro_export]
+macro_rules! library {
+    ($check:path) => {
+        $crate::library! { $check;
+            delta: Delta,
+            delta_4: Delta4,
+            dualv: DualV,
+            emps: Emps,
+            five_bar: FiveBar,
+            hexapod: Hexapod,
+            kuka_lwr: KukaLwr,
+            octopod: Octopod,
+            orthoglide: Orthoglide,
+            planar_3prr: Planar3Prr,
+            planar_3rrr: Planar3Rrr,
+            planar_4prr: Planar4Prr,
+            rx90: Rx90,
+            schoenflies_4: Schoenflies4,
+            spherical_3rrr: Spherical3Rrr,
+            spherical_4rrr: Spherical4Rrr,
+            stanford: Stanford,
+            three_leg_point: ThreeLegPoint,
+            two_motor_axis: TwoMotorAxis,
+        }
+    };
+    ($check:path; $($stem:ident: $robot:ident,)*) => {
+        $(#[test]
+        fn $stem() -> Result<(), $crate::support::Failure> {
+            $check(stringify!($stem), &overact_robots::$robot)
+        })*
+
+        #[test]
+        fn no_description_is_left_out() -> Result<(), $crate::support::Failure> {
+            assert_eq!($crate::support::library::stems()?, [$(stringify!($stem)),*]);
+            Ok(())
+        }
+    };
+}
+
+/// Names of all descriptions of `robots/`, in order.
+///
+/// # Errors
+///
+/// If the folder can't be read.
+pub fn stems() -> Result<Vec<String>, Failure> {
+    let mut stems = Vec::new();
+    for entry in std::fs::read_dir(repository("robots"))? {
+        let path = entry?.path();
+        if path.extension().is_some_and(|e| e == "toml") {
+            let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned());
+            stems.extend(stem);
+        }
+    }
+    stems.sort();
+    Ok(stems)
+}
+
+/// Model and reference of a description of `robots/`.
+///
+/// # Errors
+///
+/// The description's errors as text.
+pub fn described(stem: &str) -> Result<(RobotModel, Expected), Failure> {
+    let model = model_of(&description(stem)?)?;
+    let mechanism = reference(&model.mechanism, workspace(&model));
+    let expected = Expected::by_position(&model, mechanism);
+    Ok((model, expected))
+}
+
+/// Half the ranges of random poses around home, by twist coordinate.
+#[must_use]
+pub fn workspace(model: &RobotModel) -> Vec<f64> {
+    let mechanism = &model.mechanism;
+    let Some(platform) = &mechanism.platform else {
+        let reach = |at| match mechanism.joint(at).kind {
+            JointKind::Revolute => 2.5,
+            _ => 0.3,
+        };
+        return mechanism.joints().into_iter().map(reach).collect();
+    };
+    let reach = |c: &TwistCoordinate| match c {
+        TwistCoordinate::Linear(_) => 0.1 * mechanism.length_scale(),
+        TwistCoordinate::Angular(_) => 0.2,
+    };
+    platform.motion.twist().iter().map(reach).collect()
+}
