@@ -7,11 +7,13 @@
 //! - [`failure`]: what went wrong, as text for people or as JSON for machines, with the exit code;
 //! - `output`: results go to stdout or, whole or not at all, to a file;
 //! - `progress`: long work shows a bar on a terminal and nothing in a pipe;
+//! - [`drawing`]: a robot as SVG;
 //! - `experiment`, `settings`: a description's tables as the inputs of simulation and
 //!   identification;
 //! - `states`: states of a robot from JSON or CSV.
 
 mod commands;
+pub mod drawing;
 mod experiment;
 pub mod failure;
 pub mod interpreted;

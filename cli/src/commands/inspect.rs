@@ -1,10 +1,10 @@
-//! `overact inspect`: what a robot's model consists of and what it costs.
+//! `overact inspect`: what a robot's model consists of, what it costs, and how the robot looks.
 
 mod conditioning;
 mod document;
 mod table;
 
-use crate::{failure::Failure, load::load, output};
+use crate::{drawing, failure::Failure, load::load, output};
 use document::Document;
 use std::path::PathBuf;
 
@@ -17,6 +17,9 @@ pub(crate) struct Arguments {
     /// Write to a file instead of stdout
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// Write a drawing of the robot at its home configuration
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
 }
 
 /// Runs the command.
@@ -25,6 +28,10 @@ pub(crate) struct Arguments {
 /// A description with errors.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let robot = load(&arguments.file)?;
+    if let Some(svg) = &arguments.svg {
+        let text = drawing::svg(&robot.model.mechanism);
+        output::write(vec![(svg.clone(), text.into_bytes())])?;
+    }
     let document = Document::new(robot);
     let text = if as_json {
         output::json(&document)?

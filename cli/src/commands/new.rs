@@ -1,30 +1,59 @@
-//! `overact new`: a description from a commented template.
+//! `overact new`: a description from a commented template; without arguments, the list of them.
 
 use crate::{
     failure::{Failure, Problem},
-    output::{json, print, write},
+    output::{json, print, table, write},
 };
 use clap::builder::PossibleValuesParser;
+use serde::Serialize;
 use std::path::PathBuf;
 
-/// Templates with their names.
-const TEMPLATES: [(&str, &str); 2] = [
-    (
-        "planar-4rrr",
-        include_str!("../../templates/planar-4rrr.toml"),
-    ),
-    ("serial-2r", include_str!("../../templates/serial-2r.toml")),
+/// A template with its name and text.
+macro_rules! template {
+    ($name:literal) => {
+        (
+            $name,
+            include_str!(concat!("../../templates/", $name, ".toml")),
+        )
+    };
+}
+
+/// All templates, by the freedoms of their platforms. Names are motion and legs: a letter for each
+/// joint (P prismatic, R revolute, S spherical, U universal).
+const TEMPLATES: [(&str, &str); 15] = [
+    template!("serial-2r"),
+    template!("serial-6r"),
+    template!("fixed-axis-2p"),
+    template!("point-2rr"),
+    template!("point-3rr"),
+    template!("planar-3rrr"),
+    template!("planar-3prr"),
+    template!("planar-4rrr"),
+    template!("translation-3rus"),
+    template!("translation-4rus"),
+    template!("schoenflies-4rus"),
+    template!("spherical-3rrr"),
+    template!("spherical-4rrr"),
+    template!("spatial-6ups"),
+    template!("spatial-8ups"),
 ];
 
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Arguments {
-    /// What kind of robot to start from
-    #[arg(value_parser = PossibleValuesParser::new(TEMPLATES.map(|(name, _)| name)))]
-    template: String,
+    /// What kind of robot to start from; without it, all templates are listed
+    #[arg(value_parser = PossibleValuesParser::new(TEMPLATES.map(|(name, _)| name)), requires = "file")]
+    template: Option<String>,
     /// The description to write; it must not exist
     #[arg(value_name = "TOML")]
-    file: PathBuf,
+    file: Option<PathBuf>,
+}
+
+/// A template in the list.
+#[derive(Debug, Serialize)]
+struct Listed {
+    template: &'static str,
+    robot: &'static str,
 }
 
 /// Runs the command.
@@ -32,9 +61,12 @@ pub(crate) struct Arguments {
 /// # Errors
 /// A file that exists or can't be written.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
-    let file = arguments.file.display().to_string();
+    let (Some(template), Some(path)) = (&arguments.template, &arguments.file) else {
+        return list(as_json);
+    };
+    let file = path.display().to_string();
     // A link that leads nowhere is a file, too.
-    if arguments.file.symlink_metadata().is_ok() {
+    if path.symlink_metadata().is_ok() {
         let problem = Problem::new("the file exists and is not overwritten").file(file);
         return Err(problem
             .help("choose another name, or remove the file first")
@@ -42,15 +74,38 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
     let text = TEMPLATES
         .iter()
-        .find(|(name, _)| *name == arguments.template)
+        .find(|(name, _)| name == template)
         .map_or("", |t| t.1);
-    write(vec![(arguments.file.clone(), text.as_bytes().to_vec())])?;
+    write(vec![(path.clone(), text.as_bytes().to_vec())])?;
     if as_json {
         return print(&json(
-            &serde_json::json!({ "file": file, "template": arguments.template }),
+            &serde_json::json!({ "file": file, "template": template }),
         )?);
     }
     print(&format!(
-        "wrote {file}; `overact check {file}` checks it, `overact identify {file}` makes its virtual experiment"
+        "wrote {file}; next:\n\
+         \u{20} overact check {file}                 every error, each at its line\n\
+         \u{20} overact inspect {file} --svg my.svg  the model, and a drawing\n\
+         \u{20} overact identify {file}              a virtual experiment and its parameters"
+    ))
+}
+
+/// The list of templates; a template's first line says what it is.
+fn list(as_json: bool) -> Result<(), Failure> {
+    let listed = |&(template, text): &(&'static str, &'static str)| Listed {
+        template,
+        robot: text.lines().next().unwrap_or("").trim_start_matches("# "),
+    };
+    let all: Vec<Listed> = TEMPLATES.iter().map(listed).collect();
+    if as_json {
+        return print(&json(&serde_json::json!({ "templates": all }))?);
+    }
+    let rows: Vec<Vec<String>> = all
+        .iter()
+        .map(|l| vec![l.template.to_owned(), l.robot.to_owned()])
+        .collect();
+    print(&format!(
+        "{}\n`overact new TEMPLATE my.toml` writes one",
+        table(&rows, &[true, true])
     ))
 }

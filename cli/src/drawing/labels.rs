@@ -1,0 +1,323 @@
+//! Letters: title, names of legs or joints, frames and the legend.
+
+use super::joints::{ball, block, disc, universal};
+use super::paint::{Sheet, WIDTH, flat, n};
+use super::scene::{Part, Scene};
+use super::style::COLOURS;
+use super::view::View;
+use crate::output::counted;
+use overact_codegen::mechanism::Mechanism;
+
+/// The robot's name and what it can do.
+pub(super) fn title(mechanism: &Mechanism) -> (String, String) {
+    let freedoms = counted(mechanism.dof(), "degree of freedom", "degrees of freedom");
+    let motors = counted(mechanism.actuated().len(), "motor", "motors");
+    let Some(platform) = &mechanism.platform else {
+        return (mechanism.name.clone(), format!("{freedoms}, {motors}"));
+    };
+    let legs = counted(mechanism.legs.len(), "leg", "legs");
+    let coordinates = platform.motion.coordinates().join(", ");
+    let coordinates = coordinates.replace("phi", "φ");
+    let subtitle = format!("{freedoms} ({coordinates}), {motors}, {legs}");
+    (mechanism.name.clone(), subtitle)
+}
+
+/// A rectangle on paper: left, top, right, bottom.
+type Area = [f64; 4];
+
+fn overlap(a: &Area, b: &Area) -> bool {
+    a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]
+}
+
+/// Width of a text in the size of names, pixels; letters differ, so this is rather too much.
+fn text_width(text: &str) -> f64 {
+    text.chars().count() as f64 * 8.0
+}
+
+/// Names of the legs; of the joints, where there is one leg only.
+pub(super) fn names(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: &Sheet) -> String {
+    let mut wanted: Vec<(usize, String, [f64; 2])> = Vec::new();
+    if mechanism.platform.is_none() {
+        for (leg, of_leg) in mechanism.legs.iter().enumerate() {
+            let moving = of_leg.joints.iter().filter(|j| !j.variable.is_empty());
+            let symbols = scene.parts.iter().filter_map(|(l, part)| match part {
+                _ if *l != leg => None,
+                Part::Revolute { at, .. } | Part::Slider { at, .. } => Some(*at),
+                Part::Telescope { from, to, .. } => Some((from + to) / 2.0),
+                _ => None,
+            });
+            wanted.extend(
+                moving
+                    .zip(symbols)
+                    .map(|(joint, at)| (leg, joint.name.clone(), flat(&at, view, sheet))),
+            );
+        }
+    } else {
+        for (index, (leg, base)) in mechanism.legs.iter().zip(&scene.bases).enumerate() {
+            let slider = scene.parts.iter().find_map(|(l, part)| match part {
+                Part::Slider { at, .. } if *l == index => Some(*at),
+                _ => None,
+            });
+            let at = slider.unwrap_or(*base);
+            wanted.push((index, leg.name.clone(), flat(&at, view, sheet)));
+        }
+    }
+    let obstacles = obstacles(scene, view, sheet);
+    let mut taken: Vec<Area> = Vec::new();
+    let mut text = String::new();
+    for (leg, name, at) in wanted {
+        let area = best_area(&name, at, &obstacles, &taken, sheet);
+        text.push_str(&format!(
+            "<text class=\"ov-tag ov-n{}\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">{name}</text>\n",
+            leg % COLOURS,
+            n((area[0] + area[2]) / 2.0),
+            n(area[3] - 4.5)
+        ));
+        taken.push(area);
+    }
+    text
+}
+
+/// Where a name covers least: tried all around its place, outwards first.
+fn best_area(
+    name: &str,
+    at: [f64; 2],
+    obstacles: &[[f64; 2]],
+    taken: &[Area],
+    sheet: &Sheet,
+) -> Area {
+    let (half, tall) = (text_width(name) / 2.0 + 2.0, 9.0);
+    let outwards = [at[0] - WIDTH / 2.0, at[1] - sheet.height / 2.0];
+    let outwards = outwards[1].atan2(outwards[0]);
+    let mut best: Option<(f64, Area)> = None;
+    for distance in [20.0, 27.0, 36.0] {
+        for step in 0..24 {
+            let turn = f64::from((step + 1) / 2) * if step % 2 == 0 { 15.0 } else { -15.0 };
+            let angle = outwards + f64::to_radians(turn);
+            let x = at[0] + angle.cos() * (distance + half);
+            let y = at[1] + angle.sin() * (distance + tall * 0.6);
+            let area = [x - half, y - tall, x + half, y + tall];
+            let inside = |p: &&[f64; 2]| {
+                let margin = 3.0;
+                p[0] > area[0] - margin
+                    && p[0] < area[2] + margin
+                    && p[1] > area[1] - margin
+                    && p[1] < area[3] + margin
+            };
+            let covered = obstacles.iter().filter(inside).count() as f64;
+            let crossed = taken.iter().filter(|t| overlap(t, &area)).count() as f64;
+            let sheet_area = [6.0, 72.0, WIDTH - 6.0, sheet.height - 44.0];
+            let outside = area[0] < sheet_area[0]
+                || area[1] < sheet_area[1]
+                || area[2] > sheet_area[2]
+                || area[3] > sheet_area[3];
+            let score = covered * 3.0
+                + crossed * 60.0
+                + if outside { 80.0 } else { 0.0 }
+                + turn.abs() / 60.0
+                + distance / 20.0;
+            if best.as_ref().is_none_or(|(known, _)| score < known - 1e-6) {
+                best = Some((score, area));
+            }
+        }
+    }
+    best.map_or([0.0; 4], |(_, area)| area)
+}
+
+/// Points that names should not cover: along bodies and around joints.
+fn obstacles(scene: &Scene, view: &View, sheet: &Sheet) -> Vec<[f64; 2]> {
+    let mut points = Vec::new();
+    let mut line = |a: [f64; 2], b: [f64; 2]| {
+        let steps = ((a[0] - b[0]).hypot(a[1] - b[1]) / 7.0).ceil().max(1.0) as usize;
+        for step in 0..=steps {
+            let share = step as f64 / steps as f64;
+            points.push([0, 1].map(|i| a[i] + share * (b[i] - a[i])));
+        }
+    };
+    let mut around = Vec::new();
+    for (_, part) in &scene.parts {
+        let on_paper = |p| flat(p, view, sheet);
+        match part {
+            Part::Link { path, .. } | Part::Stub { path, .. } => {
+                path.windows(2)
+                    .for_each(|pair| line(on_paper(&pair[0]), on_paper(&pair[1])));
+            }
+            Part::Rail { from, to } | Part::Telescope { from, to, .. } => {
+                line(on_paper(from), on_paper(to));
+            }
+            Part::Revolute { at, actuated, .. } | Part::Slider { at, actuated, .. } => {
+                around.push((on_paper(at), if *actuated { 15.0 } else { 8.0 }));
+            }
+            Part::Universal { at } | Part::Ball { at } => around.push((on_paper(at), 8.0)),
+        }
+    }
+    for ([x, y], radius) in around {
+        for step in 0..12 {
+            let angle = f64::from(step) * std::f64::consts::PI / 6.0;
+            points.push([x + radius * angle.cos(), y + radius * angle.sin()]);
+        }
+    }
+    if view.planar {
+        // The hatched ground below each base.
+        for base in &scene.bases {
+            let [x, y] = flat(base, view, sheet);
+            points.extend((-2..=2).map(|i| [x + 8.0 * f64::from(i), y + 26.0]));
+        }
+    }
+    points
+}
+
+/// The platform's frame in its place, and the base frame's directions in a corner.
+pub(super) fn frames(scene: &Scene, view: &View, sheet: &Sheet) -> String {
+    let units = nalgebra::Matrix3::identity();
+    let column = |m: &nalgebra::Matrix3<f64>, i: usize| m.column(i).into_owned();
+    let project = |m: &nalgebra::Matrix3<f64>| [0, 1, 2].map(|i| view.project(&column(m, i)));
+    let corner = free_corner(scene, view, sheet);
+    let mut text = triad(corner, &project(&units), 32.0, true);
+    text.push_str(&format!(
+        "<text class=\"ov-text\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">base</text>\n",
+        n(corner[0]),
+        n(corner[1] + 42.0)
+    ));
+    if let Some(frame) = &scene.platform {
+        let axes = frame.rotation.to_rotation_matrix().into_inner();
+        let at = flat(&frame.translation.vector, view, sheet);
+        text.push_str(&triad(at, &project(&axes), 26.0, false));
+    }
+    text
+}
+
+/// The corner for the base frame's directions: the first that the robot leaves free.
+fn free_corner(scene: &Scene, view: &View, sheet: &Sheet) -> [f64; 2] {
+    let (low, high) = (sheet.height - 88.0, 112.0);
+    let corners = [
+        [64.0, low],
+        [WIDTH - 64.0, low],
+        [WIDTH - 64.0, high],
+        [64.0, high],
+    ];
+    let obstacles = obstacles(scene, view, sheet);
+    let covered = |c: &[f64; 2]| {
+        let near = |p: &&[f64; 2]| (p[0] - c[0]).abs() < 62.0 && (p[1] - c[1]).abs() < 56.0;
+        obstacles.iter().filter(near).count()
+    };
+    let free = corners.iter().min_by_key(|c| covered(c));
+    free.copied().unwrap_or(corners[0])
+}
+
+/// The axes of a frame; an axis that points at the reader is a dot.
+fn triad(at: [f64; 2], axes: &[[f64; 3]; 3], size: f64, letters: bool) -> String {
+    let mut text = String::new();
+    let colours = ["#ef4444", "#22a55b", "#3b82f6"];
+    for (axis, ([right, up, _], colour)) in axes.iter().zip(colours).enumerate() {
+        let long = right.hypot(*up);
+        if long < 0.05 {
+            continue;
+        }
+        let tip = [at[0] + right * size, at[1] - up * size];
+        let (along, across) = ([right / long, -up / long], [up / long, right / long]);
+        let barb = |side: f64| {
+            let place = |i: usize| tip[i] - along[i] * 6.5 + across[i] * 3.4 * side;
+            format!("{} {}", n(place(0)), n(place(1)))
+        };
+        text.push_str(&format!(
+            "<path d=\"M{} {}L{} {}M{}L{} {}L{}\" stroke=\"{colour}\" fill=\"none\" stroke-width=\"2\" stroke-linecap=\"round\" stroke-linejoin=\"round\"/>\n",
+            n(at[0]),
+            n(at[1]),
+            n(tip[0]),
+            n(tip[1]),
+            barb(1.0),
+            n(tip[0]),
+            n(tip[1]),
+            barb(-1.0)
+        ));
+        if letters {
+            let place = [tip[0] + along[0] * 9.0, tip[1] + along[1] * 9.0 + 4.0];
+            text.push_str(&format!(
+                "<text class=\"ov-letter\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
+                n(place[0]),
+                n(place[1]),
+                ["x", "y", "z"][axis]
+            ));
+        }
+    }
+    text
+}
+
+/// What the symbols mean, those that occur.
+pub(super) fn legend(scene: &Scene, sheet: &Sheet) -> String {
+    let parts = || scene.parts.iter().map(|(_, part)| part);
+    let slides = |p: &Part| matches!(p, Part::Slider { .. } | Part::Telescope { .. });
+    let y = sheet.height - 22.0;
+    let swatch = |x: f64| {
+        format!(
+            "<rect class=\"ov-plate\" x=\"{}\" y=\"{}\" width=\"20\" height=\"14\" rx=\"3\" stroke-width=\"2\"/>\n",
+            n(x - 10.0),
+            n(y - 7.0)
+        )
+    };
+    let scaled = |x: f64, symbol: String| {
+        format!(
+            "<g transform=\"translate({} {}) scale(.72)\">{symbol}</g>\n",
+            n(x),
+            n(y)
+        )
+    };
+    type Symbol<'a> = Box<dyn Fn(f64) -> String + 'a>;
+    let mut entries: Vec<(Symbol<'_>, &str)> = Vec::new();
+    let driven = |p: &Part| {
+        matches!(
+            p,
+            Part::Revolute { actuated: true, .. }
+                | Part::Slider { actuated: true, .. }
+                | Part::Telescope { actuated: true, .. }
+        )
+    };
+    if parts().any(|p| matches!(p, Part::Revolute { actuated: true, .. })) {
+        let symbol = move |x| scaled(x, disc([0.0, 0.0], 7, true));
+        entries.push((Box::new(symbol), "revolute motor"));
+    }
+    if parts().any(|p| driven(p) && slides(p)) {
+        let symbol = move |x| scaled(x, block([0.0, 0.0], [1.0, 0.0, 0.0], 7, true, false));
+        entries.push((Box::new(symbol), "linear motor"));
+    }
+    if parts().any(|p| {
+        matches!(
+            p,
+            Part::Revolute {
+                actuated: false,
+                ..
+            }
+        )
+    }) {
+        let symbol = move |x| scaled(x, disc([0.0, 0.0], 7, false));
+        entries.push((Box::new(symbol), "passive revolute joint"));
+    }
+    if parts().any(|p| matches!(p, Part::Universal { .. })) {
+        let symbol = move |x| scaled(x, universal([0.0, 0.0]));
+        entries.push((Box::new(symbol), "universal joint"));
+    }
+    if parts().any(|p| slides(p) && !driven(p)) {
+        let symbol = move |x| scaled(x, block([0.0, 0.0], [1.0, 0.0, 0.0], 7, false, false));
+        entries.push((Box::new(symbol), "passive slide"));
+    }
+    if parts().any(|p| matches!(p, Part::Ball { .. })) {
+        let symbol = move |x| scaled(x, ball([0.0, 0.0], 7));
+        entries.push((Box::new(symbol), "point end"));
+    }
+    if scene.platform.is_some() {
+        entries.push((Box::new(swatch), "platform"));
+    }
+    let mut text = String::new();
+    let mut x = 40.0;
+    for (symbol, meaning) in entries {
+        text.push_str(&symbol(x));
+        text.push_str(&format!(
+            "<text class=\"ov-text\" x=\"{}\" y=\"{}\">{meaning}</text>\n",
+            n(x + 17.0),
+            n(y + 4.5)
+        ));
+        x += 17.0 + meaning.chars().count() as f64 * 6.6 + 28.0;
+    }
+    text
+}

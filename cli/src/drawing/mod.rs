@@ -1,0 +1,36 @@
+//! A robot's drawing: bodies, joints, frames and platform at the home configuration, as one SVG text.
+//!
+//! - [`scene`](self::scene): a mechanism becomes lines, joints and plates in space; a robot whose axes
+//!   all meet in one point has no lengths and is drawn on a sphere around it;
+//! - [`view`](self::view): planar robots are seen along the normal of their plane, others from the side
+//!   that separates their joints best;
+//! - [`paint`](self::paint), [`joints`](self::joints), [`labels`](self::labels): the sheet, from far to near.
+//!
+//! The text needs nothing from elsewhere: no fonts, no links, no scripts. Its colours follow the reader's
+//! choice of light or dark. All class names begin with `ov-`, so that the text may stand within a page.
+
+mod joints;
+mod labels;
+mod paint;
+mod scene;
+mod sphere;
+mod style;
+mod view;
+
+use overact_codegen::mechanism::Mechanism;
+use paint::Sheet;
+use scene::Scene;
+use view::View;
+
+/// Draws a mechanism at its home configuration; the same bytes for the same mechanism.
+#[must_use]
+pub fn svg(mechanism: &Mechanism) -> String {
+    // Some symbols are as large on paper for every robot: the scale has to be known before they are
+    // placed.
+    let rough = Scene::new(mechanism, 0.0);
+    let view = View::of(mechanism, &rough);
+    let pixel = Sheet::fitted(&rough, &view).pixel();
+    let scene = Scene::new(mechanism, pixel);
+    let sheet = Sheet::fitted(&scene, &view);
+    paint::document(mechanism, &scene, &view, &sheet)
+}

@@ -1,0 +1,415 @@
+//! The sheet: from the scene to SVG elements, from far to near.
+
+use super::joints;
+use super::labels;
+use super::scene::{NOTHING, Part, Point, Scene};
+use super::style::{COLOURS, css};
+use super::view::View;
+use overact_codegen::mechanism::Mechanism;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// Width of the sheet, pixels.
+pub(super) const WIDTH: f64 = 720.0;
+/// Space at the left and right for names, and at the top and bottom for title and legend.
+const MARGIN: [f64; 3] = [92.0, 104.0, 96.0];
+/// Largest height of the robot.
+const TALLEST: f64 = 400.0;
+/// Smallest height, for robots that lie flat.
+const LOWEST: f64 = 130.0;
+
+/// Scale and place of the robot on paper.
+pub(super) struct Sheet {
+    scale: f64,
+    /// What is at the middle of the robot's box, m.
+    middle: [f64; 2],
+    /// Height of the sheet, pixels.
+    pub(super) height: f64,
+}
+
+/// A piece of the drawing and how near it is.
+struct Piece {
+    near: f64,
+    text: String,
+}
+
+impl Sheet {
+    /// The largest scale at which a scene fits; never larger than at the first fit.
+    pub(super) fn fitted(scene: &Scene, view: &View) -> Self {
+        let mut places: Vec<[f64; 3]> = scene.points().iter().map(|p| view.project(p)).collect();
+        let globe = scene.sphere.unwrap_or(0.0);
+        if globe > 0.0 {
+            places.extend([[-globe, -globe, 0.0], [globe, globe, 0.0]]);
+        }
+        let range = |axis: usize| {
+            let low = places.iter().map(|p| p[axis]).fold(f64::MAX, f64::min);
+            let high = places.iter().map(|p| p[axis]).fold(f64::MIN, f64::max);
+            if low > high { (0.0, 0.0) } else { (low, high) }
+        };
+        let ((left, right), (bottom, top)) = (range(0), range(1));
+        let (width, height) = (right - left, top - bottom);
+        // A robot without extent, a single joint for instance, has any scale.
+        let scale = if width.max(height) < NOTHING {
+            400.0
+        } else {
+            let wide = (WIDTH - 2.0 * MARGIN[0]) / width.max(NOTHING);
+            wide.min(TALLEST / height.max(NOTHING))
+        };
+        Self {
+            scale,
+            middle: [(left + right) / 2.0, (bottom + top) / 2.0],
+            height: ((height * scale).max(LOWEST) + MARGIN[1] + MARGIN[2]).round(),
+        }
+    }
+
+    /// Length of a pixel, m.
+    pub(super) fn pixel(&self) -> f64 {
+        1.0 / self.scale
+    }
+
+    /// A point on paper, pixels from the top left, and its nearness, pixels.
+    pub(super) fn place(&self, view: &View, point: &Point) -> [f64; 3] {
+        let [right, up, near] = view.project(point);
+        let middle = (self.height - MARGIN[2] + MARGIN[1]) / 2.0;
+        [
+            WIDTH / 2.0 + (right - self.middle[0]) * self.scale,
+            middle - (up - self.middle[1]) * self.scale,
+            near * self.scale,
+        ]
+    }
+}
+
+/// A number with one decimal; rounding leaves no minus zero.
+pub(super) fn n(value: f64) -> String {
+    let rounded = (value * 10.0).round() / 10.0;
+    let rounded = if rounded == 0.0 { 0.0 } else { rounded };
+    format!("{rounded}")
+}
+
+/// The whole SVG text.
+pub(super) fn document(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: &Sheet) -> String {
+    let mut pieces = pieces(mechanism, scene, view, sheet);
+    // Rounded, so that equally near pieces keep their order on every machine.
+    pieces.sort_by_key(|piece| (piece.near * 100.0).round() as i64);
+    let (title, subtitle) = labels::title(mechanism);
+    let (width, height) = (n(WIDTH), n(sheet.height));
+    let mut text = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"ov-drawing\" viewBox=\"0 0 {width} {height}\" \
+         width=\"{width}\" height=\"{height}\" role=\"img\" aria-label=\"{title}: {subtitle}\">\n\
+         <style>{}</style>\n\
+         <rect class=\"ov-sheet\" width=\"{width}\" height=\"{height}\" rx=\"10\"/>\n\
+         <text class=\"ov-name\" x=\"28\" y=\"40\">{title}</text>\n\
+         <text class=\"ov-text\" x=\"28\" y=\"61\">{subtitle}</text>\n",
+        css()
+    );
+    for piece in &pieces {
+        text.push_str(&piece.text);
+    }
+    text.push_str(&labels::frames(scene, view, sheet));
+    text.push_str(&labels::names(mechanism, scene, view, sheet));
+    text.push_str(&labels::legend(scene, sheet));
+    text.push_str("</svg>\n");
+    text
+}
+
+/// Everything but letters. In a plane nothing is near or far: grounds and rails lie below, then the
+/// platform, the bodies, and the joints.
+fn pieces(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: &Sheet) -> Vec<Piece> {
+    let mut pieces = vec![Piece {
+        near: f64::from(-1_000_000_000),
+        text: grounds(mechanism, scene, view, sheet),
+    }];
+    let shades = shades(scene);
+    for (leg, part) in &scene.parts {
+        let (near, layer) = nearness(part, view, sheet);
+        let near = match part.place() {
+            _ if view.planar => layer,
+            Some(at) => before_its_bodies(scene, *leg, at, near, view, sheet) + layer,
+            None => near + layer,
+        };
+        let colour = leg % COLOURS;
+        let path = |points: &[Point]| path(points, view, sheet);
+        let text = match part {
+            Part::Link { body, path: points } => {
+                let shade = shades.get(&(*leg, *body)).copied().unwrap_or(0);
+                link(&path(points), colour, shade, view.planar)
+            }
+            Part::Stub { body, path: points } => {
+                let shade = shades.get(&(*leg, *body)).copied().unwrap_or(0);
+                let class = ["a", "b"][shade];
+                format!(
+                    "<path class=\"ov-{class}{colour}\" d=\"{}\" stroke-width=\"7\" stroke-dasharray=\"9 7\"/>\n",
+                    path(points)
+                )
+            }
+            Part::Rail { from, to } => format!(
+                "<path class=\"ov-rail\" d=\"{}\" stroke-width=\"5\" stroke-linecap=\"round\"/>\n",
+                path(&[*from, *to])
+            ),
+            joint => {
+                let carries = carries(scene, *leg, joint);
+                joints::symbol(joint, carries, colour, view, sheet)
+            }
+        };
+        pieces.push(Piece { near, text });
+    }
+    pieces.push(platform(scene, view, sheet));
+    pieces
+}
+
+/// Whether a slider has another joint of its leg on it.
+fn carries(scene: &Scene, leg: usize, slider: &Part) -> bool {
+    let Some(at) = slider.place() else {
+        return false;
+    };
+    scene.parts.iter().any(|(l, part)| {
+        let other = matches!(part, Part::Revolute { .. } | Part::Universal { .. });
+        let here = part.place().is_some_and(|p| (p - at).norm() < NOTHING);
+        *l == leg && other && here
+    })
+}
+
+/// How near a part is, and how much nearer it counts: joints stand before the bodies they join.
+fn nearness(part: &Part, view: &View, sheet: &Sheet) -> (f64, f64) {
+    let at = |p: &Point| sheet.place(view, p)[2];
+    match part {
+        Part::Rail { from, to } => ((at(from) + at(to)) / 2.0, -20.0),
+        Part::Link { path, .. } | Part::Stub { path, .. } => {
+            let sum: f64 = path.iter().map(&at).sum();
+            (sum / path.len().max(1) as f64, 5.0)
+        }
+        Part::Telescope { from, to, .. } => ((at(from) + at(to)) / 2.0, 8.0),
+        Part::Slider { at: p, .. } => (at(p), 15.0),
+        Part::Revolute { at: p, .. } | Part::Universal { at: p } => (at(p), 20.0),
+        Part::Ball { at: p } => (at(p), 25.0),
+    }
+}
+
+/// A joint is drawn on top of the bodies that it joins, also where they come nearer than itself.
+fn before_its_bodies(
+    scene: &Scene,
+    leg: usize,
+    joint: &Point,
+    near: f64,
+    view: &View,
+    sheet: &Sheet,
+) -> f64 {
+    let bodies = scene.parts.iter().filter(|(l, part)| {
+        let passes = match part {
+            Part::Link { path, .. } | Part::Stub { path, .. } => {
+                path.windows(2).any(|p| between(&p[0], &p[1], joint))
+            }
+            Part::Telescope { from, to, .. } => between(from, to, joint),
+            _ => false,
+        };
+        *l == leg && passes
+    });
+    bodies.fold(near, |near, (_, body)| {
+        let (own, layer) = nearness(body, view, sheet);
+        near.max(own + layer - 15.0)
+    })
+}
+
+/// Whether a point lies on the line between two others.
+fn between(a: &Point, b: &Point, point: &Point) -> bool {
+    let (whole, part) = (b - a, point - a);
+    let share = (part.dot(&whole) / whole.norm_squared()).clamp(0.0, 1.0);
+    (part - whole * share).norm() < 1e-6 * whole.norm()
+}
+
+/// Bodies of a leg take the two colours of the leg in turn.
+fn shades(scene: &Scene) -> BTreeMap<(usize, usize), usize> {
+    let mut shades = BTreeMap::new();
+    for (leg, part) in &scene.parts {
+        if let Part::Link { body, .. } | Part::Stub { body, .. } = part {
+            shades.insert((*leg, *body), 0);
+        }
+    }
+    let mut rank = 0;
+    let mut last = None;
+    for (key, shade) in &mut shades {
+        rank = if last == Some(key.0) { rank + 1 } else { 0 };
+        last = Some(key.0);
+        *shade = rank % 2;
+    }
+    shades
+}
+
+/// Path data through points.
+pub(super) fn path(points: &[Point], view: &View, sheet: &Sheet) -> String {
+    let mut text = String::new();
+    for (index, point) in points.iter().enumerate() {
+        let [x, y, _] = sheet.place(view, point);
+        let command = if index == 0 { 'M' } else { 'L' };
+        // Writing to a text cannot fail.
+        let _ = write!(text, "{command}{} {}", n(x), n(y));
+    }
+    text
+}
+
+/// A body, on a wider line in the colour of the sheet that sets it off from what it passes.
+fn link(path: &str, colour: usize, shade: usize, planar: bool) -> String {
+    let class = ["a", "b"][shade];
+    let width = match (shade, planar) {
+        (0, true) => 11.0,
+        (_, true) => 8.5,
+        (0, false) => 9.0,
+        (_, false) => 6.5,
+    };
+    format!(
+        "<path class=\"ov-case\" d=\"{path}\" stroke-width=\"{}\" stroke-linejoin=\"round\"/>\
+         <path class=\"ov-{class}{colour}\" d=\"{path}\" stroke-width=\"{}\" stroke-linecap=\"round\" stroke-linejoin=\"round\"/>\n",
+        n(width + 4.0),
+        n(width)
+    )
+}
+
+/// What does not move: a plate through the legs' bases in space, a hatched pivot below each in a
+/// plane, a foot below a serial robot.
+fn grounds(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: &Sheet) -> String {
+    let places: Vec<[f64; 2]> = scene.bases.iter().map(|p| flat(p, view, sheet)).collect();
+    if let Some(radius) = scene.sphere {
+        let [x, y] = flat(&Point::zeros(), view, sheet);
+        let radius = radius / sheet.pixel();
+        return format!(
+            "<circle class=\"ov-globe\" cx=\"{}\" cy=\"{}\" r=\"{}\" stroke-width=\"1\"/>\n",
+            n(x),
+            n(y),
+            n(radius)
+        );
+    }
+    let mut text = String::new();
+    let rails = scene
+        .parts
+        .iter()
+        .any(|(_, part)| matches!(part, Part::Rail { .. }));
+    if !view.planar && places.len() > 2 && !rails {
+        text = polygon("base", &hull(places));
+    } else {
+        for (leg, place) in places.iter().enumerate() {
+            let slides = scene
+                .parts
+                .iter()
+                .any(|(l, part)| *l == leg && matches!(part, Part::Rail { .. }));
+            let serial = mechanism.platform.is_none() && !view.planar;
+            match (slides, serial) {
+                (true, _) => {}
+                (false, true) => text.push_str(&foot(place)),
+                (false, false) => text.push_str(&pivot(place)),
+            }
+        }
+    }
+    text
+}
+
+/// The foot of a serial robot: a disc on the ground.
+fn foot([x, y]: &[f64; 2]) -> String {
+    format!(
+        "<ellipse class=\"ov-base\" cx=\"{}\" cy=\"{}\" rx=\"40\" ry=\"15\" stroke-width=\"1.5\"/>\n",
+        n(*x),
+        n(y + 14.0)
+    )
+}
+
+/// A fixed pivot: a triangle on hatched ground.
+fn pivot([x, y]: &[f64; 2]) -> String {
+    let bottom = y + 26.0;
+    let mut hatch = String::new();
+    for step in 0..5 {
+        let at = x - 15.0 + 8.0 * f64::from(step);
+        let _ = write!(hatch, "M{} {}l-6 7", n(at), n(bottom));
+    }
+    format!(
+        "<path class=\"ov-base\" d=\"M{0} {1}L{2} {3}H{4}Z\" stroke-width=\"1.5\" stroke-linejoin=\"round\"/>\
+         <path class=\"ov-rail\" d=\"M{5} {3}H{6}{hatch}\" stroke-width=\"1.5\" stroke-linecap=\"round\"/>\n",
+        n(*x),
+        n(*y),
+        n(x - 14.0),
+        n(bottom),
+        n(x + 14.0),
+        n(x - 21.0),
+        n(x + 21.0)
+    )
+}
+
+/// The platform: a plate through the attachments, a bar between two, a ring around one.
+fn platform(scene: &Scene, view: &View, sheet: &Sheet) -> Piece {
+    let Some(frame) = &scene.platform else {
+        return Piece {
+            near: 0.0,
+            text: String::new(),
+        };
+    };
+    let middle = frame.translation.vector;
+    let places = scene.attachments.iter().map(|p| flat(p, view, sheet));
+    let outline = hull(places.collect());
+    let near = |p: &Point| sheet.place(view, p)[2];
+    let sum: f64 = scene.attachments.iter().map(near).sum();
+    let mean = sum / scene.attachments.len().max(1) as f64;
+    let text = match outline.as_slice() {
+        [] | [_] => {
+            let [x, y] = flat(&middle, view, sheet);
+            format!(
+                "<circle class=\"ov-plate\" cx=\"{}\" cy=\"{}\" r=\"15\" stroke-width=\"2.5\"/>\n",
+                n(x),
+                n(y)
+            )
+        }
+        [a, b] => format!(
+            "<path class=\"ov-plate\" d=\"M{} {}L{} {}\" stroke-width=\"15\" stroke-linecap=\"round\"/>\n",
+            n(a[0]),
+            n(a[1]),
+            n(b[0]),
+            n(b[1])
+        ),
+        _ => polygon("plate", &outline),
+    };
+    let near = if view.planar { 6.0 } else { mean };
+    Piece { near, text }
+}
+
+fn polygon(class: &str, places: &[[f64; 2]]) -> String {
+    let points: Vec<String> = places
+        .iter()
+        .map(|[x, y]| format!("{},{}", n(*x), n(*y)))
+        .collect();
+    let points = points.join(" ");
+    format!(
+        "<polygon class=\"ov-{class}\" points=\"{points}\" stroke-width=\"2\" stroke-linejoin=\"round\"/>\n"
+    )
+}
+
+/// A point on paper.
+pub(super) fn flat(point: &Point, view: &View, sheet: &Sheet) -> [f64; 2] {
+    let [x, y, _] = sheet.place(view, point);
+    [x, y]
+}
+
+/// The convex hull, points that coincide taken once.
+pub(super) fn hull(mut places: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    let rounded = |p: &[f64; 2]| p.map(|v| (v * 10.0).round() as i64);
+    places.sort_by_key(rounded);
+    places.dedup_by_key(|p| rounded(p));
+    if places.len() < 3 {
+        return places;
+    }
+    let turn = |a: &[f64; 2], b: &[f64; 2], c: &[f64; 2]| {
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    };
+    let half = |order: &mut dyn Iterator<Item = &[f64; 2]>| {
+        let mut chain: Vec<[f64; 2]> = Vec::new();
+        for place in order {
+            while chain.len() > 1
+                && turn(&chain[chain.len() - 2], &chain[chain.len() - 1], place) <= 1.0
+            {
+                chain.pop();
+            }
+            chain.push(*place);
+        }
+        chain.pop();
+        chain
+    };
+    let mut outline = half(&mut places.iter());
+    outline.extend(half(&mut places.iter().rev()));
+    outline
+}
