@@ -41,8 +41,33 @@ pub struct Removal {
     pub relative_error_before_percent: f64,
     /// ||ρ||/||Y|| after the step, percent.
     pub relative_error_after_percent: f64,
-    /// Whether the parameter was significant all the same (|χ| > 5 σ).
+    /// F statistic of the cancellation, (χ/σ)² with the σ of correlated residuals.
+    pub f_statistic: f64,
+    /// Whether the parameter was significant all the same: F above the square of the threshold.
     pub significant: bool,
+    /// ||ρ||/||Y|| on parts of the data that were not estimated from, before the step, percent; none
+    /// where the data can't be divided.
+    pub held_out_before_percent: Option<f64>,
+    /// The same after the step.
+    pub held_out_after_percent: Option<f64>,
+    /// The remaining parameter that the step moves most, seen from the base estimate and counted in
+    /// units of the tolerance.
+    pub drift: Option<Drift>,
+    /// Whether the step was taken; only the last one can be refused.
+    pub accepted: bool,
+    /// Why it was taken or refused, in words.
+    pub reason: String,
+}
+
+/// How far a step of the elimination leads a remaining parameter from its base estimate.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Drift {
+    /// Name of the parameter.
+    pub parameter: String,
+    /// 100 |change|/|base estimate|.
+    pub percent: f64,
+    /// |change|/σ of the base estimate under correlated residuals.
+    pub deviations: f64,
 }
 
 /// The essential parameters and the way to them.
@@ -54,8 +79,10 @@ pub struct Essential {
     pub names: Vec<String>,
     /// Their estimates.
     pub estimation: Estimation,
-    /// What was cancelled, in order.
+    /// What was cancelled, in order, and the step that was refused, if one was.
     pub removals: Vec<Removal>,
+    /// Why the elimination ended, in words.
+    pub stop: String,
 }
 
 /// Eliminates parameters, starting from the estimation `start` of the columns `selected` with
@@ -101,7 +128,13 @@ pub fn essential(
             deviation_ratio: ratio,
             relative_error_before_percent: estimation.relative_error_percent,
             relative_error_after_percent: next.relative_error_percent,
+            f_statistic: (100.0 / deviation).powi(2),
             significant,
+            held_out_before_percent: None,
+            held_out_after_percent: None,
+            drift: None,
+            accepted: true,
+            reason: String::new(),
         });
         estimation = next;
     }
@@ -110,5 +143,6 @@ pub fn essential(
         names,
         estimation,
         removals,
+        stop: String::new(),
     })
 }

@@ -40,13 +40,19 @@ pub use base::{BaseParameters, PayloadUse, base_parameters};
 pub use columns::{Column, ColumnSet};
 pub use data::{Gain, Log, Mapping};
 pub use error::{Error, Problem};
-pub use essential::{Essential, Removal, essential};
+pub use essential::{Drift, Essential, Removal, essential};
 pub use estimate::{Estimation, LineError, estimate};
 pub use identify::{
     BaseParameter, CrossValidation, Estimate, Experiment, Identification, ParameterEstimate,
-    Progress, Run, Stage, identify,
+    Progress, Run, Stage,
+    figures::{
+        ConditionSeries, Figures, LineResidual, PredictionFigures, ResidualFigures, ResidualSeries,
+        RunFigures,
+    },
+    identify,
+    verdict::{Finding, FindingKind, Thresholds, TrackingError, Verdict},
 };
 pub use kinematics::{Motion, motion};
 pub use regression::{PartitionCondition, Projection, System, system};
 pub use settings::{Normalisation, Settings};
-pub use validation::{Series, Validation, validate, validate_equations};
+pub use validation::{Series, TorqueComparison, Validation, validate, validate_equations};

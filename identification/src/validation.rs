@@ -8,6 +8,7 @@
 use nalgebra::{DMatrix, DVector};
 use overact::{Function, Model};
 use rayon::prelude::*;
+use serde::Serialize;
 
 use crate::{
     blocks::{BLOCK, slice},
@@ -21,7 +22,7 @@ use crate::{
 };
 
 /// Measured and predicted values of one line or torque, decimated.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Series {
     /// Name of the coordinate or actuator.
     pub name: String,
@@ -48,6 +49,19 @@ impl Series {
     }
 }
 
+/// One actuator's entry in Table 3.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TorqueComparison {
+    /// Name of the actuator.
+    pub actuator: String,
+    /// 100 ||τ - τ*||/||τ||, τ* being the least-norm torque.
+    pub least_norm_percent: f64,
+    /// The same for the torque of eq. (26) with an overconstraint of zero, which satisfies the model but
+    /// is not of least norm; none without redundancy, and for models that lack the closure matrices.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub closure_percent: Option<f64>,
+}
+
 /// How well parameters reproduce a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Validation {
@@ -64,6 +78,8 @@ pub struct Validation {
     /// The same with the measured torques freed of their internal part (50); empty without
     /// redundancy.
     pub projected_torques: Vec<LineError>,
+    /// Each actuator's torque against both predictions.
+    pub table: Vec<TorqueComparison>,
     /// The lines of Γ over time.
     pub line_series: Vec<Series>,
     /// The torques over time.
@@ -143,6 +159,14 @@ pub fn validate_equations(
         run: motion.run.clone(),
         residual_norm,
         relative_error_percent: percent(residual_norm, measured_norm),
+        table: torque_series
+            .iter()
+            .map(|series| TorqueComparison {
+                actuator: series.name.clone(),
+                least_norm_percent: series.error().relative_error_percent,
+                closure_percent: None,
+            })
+            .collect(),
         torques: torque_series.iter().map(Series::error).collect(),
         projected_torques: projected.iter().map(Series::error).collect(),
         lines,

@@ -5,8 +5,10 @@
 //! [`estimate_projection`] are its two halves, for studies that estimate many projections from the
 //! same motion.
 
+pub mod figures;
 mod result;
 mod stages;
+pub mod verdict;
 
 use std::collections::BTreeMap;
 
@@ -190,7 +192,12 @@ pub fn identify(
         estimates,
         cross_validation,
         warnings,
+        findings: Vec::new(),
+        verdicts: Vec::new(),
+        thresholds: verdict::Thresholds::default(),
+        tracking: Vec::new(),
         settings: settings.clone(),
+        figures: figures::Figures::default(),
     })
 }
 

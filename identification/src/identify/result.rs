@@ -1,5 +1,12 @@
 //! The result of an identification, as it is printed and as it is serialised: the names of the
 //! fields are the keys of the document.
+//!
+//! A report finds here: parameters with both standard deviations ([`ParameterEstimate`]), the path of
+//! the elimination and its stop ([`Estimate::removals`], [`Estimate::stop`]), conditioning
+//! ([`Estimate::partition`]), Table 3 ([`CrossValidation`], [`TorqueComparison`]), Table 4
+//! ([`Identification::tracking`], filled by others), findings and verdicts with their thresholds, and in
+//! [`Identification::figures`] all that is plotted, in reduced resolution (see
+//! [`Figures`](super::figures::Figures); it is left out of the document, and serialises by itself).
 
 use std::collections::BTreeMap;
 
@@ -13,7 +20,12 @@ use crate::{
     kinematics::Motion,
     regression::PartitionCondition,
     settings::Settings,
-    validation::{Series, Validation},
+    validation::{Series, TorqueComparison, Validation},
+};
+
+use super::{
+    figures::Figures,
+    verdict::{Finding, Thresholds, TrackingError, Verdict},
 };
 
 /// Everything that an identification found.
@@ -33,8 +45,20 @@ pub struct Identification {
     pub cross_validation: Vec<CrossValidation>,
     /// What the user should know before trusting the numbers.
     pub warnings: Vec<String>,
+    /// What is suspicious in the data; each one stands among the warnings, too.
+    pub findings: Vec<Finding>,
+    /// What can be trusted, and why: one for each case.
+    pub verdicts: Vec<Verdict>,
+    /// The thresholds of the verdicts and the second opinion.
+    pub thresholds: Thresholds,
+    /// Table 4, where controlled runs were compared.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub tracking: Vec<TrackingError>,
     /// The settings used.
     pub settings: Settings,
+    /// What is plotted.
+    #[serde(skip)]
+    pub figures: Figures,
 }
 
 /// A run identified from.
@@ -180,8 +204,12 @@ pub struct Estimate {
     /// Where actuators are kept: how badly they determine the platform at worst.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub partition: Option<PartitionCondition>,
-    /// The way from the base parameters to the essential ones.
+    /// The way from the base parameters to the essential ones, with the step that was refused, if
+    /// the second opinion refused one.
     pub removals: Vec<Removal>,
+    /// Why the elimination ended where it did, in words; none at the base stage.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stop: Option<String>,
 }
 
 impl Estimate {
@@ -216,10 +244,13 @@ pub struct ParameterEstimate {
     pub column: usize,
     /// Estimate.
     pub value: f64,
-    /// σ.
+    /// σ under white residuals, (47).
     pub standard_deviation: f64,
     /// 100 σ/|χ|.
     pub relative_standard_deviation_percent: f64,
+    /// σ under residuals that are correlated over time and between the lines (see the
+    /// module `correlation`), never below the white one: the one to trust.
+    pub correlated_standard_deviation: f64,
     /// The regrouped true value, where it is known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub true_value: Option<f64>,
@@ -250,6 +281,9 @@ pub struct CrossValidation {
     /// The same with the measured torques freed of their internal part (50); empty without
     /// redundancy.
     pub projected_torques: Vec<LineError>,
+    /// Table 3: each actuator's torque against both predictions, the least-norm one and that of
+    /// eq. (26).
+    pub table: Vec<TorqueComparison>,
     /// The lines over time, for plots.
     #[serde(skip)]
     pub line_series: Vec<Series>,
@@ -272,6 +306,7 @@ impl CrossValidation {
             lines: validation.lines,
             torques: validation.torques,
             projected_torques: validation.projected_torques,
+            table: validation.table,
             line_series: validation.line_series,
             torque_series: validation.torque_series,
         }

@@ -80,13 +80,13 @@ pub fn estimate_projection(
         weighted: settings.weighted,
     };
     Ok(Outcome {
-        base: context.estimate(Stage::Base, base, &selected, &names, Vec::new()),
+        base: context.estimate(Stage::Base, base, &selected, &names, (Vec::new(), None)),
         essential: context.estimate(
             Stage::Essential,
             rest.estimation,
             &rest.selected,
             &rest.names,
-            rest.removals,
+            (rest.removals, Some(rest.stop)),
         ),
         warnings,
     })
@@ -122,7 +122,7 @@ impl Context<'_> {
         estimation: Estimation,
         selected: &[usize],
         names: &[String],
-        removals: Vec<Removal>,
+        (removals, stop): (Vec<Removal>, Option<String>),
     ) -> Estimate {
         Estimate {
             model: self.system.projection.name(),
@@ -138,6 +138,7 @@ impl Context<'_> {
             lines: estimation.lines,
             partition: self.system.partition.clone(),
             removals,
+            stop,
         }
     }
 }
@@ -223,6 +224,7 @@ fn parameters(
                     value,
                     standard_deviation,
                     relative_standard_deviation_percent: relative,
+                    correlated_standard_deviation: standard_deviation,
                     true_value,
                     error_percent: true_value
                         .filter(|truth| *truth != 0.0)
