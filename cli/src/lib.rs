@@ -9,6 +9,7 @@
 //! - `progress`: long work shows a bar on a terminal and nothing in a pipe;
 //! - `experiment`, `settings`: a description's tables as the inputs of simulation and
 //!   identification;
+//! - `report`: an identification as a page, a document or a flat table;
 //! - `states`: states of a robot from JSON or CSV.
 
 mod commands;
@@ -18,6 +19,7 @@ pub mod interpreted;
 pub mod load;
 mod output;
 mod progress;
+mod report;
 mod settings;
 mod states;
 
