@@ -10,6 +10,7 @@
 //! - [`drawing`]: a robot as SVG;
 //! - `experiment`, `settings`: a description's tables as the inputs of simulation and
 //!   identification;
+//! - `report`: an identification as a page, a document or a flat table;
 //! - `states`: states of a robot from JSON or CSV.
 
 mod commands;
@@ -20,6 +21,7 @@ pub mod interpreted;
 pub mod load;
 mod output;
 mod progress;
+mod report;
 mod settings;
 mod states;
 

@@ -4,7 +4,9 @@
 //! values of a virtual experiment stand beside the estimates and nowhere in them.
 
 use super::runs;
-use crate::{InterpretedRobot, failure::Failure, load::load, output, progress::Progress};
+use crate::{
+    InterpretedRobot, failure::Failure, load::load, output, progress::Progress, report as files,
+};
 use overact::Model;
 use overact_identification::{Experiment, Identification, identify, report};
 use std::path::PathBuf;
@@ -20,9 +22,11 @@ pub(crate) struct Arguments {
     /// Kept actuators of case 2 [default: those of the description]
     #[arg(long, value_delimiter = ',', value_name = "ACTUATORS")]
     kept: Option<Vec<String>>,
-    /// Write the report to a file instead of stdout
+    /// Write the tables (with --json the document) to a file instead of stdout
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    reports: files::Arguments,
 }
 
 /// Runs the command.
@@ -32,6 +36,9 @@ pub(crate) struct Arguments {
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     output::check_folder(arguments.output.as_deref())?;
     let robot = load(&arguments.file)?;
+    let reports = arguments
+        .reports
+        .check(&robot, arguments.output.as_deref())?;
     let kept = match &arguments.kept {
         Some(names) => Some(super::kept_actuators(&robot.model, names)?),
         None => None,
@@ -58,7 +65,17 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     } else {
         report::report(&result)
     };
-    output::emit(&text, arguments.output.as_deref())
+    // All files are written together, so that none is there without the others.
+    let mut written = reports.written(&robot, &served.info(), &result)?;
+    if let Some(path) = &arguments.output {
+        let newline = if text.ends_with('\n') { "" } else { "\n" };
+        written.push((path.clone(), format!("{text}{newline}").into_bytes()));
+    }
+    output::write(written)?;
+    match arguments.output {
+        Some(_) => Ok(()),
+        None => output::print(&text),
+    }
 }
 
 /// The base parameters only; the setting that kept the elimination from starting is put back.
@@ -69,4 +86,7 @@ fn without_essential(result: &mut Identification, r_sigma: f64) {
         .retain(|estimate| estimate.stage != essential);
     result.cross_validation.retain(|one| one.stage != essential);
     result.settings.r_sigma = r_sigma;
+    let figures = &mut result.figures;
+    figures.predictions.retain(|one| one.stage != essential);
+    figures.residuals.retain(|one| one.stage != essential);
 }

@@ -106,7 +106,7 @@ fn kept_actuators(model: &RobotModel, names: &[String]) -> Result<Vec<usize>, Fa
 }
 
 /// A name as part of a file's name: letters, digits, `-` and `_`; all else becomes `_`.
-fn file_stem(name: &str) -> String {
+pub(crate) fn file_stem(name: &str) -> String {
     let keep = |c: char| {
         if c.is_alphanumeric() || c == '-' {
             c

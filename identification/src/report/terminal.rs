@@ -81,7 +81,7 @@ pub fn base_parameters(parameters: &[BaseParameter]) -> String {
 }
 
 /// ` + 0.0784 m_2_leg1`, with a coefficient of 1 left out.
-fn signed_term(term: &Regrouping) -> String {
+pub(super) fn signed_term(term: &Regrouping) -> String {
     let sign = if term.coefficient < 0.0 { '-' } else { '+' };
     match coefficient(term.coefficient.abs()).as_str() {
         "1" => format!(" {sign} {}", term.parameter),

@@ -1,0 +1,209 @@
+//! Reports of an identification as files: what the extension of each file asks for, and published
+//! results to show beside the own ones.
+
+use crate::{
+    failure::{Failure, Problem},
+    load::Robot,
+    output,
+};
+use overact::Info;
+use overact_identification::{
+    Identification,
+    identify::figures::Figures,
+    report::{Attachment, Contents, Published, Units, numbers, page},
+};
+use serde::Serialize;
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+/// Where reports go, and what they are compared with.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Arguments {
+    /// Write a report: a page for a browser (.html), all numbers and plotted series (.json), or all
+    /// numbers as one flat table (.csv); once for each
+    #[arg(long = "report", value_name = "FILE")]
+    reports: Vec<PathBuf>,
+    /// Published results to show beside the own ones in the page [default: `published/NAME.toml` beside
+    /// the description NAME.toml, where it exists]
+    #[arg(long, value_name = "TOML", requires = "reports")]
+    published: Option<PathBuf>,
+}
+
+/// What a file is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Format {
+    Html,
+    Json,
+    Csv,
+}
+
+/// Reports that are asked for, all checked before the long work begins.
+#[derive(Debug)]
+pub(crate) struct Reports {
+    files: Vec<(PathBuf, Format)>,
+    published: Option<Published>,
+}
+
+/// The document of a report: the result with what is plotted.
+#[derive(Serialize)]
+struct Document<'a> {
+    #[serde(flatten)]
+    identification: &'a Identification,
+    figures: &'a Figures,
+}
+
+impl Arguments {
+    /// Checks the arguments; `output` is where the terminal's tables go.
+    ///
+    /// # Errors
+    /// A file of an unknown kind, one that is given twice, a folder that does not exist, published
+    /// results that can't be read.
+    pub(crate) fn check(&self, robot: &Robot, output: Option<&Path>) -> Result<Reports, Failure> {
+        let mut files: Vec<(PathBuf, Format)> = Vec::new();
+        for path in &self.reports {
+            let format = format(path)?;
+            if files.iter().any(|(other, _)| other == path) || output == Some(path.as_path()) {
+                let message = format!("two results would be written to `{}`", path.display());
+                return Err(Failure::Usage(message));
+            }
+            output::check_folder(Some(path))?;
+            files.push((path.clone(), format));
+        }
+        let has_page = files.iter().any(|(_, format)| *format == Format::Html);
+        let published = match (&self.published, has_page) {
+            (Some(path), _) => Some(published(path)?),
+            (None, true) => beside(&robot.file)
+                .map(|path| published(&path))
+                .transpose()?,
+            (None, false) => None,
+        };
+        Ok(Reports { files, published })
+    }
+}
+
+impl Reports {
+    /// The files with their contents.
+    ///
+    /// # Errors
+    /// A result that is no JSON, which does not happen.
+    pub(crate) fn written(
+        self,
+        robot: &Robot,
+        info: &Info<'_>,
+        result: &Identification,
+    ) -> Result<Vec<(PathBuf, Vec<u8>)>, Failure> {
+        let mut written = Vec::new();
+        for (path, format) in self.files {
+            let text = match format {
+                Format::Csv => numbers(result)?,
+                Format::Json => output::json(&Document {
+                    identification: result,
+                    figures: &result.figures,
+                })?,
+                Format::Html => html(robot, info, result, self.published.as_ref())?,
+            };
+            written.push((path, text.into_bytes()));
+        }
+        Ok(written)
+    }
+}
+
+/// What the extension asks for.
+fn format(path: &Path) -> Result<Format, Failure> {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+    match extension.as_deref() {
+        Some("html" | "htm") => Ok(Format::Html),
+        Some("json") => Ok(Format::Json),
+        Some("csv") => Ok(Format::Csv),
+        _ => Err(Failure::Usage(format!(
+            "a report is a file that ends with .html, .json or .csv, unlike `{}`",
+            path.display()
+        ))),
+    }
+}
+
+/// The page, with its numbers as files within it.
+fn html(
+    robot: &Robot,
+    info: &Info<'_>,
+    result: &Identification,
+    published: Option<&Published>,
+) -> Result<String, Failure> {
+    let name = super::commands::file_stem(&result.robot);
+    let (csv_name, json_name) = (format!("{name}.csv"), format!("{name}.json"));
+    let (csv, json) = (numbers(result)?, output::json(result)?);
+    let attachment = |name, media_type, what, text| Attachment {
+        name,
+        media_type,
+        what,
+        text,
+    };
+    let attachments = [
+        attachment(
+            &csv_name,
+            "text/csv",
+            "all numbers, one a row",
+            csv.as_str(),
+        ),
+        attachment(
+            &json_name,
+            "application/json",
+            "the same as a document, with settings and warnings",
+            json.as_str(),
+        ),
+    ];
+    let description = &robot.description;
+    Ok(page(&Contents {
+        identification: result,
+        units: &Units::new(info),
+        summary: Some(description.summary.as_str()).filter(|text| !text.is_empty()),
+        source: Some(description.source.as_str()).filter(|text| !text.is_empty()),
+        drawing: None,
+        published,
+        attachments: &attachments,
+    }))
+}
+
+/// The file of published results that lies beside a description.
+fn beside(description: &str) -> Option<PathBuf> {
+    let description = Path::new(description);
+    let folder = description.parent()?.join("published");
+    let file = folder.join(description.file_name()?);
+    file.is_file().then_some(file)
+}
+
+/// Reads published results.
+fn published(path: &Path) -> Result<Published, Failure> {
+    let file = path.display().to_string();
+    let text = fs::read_to_string(path).map_err(|error| {
+        Problem::new(format!("the published results can't be read: {error}")).file(file.as_str())
+    })?;
+    let published: Published = toml::from_str(&text).map_err(|error| {
+        let before = error.span().and_then(|span| text.get(..span.start));
+        let line = before.map(|before| before.matches('\n').count() + 1);
+        Problem::new(format!("published results: {}", error.message()))
+            .file(file.as_str())
+            .line(line)
+            .help("robots/README.md documents the keys")
+    })?;
+    let wrong = published.wrong_lengths();
+    let problems: Vec<Problem> = wrong
+        .into_iter()
+        .map(|(what, length)| {
+            let message = format!(
+                "published results: {what} has {length} numbers for {} actuators",
+                published.actuators.len()
+            );
+            Problem::new(message)
+                .file(file.as_str())
+                .help("give one number for each name in `actuators`")
+        })
+        .collect();
+    if problems.is_empty() {
+        Ok(published)
+    } else {
+        Err(Failure::Problems(problems))
+    }
+}

@@ -1,0 +1,143 @@
+//! The conditioning: of the whole system, and along the way of each run.
+
+use super::{
+    Contents,
+    markup::{Cell, Section, Table, escape, figure, key, paragraph},
+    select::case_heading,
+};
+use crate::{
+    identify::{
+        Identification,
+        figures::{ConditionSeries, RunFigures},
+    },
+    report::plot::{Axis, Chart, Line, Look, Rule},
+};
+
+/// The section.
+pub(super) fn section(contents: &Contents<'_>) -> Section {
+    let identification = contents.identification;
+    let mut body = String::new();
+    if !identification.estimates.is_empty() {
+        body.push_str(&table(identification));
+    }
+    let plots: Vec<String> = identification
+        .figures
+        .runs
+        .iter()
+        .filter(|run| !run.conditions.is_empty())
+        .map(|run| chart(run, identification.thresholds.partition_condition))
+        .collect();
+    if !plots.is_empty() {
+        let caption = "Condition number of the actuators’ Jacobian along each run, platform coordinates scaled to be comparable. Case 2 rests on the kept actuators alone: where its line rises above the dashed threshold, the kept actuators hardly determine the platform, and case 2 amplifies noise.";
+        let keys = [
+            ("first", "all actuators (case 1)"),
+            ("second", "kept actuators (case 2)"),
+        ];
+        body.push_str(&figure(
+            "figure-conditioning",
+            &plots,
+            &key(&keys),
+            &escape(caption),
+        ));
+        body.push_str(&paragraph(&crossings(identification)));
+    }
+    Section {
+        id: "conditioning",
+        title: "Conditioning",
+        body,
+    }
+}
+
+/// Condition numbers of the systems, and the worst of the kept actuators.
+fn table(identification: &Identification) -> String {
+    let rows = identification.estimates.iter().map(|one| {
+        let partition = one.partition.as_ref().filter(|_| one.model == "actuators");
+        vec![
+            Cell::text(case_heading(one.model)),
+            Cell::text(one.stage.name()),
+            Cell::number(one.parameters.len().to_string()),
+            Cell::digits(Some(one.condition_number), 4),
+            Cell::digits(partition.map(|partition| partition.largest), 4),
+            Cell::text(&partition.map_or_else(String::new, |partition| {
+                format!("{}, t = {:.3} s", partition.run, partition.time)
+            })),
+        ]
+    });
+    let titles = [
+        ("model", ""),
+        ("stage", ""),
+        ("parameters", "n"),
+        ("condition of W", "n"),
+        ("worst condition of the kept actuators", "n"),
+        ("where", ""),
+    ];
+    Table {
+        caption: String::from("Condition numbers"),
+        header: vec![
+            titles
+                .iter()
+                .map(|(title, class)| Cell::text(title).class(class))
+                .collect(),
+        ],
+        rows: rows.collect(),
+    }
+    .html()
+}
+
+/// Whether a series is that of all actuators.
+fn is_platform(series: &ConditionSeries) -> bool {
+    series.determinant.is_empty()
+}
+
+/// The conditioning along one run.
+fn chart(run: &RunFigures, threshold: f64) -> String {
+    let lines = run.conditions.iter().map(|series| {
+        let (look, label) = if is_platform(series) {
+            (Look::First, String::from("all actuators"))
+        } else {
+            (
+                Look::Second,
+                format!("kept: {}", series.kept_actuators.join(", ")),
+            )
+        };
+        Line::new(look, label, &run.time, &series.condition)
+    });
+    Chart {
+        title: run.run.clone(),
+        description: format!("condition numbers along the run {}", run.run),
+        x: Axis::linear("t (s)"),
+        y: Axis::logarithmic("condition number").including(&[1.0]),
+        lines: lines.collect(),
+        rules: vec![Rule {
+            value: threshold,
+            label: format!("threshold {threshold}"),
+        }],
+    }
+    .svg()
+}
+
+/// Where the determinant of the kept actuators changes its sign: a singularity was crossed there.
+fn crossings(identification: &Identification) -> String {
+    let mut places = Vec::new();
+    for run in &identification.figures.runs {
+        for series in &run.conditions {
+            let signs = series.determinant.windows(2).zip(&run.time);
+            let crossed = signs.filter(|(pair, _)| pair[0] * pair[1] < 0.0);
+            let times: Vec<String> = crossed.map(|(_, time)| format!("{time:.2} s")).collect();
+            if let Some(first) = times.first() {
+                places.push(match times.len() {
+                    1 => format!("{} at {first}", run.run),
+                    count => format!("{}, {count} times, first at {first}", run.run),
+                });
+            }
+        }
+    }
+    if places.is_empty() {
+        String::from("No run crosses a singularity of the kept actuators.")
+    } else {
+        format!(
+            "A singularity of the kept actuators is crossed: {}. There case 2 has no value, and near it no accuracy, although its relative error may look better than that of case 1.",
+            places.join("; ")
+        )
+    }
+}

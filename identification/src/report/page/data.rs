@@ -1,0 +1,131 @@
+//! The runs, the settings, and the files to be had from the page.
+
+use std::fmt::Write;
+
+use super::{
+    Contents,
+    header::base64,
+    markup::{Cell, Section, Table, escape, paragraph},
+};
+use crate::{
+    identify::Identification,
+    report::terminal::significant,
+    settings::{Normalisation, Settings},
+};
+
+/// The runs and the settings.
+pub(super) fn section(contents: &Contents<'_>) -> Section {
+    let identification = contents.identification;
+    Section {
+        id: "data",
+        title: "Data and settings",
+        body: runs(identification) + &settings(&identification.settings),
+    }
+}
+
+/// The files.
+pub(super) fn files(contents: &Contents<'_>) -> Section {
+    let mut body = String::new();
+    for file in contents.attachments {
+        let _ = writeln!(
+            body,
+            "<li><a download=\"{}\" href=\"data:{};base64,{}\">{}</a>: {}</li>",
+            escape(file.name),
+            escape(file.media_type),
+            base64(file.text.as_bytes()),
+            escape(file.name),
+            escape(file.what)
+        );
+    }
+    if !body.is_empty() {
+        let introduction = "This page is one file. All its numbers are in it as files, too:";
+        body = format!("{}<ul>\n{body}</ul>\n", paragraph(introduction));
+    }
+    Section {
+        id: "files",
+        title: "The numbers",
+        body,
+    }
+}
+
+/// The runs identified from.
+fn runs(identification: &Identification) -> String {
+    let rows = identification.runs.iter().map(|run| {
+        vec![
+            Cell::text(&run.name),
+            Cell::number(run.samples.to_string()),
+            Cell::digits(Some(run.sampling_frequency), 6),
+            Cell::digits(Some(run.samples as f64 / run.sampling_frequency), 4),
+            Cell::text(if run.payload { "yes" } else { "no" }),
+            Cell::digits(Some(run.closure_residual), 3),
+        ]
+    });
+    let titles = [
+        ("run", ""),
+        ("samples", "n"),
+        ("rate (Hz)", "n"),
+        ("duration (s)", "n"),
+        ("payload", ""),
+        ("miss of the closure (m, rad)", "n"),
+    ];
+    Table {
+        caption: String::from("Runs identified from"),
+        header: vec![
+            titles
+                .iter()
+                .map(|(title, class)| Cell::text(title).class(class))
+                .collect(),
+        ],
+        rows: rows.collect(),
+    }
+    .html()
+}
+
+/// The settings in words.
+fn settings(settings: &Settings) -> String {
+    let yes = |flag: bool| String::from(if flag { "yes" } else { "no" });
+    let rows = [
+        (
+            "Low-pass on the positions",
+            format!(
+                "Butterworth of order {}, forwards and backwards, {} Hz",
+                settings.filter_order,
+                significant(settings.filter_cutoff_hz, 4)
+            ),
+        ),
+        (
+            "Decimation",
+            format!("one equation in {} samples", settings.decimation),
+        ),
+        (
+            "Samples left out of each run",
+            format!(
+                "{} at the start, {} at the end",
+                settings.skip_start, settings.skip_end
+            ),
+        ),
+        ("Weighted least squares", yes(settings.weighted)),
+        (
+            "Friction of its own for each direction",
+            yes(settings.asymmetric_friction),
+        ),
+        (
+            "Deviation of the residual",
+            String::from(match settings.normalisation {
+                Normalisation::Unbiased => "unbiased, eq. (46)",
+                Normalisation::SampleVariance => "sample variance",
+            }),
+        ),
+        ("r_σ", significant(settings.r_sigma, 4)),
+        ("Seed of the random states", settings.seed.to_string()),
+    ];
+    Table {
+        caption: String::from("Settings"),
+        header: vec![vec![Cell::text("setting"), Cell::text("value")]],
+        rows: rows
+            .into_iter()
+            .map(|(name, value)| vec![Cell::text(name), Cell::text(&value).class("prose")])
+            .collect(),
+    }
+    .html()
+}

@@ -1,0 +1,115 @@
+//! The head of the page: the robot, its drawing, and the result in a few numbers.
+
+use std::fmt::Write;
+
+use super::{
+    Contents,
+    markup::{escape, paragraph},
+    select::{case_heading, finals},
+};
+use crate::report::terminal::significant;
+
+/// The head of the page.
+pub(super) fn header(contents: &Contents<'_>) -> String {
+    let identification = contents.identification;
+    let mut html = format!(
+        "<header>\n<div class=\"intro\"><h1>Identification of {}</h1>\n",
+        escape(&identification.robot)
+    );
+    if let Some(summary) = contents.summary {
+        html.push_str(&paragraph(&format!("{}.", summary.trim_end_matches('.'))));
+    }
+    if let Some(source) = contents.source {
+        let _ = writeln!(
+            html,
+            "<p class=\"source\">Description after {}.</p>",
+            escape(source.trim_end_matches('.'))
+        );
+    }
+    html.push_str(&facts(contents));
+    html.push_str("</div>\n");
+    if let Some(drawing) = contents.drawing {
+        let _ = writeln!(
+            html,
+            "<figure id=\"figure-robot\" class=\"robot\"><img alt=\"Drawing of {} at its home configuration: links, joints, actuators and platform\" src=\"data:image/svg+xml;base64,{}\"/><figcaption>{} at its home configuration.</figcaption></figure>",
+            escape(&identification.robot),
+            base64(drawing.as_bytes()),
+            escape(&identification.robot)
+        );
+    }
+    html.push_str("</header>\n");
+    html
+}
+
+/// The result in a few numbers.
+fn facts(contents: &Contents<'_>) -> String {
+    let identification = contents.identification;
+    let base = identification.base_parameters.len();
+    let mut html = String::from("<dl class=\"facts\">\n");
+    for estimate in finals(identification) {
+        let _ = writeln!(
+            html,
+            "<div><dt>{}</dt><dd><b>{}</b> of {base} base parameters, relative error <b>{} %</b></dd></div>",
+            case_heading(estimate.model),
+            estimate.parameters.len(),
+            escape(&significant(estimate.relative_error_percent, 3))
+        );
+    }
+    let samples: usize = identification.runs.iter().map(|run| run.samples).sum();
+    let seconds: f64 = identification
+        .runs
+        .iter()
+        .map(|run| run.samples as f64 / run.sampling_frequency)
+        .sum();
+    let _ = writeln!(
+        html,
+        "<div><dt>Data</dt><dd><b>{}</b> run{}, {} s, {samples} samples</dd></div>",
+        identification.runs.len(),
+        if identification.runs.len() == 1 {
+            ""
+        } else {
+            "s"
+        },
+        significant(seconds, 3)
+    );
+    html.push_str("</dl>\n");
+    html
+}
+
+/// Bytes as base64, as a page's own files need it.
+pub(super) fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for chunk in bytes.chunks(3) {
+        let byte = |index: usize| u32::from(chunk.get(index).copied().unwrap_or(0));
+        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for place in 0..4 {
+            let digit = (bits >> (18 - 6 * place)) as usize % 64;
+            text.push(if place <= chunk.len() {
+                char::from(DIGITS[digit])
+            } else {
+                '='
+            });
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::base64;
+
+    #[test]
+    fn base64_has_its_published_values() {
+        // RFC 4648, section 10.
+        for (text, expected) in [
+            ("", ""),
+            ("f", "Zg=="),
+            ("fo", "Zm8="),
+            ("foo", "Zm9v"),
+            ("foobar", "Zm9vYmFy"),
+        ] {
+            assert_eq!(base64(text.as_bytes()), expected);
+        }
+    }
+}

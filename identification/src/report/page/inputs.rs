@@ -1,0 +1,148 @@
+//! Measured and predicted Γ over time, Figs. 5 and 6 of the paper, and the plots of measured and
+//! predicted torques that Figs. 8 and 9 share with them.
+
+use super::{
+    Contents,
+    markup::{Section, details, escape, figure, key},
+    select::{case, case_heading, durations, finals, is_final, relative_error, worst_part},
+};
+use crate::{
+    identify::figures::PredictionFigures,
+    report::{
+        Units,
+        plot::{Axis, Chart, Line, Look},
+        terminal::significant,
+        units::with_unit,
+    },
+    validation::Series,
+};
+
+/// The section.
+pub(super) fn section(contents: &Contents<'_>) -> Section {
+    let identification = contents.identification;
+    let mut body = String::new();
+    for estimate in finals(identification) {
+        let all: Vec<&PredictionFigures> = identification
+            .figures
+            .predictions
+            .iter()
+            .filter(|one| one.model == estimate.model && one.stage == estimate.stage)
+            .filter(|one| one.identified && !one.lines.is_empty())
+            .collect();
+        // Fig. 5 shows a run with the payload, where there is one.
+        let loaded = |one: &&PredictionFigures| {
+            let mut runs = identification.figures.runs.iter();
+            runs.any(|run| run.run == one.run && run.payload)
+        };
+        let shown = all.iter().position(loaded).unwrap_or(0);
+        let mut others = String::new();
+        for (index, one) in all.iter().enumerate() {
+            let id = format!("figure-inputs-{}-{}", one.model, index + 1);
+            let figure = compared(&id, one, &one.lines, "Γ", contents.units);
+            let heading = format!("{}: {}", case_heading(one.model), one.run);
+            if index == shown {
+                body.push_str(&format!("<h3>{}</h3>\n{figure}", escape(&heading)));
+            } else {
+                others.push_str(&details(&heading, &figure));
+            }
+        }
+        body.push_str(&others);
+    }
+    Section {
+        id: "inputs",
+        title: "Measured and predicted inputs",
+        body,
+    }
+}
+
+/// Plots of the torques of one run, the held-out ones first.
+pub(super) fn torques(contents: &Contents<'_>) -> String {
+    let identification = contents.identification;
+    let all = || {
+        let predictions = identification.figures.predictions.iter();
+        predictions
+            .filter(|one| !one.torques.is_empty() && is_final(identification, one.model, one.stage))
+    };
+    let held_out = all().filter(|one| !one.identified);
+    let mut ordered: Vec<&PredictionFigures> = held_out.collect();
+    if ordered.is_empty() {
+        ordered = all().collect();
+    }
+    let mut body = String::new();
+    for (index, one) in ordered.iter().enumerate() {
+        let id = format!("figure-torques-{}", index + 1);
+        let figure = compared(&id, one, &one.torques, "τ", contents.units);
+        let heading = format!("{}, parameters of {}", one.run, case(one.model));
+        // The first model's runs are shown, all others on demand.
+        if ordered
+            .first()
+            .is_some_and(|first| first.model == one.model)
+            && index < 2
+        {
+            body.push_str(&format!("<h3>{}</h3>\n{figure}", escape(&heading)));
+        } else {
+            body.push_str(&details(&heading, &figure));
+        }
+    }
+    body
+}
+
+/// A figure of several measured and predicted series.
+fn compared(
+    id: &str,
+    prediction: &PredictionFigures,
+    series: &[Series],
+    symbol: &str,
+    units: &Units,
+) -> String {
+    let part = worst_part(series);
+    let plot = |one: &Series| {
+        let cut = |values: &[f64]| values.get(part.clone()).unwrap_or_default().to_vec();
+        let (time, measured, predicted) = (cut(&one.time), cut(&one.measured), cut(&one.predicted));
+        let residual: Vec<f64> = measured
+            .iter()
+            .zip(&predicted)
+            .map(|(m, p)| m - p)
+            .collect();
+        let error = relative_error(one);
+        let error = error.map(|error| format!(": {} %", significant(error, 3)));
+        Chart {
+            title: format!("{}{}", one.name, error.unwrap_or_default()),
+            description: format!(
+                "measured and predicted {symbol} of {} in the run {}",
+                one.name, prediction.run
+            ),
+            x: Axis::linear("t (s)"),
+            y: Axis::linear(with_unit(symbol, units.torque(&one.name))),
+            lines: vec![
+                Line::new(Look::Measured, "measured", &time, &measured),
+                Line::new(Look::Predicted, "predicted", &time, &predicted),
+                Line::new(Look::Residual, "difference", &time, &residual),
+            ],
+            rules: Vec::new(),
+        }
+        .svg()
+    };
+    let plots: Vec<String> = series.iter().map(plot).collect();
+    let (shown, whole) = series
+        .first()
+        .map_or((0.0, 0.0), |one| durations(one, &part));
+    let which = if shown < whole {
+        format!(
+            "The {} s of the run’s {} s in which the prediction misses most.",
+            significant(shown, 2),
+            significant(whole, 3)
+        )
+    } else {
+        format!("The whole run of {} s.", significant(whole, 3))
+    };
+    let caption = format!(
+        "{which} The broad line was measured, the thin one on it is predicted; the difference should look like noise about zero. The titles give the relative error of the whole run."
+    );
+    let keys = key(&[
+        ("measured", "measured"),
+        ("predicted", "predicted"),
+        ("residual", "difference"),
+    ]);
+    figure(id, &plots, &keys, &escape(&caption))
+}

@@ -1,0 +1,104 @@
+//! The page: one self-contained HTML file that tells an engineer what was identified, how well, and
+//! what the data could not tell.
+//!
+//! The verdict stands first, the parameters follow, and every plot says below what to look for in it.
+//! Each section is a file: [`verdict`], [`parameters`], [`limits`], [`elimination`], [`conditioning`],
+//! [`inputs`], [`validation`], [`tracking`], [`trajectories`], [`residuals`], [`data`]. Sections that
+//! have nothing to show are left out.
+
+mod conditioning;
+mod data;
+mod elimination;
+mod header;
+mod inputs;
+mod limits;
+pub(super) mod markup;
+mod parameters;
+mod residuals;
+mod select;
+#[cfg(test)]
+mod tests;
+mod tracking;
+mod trajectories;
+mod validation;
+mod verdict;
+
+use markup::{Section, escape};
+
+use super::{Published, Units};
+use crate::identify::Identification;
+
+/// The style: colours for light and dark, a width that suits reading, plots side by side where there
+/// is room.
+const STYLE: &str = include_str!("style.css");
+
+/// What the page shows.
+#[derive(Debug, Clone, Copy)]
+pub struct Contents<'a> {
+    /// The result.
+    pub identification: &'a Identification,
+    /// Units of its coordinates and actuators.
+    pub units: &'a Units,
+    /// What the robot is, in a sentence.
+    pub summary: Option<&'a str>,
+    /// Where its description comes from.
+    pub source: Option<&'a str>,
+    /// A drawing of the robot, an SVG document. It is shown as an image, so that its style and its
+    /// names stay its own.
+    pub drawing: Option<&'a str>,
+    /// Published results to show beside the own ones.
+    pub published: Option<&'a Published>,
+    /// Files to be had from the page.
+    pub attachments: &'a [Attachment<'a>],
+}
+
+/// A file within the page.
+#[derive(Debug, Clone, Copy)]
+pub struct Attachment<'a> {
+    /// The name that it is saved with.
+    pub name: &'a str,
+    /// Its media type, `text/csv` for instance.
+    pub media_type: &'a str,
+    /// What it is, in a few words.
+    pub what: &'a str,
+    /// Its text.
+    pub text: &'a str,
+}
+
+/// The page of an identification: HTML that is XML, too.
+#[must_use]
+pub fn page(contents: &Contents<'_>) -> String {
+    let sections: Vec<Section> = [
+        verdict::section(contents),
+        parameters::section(contents),
+        limits::section(contents),
+        elimination::section(contents),
+        conditioning::section(contents),
+        inputs::section(contents),
+        validation::section(contents),
+        tracking::section(contents),
+        trajectories::section(contents),
+        residuals::section(contents),
+        data::section(contents),
+        data::files(contents),
+    ]
+    .into_iter()
+    .filter(|section| !section.body.is_empty())
+    .collect();
+    let robot = escape(&contents.identification.robot);
+    let links: String = sections
+        .iter()
+        .map(|one| format!("<li><a href=\"#{}\">{}</a></li>", one.id, escape(one.title)))
+        .collect();
+    let body: String = sections.iter().map(Section::html).collect();
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n<meta charset=\"utf-8\"/>\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
+         <meta name=\"color-scheme\" content=\"light dark\"/>\n\
+         <meta name=\"generator\" content=\"overact {}\"/>\n\
+         <title>Identification of {robot}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n\
+         {}<nav aria-label=\"Sections\"><ul>{links}</ul></nav>\n{body}</main>\n</body>\n</html>\n",
+        env!("CARGO_PKG_VERSION"),
+        header::header(contents)
+    )
+}

@@ -1,0 +1,176 @@
+//! The verdict in plain words, the thresholds that it rests on, and all warnings.
+
+use std::fmt::Write;
+
+use super::{
+    Contents,
+    markup::{Cell, Section, Table, details, escape, paragraph},
+};
+use crate::{identify::Identification, report::terminal::significant};
+
+/// The section.
+pub(super) fn section(contents: &Contents<'_>) -> Section {
+    let identification = contents.identification;
+    let mut body = paragraph(&summary(identification));
+    body.push_str(&cards(identification));
+    body.push_str(&findings(identification));
+    body.push_str(&details(
+        "The thresholds of this verdict",
+        &thresholds(identification),
+    ));
+    Section {
+        id: "verdict",
+        title: "Verdict",
+        body,
+    }
+}
+
+/// The verdict in one sentence or two.
+fn summary(identification: &Identification) -> String {
+    let verdicts = &identification.verdicts;
+    let names = |trusted: bool| -> Vec<&str> {
+        let all = verdicts.iter().filter(|one| one.trusted == trusted);
+        all.map(|one| one.subject.as_str()).collect()
+    };
+    let (good, bad) = (names(true), names(false));
+    let mut text = match (good.is_empty(), bad.is_empty()) {
+        (true, true) => {
+            String::from("Nothing was judged: the numbers below have to speak for themselves.")
+        }
+        (false, true) => format!("This result can be trusted: {}.", good.join(", ")),
+        (true, false) => format!("This result can’t be trusted: {}.", bad.join(", ")),
+        (false, false) => format!(
+            "A part of this result can be trusted: {}. What can’t be: {}.",
+            good.join(", "),
+            bad.join(", ")
+        ),
+    };
+    match identification.warnings.len() {
+        0 => text.push_str(" There are no warnings."),
+        1 => text.push_str(" There is one warning to read."),
+        count => {
+            let _ = write!(text, " There are {count} warnings to read.");
+        }
+    }
+    text
+}
+
+/// One card for each verdict.
+fn cards(identification: &Identification) -> String {
+    if identification.verdicts.is_empty() {
+        return String::new();
+    }
+    let mut html = String::from("<div class=\"cards\">\n");
+    for verdict in &identification.verdicts {
+        let (class, sign, word) = if verdict.trusted {
+            ("good", "✓", "can be trusted")
+        } else {
+            ("bad", "✗", "can’t be trusted")
+        };
+        let reasons: String = verdict
+            .reasons
+            .iter()
+            .map(|reason| format!("<li>{}</li>", escape(reason)))
+            .collect();
+        let _ = writeln!(
+            html,
+            "<div class=\"card {class}\"><h3><span aria-hidden=\"true\">{sign}</span> {} {word}</h3><ul>{reasons}</ul></div>",
+            escape(&capital(&verdict.subject))
+        );
+    }
+    html.push_str("</div>\n");
+    html
+}
+
+/// The first letter large.
+fn capital(text: &str) -> String {
+    let mut characters = text.chars();
+    characters.next().map_or_else(String::new, |first| {
+        first.to_uppercase().chain(characters).collect()
+    })
+}
+
+/// What is suspicious in the data, and every other warning.
+fn findings(identification: &Identification) -> String {
+    if identification.warnings.is_empty() && identification.findings.is_empty() {
+        return String::new();
+    }
+    let mut html = String::from("<h3 id=\"warnings\">Warnings</h3>\n<ul class=\"warnings\">\n");
+    for finding in &identification.findings {
+        let place = finding.run.iter().chain(&finding.actuator).cloned();
+        let place: Vec<String> = place.collect();
+        let _ = write!(html, "<li>");
+        if !place.is_empty() {
+            let _ = write!(html, "<b>{}:</b> ", escape(&place.join(", ")));
+        }
+        let _ = writeln!(html, "{}</li>", escape(&finding.message));
+    }
+    let rest = identification.warnings.iter().filter(|warning| {
+        let mut findings = identification.findings.iter();
+        !findings.any(|finding| warning.contains(&finding.message))
+    });
+    for warning in rest {
+        let _ = writeln!(html, "<li>{}</li>", escape(warning));
+    }
+    html.push_str("</ul>\n");
+    html
+}
+
+/// Every threshold with what it decides.
+fn thresholds(identification: &Identification) -> String {
+    let thresholds = &identification.thresholds;
+    let rows = [
+        (
+            "Condition of the kept actuators",
+            significant(thresholds.partition_condition, 4),
+            "above it, case 2 is too close to a singularity of its choice of actuators",
+        ),
+        (
+            "Relative error",
+            format!("{} %", significant(thresholds.relative_error_percent, 4)),
+            "above it, the model does not explain the measured torques",
+        ),
+        (
+            "Miss of the loops’ closure",
+            format!("{} m or rad", significant(thresholds.closure_residual, 4)),
+            "above it, geometry or encoder offsets are wrong",
+        ),
+        (
+            "Significance |χ|/σ",
+            significant(thresholds.significance, 4),
+            "above it, the data speak for a parameter; σ is that of correlated residuals",
+        ),
+        (
+            "Growth of the held-out error",
+            format!("{} %", significant(thresholds.held_out_growth_percent, 4)),
+            "above it, a significant parameter is not cancelled",
+        ),
+        (
+            "Move of another parameter",
+            format!("{} %", significant(thresholds.drift_percent, 4)),
+            "above it, a significant parameter is not cancelled",
+        ),
+        (
+            "r_σ, largest by smallest relative deviation",
+            significant(identification.settings.r_sigma, 4),
+            "below it, the elimination of parameters ends",
+        ),
+    ];
+    let cell = |(name, value, what): (&str, String, &str)| {
+        vec![
+            Cell::text(name),
+            Cell::number(value),
+            Cell::text(what).class("prose"),
+        ]
+    };
+    Table {
+        caption: String::from("Thresholds and what they decide"),
+        header: vec![vec![
+            Cell::text("threshold"),
+            Cell::text("value").class("n"),
+            Cell::text("what it decides"),
+        ]],
+        rows: rows.into_iter().map(cell).collect(),
+    }
+    .html()
+}

@@ -1,0 +1,288 @@
+//! A chart: lines over a horizontal axis.
+
+use std::fmt::Write;
+
+use super::{
+    WIDTH,
+    axis::{Axis, Scale},
+    short,
+};
+use crate::report::page::markup::escape;
+
+/// Height of a chart in SVG units.
+const HEIGHT: f64 = 230.0;
+
+/// Where the axes begin and end: left, right, top, bottom.
+const FRAME: [f64; 4] = [50.0, WIDTH - 10.0, 26.0, HEIGHT - 40.0];
+
+/// How a line looks; the page's style sheet has a class for each.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::report) enum Look {
+    /// What was measured: broad, to be covered by what is predicted.
+    Measured,
+    /// What the model says: thin.
+    Predicted,
+    /// Their difference.
+    Residual,
+    /// Case 1, or the only case.
+    First,
+    /// Case 2.
+    Second,
+    /// A third one.
+    Third,
+    /// A fourth one, and all others.
+    Fourth,
+}
+
+impl Look {
+    /// The looks of lines of equal standing, in order.
+    pub(in crate::report) const fn nth(index: usize) -> Self {
+        match index {
+            0 => Self::First,
+            1 => Self::Second,
+            2 => Self::Third,
+            _ => Self::Fourth,
+        }
+    }
+
+    /// Its class.
+    pub(in crate::report) const fn class(self) -> &'static str {
+        match self {
+            Self::Measured => "measured",
+            Self::Predicted => "predicted",
+            Self::Residual => "residual",
+            Self::First => "first",
+            Self::Second => "second",
+            Self::Third => "third",
+            Self::Fourth => "fourth",
+        }
+    }
+}
+
+/// A line of a chart.
+#[derive(Debug, Clone)]
+pub(in crate::report) struct Line {
+    /// How it looks.
+    pub(in crate::report) look: Look,
+    /// What it is, for those who can't see it.
+    pub(in crate::report) label: String,
+    /// Its points; one that is not finite interrupts the line.
+    pub(in crate::report) points: Vec<(f64, f64)>,
+    /// Whether each point has a dot.
+    pub(in crate::report) dots: bool,
+}
+
+impl Line {
+    /// A line without dots.
+    pub(in crate::report) fn new(
+        look: Look,
+        label: impl Into<String>,
+        x: &[f64],
+        y: &[f64],
+    ) -> Self {
+        Self {
+            look,
+            label: label.into(),
+            points: x.iter().copied().zip(y.iter().copied()).collect(),
+            dots: false,
+        }
+    }
+
+    /// The same line with dots.
+    pub(in crate::report) fn with_dots(mut self) -> Self {
+        self.dots = true;
+        self
+    }
+}
+
+/// A dashed straight line across a chart.
+#[derive(Debug, Clone)]
+pub(in crate::report) struct Rule {
+    /// Its height on the vertical axis.
+    pub(in crate::report) value: f64,
+    /// Its name, written above it.
+    pub(in crate::report) label: String,
+}
+
+/// A chart.
+#[derive(Debug, Clone)]
+pub(in crate::report) struct Chart {
+    /// Written above it.
+    pub(in crate::report) title: String,
+    /// What it shows, for those who can't see it.
+    pub(in crate::report) description: String,
+    /// The horizontal axis.
+    pub(in crate::report) x: Axis,
+    /// The vertical axis.
+    pub(in crate::report) y: Axis,
+    /// The lines, the last one on top.
+    pub(in crate::report) lines: Vec<Line>,
+    /// Thresholds.
+    pub(in crate::report) rules: Vec<Rule>,
+}
+
+impl Chart {
+    /// The chart as an SVG element.
+    pub(in crate::report) fn svg(&self) -> String {
+        let [left, right, top, bottom] = FRAME;
+        let points = || self.lines.iter().flat_map(|line| &line.points);
+        let x = self
+            .x
+            .scale(points().map(|point| point.0), (left, right), 6, true);
+        let heights = points().map(|point| point.1);
+        let rules = self.rules.iter().map(|rule| rule.value);
+        let y = self.y.scale(heights.chain(rules), (bottom, top), 5, false);
+        let mut svg = opening(WIDTH, HEIGHT, &self.title, &self.description);
+        svg.push_str(&self.axes(&x, &y));
+        for rule in &self.rules {
+            svg.push_str(&drawn_rule(rule, &y));
+        }
+        for line in &self.lines {
+            svg.push_str(&drawn_line(line, &x, &y));
+        }
+        svg.push_str("</svg>");
+        svg
+    }
+
+    /// Grid, ticks, labels and title.
+    fn axes(&self, x: &Scale, y: &Scale) -> String {
+        let [left, right, _, bottom] = FRAME;
+        let mut svg = format!(
+            "<text class=\"head\" x=\"{}\" y=\"15\">{}</text>",
+            short(left),
+            escape(&self.title)
+        );
+        for (value, label) in &y.ticks {
+            let Some(at) = y.at(*value) else { continue };
+            let _ = write!(
+                svg,
+                "<path class=\"grid\" d=\"M{} {at:.1}H{}\"/><text class=\"tick\" x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{label}</text>",
+                short(left),
+                short(right),
+                short(left - 5.0),
+                at + 4.0
+            );
+        }
+        for (value, label) in &x.ticks {
+            let Some(at) = x.at(*value) else { continue };
+            let _ = write!(
+                svg,
+                "<path class=\"mark\" d=\"M{at:.1} {}v4\"/><text class=\"tick\" x=\"{at:.1}\" y=\"{}\" text-anchor=\"middle\">{label}</text>",
+                short(bottom),
+                short(bottom + 16.0)
+            );
+        }
+        let _ = write!(
+            svg,
+            "<path class=\"axis\" d=\"M{} {}H{}\"/><text class=\"label\" x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text><text class=\"label\" x=\"{}\" y=\"15\" text-anchor=\"end\">{}</text>",
+            short(left),
+            short(bottom),
+            short(right),
+            short(right),
+            short(HEIGHT - 6.0),
+            escape(&self.x.label),
+            short(right),
+            escape(&self.y.label)
+        );
+        svg
+    }
+}
+
+/// The opening tag of a plot with its names for those who can't see it.
+pub(super) fn opening(width: f64, height: f64, title: &str, description: &str) -> String {
+    format!(
+        "<svg class=\"plot\" viewBox=\"0 0 {} {}\" role=\"img\" xmlns=\"http://www.w3.org/2000/svg\" aria-label=\"{}: {}\"><title>{}</title>",
+        short(width),
+        short(height),
+        escape(title),
+        escape(description),
+        escape(description)
+    )
+}
+
+/// A threshold with its name.
+fn drawn_rule(rule: &Rule, y: &Scale) -> String {
+    let [left, right, ..] = FRAME;
+    let Some(at) = y.at(rule.value) else {
+        return String::new();
+    };
+    format!(
+        "<path class=\"rule\" d=\"M{} {at:.1}H{}\"/><text class=\"tick rule-name\" x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
+        short(left),
+        short(right),
+        short(right - 2.0),
+        at - 4.0,
+        escape(&rule.label)
+    )
+}
+
+/// A line; where it has no value it is interrupted.
+fn drawn_line(line: &Line, x: &Scale, y: &Scale) -> String {
+    let place = |point: &(f64, f64)| Some((x.at(point.0)?, y.at(point.1)?));
+    let mut path = String::new();
+    let mut dots = String::new();
+    let mut pen = 'M';
+    for point in &line.points {
+        let Some((x, y)) = place(point) else {
+            pen = 'M';
+            continue;
+        };
+        let (x, y) = (short(x), short(y));
+        let _ = write!(path, "{pen}{x} {y}");
+        pen = 'L';
+        if line.dots {
+            let _ = write!(dots, "<circle cx=\"{x}\" cy=\"{y}\" r=\"3\"/>");
+        }
+    }
+    format!(
+        "<g class=\"line {}\"><title>{}</title><path d=\"{path}\"/>{dots}</g>",
+        line.look.class(),
+        escape(&line.label)
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Axis, Chart, Line, Look, Rule};
+
+    fn chart(points: Vec<(f64, f64)>) -> Chart {
+        let mut line = Line::new(Look::First, "a <line>", &[], &[]).with_dots();
+        line.points = points;
+        Chart {
+            title: String::from("τ & <b>"),
+            description: String::from("what \"it\" shows"),
+            x: Axis::linear("t (s)"),
+            y: Axis::logarithmic("y (1)"),
+            lines: vec![line],
+            rules: vec![Rule {
+                value: 30.0,
+                label: String::from("limit"),
+            }],
+        }
+    }
+
+    #[test]
+    fn a_chart_is_well_formed_and_keeps_its_lines() {
+        let svg = chart(vec![(0.0, 1.0), (1.0, 10.0), (2.0, f64::NAN), (3.0, 4.0)]).svg();
+        let document = roxmltree::Document::parse(&svg).expect("XML");
+        let path = document
+            .descendants()
+            .filter(|node| node.attribute("class") == Some("line first"))
+            .flat_map(|node| node.descendants())
+            .find_map(|node| node.attribute("d"))
+            .expect("a line");
+        assert_eq!(path.matches('M').count(), 2, "{path}");
+        let dots = document
+            .descendants()
+            .filter(|n| n.has_tag_name(("http://www.w3.org/2000/svg", "circle")));
+        assert_eq!(dots.count(), 3);
+        let name = document.root_element().attribute("aria-label");
+        assert_eq!(name, Some("τ & <b>: what \"it\" shows"));
+    }
+
+    #[test]
+    fn a_chart_without_data_is_well_formed() {
+        let svg = chart(vec![(f64::NAN, f64::INFINITY)]).svg();
+        assert!(roxmltree::Document::parse(&svg).is_ok(), "{svg}");
+    }
+}

@@ -1,0 +1,84 @@
+//! Units of coordinates, positions and torques, by name.
+
+use std::collections::BTreeMap;
+
+use overact::Info;
+
+/// What kind of motion a name stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// Metres, newtons.
+    Length,
+    /// Radians, newton metres.
+    Angle,
+    /// A component of a unit quaternion; its line of Γ is a moment.
+    Quaternion,
+}
+
+/// Units of a robot's coordinates and actuators.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Units {
+    kinds: BTreeMap<String, Kind>,
+}
+
+impl Units {
+    /// The units of a robot. A platform's coordinates are named x, y, z, phi, or qw, qx, qy, qz; those
+    /// of a robot without a platform are its joints.
+    #[must_use]
+    pub fn new(info: &Info<'_>) -> Self {
+        let actuators = info.actuators.iter().zip(info.actuator_is_revolute);
+        let mut kinds: BTreeMap<String, Kind> = actuators
+            .map(|(name, revolute)| {
+                let kind = if *revolute { Kind::Angle } else { Kind::Length };
+                ((*name).to_owned(), kind)
+            })
+            .collect();
+        for name in info.coordinates {
+            let kind = match *name {
+                "x" | "y" | "z" => Kind::Length,
+                "phi" => Kind::Angle,
+                "qw" | "qx" | "qy" | "qz" => Kind::Quaternion,
+                _ => continue,
+            };
+            kinds.entry((*name).to_owned()).or_insert(kind);
+        }
+        // A robot without a loop has one coordinate for each actuator, in the same order.
+        if info.coordinates.len() == info.actuators.len() {
+            for (name, actuator) in info.coordinates.iter().zip(info.actuators) {
+                if let Some(kind) = kinds.get(*actuator).copied() {
+                    kinds.entry((*name).to_owned()).or_insert(kind);
+                }
+            }
+        }
+        Self { kinds }
+    }
+
+    /// Unit of a position or a coordinate; empty where it is not known.
+    #[must_use]
+    pub fn position(&self, name: &str) -> &'static str {
+        match self.kinds.get(name) {
+            Some(Kind::Length) => "m",
+            Some(Kind::Angle) => "rad",
+            Some(Kind::Quaternion) | None => "",
+        }
+    }
+
+    /// Unit of an actuator's torque or a line of Γ; empty where it is not known.
+    #[must_use]
+    pub fn torque(&self, name: &str) -> &'static str {
+        match self.kinds.get(name) {
+            Some(Kind::Length) => "N",
+            Some(Kind::Angle | Kind::Quaternion) => "N m",
+            None => "",
+        }
+    }
+}
+
+/// `x (m)`, or the name alone where the unit is not known.
+pub(super) fn with_unit(name: &str, unit: &str) -> String {
+    if unit.is_empty() {
+        name.to_owned()
+    } else {
+        format!("{name} ({unit})")
+    }
+}
