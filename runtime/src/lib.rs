@@ -14,6 +14,7 @@ pub mod guard;
 pub mod inverse;
 pub mod math;
 pub mod model;
+mod trigonometry;
 
 pub use error::{Error, SampleError};
 pub use model::{BaseParameter, Body, Function, Info, Input, Model, Parameter, Sizes, Symbol};
