@@ -15,6 +15,7 @@ pub mod inverse;
 pub mod math;
 pub mod model;
 pub mod partition;
+mod trigonometry;
 
 pub use error::{Error, SampleError};
 pub use model::{BaseParameter, Body, Function, Info, Input, Model, Parameter, Sizes, Symbol};

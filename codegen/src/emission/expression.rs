@@ -3,6 +3,7 @@
 //! A value that is used once and has no name is written where it is used, as long as the expression
 //! stays short; every other value is a `let` with the name that the derivation gave it, or a number.
 
+use super::angles;
 use crate::lowering::{Condition, Operation, Program, Source};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
@@ -53,6 +54,8 @@ pub struct Body<'p> {
     inlined: Vec<Option<Text>>,
     statements: TokenStream,
     taken: HashSet<String>,
+    /// Steps that are written before their turn.
+    written: Vec<bool>,
 }
 
 impl<'p> Body<'p> {
@@ -68,8 +71,10 @@ impl<'p> Body<'p> {
             inlined: (0..count).map(|_| None).collect(),
             statements: TokenStream::new(),
             taken,
+            written: vec![false; count],
         };
         let mut at = 0;
+        body.angles(&angles::early(program));
         while at < count {
             at += body.step(at);
         }
@@ -77,8 +82,42 @@ impl<'p> Body<'p> {
         (body.statements, value)
     }
 
+    /// Writes the sines and cosines of angles that are known from the start.
+    fn angles(&mut self, early: &angles::Early) {
+        if early.pairs.is_empty() {
+            return;
+        }
+        for &at in &early.steps {
+            self.step(at);
+            self.written[at] = true;
+        }
+        let mut names = Vec::new();
+        let mut values = Vec::new();
+        for pair in &early.pairs {
+            values.push(self.source(pair.angle).tokens);
+            let mut name = |step: Option<usize>| match step {
+                Some(at) => {
+                    self.written[at] = true;
+                    let name = self.declare(at);
+                    quote!(#name)
+                }
+                None => quote!(_),
+            };
+            let (sine, cosine) = (name(pair.sine), name(pair.cosine));
+            names.push(quote!((#sine, #cosine)));
+        }
+        self.statements.extend(
+            quote!(let [#(#names),*] = ::overact::math::sin_cos_all([#(#values),*]);),
+        );
+        let steps = early.pairs.iter().flat_map(|p| [p.sine, p.cosine]);
+        steps.flatten().for_each(|at| self.guards(at));
+    }
+
     /// Writes step `at`; returns how many steps were written.
     fn step(&mut self, at: usize) -> usize {
+        if self.written[at] {
+            return 1;
+        }
         if let Some(angle) = self.pair(at) {
             return self.sine_and_cosine(at, angle);
         }

@@ -4,6 +4,7 @@
 //! constants and flat functions, and one `impl overact::Model`. Nothing is allocated, nothing panics,
 //! nothing is unsafe; a singular configuration is an error that names the leg.
 
+pub mod angles;
 pub mod constants;
 pub mod expression;
 pub mod function;
