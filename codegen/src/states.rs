@@ -120,9 +120,9 @@ fn follow(mechanism: &Mechanism, pose: &[f64]) -> Option<Vec<f64>> {
         }
         let frame = platform_frame(platform.motion, &at);
         for (index, leg) in mechanism.legs.iter().enumerate() {
-            let (target, oriented) = target(leg.end.as_ref()?, &frame);
+            let target = target(leg.end.as_ref()?, &frame);
             let range = mechanism.leg_range(index);
-            let closed = close_from(leg, &joints[range.clone()], &target, oriented)?;
+            let closed = close_from(leg, &joints[range.clone()], &target)?;
             joints[range].copy_from_slice(&closed);
         }
     }

@@ -32,6 +32,7 @@ fn free_links_are_not_determined() {
     // A platform point on the middle of the chain leaves the rest of the leg free.
     robot.legs[0].end = overact_tests::reference::End::Point {
         joint: 0,
+        along: [true; 3],
         attachment: nalgebra::Vector3::zeros(),
     };
     let still = DVector::zeros(2);

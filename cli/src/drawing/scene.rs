@@ -100,10 +100,10 @@ impl Scene {
                 .extend(walk.parts.into_iter().map(|part| (index, part)));
             scene.bases.push(walk.base);
             if let (Some(end), Some(frame)) = (&leg.end, &frame) {
-                let (target, _) = target(end, frame);
+                let target = target(end, frame);
                 let at = target.translation.vector;
                 scene.attachments.push(at);
-                if matches!(end, End::Point(_)) {
+                if matches!(end, End::Point { .. }) {
                     scene.parts.push((index, Part::Ball { at }));
                 }
             }

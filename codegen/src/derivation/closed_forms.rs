@@ -3,7 +3,7 @@
 use crate::cas::Arena;
 use crate::derivation::{Derived, Family, From, JointsBy, Selection, Underivable, derive};
 use crate::diagnostic::Source;
-use crate::mechanism::numeric::{closure_error, platform_frame, target};
+use crate::mechanism::numeric::{platform_frame, target};
 use crate::mechanism::{Home, Mechanism, check};
 use std::path::PathBuf;
 
@@ -111,10 +111,9 @@ fn joints_by_rule_close_every_leg_and_keep_the_mode_of_home() {
             let found = joints.of_pose(&pose);
             let frame = platform_frame(platform.motion, &pose);
             for (index, leg) in mechanism.legs.iter().enumerate() {
-                let (end, oriented) = target(leg.end.as_ref().expect("an end"), &frame);
+                let end = target(leg.end.as_ref().expect("an end"), &frame);
                 let q = &found[mechanism.leg_range(index)];
-                let error = closure_error(leg, q, &end, oriented);
-                let gap = error.iter().fold(0.0_f64, |m, e| m.max(e.abs()));
+                let gap = leg.closure_error(q, &end).amax();
                 assert!(gap < CLOSED, "{name}, {}: open by {gap:e}", leg.name);
             }
         }

@@ -183,7 +183,7 @@ impl<'a> Work<'a> {
         let spheres = self.spheres(&legs, |leg| {
             match self.mechanism.legs[leg].end.as_ref()? {
                 End::Rigid(at) => Some((platform.arm(at.at), Some(platform.orientation(at)))),
-                End::Point(at) => Some((platform.arm(*at), None)),
+                End::Point { at, .. } => Some((platform.arm(*at), None)),
             }
         });
         let home = self.home_point([Number::ZERO; 3]);
@@ -222,10 +222,7 @@ impl<'a> Work<'a> {
 
     /// The platform point that a leg ends at, in the platform frame.
     fn end_point(self, leg: usize) -> Option<[Number; 3]> {
-        Some(match self.mechanism.legs[leg].end.as_ref()? {
-            End::Rigid(placement) => placement.at,
-            End::Point(at) => *at,
-        })
+        Some(self.mechanism.legs[leg].end.as_ref()?.point())
     }
 
     /// Where a platform point is at home.

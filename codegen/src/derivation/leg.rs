@@ -17,7 +17,7 @@ use super::orientation::Orientation;
 use super::platform::{PlatformMotion, PlatformPose};
 use super::rates::Rates;
 use crate::cas::{Arena, Direction, Expr, Matrix3, Number, Vector3};
-use crate::mechanism::{End, JointKind, Leg, TwistCoordinate};
+use crate::mechanism::{JointKind, Leg, TwistCoordinate};
 
 /// Position and orientation of a joint's frame, written in the axes that were chosen for its leg.
 #[derive(Debug, Clone)]
@@ -244,10 +244,7 @@ impl<'a> LegClosure<'a> {
             }
             vector
         };
-        let at = match leg.end.as_ref()? {
-            End::Rigid(placement) => placement.at,
-            End::Point(at) => *at,
-        };
+        let at = leg.end.as_ref()?.point();
         let arm = platform.arm(at);
         let wrenches: Vec<Wrench<'a>> = scaled
             .iter()

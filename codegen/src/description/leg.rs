@@ -65,7 +65,10 @@ fn place(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], constants: &Scope) -> 
         let value = if end.rigid {
             End::Rigid(placement)
         } else {
-            End::Point(placement.at)
+            End::Point {
+                at: placement.at,
+                along: end.along,
+            }
         };
         Spanned::new(value, end.span.clone())
     });

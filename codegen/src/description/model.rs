@@ -174,8 +174,35 @@ pub struct Leg {
 pub enum End {
     /// The last frame is fixed on the platform, at this placement in the platform frame.
     Rigid(Placement),
-    /// The last frame's origin coincides with this point of the platform frame, m.
-    Point([Number; 3]),
+    /// The last frame's origin coincides with a point of the platform.
+    Point {
+        /// The point in the platform frame, m.
+        at: [Number; 3],
+        /// Along which axes of the robot's base frame it does. Where it does not, the leg's end may
+        /// slide.
+        along: [bool; 3],
+    },
+}
+
+impl End {
+    /// The platform point that the last frame's origin meets, in the platform frame, m.
+    #[must_use]
+    pub const fn point(&self) -> [Number; 3] {
+        match self {
+            Self::Rigid(placement) => placement.at,
+            Self::Point { at, .. } => *at,
+        }
+    }
+
+    /// The components of the six-vector (position, orientation) in the base frame that the last frame
+    /// shares with the platform.
+    #[must_use]
+    pub fn shared_components(&self) -> Vec<usize> {
+        match self {
+            Self::Rigid(_) => (0..6).collect(),
+            Self::Point { along, .. } => (0..3).filter(|&axis| along[axis]).collect(),
+        }
+    }
 }
 
 /// The kind of a joint.

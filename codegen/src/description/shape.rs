@@ -39,6 +39,8 @@ pub(super) struct EndShape<'c, 't> {
     pub(super) rigid: bool,
     pub(super) at: Option<Item<'c, 't>>,
     pub(super) rotation: Option<Item<'c, 't>>,
+    /// Axes of the base frame along which a point end coincides with the platform's point.
+    pub(super) along: [bool; 3],
     pub(super) span: Span,
 }
 
@@ -287,11 +289,37 @@ fn end<'c, 't>(item: &Item<'c, 't>) -> Option<EndShape<'c, 't>> {
                 .help("leave it out, or use type = \"rigid\""),
         );
     }
+    let along = along(table.get("along").as_ref(), rigid);
     table.finish();
     Some(EndShape {
         rigid,
         at,
         rotation,
+        along,
         span: table.span.clone(),
     })
+}
+
+/// The axes of `along = ["x", "y"]`; all of them without the key.
+fn along(item: Option<&Item<'_, '_>>, rigid: bool) -> [bool; 3] {
+    let Some(item) = item else { return [true; 3] };
+    if rigid {
+        let message = "an end of type \"rigid\" is fixed in all directions";
+        let help = "leave `along` out, or use type = \"point\"";
+        item.context.report(item.error(message).help(help));
+        return [true; 3];
+    }
+    let mut along = [false; 3];
+    for axis in item.list().into_iter().flatten() {
+        let axis = axis.choice(&[("x", 0), ("y", 1), ("z", 2)]);
+        if let Some(axis) = axis {
+            along[axis.value] = true;
+        }
+    }
+    if along == [false; 3] {
+        let help = "name at least one axis of the base frame, for instance along = [\"x\", \"y\"]";
+        let message = "the leg's end does not meet the platform along any axis";
+        item.context.report(item.error(message).help(help));
+    }
+    along
 }

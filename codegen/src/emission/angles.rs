@@ -30,8 +30,8 @@ pub fn early(program: &Program) -> Early {
     let mut simple = vec![false; program.steps.len()];
     for at in 0..program.steps.len() {
         let operation = program.steps[at].operation;
-        simple[at] = is_arithmetic(operation)
-            && operation.operands().iter().all(|&o| is_known(o, &simple));
+        simple[at] =
+            is_arithmetic(operation) && operation.operands().iter().all(|&o| is_known(o, &simple));
     }
     let mut pairs: Vec<Pair> = Vec::new();
     for (at, step) in program.steps.iter().enumerate() {

@@ -106,9 +106,8 @@ impl<'p> Body<'p> {
             let (sine, cosine) = (name(pair.sine), name(pair.cosine));
             names.push(quote!((#sine, #cosine)));
         }
-        self.statements.extend(
-            quote!(let [#(#names),*] = ::overact::math::sin_cos_all([#(#values),*]);),
-        );
+        self.statements
+            .extend(quote!(let [#(#names),*] = ::overact::math::sin_cos_all([#(#values),*]);));
         let steps = early.pairs.iter().flat_map(|p| [p.sine, p.cosine]);
         steps.flatten().for_each(|at| self.guards(at));
     }

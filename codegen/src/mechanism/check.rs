@@ -206,14 +206,10 @@ fn check_mobility(
     let leg = &mechanism.legs[index];
     let Some(end) = &leg.end else { return };
     let frame = platform_frame(platform.motion, &mechanism.home.pose);
-    let (target, oriented) = target(end, &frame);
-    let rows = if oriented { 6 } else { 3 };
+    let target = target(end, &frame);
     let arm = target.translation.vector - frame.translation.vector;
-    let wanted = platform_columns(platform.motion, arm)
-        .rows(0, rows)
-        .into_owned();
-    let jacobian = leg.end_jacobian(&mechanism.home.joints[mechanism.leg_range(index)]);
-    let jacobian = jacobian.rows(0, rows).into_owned();
+    let wanted = platform_columns(platform.motion, arm).select_rows(&end.shared_components());
+    let jacobian = leg.closure_jacobian(&mechanism.home.joints[mechanism.leg_range(index)]);
     let svd = nalgebra::SVD::try_new(jacobian.clone(), true, true, f64::EPSILON, 1000);
     let Some(Ok(pseudo_inverse)) = svd.map(|svd| svd.pseudo_inverse(1e-9)) else {
         return;

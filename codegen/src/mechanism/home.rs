@@ -1,9 +1,9 @@
 //! The home configuration: from rough joint positions to ones that close every leg.
 
-use super::numeric::{closure_error, platform_frame, target};
+use super::numeric::{platform_frame, target};
 use super::{Leg, Mechanism};
 use crate::cas::{Arena, Expr};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 /// The home configuration.
 #[derive(Debug, Clone, Default)]
@@ -87,9 +87,9 @@ impl Home {
         let mut errors = Vec::new();
         for (index, leg) in mechanism.legs.iter().enumerate() {
             let Some(end) = &leg.end else { continue };
-            let (target, oriented) = target(end, &frame);
+            let target = target(end, &frame);
             let range = mechanism.leg_range(index);
-            match close(leg, &rough.joints[range.clone()], &target, oriented) {
+            match close(leg, &rough.joints[range.clone()], &target) {
                 Ok(q) => joints[range].copy_from_slice(&q),
                 Err(Failure::Open(gap)) => errors.push(HomeError::Open { leg: index, gap }),
                 Err(Failure::Singular(condition)) => {
@@ -114,18 +114,12 @@ enum Failure {
 }
 
 /// Damped Gauss-Newton on all closure equations of a leg.
-fn close(
-    leg: &Leg,
-    start: &[f64],
-    target: &nalgebra::Isometry3<f64>,
-    oriented: bool,
-) -> Result<Vec<f64>, Failure> {
-    let rows = if oriented { 6 } else { 3 };
+fn close(leg: &Leg, start: &[f64], target: &nalgebra::Isometry3<f64>) -> Result<Vec<f64>, Failure> {
     let mut q = start.to_vec();
     let mut gap = f64::INFINITY;
     let mut damping = 1e-6;
     for _ in 0..STEPS {
-        let error = DVector::from_row_slice(&closure_error(leg, &q, target, oriented)[..rows]);
+        let error = leg.closure_error(&q, target);
         gap = error.amax();
         // The maximum of numbers passes over NaN.
         if error.iter().any(|e| !e.is_finite()) {
@@ -134,7 +128,7 @@ fn close(
         if gap < CLOSED {
             break;
         }
-        let jacobian = leg.end_jacobian(&q).rows(0, rows).into_owned();
+        let jacobian = leg.closure_jacobian(&q);
         let normal = jacobian.tr_mul(&jacobian) + DMatrix::identity(q.len(), q.len()) * damping;
         let Some(step) = normal.lu().solve(&jacobian.tr_mul(&error)) else {
             break;
@@ -146,9 +140,7 @@ fn close(
             .zip(step.iter())
             .map(|(q, s)| q + limit * s)
             .collect();
-        let better = closure_error(leg, &trial, target, oriented)
-            .iter()
-            .fold(0.0_f64, |m, e| m.max(e.abs()));
+        let better = leg.closure_error(&trial, target).amax();
         damping = if better < gap {
             (damping * 0.1).max(1e-14)
         } else {
@@ -161,8 +153,8 @@ fn close(
     if gap.is_nan() || gap >= CLOSED {
         return Err(Failure::Open(gap));
     }
-    let condition = condition(&leg.end_jacobian(&q).rows(0, rows).into_owned());
-    if q.len() > rows || condition.is_nan() || condition >= SINGULAR {
+    let condition = condition(&leg.closure_jacobian(&q));
+    if q.len() > leg.shared_components().len() || condition.is_nan() || condition >= SINGULAR {
         return Err(Failure::Singular(condition));
     }
     Ok(q)
@@ -171,15 +163,9 @@ fn close(
 /// Joint positions that close a leg, near `start`; `None` if the iteration does not get there or the
 /// leg is nearly singular where it does.
 #[must_use]
-pub fn close_from(
-    leg: &Leg,
-    start: &[f64],
-    target: &nalgebra::Isometry3<f64>,
-    oriented: bool,
-) -> Option<Vec<f64>> {
-    let q = close(leg, start, target, oriented).ok()?;
-    let rows = if oriented { 6 } else { 3 };
-    (condition(&leg.end_jacobian(&q).rows(0, rows).into_owned()) < 50.0).then_some(q)
+pub fn close_from(leg: &Leg, start: &[f64], target: &nalgebra::Isometry3<f64>) -> Option<Vec<f64>> {
+    let q = close(leg, start, target).ok()?;
+    (condition(&leg.closure_jacobian(&q)) < 50.0).then_some(q)
 }
 
 /// Ratio of the largest and smallest singular value; infinite for entries that are not finite and

@@ -2,7 +2,9 @@
 //! checks at the home configuration, before any symbol is derived.
 
 use super::{End, Joint, JointKind, Leg, Mechanism, Motion, Placement};
-use nalgebra::{DMatrix, Isometry3, Quaternion, Rotation3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{
+    DMatrix, DVector, Isometry3, Quaternion, Rotation3, Translation3, UnitQuaternion, Vector3,
+};
 
 /// Rotation about the z axis as a displacement.
 fn turn_z(angle: f64) -> Isometry3<f64> {
@@ -130,34 +132,46 @@ pub fn platform_frame(motion: Motion, pose: &[f64]) -> Isometry3<f64> {
     Isometry3::from_parts(Translation3::from(at), rotation)
 }
 
-/// Where a leg's last frame has to be for a platform frame, and whether its orientation counts.
+/// Where a leg's last frame has to be for a platform frame; of a point end only the position counts.
 #[must_use]
-pub fn target(end: &End, platform: &Isometry3<f64>) -> (Isometry3<f64>, bool) {
+pub fn target(end: &End, platform: &Isometry3<f64>) -> Isometry3<f64> {
     match end {
-        End::Rigid(placement) => (platform * placement.numeric(), true),
-        End::Point(at) => {
+        End::Rigid(placement) => platform * placement.numeric(),
+        End::Point { at, .. } => {
             let [x, y, z] = at.map(crate::cas::Number::value);
-            (platform * Isometry3::translation(x, y, z), false)
+            platform * Isometry3::translation(x, y, z)
         }
     }
 }
 
-/// The six-vector (position, rotation) by which a leg's end misses its target, in the base frame.
-/// The rotational part is zero for a point end.
-#[must_use]
-pub fn closure_error(leg: &Leg, q: &[f64], target: &Isometry3<f64>, oriented: bool) -> [f64; 6] {
-    let Some(last) = leg.frames(q).pop() else {
-        return [0.0; 6];
-    };
-    let linear = target.translation.vector - last.translation.vector;
-    let angular = if oriented {
-        (target.rotation * last.rotation.inverse()).scaled_axis()
-    } else {
-        Vector3::zeros()
-    };
-    [
-        linear.x, linear.y, linear.z, angular.x, angular.y, angular.z,
-    ]
+impl Leg {
+    /// The components of the six-vector (position, orientation) that the leg's end shares with the
+    /// platform.
+    #[must_use]
+    pub fn shared_components(&self) -> Vec<usize> {
+        let end = self.end.as_ref();
+        end.map_or_else(Vec::new, End::shared_components)
+    }
+
+    /// By how much the leg's end misses its target, in the components that it shares with it (m, rad,
+    /// in the base frame).
+    #[must_use]
+    pub fn closure_error(&self, q: &[f64], target: &Isometry3<f64>) -> DVector<f64> {
+        let last = self.frames(q).pop().unwrap_or(*target);
+        let linear = target.translation.vector - last.translation.vector;
+        let angular = (target.rotation * last.rotation.inverse()).scaled_axis();
+        let component = |row: usize| [linear, angular][row / 3][row % 3];
+        DVector::from_iterator(
+            self.shared_components().len(),
+            self.shared_components().into_iter().map(component),
+        )
+    }
+
+    /// The rows of [`Self::end_jacobian`] of the shared components.
+    #[must_use]
+    pub fn closure_jacobian(&self, q: &[f64]) -> DMatrix<f64> {
+        self.end_jacobian(q).select_rows(&self.shared_components())
+    }
 }
 
 impl Mechanism {
@@ -176,15 +190,10 @@ impl Mechanism {
     #[must_use]
     pub fn closure_rows(&self, leg: usize) -> Vec<usize> {
         let home = &self.home.joints[self.leg_range(leg)];
-        let rows = if matches!(self.legs[leg].end, Some(End::Rigid(_))) {
-            6
-        } else {
-            3
-        };
         let jacobian = self.legs[leg].end_jacobian(home);
         let mut basis: Vec<nalgebra::DVector<f64>> = Vec::new();
         let mut selected = Vec::new();
-        for row in 0..rows {
+        for row in self.legs[leg].shared_components() {
             let mut vector = jacobian.row(row).transpose();
             let size = vector.norm();
             for known in &basis {

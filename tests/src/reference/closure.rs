@@ -12,7 +12,7 @@ use super::Error;
 use super::frame::logarithm;
 use super::jacobians::{Jacobians, end_jacobian, follow};
 use super::kinematics::{
-    BodyMotion, all_legs, end_equations, end_from_leg, end_from_platform, leg_motion,
+    BodyMotion, all_legs, end_components, end_from_leg, end_from_platform, leg_motion,
     platform_motion,
 };
 use super::linear::pseudo_inverse;
@@ -240,12 +240,9 @@ pub fn closure_residual(mechanism: &Mechanism, leg: &Leg, pose: &[f64], q: &[f64
     let reached = end_from_leg(leg, &leg_motion(leg, q, &zero, &zero)).frame;
     let shift = target.position - reached.position;
     let turn = logarithm(&(target.rotation * reached.rotation.transpose()));
-    let both = shift
-        .iter()
-        .chain(turn.iter())
-        .copied()
-        .take(end_equations(leg));
-    DVector::from_iterator(end_equations(leg), both)
+    let components = end_components(leg);
+    let both = components.iter().map(|&at| [shift, turn][at / 3][at % 3]);
+    DVector::from_iterator(components.len(), both)
 }
 
 /// Joint accelerations from the closure's second derivative (10).
@@ -268,8 +265,9 @@ fn joint_accelerations(mechanism: &Mechanism, state: &State) -> Result<DVector<f
         let still = vec![0.0; range.len()];
         let bias = end_from_leg(leg, &leg_motion(leg, q, qd, &still)).twist_derivative();
         let wanted = end_from_platform(leg, &platform).twist_derivative() - bias;
-        let rows = end_equations(leg);
-        let wanted = DMatrix::from_iterator(rows, 1, wanted.iter().copied().take(rows));
+        let components = end_components(leg);
+        let values = components.iter().map(|&at| wanted[at]);
+        let wanted = DMatrix::from_iterator(components.len(), 1, values);
         all.extend(follow(k, &end_jacobian(leg, q), &wanted)?.iter());
     }
     Ok(DVector::from_vec(all))

@@ -15,7 +15,7 @@
 
 use super::Error;
 use super::kinematics::{
-    end_equations, end_from_leg, end_from_platform, leg_motion, platform_motion,
+    end_components, end_equations, end_from_leg, end_from_platform, leg_motion, platform_motion,
 };
 use super::linear::{adjugate, condition, determinant, independent_rows, pseudo_inverse};
 use super::mechanism::{Leg, Mechanism};
@@ -161,8 +161,8 @@ pub fn end_jacobian(leg: &Leg, q: &[f64]) -> DMatrix<f64> {
         let mut rates = zero.clone();
         rates[at] = 1.0;
         let twist = end_from_leg(leg, &leg_motion(leg, q, &rates, &zero)).twist();
-        for row in 0..jacobian.nrows() {
-            jacobian[(row, at)] = twist[row];
+        for (row, &component) in end_components(leg).iter().enumerate() {
+            jacobian[(row, at)] = twist[component];
         }
     }
     jacobian
@@ -178,8 +178,8 @@ pub fn attachment_jacobian(mechanism: &Mechanism, leg: &Leg, pose: &[f64]) -> DM
         unit[at] = 1.0;
         let platform = platform_motion(&mechanism.motion, pose, &unit, &DVector::zeros(dof));
         let twist = end_from_platform(leg, &platform).twist();
-        for row in 0..jacobian.nrows() {
-            jacobian[(row, at)] = twist[row];
+        for (row, &component) in end_components(leg).iter().enumerate() {
+            jacobian[(row, at)] = twist[component];
         }
     }
     jacobian

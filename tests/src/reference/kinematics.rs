@@ -146,14 +146,21 @@ pub fn end_from_platform(leg: &Leg, platform: &BodyMotion) -> BodyMotion {
     }
 }
 
-/// Number of closure equations of a leg: position and orientation, position alone, or none.
+/// The closure equations of a leg as components of the six-vector (position, orientation): all of
+/// them, some of the position, or none.
+#[must_use]
+pub fn end_components(leg: &Leg) -> Vec<usize> {
+    match leg.end {
+        End::Free => Vec::new(),
+        End::Rigid { .. } => (0..6).collect(),
+        End::Point { along, .. } => (0..3).filter(|&axis| along[axis]).collect(),
+    }
+}
+
+/// Number of closure equations of a leg.
 #[must_use]
 pub fn end_equations(leg: &Leg) -> usize {
-    match leg.end {
-        End::Free => 0,
-        End::Rigid { .. } => 6,
-        End::Point { .. } => 3,
-    }
+    end_components(leg).len()
 }
 
 /// Motions of all bodies of all legs; the joint vectors have the layout of the mechanism.

@@ -146,6 +146,8 @@ pub enum End {
         joint: usize,
         /// The point in the platform frame.
         attachment: Vector3<f64>,
+        /// Along which axes of the base frame they coincide.
+        along: [bool; 3],
     },
 }
 

@@ -54,9 +54,10 @@ fn leg(leg: &mechanism::Leg, start: &[f64]) -> Leg {
             joint: last,
             attachment: frame(placement),
         },
-        Some(mechanism::End::Point(at)) => End::Point {
+        Some(mechanism::End::Point { at, along }) => End::Point {
             joint: last,
             attachment: vector(*at),
+            along: *along,
         },
     };
     Leg {

@@ -37,6 +37,10 @@ pub(in crate::derivation) fn equations<'a>(
     let Task { arena, leg, .. } = task;
     let mut path = path_to_end(leg);
     path.reverse();
+    let shared = leg.end.as_ref()?.shared_components();
+    if shared.len() < 3 {
+        return along_base_axes(task, configuration, &path, &shared);
+    }
     let mut frame = Frame {
         prefix: constant_rotation(arena, leg.base.rotation),
         turn: Direction::constant(Angle::ZERO),
@@ -64,6 +68,26 @@ pub(in crate::derivation) fn equations<'a>(
     }
     equations.retain(|e| e.as_number().is_none());
     Some(equations)
+}
+
+/// The equations of an end that meets the platform's point along some axes of the base frame only.
+fn along_base_axes<'a>(
+    task: Task<'a, '_>,
+    configuration: &Configuration<'a>,
+    path: &[usize],
+    shared: &[usize],
+) -> Option<Vec<Expr<'a>>> {
+    let mut frame = Frame {
+        prefix: constant_rotation(task.arena, task.leg.base.rotation),
+        turn: Direction::constant(Angle::ZERO),
+        origin: Vector3::constant(task.arena, task.leg.base.at),
+    };
+    for &joint in path {
+        frame = step_to(task, configuration, joint, &frame)?;
+        frame = step_over(task, configuration, joint, frame)?;
+    }
+    let gap = task.target - frame.origin;
+    Some(shared.iter().map(|&axis| gap.0[axis]).collect())
 }
 
 /// Origin and axes of the last frame, seen from the first joint of `path` before its motion, with or

@@ -56,16 +56,17 @@ impl<'a, 'm> Task<'a, 'm> {
         platform: &PlatformPose<'a>,
     ) -> Option<Self> {
         let leg = &mechanism.legs[index];
-        let (at, axes) = match leg.end.as_ref()? {
-            End::Rigid(placement) => (placement.at, Some(platform.orientation(placement))),
-            End::Point(at) => (*at, None),
+        let end = leg.end.as_ref()?;
+        let axes = match end {
+            End::Rigid(placement) => Some(platform.orientation(placement)),
+            End::Point { .. } => None,
         };
         Some(Self {
             arena,
             leg,
             first_joint: mechanism.leg_range(index).start,
             home: &mechanism.home,
-            target: platform.origin + platform.arm(at),
+            target: platform.origin + platform.arm(end.point()),
             axes,
         })
     }

@@ -53,19 +53,18 @@ fn planar_links(
     first_joint: usize,
     configuration: &Configuration<'_>,
 ) -> Option<[Link; 2]> {
-    let end_joints = match leg.end.as_ref()? {
-        End::Rigid(_) => 3,
-        End::Point(_) => 3,
-    };
+    let end = leg.end.as_ref()?;
+    if end.shared_components().len() < 3 {
+        return None;
+    }
     let joints = &leg.joints;
     let moves = |i: usize| joints[i].kind == JointKind::Revolute && joints[i].is_independent(i);
     let chain = |i: usize| joints[i].antecedent == i.checked_sub(1);
     let plain = |i: usize| i == 0 || parallel(joints[i].alpha) == Some(Ratio::ONE);
-    if joints.len() != end_joints || !(0..3).all(|i| chain(i) && plain(i)) || !moves(0) || !moves(1)
-    {
+    if joints.len() != 3 || !(0..3).all(|i| chain(i) && plain(i)) || !moves(0) || !moves(1) {
         return None;
     }
-    let rigid = matches!(leg.end, Some(End::Rigid(_)));
+    let rigid = matches!(end, End::Rigid(_));
     let last_fits = if rigid {
         moves(2)
     } else {

@@ -147,7 +147,10 @@ shape = "a"
     assert_eq!(platform.parameters, StandardParameter::INERTIA);
     assert_eq!(
         robot.legs[0].end.as_ref().unwrap().value,
-        End::Point([Number::ZERO, ratio(1, 10), Number::ZERO])
+        End::Point {
+            at: [Number::ZERO, ratio(1, 10), Number::ZERO],
+            along: [true; 3]
+        }
     );
     assert_eq!(Motion::Planar { axis: 1 }.coordinates(), ["z", "x", "phi"]);
     assert_eq!(Motion::Spatial.coordinates().len(), 6);

@@ -61,6 +61,7 @@ pub fn two_slides() -> Mechanism {
         ],
         end: End::Point {
             joint: 1,
+            along: [true; 3],
             attachment: Vector3::zeros(),
         },
         start: vec![0.0, 0.0],
@@ -96,6 +97,7 @@ fn rr_leg(base: [f64; 2], start_deg: [f64; 2]) -> Leg {
         ],
         end: End::Point {
             joint: 2,
+            along: [true; 3],
             attachment: Vector3::zeros(),
         },
         start: start_deg

@@ -106,6 +106,7 @@ fn ups_leg(base_deg: f64, platform_deg: f64) -> Leg {
         ],
         end: End::Point {
             joint: 2,
+            along: [true; 3],
             attachment: 0.25 * Vector3::new(platform.cos(), platform.sin(), 0.0),
         },
         start: vec![0.0, FRAC_PI_2, 0.5],
