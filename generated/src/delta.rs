@@ -213,14 +213,13 @@ impl Delta {
     pub fn pose_in_closed_form(
         actuators: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(actuators[0]);
+        let [(s_arm_leg1, c_arm_leg1), (s_arm_leg3, c_arm_leg3), (s_arm_leg2, c_arm_leg2),
+        ] = ::overact::math::sin_cos_all([actuators[0], actuators[2], actuators[1]]);
         let t4 = 0.05 - (0.2 + 0.24 * c_arm_leg1);
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(actuators[2]);
         let t9 = 0.1 + 0.12 * c_arm_leg3 - 0.025;
         let t10 = t4 - t9;
         let t15 = s_arm_leg1 - s_arm_leg3;
         let t19 = 0.5 * (t10 * t10 + 3.0 * (t9 * t9) + 0.0576 * (t15 * t15));
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(actuators[1]);
         let t22 = s_arm_leg1 - s_arm_leg2;
         let t23 = 0.24 * t22;
         let t27 = 0.1 + 0.12 * c_arm_leg2 - 0.025;
@@ -437,120 +436,113 @@ impl Delta {
     ///
     /// Output: 3 x 3.
     ///
-    /// 208 operations (69 additions, 129 multiplications, 10 divisions), 5 square roots, 0 trigonometric pairs, 0 signs, 204 intermediates.
+    /// 164 operations (58 additions, 91 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 161 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let t0 = pose[0] + 0.05;
-        let t1 = t0 - 0.2;
+        let t1 = pose[0] + 0.05 - 0.2;
         let t2 = t1 * t1;
         let t3 = pose[2] * pose[2];
         let t5 = 0.2304 * (t2 + t3);
         let t6 = 1.0 / t5;
         let t7 = 0.48 * t1;
-        let t12 = t2 + pose[1] * pose[1] + t3 - 0.3136 + 0.0576;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.3136 + 0.0576;
         let t14 = 0.48 * pose[2];
         let t16 = t5 - t12 * t12;
         ::overact::guard::reach(t16, "leg1")?;
         let t17 = ::overact::math::sqrt(t16);
-        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
         let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t24 = 2.0 / t17;
-        let garm_vx_leg1 = (t0 - (0.2 + 0.24 * c_arm_leg1)) * t24;
-        let t27 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t30 = pose[0] - 0.025 + 0.1;
-        let t31 = 0.5 * t30;
-        let t32 = 0.8660254037844387 * t27 - t31;
-        let t35 = 0.2304 * (t32 * t32 + t3);
-        let t36 = 1.0 / t35;
-        let t37 = 0.48 * t32;
-        let t38 = t30 * t30;
-        let t41 = t38 + t27 * t27 + t3;
-        let t43 = t41 - 0.3136 + 0.0576;
-        let t46 = t35 - t43 * t43;
-        ::overact::guard::reach(t46, "leg2")?;
-        let t47 = ::overact::math::sqrt(t46);
-        let c_arm_leg2 = t36 * (t37 * t43 - t14 * t47);
-        let t52 = t32 - 0.24 * c_arm_leg2;
-        let t53 = 0.8660254037844387 * t30;
-        let t55 = t53 + 0.5 * t27;
-        let t56 = t55 * t55;
-        let t60 = 1.0 - 3.188775510204082 * t56;
-        ::overact::guard::reach(t60, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t60);
-        let c_cross_leg2 = (t41 - (0.0576 + t56) - 0.3136 * t60) / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t36 * (t14 * t43 + t37 * t47);
-        let s_cross_leg2 = 2.0833333333333335 * t47 / (0.56 * c_rod_leg2);
+        let t24 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t24, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t24);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let t40 = 4.166666666666667 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t40;
+        let t43 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t46 = pose[0] - 0.025 + 0.1;
+        let t47 = 0.5 * t46;
+        let t48 = 0.8660254037844387 * t43 - t47;
+        let t51 = 0.2304 * (t48 * t48 + t3);
+        let t52 = t46 * t46;
+        let t55 = t52 + t43 * t43 + t3;
+        let t57 = t55 - 0.3136 + 0.0576;
+        let t59 = t51 - t57 * t57;
+        ::overact::guard::reach(t59, "leg2")?;
+        let t60 = ::overact::math::sqrt(t59);
+        let t62 = 0.8660254037844387 * t46;
+        let t64 = t62 + 0.5 * t43;
+        let t65 = t64 * t64;
+        let t67 = 1.0 - 3.188775510204082 * t65;
+        ::overact::guard::reach(t67, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t67);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let s_cross_leg2 = 2.0833333333333335 * t60 / (0.56 * c_rod_leg2);
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
+        let t71 = 4.166666666666667 / s_cross_leg2;
+        let t73 = t64 * (1.7857142857142858 / c_rod_leg2);
+        let t75 = 1.0 / t51;
+        let t76 = 0.48 * t48;
+        let c_arm_leg2 = t75 * (t76 * t57 - t14 * t60);
+        let c_cross_leg2 = (t55 - (0.0576 + t65) - 0.3136 * t67) / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t75 * (t14 * t57 + t76 * t60);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t76 = t55 * c_armcross_leg2;
-        let t79 = 1.5464739353293548 * t76 - 0.5 * c_rod_leg2;
-        let t83 = pose[2] - 0.24 * minus_s_arm_leg2;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t55;
-        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
-            - minus_s_arm_leg2 * c_cross_leg2;
-        let t88 = minus_s_rod_leg2 * s_armcross_leg2;
-        let t89 = t83 * t88;
-        let t95 = 0.8928571428571429 * t76 + 0.8660254037844387 * c_rod_leg2;
-        let t99 = t52 * (0.56 * t95) - 0.28 * t89;
-        let t108 = 0.20784609690826528 * minus_s_arm_leg2 * t99
-            - 0.8660254037844387 * t83
-                * (0.1344 * (c_arm_leg2 * t95) - 0.0672 * (minus_s_arm_leg2 * t88));
-        let t111 = t108 - 0.14 * (t47 * t79);
-        ::overact::guard::leg(t111, 0.06758306237512474, "leg2")?;
-        let t112 = 1.0 / t111;
-        let garm_vx_leg2 = (t52 * (0.56 * t79) - 0.4849742261192857 * t89) * t112;
-        let t115 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t117 = t31 + 0.8660254037844387 * t115;
-        let t120 = 0.2304 * (t117 * t117 + t3);
-        let t121 = 1.0 / t120;
-        let t122 = 0.48 * t117;
-        let t125 = t38 + t115 * t115 + t3;
-        let t127 = t125 - 0.3136 + 0.0576;
-        let t130 = t120 - t127 * t127;
-        ::overact::guard::reach(t130, "leg3")?;
-        let t131 = ::overact::math::sqrt(t130);
-        let minus_c_arm_leg3 = t121 * (t122 * t127 + t14 * t131);
-        let t136 = t117 - 0.24 * minus_c_arm_leg3;
-        let t138 = t53 - 0.5 * t115;
-        let t139 = t138 * t138;
-        let t143 = 1.0 - 3.188775510204082 * t139;
-        ::overact::guard::reach(t143, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t143);
-        let c_cross_leg3 = (t125 - (0.0576 + t139) - 0.3136 * t143)
+        let garm_vx_leg2 = t71 * (0.8660254037844387 * t73 - 0.5 * c_armcross_leg2);
+        let t98 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t100 = t47 + 0.8660254037844387 * t98;
+        let t103 = 0.2304 * (t100 * t100 + t3);
+        let t106 = t52 + t98 * t98 + t3;
+        let t108 = t106 - 0.3136 + 0.0576;
+        let t110 = t103 - t108 * t108;
+        ::overact::guard::reach(t110, "leg3")?;
+        let t111 = ::overact::math::sqrt(t110);
+        let t114 = t62 - 0.5 * t98;
+        let t115 = t114 * t114;
+        let t117 = 1.0 - 3.188775510204082 * t115;
+        ::overact::guard::reach(t117, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t117);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let s_cross_leg3 = 2.0833333333333335 * t111 / (0.56 * c_rod_leg3);
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
+        let t121 = 4.166666666666667 / s_cross_leg3;
+        let t122 = 1.0 / t103;
+        let t123 = 0.48 * t100;
+        let minus_c_arm_leg3 = t122 * (t123 * t108 + t14 * t111);
+        let c_cross_leg3 = (t106 - (0.0576 + t115) - 0.3136 * t117)
             / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t121 * (t122 * t131 - t14 * t127);
-        let s_cross_leg3 = 2.0833333333333335 * t131 / (0.56 * c_rod_leg3);
+        let s_arm_leg3 = t122 * (t123 * t111 - t14 * t108);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t159 = t138 * minus_c_armcross_leg3;
-        let t162 = 1.5464739353293548 * t159 + 0.5 * c_rod_leg3;
-        let t166 = pose[2] + 0.24 * s_arm_leg3;
-        let s_rod_leg3 = 1.7857142857142858 * t138;
+        let t143 = t114 * (1.7857142857142858 / c_rod_leg3);
+        let garm_vx_leg3 = t121
+            * (0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t143);
+        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
+        let garm_vy_leg1 = t40 * (pose[1] * grod_vy_leg1);
+        let garm_vy_leg2 = t71 * (0.8660254037844387 * c_armcross_leg2 + 0.5 * t73);
+        let garm_vy_leg3 = t121
+            * (0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t143);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t40;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t71;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t171 = s_rod_leg3 * s_armcross_leg3;
-        let t172 = t166 * t171;
-        let t178 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t159;
-        let t182 = t136 * (0.56 * t178) + 0.28 * t172;
-        let t191 = 0.20784609690826528 * s_arm_leg3 * t182
-            + 0.8660254037844387 * t166
-                * (0.1344 * (minus_c_arm_leg3 * t178) - 0.0672 * (s_arm_leg3 * t171));
-        let t194 = t191 + 0.14 * (t131 * t162);
-        ::overact::guard::leg(t194, 0.06758306237512474, "leg3")?;
-        let t195 = 1.0 / t194;
-        let garm_vx_leg3 = (t136 * (0.56 * t162) - 0.4849742261192857 * t172) * t195;
-        let garm_vy_leg1 = pose[1] * t24;
-        let garm_vy_leg2 = t99 * t112;
-        let garm_vy_leg3 = t182 * t195;
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let garm_vz_leg1 = (pose[2] - 0.24 * minus_s_arm_leg1) * t24;
-        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t83) * t112;
-        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t166) * t195;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t121;
         Ok([
-            [garm_vx_leg1, garm_vy_leg1, garm_vz_leg1], [garm_vx_leg2, garm_vy_leg2, garm_vz_leg2],
-            [garm_vx_leg3, garm_vy_leg3, garm_vz_leg3],
+            [garm_vx_leg1, garm_vy_leg1, -minus_garm_vz_leg1],
+            [garm_vx_leg2, garm_vy_leg2, -minus_garm_vz_leg2],
+            [garm_vx_leg3, garm_vy_leg3, -minus_garm_vz_leg3],
         ])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
@@ -561,7 +553,7 @@ impl Delta {
     ///
     /// Output: 3 x 3.
     ///
-    /// 114 operations (26 additions, 85 multiplications, 3 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 123 intermediates.
+    /// 30 operations (7 additions, 17 multiplications, 6 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 36 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -570,65 +562,38 @@ impl Delta {
         joints: &[f64; 9],
     ) -> Result<[[f64; 3]; 3], ::overact::Error> {
         let t0 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t0);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        let t5 = c_armcross_leg1 * c_rod_leg1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t8 = s_armcross_leg1 * c_rod_leg1;
-        let t11 = c_arm_leg1 * t8 - s_arm_leg1 * t5;
-        ::overact::guard::leg(t11, 0.89794672585951, "leg1")?;
-        let t12 = 4.166666666666667 / t11;
-        let garm_vx_leg1 = t5 * t12;
-        let t14 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t14);
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t19 = s_armcross_leg2 * c_rod_leg2;
-        let t20 = s_armcross_leg2 * s_rod_leg2;
-        let t21 = t19 * t20;
-        let t23 = 0.5 * c_armcross_leg2;
-        let t24 = t23 * c_rod_leg2;
-        let t28 = 0.8660254037844387 * c_armcross_leg2 * s_rod_leg2 + 0.5 * c_rod_leg2;
-        let t32 = 0.4849742261192857 * t19;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t42 = t23 * s_rod_leg2 - 0.8660254037844387 * c_rod_leg2;
-        let t46 = 0.6272 * (t24 * t42) + 0.1568 * t21;
-        let t54 = (t32 - 0.8660254037844387 * (0.24 * s_arm_leg2 + 0.56 * t19)) * t46
-            + t32 * (0.1344 * (c_arm_leg2 * t42) + 0.0672 * (s_arm_leg2 * t20));
-        let t62 = t54
-            + 0.56 * t28 * (0.1344 * (s_arm_leg2 * t24) - 0.0672 * (c_arm_leg2 * t19));
-        ::overact::guard::leg(t62, 0.06758306237509017, "leg2")?;
-        let t63 = 1.0 / t62;
-        let garm_vx_leg2 = (0.2715855666268 * t21 + 0.6272 * (t24 * t28)) * t63;
-        let t65 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t65);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t70 = s_armcross_leg3 * c_rod_leg3;
-        let t71 = s_armcross_leg3 * s_rod_leg3;
-        let t72 = t70 * t71;
-        let t74 = 0.5 * c_armcross_leg3;
-        let t75 = t74 * c_rod_leg3;
-        let t79 = 0.8660254037844387 * c_armcross_leg3 * s_rod_leg3 - 0.5 * c_rod_leg3;
-        let t83 = 0.4849742261192857 * t70;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t88 = t74 * s_rod_leg3 + 0.8660254037844387 * c_rod_leg3;
-        let t103 = 0.6272 * (t75 * t88) + 0.1568 * t72;
-        let t105 = t83 * (0.1344 * (c_arm_leg3 * t88) + 0.0672 * (s_arm_leg3 * t71))
-            - (0.8660254037844387 * (0.24 * s_arm_leg3 + 0.56 * t70) - t83) * t103;
-        let t113 = t105
-            + 0.56 * t79 * (0.1344 * (s_arm_leg3 * t75) - 0.0672 * (c_arm_leg3 * t70));
-        ::overact::guard::leg(t113, 0.06758306237509014, "leg3")?;
-        let t114 = 1.0 / t113;
-        let garm_vx_leg3 = (0.2715855666268 * t72 + 0.6272 * (t75 * t79)) * t114;
-        let garm_vy_leg1 = s_rod_leg1 * t12;
-        let garm_vy_leg2 = t46 * t63;
-        let minus_garm_vy_leg3 = t103 * t114;
-        let minus_garm_vz_leg1 = t8 * t12;
-        let garm_vz_leg2 = (0.1568 * (t28 * t19) - 0.2715855666268 * (t42 * t19)) * t63;
-        let minus_garm_vz_leg3 = (0.2715855666268 * (t88 * t70) - 0.1568 * (t79 * t70))
-            * t114;
+        let t8 = joints[3] + joints[4];
+        let t24 = joints[6] + joints[7];
+        let [(s_armcross_leg1, c_armcross_leg1), (s_cross_leg1, _), (s_cross_leg2, _),
+        (s_armcross_leg2, c_armcross_leg2), (s_rod_leg2, c_rod_leg2), (s_cross_leg3, _),
+        (s_rod_leg3, c_rod_leg3), (s_armcross_leg3, c_armcross_leg3),
+        (s_rod_leg1, c_rod_leg1)] = ::overact::math::sin_cos_all([
+            t0, joints[1], joints[4], t8, joints[5], joints[7], joints[8], t24, joints[2],
+        ]);
+        ::overact::guard::leg(s_cross_leg1, 0.89794672585951, "leg1")?;
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258595101, "leg2")?;
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258595097, "leg3")?;
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let t4 = 4.166666666666667 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t4;
+        let t7 = 4.166666666666667 / s_cross_leg2;
+        let t14 = s_rod_leg2 / c_rod_leg2;
+        let minus_garm_vx_leg2 = t7 * (0.5 * c_armcross_leg2 + 0.8660254037844387 * t14);
+        let t19 = 4.166666666666667 / s_cross_leg3;
+        let t22 = s_rod_leg3 / c_rod_leg3;
+        let garm_vx_leg3 = t19 * (0.8660254037844387 * t22 - 0.5 * c_armcross_leg3);
+        let garm_vy_leg1 = t4 * (s_rod_leg1 / c_rod_leg1);
+        let garm_vy_leg2 = t7 * (0.8660254037844387 * c_armcross_leg2 - 0.5 * t14);
+        let minus_garm_vy_leg3 = t19
+            * (0.8660254037844387 * c_armcross_leg3 + 0.5 * t22);
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t4;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t7;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t19;
         Ok([
             [garm_vx_leg1, garm_vy_leg1, -minus_garm_vz_leg1],
-            [garm_vx_leg2, garm_vy_leg2, garm_vz_leg2],
+            [-minus_garm_vx_leg2, garm_vy_leg2, -minus_garm_vz_leg2],
             [garm_vx_leg3, -minus_garm_vy_leg3, -minus_garm_vz_leg3],
         ])
     }
@@ -639,155 +604,149 @@ impl Delta {
     ///
     /// Output: 3 x 3.
     ///
-    /// 297 operations (103 additions, 181 multiplications, 13 divisions), 5 square roots, 0 trigonometric pairs, 0 signs, 293 intermediates.
+    /// 253 operations (92 additions, 143 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 250 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let t0 = pose[0] + 0.05;
-        let t1 = t0 - 0.2;
+        let t1 = pose[0] + 0.05 - 0.2;
         let t2 = t1 * t1;
         let t3 = pose[2] * pose[2];
         let t5 = 0.2304 * (t2 + t3);
         let t6 = 1.0 / t5;
         let t7 = 0.48 * t1;
-        let t12 = t2 + pose[1] * pose[1] + t3 - 0.3136 + 0.0576;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.3136 + 0.0576;
         let t14 = 0.48 * pose[2];
         let t16 = t5 - t12 * t12;
         ::overact::guard::reach(t16, "leg1")?;
         let t17 = ::overact::math::sqrt(t16);
-        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
         let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t24 = 2.0 / t17;
-        let garm_vx_leg1 = (t0 - (0.2 + 0.24 * c_arm_leg1)) * t24;
-        let t28 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t31 = pose[0] - 0.025 + 0.1;
-        let t32 = 0.5 * t31;
-        let t33 = 0.8660254037844387 * t28 - t32;
-        let t36 = 0.2304 * (t33 * t33 + t3);
-        let t37 = 1.0 / t36;
-        let t38 = 0.48 * t33;
-        let t39 = t31 * t31;
-        let t42 = t39 + t28 * t28 + t3;
-        let t44 = t42 - 0.3136 + 0.0576;
-        let t47 = t36 - t44 * t44;
-        ::overact::guard::reach(t47, "leg2")?;
-        let t48 = ::overact::math::sqrt(t47);
-        let c_arm_leg2 = t37 * (t38 * t44 - t14 * t48);
-        let t53 = t33 - 0.24 * c_arm_leg2;
-        let t54 = 0.8660254037844387 * t31;
-        let t56 = t54 + 0.5 * t28;
-        let t57 = t56 * t56;
-        let t61 = 1.0 - 3.188775510204082 * t57;
-        ::overact::guard::reach(t61, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t61);
-        let c_cross_leg2 = (t42 - (0.0576 + t57) - 0.3136 * t61) / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t37 * (t14 * t44 + t38 * t48);
-        let s_cross_leg2 = 2.0833333333333335 * t48 / (0.56 * c_rod_leg2);
+        let t24 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t24, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t24);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let t40 = 4.166666666666667 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t40;
+        let t44 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t47 = pose[0] - 0.025 + 0.1;
+        let t48 = 0.5 * t47;
+        let t49 = 0.8660254037844387 * t44 - t48;
+        let t52 = 0.2304 * (t49 * t49 + t3);
+        let t53 = t47 * t47;
+        let t56 = t53 + t44 * t44 + t3;
+        let t58 = t56 - 0.3136 + 0.0576;
+        let t60 = t52 - t58 * t58;
+        ::overact::guard::reach(t60, "leg2")?;
+        let t61 = ::overact::math::sqrt(t60);
+        let t63 = 0.8660254037844387 * t47;
+        let t65 = t63 + 0.5 * t44;
+        let t66 = t65 * t65;
+        let t68 = 1.0 - 3.188775510204082 * t66;
+        ::overact::guard::reach(t68, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t68);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let s_cross_leg2 = 2.0833333333333335 * t61 / (0.56 * c_rod_leg2);
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
+        let t72 = 4.166666666666667 / s_cross_leg2;
+        let t74 = t65 * (1.7857142857142858 / c_rod_leg2);
+        let t76 = 1.0 / t52;
+        let t77 = 0.48 * t49;
+        let c_arm_leg2 = t76 * (t77 * t58 - t14 * t61);
+        let c_cross_leg2 = (t56 - (0.0576 + t66) - 0.3136 * t68) / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t76 * (t14 * t58 + t77 * t61);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t77 = t56 * c_armcross_leg2;
-        let t80 = 1.5464739353293548 * t77 - 0.5 * c_rod_leg2;
-        let t84 = pose[2] - 0.24 * minus_s_arm_leg2;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t56;
-        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
-            - minus_s_arm_leg2 * c_cross_leg2;
-        let t89 = minus_s_rod_leg2 * s_armcross_leg2;
-        let t90 = t84 * t89;
-        let t96 = 0.8928571428571429 * t77 + 0.8660254037844387 * c_rod_leg2;
-        let t100 = t53 * (0.56 * t96) - 0.28 * t90;
-        let t109 = 0.20784609690826528 * minus_s_arm_leg2 * t100
-            - 0.8660254037844387 * t84
-                * (0.1344 * (c_arm_leg2 * t96) - 0.0672 * (minus_s_arm_leg2 * t89));
-        let t112 = t109 - 0.14 * (t48 * t80);
-        ::overact::guard::leg(t112, 0.06758306237512474, "leg2")?;
-        let t113 = 1.0 / t112;
-        let garm_vx_leg2 = (t53 * (0.56 * t80) - 0.4849742261192857 * t90) * t113;
-        let t118 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t120 = t32 + 0.8660254037844387 * t118;
-        let t123 = 0.2304 * (t120 * t120 + t3);
-        let t124 = 1.0 / t123;
-        let t125 = 0.48 * t120;
-        let t128 = t39 + t118 * t118 + t3;
-        let t130 = t128 - 0.3136 + 0.0576;
-        let t133 = t123 - t130 * t130;
-        ::overact::guard::reach(t133, "leg3")?;
-        let t134 = ::overact::math::sqrt(t133);
-        let minus_c_arm_leg3 = t124 * (t125 * t130 + t14 * t134);
-        let t139 = t120 - 0.24 * minus_c_arm_leg3;
-        let t141 = t54 - 0.5 * t118;
-        let t142 = t141 * t141;
-        let t146 = 1.0 - 3.188775510204082 * t142;
-        ::overact::guard::reach(t146, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t146);
-        let c_cross_leg3 = (t128 - (0.0576 + t142) - 0.3136 * t146)
+        let garm_vx_leg2 = t72 * (0.8660254037844387 * t74 - 0.5 * c_armcross_leg2);
+        let t101 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t103 = t48 + 0.8660254037844387 * t101;
+        let t106 = 0.2304 * (t103 * t103 + t3);
+        let t109 = t53 + t101 * t101 + t3;
+        let t111 = t109 - 0.3136 + 0.0576;
+        let t113 = t106 - t111 * t111;
+        ::overact::guard::reach(t113, "leg3")?;
+        let t114 = ::overact::math::sqrt(t113);
+        let t117 = t63 - 0.5 * t101;
+        let t118 = t117 * t117;
+        let t120 = 1.0 - 3.188775510204082 * t118;
+        ::overact::guard::reach(t120, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t120);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let s_cross_leg3 = 2.0833333333333335 * t114 / (0.56 * c_rod_leg3);
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
+        let t124 = 4.166666666666667 / s_cross_leg3;
+        let t125 = 1.0 / t106;
+        let t126 = 0.48 * t103;
+        let minus_c_arm_leg3 = t125 * (t126 * t111 + t14 * t114);
+        let c_cross_leg3 = (t109 - (0.0576 + t118) - 0.3136 * t120)
             / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t124 * (t125 * t134 - t14 * t130);
-        let s_cross_leg3 = 2.0833333333333335 * t134 / (0.56 * c_rod_leg3);
+        let s_arm_leg3 = t125 * (t126 * t114 - t14 * t111);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t162 = t141 * minus_c_armcross_leg3;
-        let t165 = 1.5464739353293548 * t162 + 0.5 * c_rod_leg3;
-        let t169 = pose[2] + 0.24 * s_arm_leg3;
-        let s_rod_leg3 = 1.7857142857142858 * t141;
+        let t146 = t117 * (1.7857142857142858 / c_rod_leg3);
+        let garm_vx_leg3 = t124
+            * (0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t146);
+        let t151 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3;
+        ::overact::guard::platform(t151, 14.869730172882841, "actuators")?;
+        let t152 = 1.0 / t151;
+        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
+        let garm_vy_leg1 = t40 * (pose[1] * grod_vy_leg1);
+        let garm_vy_leg2 = t72 * (0.8660254037844387 * c_armcross_leg2 + 0.5 * t74);
+        let garm_vy_leg3 = t124
+            * (0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t146);
+        let t169 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3;
+        let t170 = t169 * t152;
+        let t177 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t169 * t170;
+        ::overact::guard::platform(t177, 14.869730172882846, "actuators")?;
+        let t178 = 1.0 / t177;
+        let t180 = garm_vy_leg1 - garm_vx_leg1 * t170;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t40;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t72;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t174 = s_rod_leg3 * s_armcross_leg3;
-        let t175 = t169 * t174;
-        let t181 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t162;
-        let t185 = t139 * (0.56 * t181) + 0.28 * t175;
-        let t194 = 0.20784609690826528 * s_arm_leg3 * t185
-            + 0.8660254037844387 * t169
-                * (0.1344 * (minus_c_arm_leg3 * t181) - 0.0672 * (s_arm_leg3 * t174));
-        let t197 = t194 + 0.14 * (t134 * t165);
-        ::overact::guard::leg(t197, 0.06758306237512474, "leg3")?;
-        let t198 = 1.0 / t197;
-        let garm_vx_leg3 = (t139 * (0.56 * t165) - 0.4849742261192857 * t175) * t198;
-        let t201 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t201, 14.869730172882845, "actuators")?;
-        let t202 = 1.0 / t201;
-        let garm_vy_leg1 = pose[1] * t24;
-        let garm_vy_leg2 = t100 * t113;
-        let garm_vy_leg3 = t185 * t198;
-        let t211 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
-            + garm_vx_leg3 * garm_vy_leg3;
-        let t212 = t211 * t202;
-        let t219 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t211 * t212;
-        ::overact::guard::platform(t219, 14.869730172882843, "actuators")?;
-        let t220 = 1.0 / t219;
-        let t222 = garm_vy_leg1 - garm_vx_leg1 * t212;
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let garm_vz_leg1 = (pose[2] - 0.24 * minus_s_arm_leg1) * t24;
-        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t84) * t113;
-        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t169) * t198;
-        let t246 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
-            + garm_vx_leg3 * garm_vz_leg3;
-        let t247 = t246 * t202;
-        let t249 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
-            + garm_vy_leg3 * garm_vz_leg3 - t211 * t247;
-        let t250 = t249 * t220;
-        let t259 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + garm_vz_leg3 * garm_vz_leg3 - t246 * t247 - t249 * t250;
-        ::overact::guard::platform(t259, 34.855350201355726, "actuators")?;
-        let t260 = 1.0 / t259;
-        let t265 = t260 * (garm_vz_leg1 - garm_vx_leg1 * t247 - t250 * t222);
-        let t267 = t220 * t222 - t250 * t265;
-        let t274 = garm_vy_leg2 - garm_vx_leg2 * t212;
-        let t280 = t260 * (garm_vz_leg2 - garm_vx_leg2 * t247 - t250 * t274);
-        let t282 = t220 * t274 - t250 * t280;
-        let t289 = garm_vy_leg3 - garm_vx_leg3 * t212;
-        let t295 = t260 * (garm_vz_leg3 - garm_vx_leg3 * t247 - t250 * t289);
-        let t297 = t220 * t289 - t250 * t295;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t124;
+        let t198 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+            + garm_vx_leg3 * minus_garm_vz_leg3;
+        let t199 = t198 * t152;
+        let t206 = t169 * t199
+            - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
+                + garm_vy_leg3 * minus_garm_vz_leg3);
+        let t207 = t206 * t178;
+        let t216 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+            + minus_garm_vz_leg2 * minus_garm_vz_leg2
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t198 * t199 - t206 * t207;
+        ::overact::guard::platform(t216, 34.855350201355726, "actuators")?;
+        let t217 = 1.0 / t216;
+        let t222 = t217 * (garm_vx_leg1 * t199 - minus_garm_vz_leg1 - t207 * t180);
+        let t224 = t178 * t180 - t207 * t222;
+        let t231 = garm_vy_leg2 - garm_vx_leg2 * t170;
+        let t237 = t217 * (garm_vx_leg2 * t199 - minus_garm_vz_leg2 - t207 * t231);
+        let t239 = t178 * t231 - t207 * t237;
+        let t246 = garm_vy_leg3 - garm_vx_leg3 * t170;
+        let t252 = t217 * (garm_vx_leg3 * t199 - minus_garm_vz_leg3 - t207 * t246);
+        let t254 = t178 * t246 - t207 * t252;
         Ok([
             [
-                garm_vx_leg1 * t202 - t212 * t267 - t247 * t265,
-                garm_vx_leg2 * t202 - t212 * t282 - t247 * t280,
-                garm_vx_leg3 * t202 - t212 * t297 - t247 * t295,
+                garm_vx_leg1 * t152 - t170 * t224 + t199 * t222,
+                garm_vx_leg2 * t152 - t170 * t239 + t199 * t237,
+                garm_vx_leg3 * t152 - t170 * t254 + t199 * t252,
             ],
-            [t267, t282, t297],
-            [t265, t280, t295],
+            [t224, t239, t254],
+            [t222, t237, t252],
         ])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -804,39 +763,37 @@ impl Delta {
         _pose: &[f64; 3],
         joints: &[f64; 9],
     ) -> [[f64; 9]; 9] {
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
         let t3 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t3);
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
+        let t23 = joints[3] + joints[4];
+        let t66 = joints[6] + joints[7];
+        let [(s_arm_leg1, c_arm_leg1), (s_armcross_leg1, c_armcross_leg1),
+        (s_rod_leg1, c_rod_leg1), (s_arm_leg2, c_arm_leg2),
+        (s_armcross_leg2, c_armcross_leg2), (s_rod_leg2, c_rod_leg2),
+        (s_arm_leg3, c_arm_leg3), (s_armcross_leg3, c_armcross_leg3),
+        (s_rod_leg3, c_rod_leg3)] = ::overact::math::sin_cos_all([
+            joints[0], t3, joints[2], joints[3], t23, joints[5], joints[6], t66, joints[8],
+        ]);
         let t9 = 0.56 * (s_armcross_leg1 * c_rod_leg1);
         let t13 = 0.56 * (c_armcross_leg1 * c_rod_leg1);
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t23 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t23);
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
         let t28 = s_armcross_leg2 * c_rod_leg2;
         let t30 = 0.24 * s_arm_leg2 + 0.56 * t28;
         let t34 = 0.8660254037844387 * c_armcross_leg2;
         let t42 = 0.5 * c_armcross_leg2;
-        let t43 = t42 * c_rod_leg2;
+        let t43 = c_rod_leg2 * t42;
         let t49 = 0.8660254037844387
             * (0.20784609690826528 * c_arm_leg2
-                + 0.56 * (t34 * c_rod_leg2 - 0.5 * s_rod_leg2))
+                + 0.56 * (c_rod_leg2 * t34 - 0.5 * s_rod_leg2))
             + 0.5 * (0.12 * c_arm_leg2 + 0.56 * (t43 + 0.8660254037844387 * s_rod_leg2));
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t66 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t66);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
         let t71 = s_armcross_leg3 * c_rod_leg3;
         let t73 = 0.24 * s_arm_leg3 + 0.56 * t71;
         let t77 = 0.5 * c_armcross_leg3;
-        let t78 = t77 * c_rod_leg3;
+        let t78 = c_rod_leg3 * t77;
         let t85 = 0.8660254037844387 * c_armcross_leg3;
         let t92 = 0.5
             * (0.56 * (0.8660254037844387 * s_rod_leg3 - t78) - 0.12 * c_arm_leg3)
             - 0.8660254037844387
                 * (0.20784609690826528 * c_arm_leg3
-                    + 0.56 * (t85 * c_rod_leg3 + 0.5 * s_rod_leg3));
+                    + 0.56 * (c_rod_leg3 * t85 + 0.5 * s_rod_leg3));
         [
             [
                 -(0.24 * s_arm_leg1 + t9), -t9, -(0.56 * (c_armcross_leg1 * s_rod_leg1)), 0.0, 0.0,
@@ -849,11 +806,11 @@ impl Delta {
             ],
             [
                 0.0, 0.0, 0.0, 0.5 * t30, 0.28 * t28,
-                0.56 * (t42 * s_rod_leg2 - 0.8660254037844387 * c_rod_leg2), 0.0, 0.0, 0.0,
+                0.56 * (s_rod_leg2 * t42 - 0.8660254037844387 * c_rod_leg2), 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, -(0.8660254037844387 * t30), -(0.4849742261192857 * t28),
-                -(0.56 * (t34 * s_rod_leg2 + 0.5 * c_rod_leg2)), 0.0, 0.0, 0.0,
+                -(0.56 * (s_rod_leg2 * t34 + 0.5 * c_rod_leg2)), 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, -t49, -(1.12 * t43), 0.56 * (s_armcross_leg2 * s_rod_leg2), 0.0, 0.0,
@@ -861,11 +818,11 @@ impl Delta {
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5 * t73, 0.28 * t71,
-                0.56 * (t77 * s_rod_leg3 + 0.8660254037844387 * c_rod_leg3),
+                0.56 * (s_rod_leg3 * t77 + 0.8660254037844387 * c_rod_leg3),
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.8660254037844387 * t73, 0.4849742261192857 * t71,
-                0.56 * (t85 * s_rod_leg3 - 0.5 * c_rod_leg3),
+                0.56 * (s_rod_leg3 * t85 - 0.5 * c_rod_leg3),
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t92, -(1.12 * t78),
@@ -900,7 +857,7 @@ impl Delta {
     ///
     /// Output: 3 x 3.
     ///
-    /// 67 operations (14 additions, 52 multiplications, 1 divisions), 0 square roots, 7 trigonometric pairs, 0 signs, 72 intermediates.
+    /// 48 operations (7 additions, 35 multiplications, 6 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 54 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -908,48 +865,47 @@ impl Delta {
         _pose: &[f64; 3],
         joints: &[f64; 9],
     ) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t4 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t4);
-        let t7 = s_armcross_leg1 * c_rod_leg1;
-        let t9 = c_armcross_leg1 * c_rod_leg1;
-        let t11 = c_arm_leg1 * t7 - s_arm_leg1 * t9;
-        ::overact::guard::leg(t11, 0.89794672585951, "leg1")?;
-        let t13 = 0.075264 * (c_rod_leg1 * t11);
-        let t14 = 4.166666666666667 / t11;
-        let garm_vx_leg1 = t9 * t14;
-        let t17 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t17);
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t22 = s_armcross_leg2 * c_rod_leg2;
-        let t24 = t22 * (s_armcross_leg2 * s_rod_leg2);
-        let t26 = 0.5 * c_armcross_leg2;
-        let t27 = t26 * c_rod_leg2;
-        let t31 = 0.8660254037844387 * c_armcross_leg2 * s_rod_leg2 + 0.5 * c_rod_leg2;
-        let t35 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t35);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t40 = s_armcross_leg3 * c_rod_leg3;
-        let t42 = t40 * (s_armcross_leg3 * s_rod_leg3);
-        let t44 = 0.5 * c_armcross_leg3;
-        let t45 = t44 * c_rod_leg3;
-        let t49 = 0.8660254037844387 * c_armcross_leg3 * s_rod_leg3 - 0.5 * c_rod_leg3;
-        let garm_vy_leg1 = s_rod_leg1 * t14;
-        let t57 = t26 * s_rod_leg2 - 0.8660254037844387 * c_rod_leg2;
-        let t64 = t44 * s_rod_leg3 + 0.8660254037844387 * c_rod_leg3;
-        let minus_garm_vz_leg1 = t7 * t14;
+        let t6 = joints[0] + joints[1];
+        let t19 = joints[3] + joints[4];
+        let t37 = joints[6] + joints[7];
+        let [(s_rod_leg1, c_rod_leg1), (s_cross_leg1, _),
+        (s_armcross_leg1, c_armcross_leg1), (s_rod_leg2, c_rod_leg2), (s_cross_leg2, _),
+        (s_armcross_leg2, c_armcross_leg2), (s_rod_leg3, c_rod_leg3), (s_cross_leg3, _),
+        (s_armcross_leg3, c_armcross_leg3)] = ::overact::math::sin_cos_all([
+            joints[2], joints[1], t6, joints[5], joints[4], t19, joints[8], joints[7], t37,
+        ]);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        ::overact::guard::leg(s_cross_leg1, 0.89794672585951, "leg1")?;
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258595101, "leg2")?;
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258595097, "leg3")?;
+        let t5 = 0.075264 * (c_rod_leg1 * (s_cross_leg1 * c_rod_leg1));
+        let t9 = 4.166666666666667 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t9;
+        let t17 = 0.075264 * (c_rod_leg2 * (s_cross_leg2 * c_rod_leg2));
+        let t18 = 4.166666666666667 / s_cross_leg2;
+        let t23 = s_rod_leg2 / c_rod_leg2;
+        let minus_garm_vx_leg2 = t18
+            * (0.5 * c_armcross_leg2 + 0.8660254037844387 * t23);
+        let t33 = 0.075264 * (c_rod_leg3 * (s_cross_leg3 * c_rod_leg3));
+        let t34 = 4.166666666666667 / s_cross_leg3;
+        let t35 = s_rod_leg3 / c_rod_leg3;
+        let garm_vx_leg3 = t34 * (0.8660254037844387 * t35 - 0.5 * c_armcross_leg3);
+        let garm_vy_leg1 = t9 * (s_rod_leg1 / c_rod_leg1);
+        let garm_vy_leg2 = t18 * (0.8660254037844387 * c_armcross_leg2 - 0.5 * t23);
+        let minus_garm_vy_leg3 = t34
+            * (0.8660254037844387 * c_armcross_leg3 + 0.5 * t35);
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t9;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t18;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t34;
         Ok([
-            [t13 * garm_vx_leg1, t13 * garm_vy_leg1, -(t13 * minus_garm_vz_leg1)],
+            [t5 * garm_vx_leg1, garm_vy_leg1 * t5, -(t5 * minus_garm_vz_leg1)],
             [
-                -(0.2715855666268 * t24 + 0.6272 * (t27 * t31)),
-                -(0.6272 * (t27 * t57) + 0.1568 * t24),
-                -(0.1568 * (t31 * t22) - 0.2715855666268 * (t57 * t22)),
+                -(t17 * minus_garm_vx_leg2), t17 * garm_vy_leg2, -(t17 * minus_garm_vz_leg2),
             ],
             [
-                0.2715855666268 * t42 + 0.6272 * (t45 * t49),
-                -(0.6272 * (t45 * t64) + 0.1568 * t42),
-                -(0.2715855666268 * (t64 * t40) - 0.1568 * (t49 * t40)),
+                t33 * garm_vx_leg3, -(t33 * minus_garm_vy_leg3), -(t33 * minus_garm_vz_leg3),
             ],
         ])
     }
@@ -961,66 +917,20 @@ impl Delta {
     ///
     /// Output: 3 x 3.
     ///
-    /// 86 operations (22 additions, 64 multiplications, 0 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 100 intermediates.
+    /// 9 operations (0 additions, 9 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 12 intermediates.
     #[must_use]
     pub fn closure_actuator_jacobian_from_joints(
         _pose: &[f64; 3],
         joints: &[f64; 9],
     ) -> [[f64; 3]; 3] {
-        let c_rod_leg1 = ::overact::math::sin_cos(joints[2]).1;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let t3 = joints[0] + joints[1];
-        let (s_armcross_leg1, c_armcross_leg1) = ::overact::math::sin_cos(t3);
-        let t13 = joints[3] + joints[4];
-        let (s_armcross_leg2, c_armcross_leg2) = ::overact::math::sin_cos(t13);
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t18 = s_armcross_leg2 * c_rod_leg2;
-        let t19 = 0.4849742261192857 * t18;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let t27 = 0.5 * c_armcross_leg2;
-        let t28 = t27 * c_rod_leg2;
-        let t31 = t27 * s_rod_leg2 - 0.8660254037844387 * c_rod_leg2;
-        let t34 = s_armcross_leg2 * s_rod_leg2;
-        let t38 = (t19 - 0.8660254037844387 * (0.24 * s_arm_leg2 + 0.56 * t18))
-            * (0.6272 * (t28 * t31) + 0.1568 * (t18 * t34));
-        let t56 = 0.56
-            * (0.8660254037844387 * c_armcross_leg2 * s_rod_leg2 + 0.5 * c_rod_leg2)
-            * (0.1344 * (s_arm_leg2 * t28) - 0.0672 * (c_arm_leg2 * t18));
-        let t58 = joints[6] + joints[7];
-        let (s_armcross_leg3, c_armcross_leg3) = ::overact::math::sin_cos(t58);
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t63 = s_armcross_leg3 * c_rod_leg3;
-        let t64 = 0.4849742261192857 * t63;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t67 = 0.5 * c_armcross_leg3;
-        let t70 = t67 * s_rod_leg3 + 0.8660254037844387 * c_rod_leg3;
-        let t73 = s_armcross_leg3 * s_rod_leg3;
-        let t83 = t67 * c_rod_leg3;
-        let t89 = (0.8660254037844387 * (0.24 * s_arm_leg3 + 0.56 * t63) - t64)
-            * (0.6272 * (t83 * t70) + 0.1568 * (t63 * t73));
-        let t101 = 0.56
-            * (0.8660254037844387 * c_armcross_leg3 * s_rod_leg3 - 0.5 * c_rod_leg3)
-            * (0.1344 * (s_arm_leg3 * t83) - 0.0672 * (c_arm_leg3 * t63));
+        let [(_, c_rod_leg1), (s_cross_leg1, _), (_, c_rod_leg2), (s_cross_leg2, _),
+        (_, c_rod_leg3), (s_cross_leg3, _)] = ::overact::math::sin_cos_all([
+            joints[2], joints[1], joints[5], joints[4], joints[8], joints[7],
+        ]);
         [
-            [
-                -(0.075264
-                    * (c_rod_leg1
-                        * (c_arm_leg1 * (s_armcross_leg1 * c_rod_leg1)
-                            - s_arm_leg1 * (c_armcross_leg1 * c_rod_leg1)))),
-                0.0,
-                0.0,
-            ],
-            [
-                0.0,
-                t38 + t19 * (0.1344 * (c_arm_leg2 * t31) + 0.0672 * (s_arm_leg2 * t34))
-                    + t56,
-                0.0,
-            ],
-            [
-                0.0, 0.0,
-                -(t64 * (0.1344 * (c_arm_leg3 * t70) + 0.0672 * (s_arm_leg3 * t73)) - t89
-                    + t101),
-            ],
+            [-(0.075264 * (c_rod_leg1 * (s_cross_leg1 * c_rod_leg1))), 0.0, 0.0],
+            [0.0, -(0.075264 * (c_rod_leg2 * (s_cross_leg2 * c_rod_leg2))), 0.0],
+            [0.0, 0.0, -(0.075264 * (c_rod_leg3 * (s_cross_leg3 * c_rod_leg3)))],
         ]
     }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
@@ -1031,7 +941,7 @@ impl Delta {
     ///
     /// Output: 9.
     ///
-    /// 318 operations (99 additions, 206 multiplications, 13 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 315 intermediates.
+    /// 226 operations (78 additions, 133 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 223 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1039,169 +949,131 @@ impl Delta {
         pose: &[f64; 3],
         twist: &[f64; 3],
     ) -> Result<[f64; 9], ::overact::Error> {
-        let t0 = pose[0] + 0.05;
-        let t1 = t0 - 0.2;
+        let t1 = pose[0] + 0.05 - 0.2;
         let t2 = t1 * t1;
         let t3 = pose[2] * pose[2];
         let t5 = 0.2304 * (t2 + t3);
-        let t6 = 1.0 / t5;
-        let t7 = 0.48 * t1;
-        let t8 = pose[1] * pose[1];
-        let t10 = t2 + t8 + t3;
-        let t12 = t10 - 0.3136 + 0.0576;
-        let t14 = 0.48 * pose[2];
-        let t16 = t5 - t12 * t12;
+        let t6 = pose[1] * pose[1];
+        let t8 = t2 + t6 + t3;
+        let t10 = t8 - 0.3136 + 0.0576;
+        let t12 = t5 - t10 * t10;
+        ::overact::guard::reach(t12, "leg1")?;
+        let t13 = ::overact::math::sqrt(t12);
+        let t16 = 1.0 - 3.188775510204082 * t6;
         ::overact::guard::reach(t16, "leg1")?;
-        let t17 = ::overact::math::sqrt(t16);
-        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
-        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t24 = 1.0 / t17;
-        let t25 = 2.0 * t24;
-        let garm_vx_leg1 = (t0 - (0.2 + 0.24 * c_arm_leg1)) * t25;
-        let garm_vy_leg1 = pose[1] * t25;
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let garm_vz_leg1 = (pose[2] - 0.24 * minus_s_arm_leg1) * t25;
-        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
-            + garm_vz_leg1 * twist[2];
-        let t40 = 0.48 * t24;
-        let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t44 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t44, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t44);
+        let c_rod_leg1 = ::overact::math::sqrt(t16);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t44) / (0.2688 * c_rod_leg1);
-        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
-            - minus_s_arm_leg1 * c_cross_leg1;
-        let t58 = 1.0 / c_rod_leg1;
+        let s_cross_leg1 = 2.0833333333333335 * t13 / (0.56 * c_rod_leg1);
+        ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
+        let t20 = 1.0 / s_cross_leg1;
+        let t21 = 4.166666666666667 * t20;
+        let t22 = 1.0 / t5;
+        let t23 = 0.48 * t1;
+        let t25 = 0.48 * pose[2];
+        let c_arm_leg1 = t22 * (t23 * t10 - t25 * t13);
+        let c_cross_leg1 = (t8 - (0.0576 + t6) - 0.3136 * t16) / (0.2688 * c_rod_leg1);
+        let minus_s_arm_leg1 = t22 * (t25 * t10 + t23 * t13);
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let gcross_vy_leg1 = t40
-            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t58)
-                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t58));
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t40;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t40;
-        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
-            - minus_gcross_vz_leg1 * twist[2];
-        let grod_vy_leg1 = 1.7857142857142858 * t58;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t47 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
+        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
+        let t49 = pose[1] * grod_vy_leg1;
+        let rate_arm_leg1 = t21 * (t47 + t49 * twist[1]);
+        let garm_vy_leg1 = t21 * t49;
+        let t63 = c_cross_leg1 * t20 * t47
+            + 0.24 * c_cross_leg1 * garm_vy_leg1 * twist[1] + s_armcross_leg1 * twist[0]
+            + c_armcross_leg1 * twist[2];
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t63;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t80 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t83 = pose[0] - 0.025 + 0.1;
-        let t84 = 0.5 * t83;
-        let t85 = 0.8660254037844387 * t80 - t84;
-        let t88 = 0.2304 * (t85 * t85 + t3);
-        let t89 = 1.0 / t88;
-        let t90 = 0.48 * t85;
-        let t91 = t83 * t83;
-        let t94 = t91 + t80 * t80 + t3;
-        let t96 = t94 - 0.3136 + 0.0576;
-        let t99 = t88 - t96 * t96;
-        ::overact::guard::reach(t99, "leg2")?;
-        let t100 = ::overact::math::sqrt(t99);
-        let c_arm_leg2 = t89 * (t90 * t96 - t14 * t100);
-        let t105 = t85 - 0.24 * c_arm_leg2;
-        let t106 = 0.8660254037844387 * t83;
-        let t108 = t106 + 0.5 * t80;
-        let t109 = t108 * t108;
-        let t113 = 1.0 - 3.188775510204082 * t109;
-        ::overact::guard::reach(t113, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t113);
-        let c_cross_leg2 = (t94 - (0.0576 + t109) - 0.3136 * t113)
-            / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t89 * (t14 * t96 + t90 * t100);
-        let s_cross_leg2 = 2.0833333333333335 * t100 / (0.56 * c_rod_leg2);
+        let t68 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t71 = pose[0] - 0.025 + 0.1;
+        let t72 = 0.5 * t71;
+        let t73 = 0.8660254037844387 * t68 - t72;
+        let t76 = 0.2304 * (t73 * t73 + t3);
+        let t77 = t71 * t71;
+        let t80 = t77 + t68 * t68 + t3;
+        let t82 = t80 - 0.3136 + 0.0576;
+        let t84 = t76 - t82 * t82;
+        ::overact::guard::reach(t84, "leg2")?;
+        let t85 = ::overact::math::sqrt(t84);
+        let t87 = 0.8660254037844387 * t71;
+        let t89 = t87 + 0.5 * t68;
+        let t90 = t89 * t89;
+        let t92 = 1.0 - 3.188775510204082 * t90;
+        ::overact::guard::reach(t92, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t92);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let s_cross_leg2 = 2.0833333333333335 * t85 / (0.56 * c_rod_leg2);
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
+        let t96 = 1.0 / s_cross_leg2;
+        let t97 = 4.166666666666667 * t96;
+        let t98 = 1.0 / t76;
+        let t99 = 0.48 * t73;
+        let c_arm_leg2 = t98 * (t99 * t82 - t25 * t85);
+        let c_cross_leg2 = (t80 - (0.0576 + t90) - 0.3136 * t92) / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t98 * (t25 * t82 + t99 * t85);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t129 = t108 * c_armcross_leg2;
-        let t132 = 1.5464739353293548 * t129 - 0.5 * c_rod_leg2;
-        let t136 = pose[2] - 0.24 * minus_s_arm_leg2;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t108;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t141 = minus_s_rod_leg2 * s_armcross_leg2;
-        let t142 = t136 * t141;
-        let t145 = 0.20784609690826528 * minus_s_arm_leg2;
-        let t148 = 0.8928571428571429 * t129 + 0.8660254037844387 * c_rod_leg2;
-        let t152 = t105 * (0.56 * t148) - 0.28 * t142;
-        let t157 = minus_s_arm_leg2 * t141;
-        let t159 = 0.1344 * (c_arm_leg2 * t148) - 0.0672 * t157;
-        let t164 = t145 * t152 - 0.8660254037844387 * t136 * t159 - 0.14 * (t100 * t132);
-        ::overact::guard::leg(t164, 0.06758306237512474, "leg2")?;
-        let t165 = 1.0 / t164;
-        let garm_vx_leg2 = (t105 * (0.56 * t132) - 0.4849742261192857 * t142) * t165;
-        let garm_vy_leg2 = t152 * t165;
-        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t136) * t165;
-        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
-            + garm_vz_leg2 * twist[2];
-        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t132)
-            - 0.11639381426862856 * (minus_s_arm_leg2 * t148)) * t165;
-        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t132)
-            - 0.11639381426862856 * t157) * t165;
-        let minus_gcross_vy_leg2 = t159 * t165;
-        let rate_cross_leg2 = gcross_vz_leg2 * twist[2]
-            - (minus_gcross_vx_leg2 * twist[0] + minus_gcross_vy_leg2 * twist[1]);
-        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t136) - t105 * t145)
-            * t165;
-        let minus_grod_vy_leg2 = 0.25 * t100 * t165;
-        let rate_rod_leg2 = grod_vx_leg2 * twist[0] - minus_grod_vy_leg2 * twist[1];
-        let t205 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t207 = t84 + 0.8660254037844387 * t205;
-        let t210 = 0.2304 * (t207 * t207 + t3);
-        let t211 = 1.0 / t210;
-        let t212 = 0.48 * t207;
-        let t215 = t91 + t205 * t205 + t3;
-        let t217 = t215 - 0.3136 + 0.0576;
-        let t220 = t210 - t217 * t217;
-        ::overact::guard::reach(t220, "leg3")?;
-        let t221 = ::overact::math::sqrt(t220);
-        let minus_c_arm_leg3 = t211 * (t212 * t217 + t14 * t221);
-        let t226 = t207 - 0.24 * minus_c_arm_leg3;
-        let t228 = t106 - 0.5 * t205;
-        let t229 = t228 * t228;
-        let t233 = 1.0 - 3.188775510204082 * t229;
-        ::overact::guard::reach(t233, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t233);
-        let c_cross_leg3 = (t215 - (0.0576 + t229) - 0.3136 * t233)
+        let t126 = 0.8660254037844387 * c_armcross_leg2 * twist[1]
+            - 0.5 * c_armcross_leg2 * twist[0] - s_armcross_leg2 * twist[2];
+        let t127 = 1.7857142857142858 / c_rod_leg2;
+        let t128 = t89 * t127;
+        let t129 = 0.8660254037844387 * twist[0];
+        let t130 = 0.5 * twist[1];
+        let t131 = t129 + t130;
+        let rate_arm_leg2 = t97 * (t126 + t128 * t131);
+        let t144 = 0.5 * s_armcross_leg2 * twist[0]
+            - 0.8660254037844387 * s_armcross_leg2 * twist[1]
+            - c_armcross_leg2 * twist[2] - c_cross_leg2 * t96 * t126;
+        let rate_cross_leg2 = t127 * (t144 - 0.24 * c_cross_leg2 * (t97 * t128) * t131);
+        let minus_rate_rod_leg2 = t127 * t131;
+        let t154 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t156 = t72 + 0.8660254037844387 * t154;
+        let t159 = 0.2304 * (t156 * t156 + t3);
+        let t162 = t77 + t154 * t154 + t3;
+        let t164 = t162 - 0.3136 + 0.0576;
+        let t166 = t159 - t164 * t164;
+        ::overact::guard::reach(t166, "leg3")?;
+        let t167 = ::overact::math::sqrt(t166);
+        let t170 = t87 - 0.5 * t154;
+        let t171 = t170 * t170;
+        let t173 = 1.0 - 3.188775510204082 * t171;
+        ::overact::guard::reach(t173, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t173);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let s_cross_leg3 = 2.0833333333333335 * t167 / (0.56 * c_rod_leg3);
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
+        let t177 = 1.0 / s_cross_leg3;
+        let t178 = 4.166666666666667 * t177;
+        let t179 = 1.0 / t159;
+        let t180 = 0.48 * t156;
+        let minus_c_arm_leg3 = t179 * (t180 * t164 + t25 * t167);
+        let c_cross_leg3 = (t162 - (0.0576 + t171) - 0.3136 * t173)
             / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t211 * (t212 * t221 - t14 * t217);
-        let s_cross_leg3 = 2.0833333333333335 * t221 / (0.56 * c_rod_leg3);
+        let s_arm_leg3 = t179 * (t180 * t167 - t25 * t164);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t249 = t228 * minus_c_armcross_leg3;
-        let t252 = 1.5464739353293548 * t249 + 0.5 * c_rod_leg3;
-        let t256 = pose[2] + 0.24 * s_arm_leg3;
-        let s_rod_leg3 = 1.7857142857142858 * t228;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t261 = s_rod_leg3 * s_armcross_leg3;
-        let t262 = t256 * t261;
-        let t265 = 0.20784609690826528 * s_arm_leg3;
-        let t268 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t249;
-        let t272 = t226 * (0.56 * t268) + 0.28 * t262;
-        let t277 = s_arm_leg3 * t261;
-        let t279 = 0.1344 * (minus_c_arm_leg3 * t268) - 0.0672 * t277;
-        let t284 = t265 * t272 + 0.8660254037844387 * t256 * t279 + 0.14 * (t221 * t252);
-        ::overact::guard::leg(t284, 0.06758306237512474, "leg3")?;
-        let t285 = 1.0 / t284;
-        let garm_vx_leg3 = (t226 * (0.56 * t252) - 0.4849742261192857 * t262) * t285;
-        let garm_vy_leg3 = t272 * t285;
-        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t256) * t285;
-        let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
-            + garm_vz_leg3 * twist[2];
-        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t268)
-            + 0.0672 * (s_arm_leg3 * t252)) * t285;
-        let minus_gcross_vx_leg3 = (0.11639381426862856 * t277
-            + 0.1344 * (minus_c_arm_leg3 * t252)) * t285;
-        let minus_gcross_vy_leg3 = t279 * t285;
-        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
-            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
-        let grod_vx_leg3 = (t226 * t265
-            + 0.20784609690826528 * (minus_c_arm_leg3 * t256)) * t285;
-        let minus_grod_vy_leg3 = 0.25 * t221 * t285;
-        let rate_rod_leg3 = grod_vx_leg3 * twist[0] - minus_grod_vy_leg3 * twist[1];
+        let t207 = 0.5 * minus_c_armcross_leg3 * twist[0]
+            + 0.8660254037844387 * minus_c_armcross_leg3 * twist[1]
+            - s_armcross_leg3 * twist[2];
+        let t208 = 1.7857142857142858 / c_rod_leg3;
+        let t209 = t170 * t208;
+        let t210 = t129 - t130;
+        let rate_arm_leg3 = t178 * (t207 + t209 * t210);
+        let t223 = 0.5 * s_armcross_leg3 * twist[0]
+            + 0.8660254037844387 * s_armcross_leg3 * twist[1]
+            + minus_c_armcross_leg3 * twist[2] - c_cross_leg3 * t177 * t207;
+        let rate_cross_leg3 = t208 * (t223 - 0.24 * c_cross_leg3 * (t178 * t209) * t210);
+        let rate_rod_leg3 = t208 * t210;
         Ok([
-            rate_arm_leg1, rate_cross_leg1 - rate_arm_leg1, rate_rod_leg1, rate_arm_leg2,
-            rate_cross_leg2 - rate_arm_leg2, rate_rod_leg2, rate_arm_leg3,
+            rate_arm_leg1, -(rate_arm_leg1 + minus_rate_cross_leg1), rate_rod_leg1, rate_arm_leg2,
+            rate_cross_leg2 - rate_arm_leg2, -minus_rate_rod_leg2, rate_arm_leg3,
             rate_cross_leg3 - rate_arm_leg3, rate_rod_leg3,
         ])
     }
@@ -1214,7 +1086,7 @@ impl Delta {
     ///
     /// Output: 9.
     ///
-    /// 502 operations (175 additions, 314 multiplications, 13 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 499 intermediates.
+    /// 343 operations (123 additions, 205 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 340 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1223,247 +1095,189 @@ impl Delta {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[f64; 9], ::overact::Error> {
-        let t0 = pose[0] + 0.05;
-        let t1 = t0 - 0.2;
+        let t1 = pose[0] + 0.05 - 0.2;
         let t2 = t1 * t1;
         let t3 = pose[2] * pose[2];
         let t5 = 0.2304 * (t2 + t3);
-        let t6 = 1.0 / t5;
-        let t7 = 0.48 * t1;
-        let t8 = pose[1] * pose[1];
-        let t10 = t2 + t8 + t3;
-        let t12 = t10 - 0.3136 + 0.0576;
-        let t14 = 0.48 * pose[2];
-        let t16 = t5 - t12 * t12;
+        let t6 = pose[1] * pose[1];
+        let t8 = t2 + t6 + t3;
+        let t10 = t8 - 0.3136 + 0.0576;
+        let t12 = t5 - t10 * t10;
+        ::overact::guard::reach(t12, "leg1")?;
+        let t13 = ::overact::math::sqrt(t12);
+        let t16 = 1.0 - 3.188775510204082 * t6;
         ::overact::guard::reach(t16, "leg1")?;
-        let t17 = ::overact::math::sqrt(t16);
-        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
-        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t21 = 0.24 * c_arm_leg1;
-        let t23 = t0 - (0.2 + t21);
-        let t24 = 1.0 / t17;
-        let t25 = 2.0 * t24;
-        let garm_vx_leg1 = t23 * t25;
-        let t27 = 0.48 * t24;
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t35 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t35, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t35);
+        let c_rod_leg1 = ::overact::math::sqrt(t16);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t35) / (0.2688 * c_rod_leg1);
-        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
-            - minus_s_arm_leg1 * c_cross_leg1;
-        let t49 = 1.0 / c_rod_leg1;
+        let t18 = 0.56 * c_rod_leg1;
+        let s_cross_leg1 = 2.0833333333333335 * t13 / t18;
+        ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
+        let t20 = 1.0 / s_cross_leg1;
+        let t21 = 4.166666666666667 * t20;
+        let t22 = 1.0 / t5;
+        let t23 = 0.48 * t1;
+        let t25 = 0.48 * pose[2];
+        let c_arm_leg1 = t22 * (t23 * t10 - t25 * t13);
+        let c_cross_leg1 = (t8 - (0.0576 + t6) - 0.3136 * t16) / (0.2688 * c_rod_leg1);
+        let minus_s_arm_leg1 = t22 * (t25 * t10 + t23 * t13);
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let gcross_vy_leg1 = t27
-            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t49)
-                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t49));
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t27;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t27;
-        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
-            - minus_gcross_vz_leg1 * twist[2];
-        let grod_vy_leg1 = 1.7857142857142858 * t49;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t48 = 0.24 * c_cross_leg1;
+        let t51 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
+        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
+        let t53 = pose[1] * grod_vy_leg1;
+        let rate_arm_leg1 = t21 * (t51 + t53 * twist[1]);
+        let t57 = rate_arm_leg1 * rate_arm_leg1;
+        let t59 = c_cross_leg1 * t20;
+        let garm_vy_leg1 = t21 * t53;
+        let t62 = t48 * garm_vy_leg1;
+        let minus_rate_cross_leg1 = grod_vy_leg1
+            * (t59 * t51 + t62 * twist[1] + s_armcross_leg1 * twist[0]
+                + c_armcross_leg1 * twist[2]);
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t69 = s_armcross_leg1 * rate_rod_leg1;
-        let t71 = pose[1] * (rate_cross_leg1 * t69);
-        let garm_vy_leg1 = pose[1] * t25;
-        let t76 = 0.24 * minus_s_arm_leg1;
-        let t77 = pose[2] - t76;
-        let garm_vz_leg1 = t77 * t25;
-        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
-            + garm_vz_leg1 * twist[2];
-        let t81 = rate_arm_leg1 * rate_arm_leg1;
-        let t86 = c_armcross_leg1 * rate_rod_leg1;
-        let t88 = t69 * t69 + rate_cross_leg1 * rate_cross_leg1 + t86 * t86;
-        let t93 = acceleration[0] - (t71 - (t21 * t81 + t23 * t88) + t71);
-        let t99 = acceleration[1]
-            - (rate_cross_leg1 * (pose[1] * rate_cross_leg1) - pose[1] * t88);
-        let t103 = pose[1] * (rate_cross_leg1 * t86);
-        let t109 = acceleration[2] - (t103 - (t76 * t81 + t77 * t88) + t103);
-        let rate_dot_arm_leg1 = garm_vx_leg1 * t93 + garm_vy_leg1 * t99
-            + garm_vz_leg1 * t109;
-        let rate_dot_cross_leg1 = gcross_vy_leg1 * t99 - minus_gcross_vx_leg1 * t93
-            - minus_gcross_vz_leg1 * t109;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t99;
-        let t119 = pose[1] + 0.04330127018922194;
-        let t120 = t119 - 0.17320508075688776;
-        let t122 = pose[0] - 0.025;
-        let t123 = t122 + 0.1;
-        let t124 = 0.5 * t123;
-        let t125 = 0.8660254037844387 * t120 - t124;
-        let t128 = 0.2304 * (t125 * t125 + t3);
-        let t129 = 1.0 / t128;
-        let t130 = 0.48 * t125;
-        let t131 = t123 * t123;
-        let t134 = t131 + t120 * t120 + t3;
-        let t136 = t134 - 0.3136 + 0.0576;
-        let t139 = t128 - t136 * t136;
-        ::overact::guard::reach(t139, "leg2")?;
-        let t140 = ::overact::math::sqrt(t139);
-        let c_arm_leg2 = t129 * (t130 * t136 - t14 * t140);
-        let t145 = t125 - 0.24 * c_arm_leg2;
-        let t146 = 0.8660254037844387 * t123;
-        let t148 = t146 + 0.5 * t120;
-        let t149 = t148 * t148;
-        let t153 = 1.0 - 3.188775510204082 * t149;
-        ::overact::guard::reach(t153, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t153);
-        let c_cross_leg2 = (t134 - (0.0576 + t149) - 0.3136 * t153)
+        let t73 = minus_rate_cross_leg1 * minus_rate_cross_leg1
+            + rate_rod_leg1 * rate_rod_leg1;
+        let t76 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t48 * t57 + t18 * t73;
+        let t81 = acceleration[1]
+            - (minus_rate_cross_leg1 * (pose[1] * minus_rate_cross_leg1)
+                - pose[1] * t73);
+        let rate_dot_arm_leg1 = t21 * (t76 + t53 * t81);
+        let t94 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
+        let t98 = t59 * t76 + t62 * t81 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + 0.24 * s_cross_leg1 * t57 + t94 + t94;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t98;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t81;
+        let t103 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t106 = pose[0] - 0.025 + 0.1;
+        let t107 = 0.5 * t106;
+        let t108 = 0.8660254037844387 * t103 - t107;
+        let t111 = 0.2304 * (t108 * t108 + t3);
+        let t112 = t106 * t106;
+        let t115 = t112 + t103 * t103 + t3;
+        let t117 = t115 - 0.3136 + 0.0576;
+        let t119 = t111 - t117 * t117;
+        ::overact::guard::reach(t119, "leg2")?;
+        let t120 = ::overact::math::sqrt(t119);
+        let t122 = 0.8660254037844387 * t106;
+        let t124 = t122 + 0.5 * t103;
+        let t125 = t124 * t124;
+        let t127 = 1.0 - 3.188775510204082 * t125;
+        ::overact::guard::reach(t127, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t127);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t129 = 0.56 * c_rod_leg2;
+        let s_cross_leg2 = 2.0833333333333335 * t120 / t129;
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
+        let t131 = 1.0 / s_cross_leg2;
+        let t132 = 4.166666666666667 * t131;
+        let t133 = 1.0 / t111;
+        let t134 = 0.48 * t108;
+        let c_arm_leg2 = t133 * (t134 * t117 - t25 * t120);
+        let c_cross_leg2 = (t115 - (0.0576 + t125) - 0.3136 * t127)
             / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t129 * (t14 * t136 + t130 * t140);
-        let s_cross_leg2 = 2.0833333333333335 * t140 / (0.56 * c_rod_leg2);
+        let minus_s_arm_leg2 = t133 * (t25 * t117 + t134 * t120);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t169 = t148 * c_armcross_leg2;
-        let t172 = 1.5464739353293548 * t169 - 0.5 * c_rod_leg2;
-        let t175 = 0.24 * minus_s_arm_leg2;
-        let t176 = pose[2] - t175;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t148;
+        let t152 = 0.8660254037844387 * c_armcross_leg2;
+        let t154 = 0.5 * c_armcross_leg2;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t181 = minus_s_rod_leg2 * s_armcross_leg2;
-        let t182 = t176 * t181;
-        let t185 = 0.20784609690826528 * minus_s_arm_leg2;
-        let t188 = 0.8928571428571429 * t169 + 0.8660254037844387 * c_rod_leg2;
-        let t192 = t145 * (0.56 * t188) - 0.28 * t182;
-        let t197 = minus_s_arm_leg2 * t181;
-        let t199 = 0.1344 * (c_arm_leg2 * t188) - 0.0672 * t197;
-        let t204 = t185 * t192 - 0.8660254037844387 * t176 * t199 - 0.14 * (t140 * t172);
-        ::overact::guard::leg(t204, 0.06758306237512474, "leg2")?;
-        let t205 = 1.0 / t204;
-        let garm_vx_leg2 = (t145 * (0.56 * t172) - 0.4849742261192857 * t182) * t205;
-        let t207 = 0.12 * c_arm_leg2;
-        let garm_vy_leg2 = t192 * t205;
-        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t176) * t205;
-        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
-            + garm_vz_leg2 * twist[2];
-        let t217 = rate_arm_leg2 * rate_arm_leg2;
-        let t220 = t122 + 0.1 + t207;
-        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t172)
-            - 0.11639381426862856 * (minus_s_arm_leg2 * t188)) * t205;
-        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t172)
-            - 0.11639381426862856 * t197) * t205;
-        let minus_gcross_vy_leg2 = t199 * t205;
-        let rate_cross_leg2 = gcross_vz_leg2 * twist[2]
-            - (minus_gcross_vx_leg2 * twist[0] + minus_gcross_vy_leg2 * twist[1]);
-        let t238 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t176) - t145 * t185)
-            * t205;
-        let minus_grod_vy_leg2 = 0.25 * t140 * t205;
-        let rate_rod_leg2 = grod_vx_leg2 * twist[0] - minus_grod_vy_leg2 * twist[1];
-        let t251 = t238 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t254 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t255 = 0.5 * rate_cross_leg2;
-        let t256 = t254 - t255;
-        let t259 = c_armcross_leg2 * rate_rod_leg2;
-        let t261 = t251 * t251 + t256 * t256 + t259 * t259;
-        let t264 = 0.20784609690826528 * c_arm_leg2;
-        let t266 = t119 - (0.17320508075688776 + t264);
-        let t271 = t266 * t256 - t220 * t251 + t176 * t259;
-        let t274 = t238 * t259;
-        let t277 = 1.3333333333333333 * (t238 * t254);
-        let t281 = acceleration[0]
-            - (t207 * t217 - t220 * t261 - t251 * t271 + t176 * t274 + t266 * t277);
-        let t288 = t255 * t259;
-        let t293 = acceleration[1]
-            - (t256 * t271 - (t264 * t217 + t266 * t261) + t176 * t288 - t220 * t277);
-        let t301 = t266 * t288 + t220 * t274;
-        let t304 = acceleration[2] + t175 * t217 + t176 * t261 + t301 + t301;
-        let rate_dot_arm_leg2 = garm_vx_leg2 * t281 + garm_vy_leg2 * t293
-            + garm_vz_leg2 * t304;
-        let rate_dot_cross_leg2 = gcross_vz_leg2 * t304
-            - (minus_gcross_vx_leg2 * t281 + minus_gcross_vy_leg2 * t293);
-        let rate_dot_rod_leg2 = grod_vx_leg2 * t281 - minus_grod_vy_leg2 * t293;
-        let t316 = pose[1] - 0.04330127018922194;
-        let t317 = t316 + 0.17320508075688776;
-        let t319 = t124 + 0.8660254037844387 * t317;
-        let t322 = 0.2304 * (t319 * t319 + t3);
-        let t323 = 1.0 / t322;
-        let t324 = 0.48 * t319;
-        let t327 = t131 + t317 * t317 + t3;
-        let t329 = t327 - 0.3136 + 0.0576;
-        let t332 = t322 - t329 * t329;
-        ::overact::guard::reach(t332, "leg3")?;
-        let t333 = ::overact::math::sqrt(t332);
-        let minus_c_arm_leg3 = t323 * (t324 * t329 + t14 * t333);
-        let t338 = t319 - 0.24 * minus_c_arm_leg3;
-        let t340 = t146 - 0.5 * t317;
-        let t341 = t340 * t340;
-        let t345 = 1.0 - 3.188775510204082 * t341;
-        ::overact::guard::reach(t345, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t345);
-        let c_cross_leg3 = (t327 - (0.0576 + t341) - 0.3136 * t345)
+        let t162 = 0.24 * c_cross_leg2;
+        let t167 = t152 * twist[1] - t154 * twist[0] - s_armcross_leg2 * twist[2];
+        let t168 = 1.7857142857142858 / c_rod_leg2;
+        let t169 = t124 * t168;
+        let t170 = 0.8660254037844387 * twist[0];
+        let t171 = 0.5 * twist[1];
+        let t172 = t170 + t171;
+        let rate_arm_leg2 = t132 * (t167 + t169 * t172);
+        let t176 = rate_arm_leg2 * rate_arm_leg2;
+        let minus_rate_rod_leg2 = t168 * t172;
+        let t180 = 0.5 * s_armcross_leg2;
+        let t182 = 0.8660254037844387 * s_armcross_leg2;
+        let t187 = c_cross_leg2 * t131;
+        let t191 = t162 * (t132 * t169);
+        let rate_cross_leg2 = t168
+            * (t180 * twist[0] - t182 * twist[1] - c_armcross_leg2 * twist[2]
+                - t187 * t167 - t191 * t172);
+        let t196 = minus_rate_rod_leg2 * minus_rate_rod_leg2
+            + rate_cross_leg2 * rate_cross_leg2;
+        let t199 = t152 * acceleration[1] - t154 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t162 * t176 + t129 * t196;
+        let t200 = 0.8660254037844387 * acceleration[0];
+        let t201 = 0.5 * acceleration[1];
+        let t207 = t200 + t201 + t124 * t196
+            - rate_cross_leg2 * (t124 * rate_cross_leg2);
+        let rate_dot_arm_leg2 = t132 * (t199 + t169 * t207);
+        let t219 = t124 * (rate_cross_leg2 * minus_rate_rod_leg2);
+        let t222 = t180 * acceleration[0] - t182 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2]
+            - (0.24 * s_cross_leg2 * t176 - t219 - t219);
+        let rate_dot_cross_leg2 = t168 * (t222 - t187 * t199 - t191 * t207);
+        let minus_rate_dot_rod_leg2 = t168 * t207;
+        let t231 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t233 = t107 + 0.8660254037844387 * t231;
+        let t236 = 0.2304 * (t233 * t233 + t3);
+        let t239 = t112 + t231 * t231 + t3;
+        let t241 = t239 - 0.3136 + 0.0576;
+        let t243 = t236 - t241 * t241;
+        ::overact::guard::reach(t243, "leg3")?;
+        let t244 = ::overact::math::sqrt(t243);
+        let t247 = t122 - 0.5 * t231;
+        let t248 = t247 * t247;
+        let t250 = 1.0 - 3.188775510204082 * t248;
+        ::overact::guard::reach(t250, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t250);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let t252 = 0.56 * c_rod_leg3;
+        let s_cross_leg3 = 2.0833333333333335 * t244 / t252;
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
+        let t254 = 1.0 / s_cross_leg3;
+        let t255 = 4.166666666666667 * t254;
+        let t256 = 1.0 / t236;
+        let t257 = 0.48 * t233;
+        let minus_c_arm_leg3 = t256 * (t257 * t241 + t25 * t244);
+        let c_cross_leg3 = (t239 - (0.0576 + t248) - 0.3136 * t250)
             / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t323 * (t324 * t333 - t14 * t329);
-        let s_cross_leg3 = 2.0833333333333335 * t333 / (0.56 * c_rod_leg3);
+        let s_arm_leg3 = t256 * (t257 * t244 - t25 * t241);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t361 = t340 * minus_c_armcross_leg3;
-        let t364 = 1.5464739353293548 * t361 + 0.5 * c_rod_leg3;
-        let t367 = 0.24 * s_arm_leg3;
-        let t368 = pose[2] + t367;
-        let s_rod_leg3 = 1.7857142857142858 * t340;
+        let t275 = 0.5 * minus_c_armcross_leg3;
+        let t277 = 0.8660254037844387 * minus_c_armcross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t373 = s_rod_leg3 * s_armcross_leg3;
-        let t374 = t368 * t373;
-        let t377 = 0.20784609690826528 * s_arm_leg3;
-        let t380 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t361;
-        let t384 = t338 * (0.56 * t380) + 0.28 * t374;
-        let t389 = s_arm_leg3 * t373;
-        let t391 = 0.1344 * (minus_c_arm_leg3 * t380) - 0.0672 * t389;
-        let t396 = t377 * t384 + 0.8660254037844387 * t368 * t391 + 0.14 * (t333 * t364);
-        ::overact::guard::leg(t396, 0.06758306237512474, "leg3")?;
-        let t397 = 1.0 / t396;
-        let garm_vx_leg3 = (t338 * (0.56 * t364) - 0.4849742261192857 * t374) * t397;
-        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t380)
-            + 0.0672 * (s_arm_leg3 * t364)) * t397;
-        let minus_gcross_vx_leg3 = (0.11639381426862856 * t389
-            + 0.1344 * (minus_c_arm_leg3 * t364)) * t397;
-        let minus_gcross_vy_leg3 = t391 * t397;
-        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
-            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
-        let t416 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (t338 * t377
-            + 0.20784609690826528 * (minus_c_arm_leg3 * t368)) * t397;
-        let minus_grod_vy_leg3 = 0.25 * t333 * t397;
-        let rate_rod_leg3 = grod_vx_leg3 * twist[0] - minus_grod_vy_leg3 * twist[1];
-        let t429 = t416 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t430 = 0.12 * minus_c_arm_leg3;
-        let t432 = t122 - (t430 - 0.1);
-        let t434 = 0.20784609690826528 * minus_c_arm_leg3;
-        let t436 = t316 - (t434 - 0.17320508075688776);
-        let t437 = 0.5 * rate_cross_leg3;
-        let t439 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t440 = t437 + t439;
-        let t443 = minus_c_armcross_leg3 * rate_rod_leg3;
-        let t445 = t432 * t429 - t436 * t440 - t368 * t443;
-        let garm_vy_leg3 = t384 * t397;
-        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t368) * t397;
-        let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
-            + garm_vz_leg3 * twist[2];
-        let t456 = rate_arm_leg3 * rate_arm_leg3;
-        let t462 = t429 * t429 + t440 * t440 + t443 * t443;
-        let t466 = t416 * t443;
-        let t469 = 1.3333333333333333 * (t416 * t439);
-        let t473 = acceleration[0]
-            - (t429 * t445 - (t430 * t456 + t432 * t462) + t368 * t466 + t436 * t469);
-        let t481 = t437 * t443;
-        let t485 = acceleration[1] + t434 * t456 + t436 * t462 + t440 * t445
-            + t432 * t469 + t368 * t481;
-        let t493 = t436 * t481 - t432 * t466;
-        let t496 = acceleration[2] - (t367 * t456 - t368 * t462 + t493 + t493);
-        let rate_dot_arm_leg3 = garm_vx_leg3 * t473 + garm_vy_leg3 * t485
-            + garm_vz_leg3 * t496;
-        let rate_dot_cross_leg3 = gcross_vz_leg3 * t496
-            - (minus_gcross_vx_leg3 * t473 + minus_gcross_vy_leg3 * t485);
-        let rate_dot_rod_leg3 = grod_vx_leg3 * t473 - minus_grod_vy_leg3 * t485;
+        let t285 = 0.24 * c_cross_leg3;
+        let t290 = t275 * twist[0] + t277 * twist[1] - s_armcross_leg3 * twist[2];
+        let t291 = 1.7857142857142858 / c_rod_leg3;
+        let t292 = t247 * t291;
+        let t293 = t170 - t171;
+        let rate_arm_leg3 = t255 * (t290 + t292 * t293);
+        let t297 = rate_arm_leg3 * rate_arm_leg3;
+        let rate_rod_leg3 = t291 * t293;
+        let t301 = 0.5 * s_armcross_leg3;
+        let t303 = 0.8660254037844387 * s_armcross_leg3;
+        let t308 = c_cross_leg3 * t254;
+        let t312 = t285 * (t255 * t292);
+        let rate_cross_leg3 = t291
+            * (t301 * twist[0] + t303 * twist[1] + minus_c_armcross_leg3 * twist[2]
+                - t308 * t290 - t312 * t293);
+        let t317 = rate_rod_leg3 * rate_rod_leg3 + rate_cross_leg3 * rate_cross_leg3;
+        let t320 = t275 * acceleration[0] + t277 * acceleration[1]
+            - s_armcross_leg3 * acceleration[2] + t285 * t297 + t252 * t317;
+        let t326 = t200 - t201
+            - (rate_cross_leg3 * (t247 * rate_cross_leg3) - t247 * t317);
+        let rate_dot_arm_leg3 = t255 * (t320 + t292 * t326);
+        let t338 = t247 * (rate_cross_leg3 * rate_rod_leg3);
+        let t341 = t301 * acceleration[0] + t303 * acceleration[1]
+            + minus_c_armcross_leg3 * acceleration[2]
+            - (0.24 * s_cross_leg3 * t297 - t338 - t338);
+        let rate_dot_cross_leg3 = t291 * (t341 - t308 * t320 - t312 * t326);
+        let rate_dot_rod_leg3 = t291 * t326;
         Ok([
-            rate_dot_arm_leg1, rate_dot_cross_leg1 - rate_dot_arm_leg1, rate_dot_rod_leg1,
-            rate_dot_arm_leg2, rate_dot_cross_leg2 - rate_dot_arm_leg2, rate_dot_rod_leg2,
+            rate_dot_arm_leg1, -(rate_dot_arm_leg1 + minus_rate_dot_cross_leg1), rate_dot_rod_leg1,
+            rate_dot_arm_leg2, rate_dot_cross_leg2 - rate_dot_arm_leg2, -minus_rate_dot_rod_leg2,
             rate_dot_arm_leg3, rate_dot_cross_leg3 - rate_dot_arm_leg3, rate_dot_rod_leg3,
         ])
     }
@@ -1475,7 +1289,7 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 281 operations (97 additions, 171 multiplications, 13 divisions), 5 square roots, 0 trigonometric pairs, 0 signs, 283 intermediates.
+    /// 237 operations (86 additions, 133 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 240 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1483,143 +1297,138 @@ impl Delta {
         pose: &[f64; 3],
         actuator_velocities: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let t0 = pose[0] + 0.05;
-        let t1 = t0 - 0.2;
+        let t1 = pose[0] + 0.05 - 0.2;
         let t2 = t1 * t1;
         let t3 = pose[2] * pose[2];
         let t5 = 0.2304 * (t2 + t3);
         let t6 = 1.0 / t5;
         let t7 = 0.48 * t1;
-        let t12 = t2 + pose[1] * pose[1] + t3 - 0.3136 + 0.0576;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.3136 + 0.0576;
         let t14 = 0.48 * pose[2];
         let t16 = t5 - t12 * t12;
         ::overact::guard::reach(t16, "leg1")?;
         let t17 = ::overact::math::sqrt(t16);
-        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
         let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t24 = 2.0 / t17;
-        let garm_vx_leg1 = (t0 - (0.2 + 0.24 * c_arm_leg1)) * t24;
-        let t28 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t31 = pose[0] - 0.025 + 0.1;
-        let t32 = 0.5 * t31;
-        let t33 = 0.8660254037844387 * t28 - t32;
-        let t36 = 0.2304 * (t33 * t33 + t3);
-        let t37 = 1.0 / t36;
-        let t38 = 0.48 * t33;
-        let t39 = t31 * t31;
-        let t42 = t39 + t28 * t28 + t3;
-        let t44 = t42 - 0.3136 + 0.0576;
-        let t47 = t36 - t44 * t44;
-        ::overact::guard::reach(t47, "leg2")?;
-        let t48 = ::overact::math::sqrt(t47);
-        let c_arm_leg2 = t37 * (t38 * t44 - t14 * t48);
-        let t53 = t33 - 0.24 * c_arm_leg2;
-        let t54 = 0.8660254037844387 * t31;
-        let t56 = t54 + 0.5 * t28;
-        let t57 = t56 * t56;
-        let t61 = 1.0 - 3.188775510204082 * t57;
-        ::overact::guard::reach(t61, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t61);
-        let c_cross_leg2 = (t42 - (0.0576 + t57) - 0.3136 * t61) / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t37 * (t14 * t44 + t38 * t48);
-        let s_cross_leg2 = 2.0833333333333335 * t48 / (0.56 * c_rod_leg2);
+        let t24 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t24, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t24);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let t40 = 4.166666666666667 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t40;
+        let t44 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t47 = pose[0] - 0.025 + 0.1;
+        let t48 = 0.5 * t47;
+        let t49 = 0.8660254037844387 * t44 - t48;
+        let t52 = 0.2304 * (t49 * t49 + t3);
+        let t53 = t47 * t47;
+        let t56 = t53 + t44 * t44 + t3;
+        let t58 = t56 - 0.3136 + 0.0576;
+        let t60 = t52 - t58 * t58;
+        ::overact::guard::reach(t60, "leg2")?;
+        let t61 = ::overact::math::sqrt(t60);
+        let t63 = 0.8660254037844387 * t47;
+        let t65 = t63 + 0.5 * t44;
+        let t66 = t65 * t65;
+        let t68 = 1.0 - 3.188775510204082 * t66;
+        ::overact::guard::reach(t68, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t68);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let s_cross_leg2 = 2.0833333333333335 * t61 / (0.56 * c_rod_leg2);
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
+        let t72 = 4.166666666666667 / s_cross_leg2;
+        let t74 = t65 * (1.7857142857142858 / c_rod_leg2);
+        let t76 = 1.0 / t52;
+        let t77 = 0.48 * t49;
+        let c_arm_leg2 = t76 * (t77 * t58 - t14 * t61);
+        let c_cross_leg2 = (t56 - (0.0576 + t66) - 0.3136 * t68) / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t76 * (t14 * t58 + t77 * t61);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t77 = t56 * c_armcross_leg2;
-        let t80 = 1.5464739353293548 * t77 - 0.5 * c_rod_leg2;
-        let t84 = pose[2] - 0.24 * minus_s_arm_leg2;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t56;
-        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
-            - minus_s_arm_leg2 * c_cross_leg2;
-        let t89 = minus_s_rod_leg2 * s_armcross_leg2;
-        let t90 = t84 * t89;
-        let t96 = 0.8928571428571429 * t77 + 0.8660254037844387 * c_rod_leg2;
-        let t100 = t53 * (0.56 * t96) - 0.28 * t90;
-        let t109 = 0.20784609690826528 * minus_s_arm_leg2 * t100
-            - 0.8660254037844387 * t84
-                * (0.1344 * (c_arm_leg2 * t96) - 0.0672 * (minus_s_arm_leg2 * t89));
-        let t112 = t109 - 0.14 * (t48 * t80);
-        ::overact::guard::leg(t112, 0.06758306237512474, "leg2")?;
-        let t113 = 1.0 / t112;
-        let garm_vx_leg2 = (t53 * (0.56 * t80) - 0.4849742261192857 * t90) * t113;
-        let t118 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t120 = t32 + 0.8660254037844387 * t118;
-        let t123 = 0.2304 * (t120 * t120 + t3);
-        let t124 = 1.0 / t123;
-        let t125 = 0.48 * t120;
-        let t128 = t39 + t118 * t118 + t3;
-        let t130 = t128 - 0.3136 + 0.0576;
-        let t133 = t123 - t130 * t130;
-        ::overact::guard::reach(t133, "leg3")?;
-        let t134 = ::overact::math::sqrt(t133);
-        let minus_c_arm_leg3 = t124 * (t125 * t130 + t14 * t134);
-        let t139 = t120 - 0.24 * minus_c_arm_leg3;
-        let t141 = t54 - 0.5 * t118;
-        let t142 = t141 * t141;
-        let t146 = 1.0 - 3.188775510204082 * t142;
-        ::overact::guard::reach(t146, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t146);
-        let c_cross_leg3 = (t128 - (0.0576 + t142) - 0.3136 * t146)
+        let garm_vx_leg2 = t72 * (0.8660254037844387 * t74 - 0.5 * c_armcross_leg2);
+        let t101 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t103 = t48 + 0.8660254037844387 * t101;
+        let t106 = 0.2304 * (t103 * t103 + t3);
+        let t109 = t53 + t101 * t101 + t3;
+        let t111 = t109 - 0.3136 + 0.0576;
+        let t113 = t106 - t111 * t111;
+        ::overact::guard::reach(t113, "leg3")?;
+        let t114 = ::overact::math::sqrt(t113);
+        let t117 = t63 - 0.5 * t101;
+        let t118 = t117 * t117;
+        let t120 = 1.0 - 3.188775510204082 * t118;
+        ::overact::guard::reach(t120, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t120);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let s_cross_leg3 = 2.0833333333333335 * t114 / (0.56 * c_rod_leg3);
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
+        let t124 = 4.166666666666667 / s_cross_leg3;
+        let t125 = 1.0 / t106;
+        let t126 = 0.48 * t103;
+        let minus_c_arm_leg3 = t125 * (t126 * t111 + t14 * t114);
+        let c_cross_leg3 = (t109 - (0.0576 + t118) - 0.3136 * t120)
             / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t124 * (t125 * t134 - t14 * t130);
-        let s_cross_leg3 = 2.0833333333333335 * t134 / (0.56 * c_rod_leg3);
+        let s_arm_leg3 = t125 * (t126 * t114 - t14 * t111);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t162 = t141 * minus_c_armcross_leg3;
-        let t165 = 1.5464739353293548 * t162 + 0.5 * c_rod_leg3;
-        let t169 = pose[2] + 0.24 * s_arm_leg3;
-        let s_rod_leg3 = 1.7857142857142858 * t141;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
-            - minus_c_arm_leg3 * s_cross_leg3;
-        let t174 = s_rod_leg3 * s_armcross_leg3;
-        let t175 = t169 * t174;
-        let t181 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t162;
-        let t185 = t139 * (0.56 * t181) + 0.28 * t175;
-        let t194 = 0.20784609690826528 * s_arm_leg3 * t185
-            + 0.8660254037844387 * t169
-                * (0.1344 * (minus_c_arm_leg3 * t181) - 0.0672 * (s_arm_leg3 * t174));
-        let t197 = t194 + 0.14 * (t134 * t165);
-        ::overact::guard::leg(t197, 0.06758306237512474, "leg3")?;
-        let t198 = 1.0 / t197;
-        let garm_vx_leg3 = (t139 * (0.56 * t165) - 0.4849742261192857 * t175) * t198;
-        let t201 = garm_vx_leg1 * actuator_velocities[0]
+        let t146 = t117 * (1.7857142857142858 / c_rod_leg3);
+        let garm_vx_leg3 = t124
+            * (0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t146);
+        let t151 = garm_vx_leg1 * actuator_velocities[0]
             + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2];
-        let t206 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t156 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t206, 14.869730172882845, "actuators")?;
-        let t207 = 1.0 / t206;
-        let garm_vy_leg1 = pose[1] * t24;
-        let garm_vy_leg2 = t100 * t113;
-        let garm_vy_leg3 = t185 * t198;
-        let t216 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+        ::overact::guard::platform(t156, 14.869730172882841, "actuators")?;
+        let t157 = 1.0 / t156;
+        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
+        let garm_vy_leg1 = t40 * (pose[1] * grod_vy_leg1);
+        let garm_vy_leg2 = t72 * (0.8660254037844387 * c_armcross_leg2 + 0.5 * t74);
+        let garm_vy_leg3 = t124
+            * (0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t146);
+        let t174 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vx_leg3 * garm_vy_leg3;
-        let t217 = t216 * t207;
-        let t224 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t216 * t217;
-        ::overact::guard::platform(t224, 14.869730172882843, "actuators")?;
-        let t225 = 1.0 / t224;
-        let t232 = garm_vy_leg1 * actuator_velocities[0]
+        let t175 = t174 * t157;
+        let t182 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t174 * t175;
+        ::overact::guard::platform(t182, 14.869730172882846, "actuators")?;
+        let t183 = 1.0 / t182;
+        let t190 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
-            + garm_vy_leg3 * actuator_velocities[2] - t201 * t217;
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let garm_vz_leg1 = (pose[2] - 0.24 * minus_s_arm_leg1) * t24;
-        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t84) * t113;
-        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t169) * t198;
-        let t256 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
-            + garm_vx_leg3 * garm_vz_leg3;
-        let t257 = t256 * t207;
-        let t259 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
-            + garm_vy_leg3 * garm_vz_leg3 - t216 * t257;
-        let t260 = t259 * t225;
-        let t269 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + garm_vz_leg3 * garm_vz_leg3 - t256 * t257 - t259 * t260;
-        ::overact::guard::platform(t269, 34.855350201355726, "actuators")?;
-        let t279 = (garm_vz_leg1 * actuator_velocities[0]
-            + garm_vz_leg2 * actuator_velocities[1]
-            + garm_vz_leg3 * actuator_velocities[2] - t201 * t257 - t260 * t232) / t269;
-        let t281 = t225 * t232 - t260 * t279;
-        Ok([t201 * t207 - t217 * t281 - t257 * t279, t281, t279])
+            + garm_vy_leg3 * actuator_velocities[2] - t151 * t175;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t40;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t72;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t124;
+        let t208 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+            + garm_vx_leg3 * minus_garm_vz_leg3;
+        let t209 = t208 * t157;
+        let t216 = t174 * t209
+            - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
+                + garm_vy_leg3 * minus_garm_vz_leg3);
+        let t217 = t216 * t183;
+        let t226 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+            + minus_garm_vz_leg2 * minus_garm_vz_leg2
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t208 * t209 - t216 * t217;
+        ::overact::guard::platform(t226, 34.855350201355726, "actuators")?;
+        let t236 = (t151 * t209
+            - (minus_garm_vz_leg1 * actuator_velocities[0]
+                + minus_garm_vz_leg2 * actuator_velocities[1]
+                + minus_garm_vz_leg3 * actuator_velocities[2]) - t217 * t190) / t226;
+        let t238 = t183 * t190 - t217 * t236;
+        Ok([t151 * t157 - t175 * t238 + t209 * t236, t238, t236])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1630,7 +1439,7 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 544 operations (186 additions, 342 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 547 intermediates.
+    /// 357 operations (122 additions, 217 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 360 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1639,8 +1448,7 @@ impl Delta {
         twist: &[f64; 3],
         actuator_accelerations: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let t0 = pose[0] + 0.05;
-        let t1 = t0 - 0.2;
+        let t1 = pose[0] + 0.05 - 0.2;
         let t2 = t1 * t1;
         let t3 = pose[2] * pose[2];
         let t5 = 0.2304 * (t2 + t3);
@@ -1653,248 +1461,179 @@ impl Delta {
         let t16 = t5 - t12 * t12;
         ::overact::guard::reach(t16, "leg1")?;
         let t17 = ::overact::math::sqrt(t16);
-        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
         let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t21 = 0.24 * c_arm_leg1;
-        let t23 = t0 - (0.2 + t21);
-        let t24 = 1.0 / t17;
-        let t25 = 2.0 * t24;
-        let garm_vx_leg1 = t23 * t25;
-        let t27 = 0.48 * t24;
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t35 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t35, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t35);
+        let t24 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t24, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t24);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t35) / (0.2688 * c_rod_leg1);
-        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
-            - minus_s_arm_leg1 * c_cross_leg1;
-        let t49 = 1.0 / c_rod_leg1;
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let t36 = 0.56 * c_rod_leg1;
+        let s_cross_leg1 = 2.0833333333333335 * t17 / t36;
+        ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let gcross_vy_leg1 = t27
-            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t49)
-                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t49));
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t27;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t27;
-        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
-            - minus_gcross_vz_leg1 * twist[2];
-        let grod_vy_leg1 = 1.7857142857142858 * t49;
+        let t40 = 1.0 / s_cross_leg1;
+        let t41 = 4.166666666666667 * t40;
+        let garm_vx_leg1 = c_armcross_leg1 * t41;
+        let t43 = 0.24 * c_cross_leg1;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t49 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
+        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
+        let t51 = pose[1] * grod_vy_leg1;
+        let rate_arm_leg1 = t41 * (t49 + t51 * twist[1]);
+        let garm_vy_leg1 = t41 * t51;
+        let minus_rate_cross_leg1 = grod_vy_leg1
+            * (c_cross_leg1 * t40 * t49 + t43 * garm_vy_leg1 * twist[1]
+                + s_armcross_leg1 * twist[0] + c_armcross_leg1 * twist[2]);
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t69 = s_armcross_leg1 * rate_rod_leg1;
-        let t71 = pose[1] * (rate_cross_leg1 * t69);
-        let garm_vy_leg1 = pose[1] * t25;
-        let t76 = 0.24 * minus_s_arm_leg1;
-        let t77 = pose[2] - t76;
-        let garm_vz_leg1 = t77 * t25;
-        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
-            + garm_vz_leg1 * twist[2];
-        let t81 = rate_arm_leg1 * rate_arm_leg1;
-        let t86 = c_armcross_leg1 * rate_rod_leg1;
-        let t88 = t69 * t69 + rate_cross_leg1 * rate_cross_leg1 + t86 * t86;
-        let t99 = garm_vx_leg1 * (t71 - (t21 * t81 + t23 * t88) + t71)
-            + garm_vy_leg1
-                * (rate_cross_leg1 * (pose[1] * rate_cross_leg1) - pose[1] * t88);
-        let t101 = pose[1] * (rate_cross_leg1 * t86);
-        let minus_rate_dot_arm_leg1 = t99
-            + garm_vz_leg1 * (t101 - (t76 * t81 + t77 * t88) + t101);
-        let t109 = actuator_accelerations[0] + minus_rate_dot_arm_leg1;
-        let t111 = pose[1] + 0.04330127018922194;
-        let t112 = t111 - 0.17320508075688776;
-        let t114 = pose[0] - 0.025;
-        let t115 = t114 + 0.1;
-        let t116 = 0.5 * t115;
-        let t117 = 0.8660254037844387 * t112 - t116;
-        let t120 = 0.2304 * (t117 * t117 + t3);
-        let t121 = 1.0 / t120;
-        let t122 = 0.48 * t117;
-        let t123 = t115 * t115;
-        let t126 = t123 + t112 * t112 + t3;
-        let t128 = t126 - 0.3136 + 0.0576;
-        let t131 = t120 - t128 * t128;
-        ::overact::guard::reach(t131, "leg2")?;
-        let t132 = ::overact::math::sqrt(t131);
-        let c_arm_leg2 = t121 * (t122 * t128 - t14 * t132);
-        let t137 = t117 - 0.24 * c_arm_leg2;
-        let t138 = 0.8660254037844387 * t115;
-        let t140 = t138 + 0.5 * t112;
-        let t141 = t140 * t140;
-        let t145 = 1.0 - 3.188775510204082 * t141;
-        ::overact::guard::reach(t145, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t145);
-        let c_cross_leg2 = (t126 - (0.0576 + t141) - 0.3136 * t145)
+        let t71 = minus_rate_cross_leg1 * minus_rate_cross_leg1
+            + rate_rod_leg1 * rate_rod_leg1;
+        let t79 = t43 * (rate_arm_leg1 * rate_arm_leg1) + t36 * t71
+            - t51
+                * (minus_rate_cross_leg1 * (pose[1] * minus_rate_cross_leg1)
+                    - pose[1] * t71);
+        let rate_dot_arm_leg1 = t41 * t79;
+        let t81 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t84 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t87 = pose[0] - 0.025 + 0.1;
+        let t88 = 0.5 * t87;
+        let t89 = 0.8660254037844387 * t84 - t88;
+        let t92 = 0.2304 * (t89 * t89 + t3);
+        let t93 = t87 * t87;
+        let t96 = t93 + t84 * t84 + t3;
+        let t98 = t96 - 0.3136 + 0.0576;
+        let t100 = t92 - t98 * t98;
+        ::overact::guard::reach(t100, "leg2")?;
+        let t101 = ::overact::math::sqrt(t100);
+        let t103 = 0.8660254037844387 * t87;
+        let t105 = t103 + 0.5 * t84;
+        let t106 = t105 * t105;
+        let t108 = 1.0 - 3.188775510204082 * t106;
+        ::overact::guard::reach(t108, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t108);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t110 = 0.56 * c_rod_leg2;
+        let s_cross_leg2 = 2.0833333333333335 * t101 / t110;
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
+        let t112 = 1.0 / s_cross_leg2;
+        let t113 = 4.166666666666667 * t112;
+        let t114 = 1.7857142857142858 / c_rod_leg2;
+        let t115 = t105 * t114;
+        let t117 = 1.0 / t92;
+        let t118 = 0.48 * t89;
+        let c_arm_leg2 = t117 * (t118 * t98 - t14 * t101);
+        let c_cross_leg2 = (t96 - (0.0576 + t106) - 0.3136 * t108)
             / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t121 * (t14 * t128 + t122 * t132);
-        let s_cross_leg2 = 2.0833333333333335 * t132 / (0.56 * c_rod_leg2);
+        let minus_s_arm_leg2 = t117 * (t14 * t98 + t118 * t101);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t161 = t140 * c_armcross_leg2;
-        let t164 = 1.5464739353293548 * t161 - 0.5 * c_rod_leg2;
-        let t167 = 0.24 * minus_s_arm_leg2;
-        let t168 = pose[2] - t167;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t140;
+        let t136 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t113 * (0.8660254037844387 * t115 - t136);
+        let t139 = 0.24 * c_cross_leg2;
+        let t140 = 0.8660254037844387 * c_armcross_leg2;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t173 = minus_s_rod_leg2 * s_armcross_leg2;
-        let t174 = t168 * t173;
-        let t177 = 0.20784609690826528 * minus_s_arm_leg2;
-        let t180 = 0.8928571428571429 * t161 + 0.8660254037844387 * c_rod_leg2;
-        let t184 = t137 * (0.56 * t180) - 0.28 * t174;
-        let t189 = minus_s_arm_leg2 * t173;
-        let t191 = 0.1344 * (c_arm_leg2 * t180) - 0.0672 * t189;
-        let t196 = t177 * t184 - 0.8660254037844387 * t168 * t191 - 0.14 * (t132 * t164);
-        ::overact::guard::leg(t196, 0.06758306237512474, "leg2")?;
-        let t197 = 1.0 / t196;
-        let garm_vx_leg2 = (t137 * (0.56 * t164) - 0.4849742261192857 * t174) * t197;
-        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t168) * t197;
-        let garm_vy_leg2 = t184 * t197;
-        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
-            + garm_vz_leg2 * twist[2];
-        let t208 = rate_arm_leg2 * rate_arm_leg2;
-        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t164)
-            - 0.11639381426862856 * (minus_s_arm_leg2 * t180)) * t197;
-        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t164)
-            - 0.11639381426862856 * t189) * t197;
-        let minus_gcross_vy_leg2 = t191 * t197;
-        let rate_cross_leg2 = gcross_vz_leg2 * twist[2]
-            - (minus_gcross_vx_leg2 * twist[0] + minus_gcross_vy_leg2 * twist[1]);
-        let t227 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t168) - t137 * t177)
-            * t197;
-        let minus_grod_vy_leg2 = 0.25 * t132 * t197;
-        let rate_rod_leg2 = grod_vx_leg2 * twist[0] - minus_grod_vy_leg2 * twist[1];
-        let t240 = t227 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t243 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t244 = 0.5 * rate_cross_leg2;
-        let t245 = t243 - t244;
-        let t248 = c_armcross_leg2 * rate_rod_leg2;
-        let t250 = t240 * t240 + t245 * t245 + t248 * t248;
-        let t253 = 0.20784609690826528 * c_arm_leg2;
-        let t255 = t111 - (0.17320508075688776 + t253);
-        let t256 = t244 * t248;
-        let t258 = 0.12 * c_arm_leg2;
-        let t260 = t114 + 0.1 + t258;
-        let t261 = t227 * t248;
-        let t263 = t255 * t256 + t260 * t261;
-        let t274 = t255 * t245 - t260 * t240 + t168 * t248;
-        let t279 = 1.3333333333333333 * (t227 * t243);
-        let t283 = garm_vx_leg2
-            * (t258 * t208 - t260 * t250 - t240 * t274 + t168 * t261 + t255 * t279);
-        let t293 = garm_vy_leg2
-            * (t245 * t274 - (t253 * t208 + t255 * t250) + t168 * t256 - t260 * t279);
-        let rate_dot_arm_leg2 = garm_vz_leg2 * (t167 * t208 + t168 * t250 + t263 + t263)
-            - (t283 + t293);
-        let t296 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t299 = pose[1] - 0.04330127018922194;
-        let t300 = t299 + 0.17320508075688776;
-        let t302 = t116 + 0.8660254037844387 * t300;
-        let t305 = 0.2304 * (t302 * t302 + t3);
-        let t306 = 1.0 / t305;
-        let t307 = 0.48 * t302;
-        let t310 = t123 + t300 * t300 + t3;
-        let t312 = t310 - 0.3136 + 0.0576;
-        let t315 = t305 - t312 * t312;
-        ::overact::guard::reach(t315, "leg3")?;
-        let t316 = ::overact::math::sqrt(t315);
-        let minus_c_arm_leg3 = t306 * (t307 * t312 + t14 * t316);
-        let t321 = t302 - 0.24 * minus_c_arm_leg3;
-        let t323 = t138 - 0.5 * t300;
-        let t324 = t323 * t323;
-        let t328 = 1.0 - 3.188775510204082 * t324;
-        ::overact::guard::reach(t328, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t328);
-        let c_cross_leg3 = (t310 - (0.0576 + t324) - 0.3136 * t328)
+        let t148 = t140 * twist[1] - t136 * twist[0] - s_armcross_leg2 * twist[2];
+        let t149 = 0.8660254037844387 * twist[0];
+        let t150 = 0.5 * twist[1];
+        let t151 = t149 + t150;
+        let rate_arm_leg2 = t113 * (t148 + t115 * t151);
+        let minus_rate_rod_leg2 = t114 * t151;
+        let t168 = 0.5 * s_armcross_leg2 * twist[0]
+            - 0.8660254037844387 * s_armcross_leg2 * twist[1]
+            - c_armcross_leg2 * twist[2] - c_cross_leg2 * t112 * t148;
+        let rate_cross_leg2 = t114 * (t168 - t139 * (t113 * t115) * t151);
+        let t175 = minus_rate_rod_leg2 * minus_rate_rod_leg2
+            + rate_cross_leg2 * rate_cross_leg2;
+        let t183 = t139 * (rate_arm_leg2 * rate_arm_leg2) + t110 * t175
+            + t115 * (t105 * t175 - rate_cross_leg2 * (t105 * rate_cross_leg2));
+        let rate_dot_arm_leg2 = t113 * t183;
+        let t185 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t189 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t191 = t88 + 0.8660254037844387 * t189;
+        let t194 = 0.2304 * (t191 * t191 + t3);
+        let t197 = t93 + t189 * t189 + t3;
+        let t199 = t197 - 0.3136 + 0.0576;
+        let t201 = t194 - t199 * t199;
+        ::overact::guard::reach(t201, "leg3")?;
+        let t202 = ::overact::math::sqrt(t201);
+        let t205 = t103 - 0.5 * t189;
+        let t206 = t205 * t205;
+        let t208 = 1.0 - 3.188775510204082 * t206;
+        ::overact::guard::reach(t208, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t208);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let t210 = 0.56 * c_rod_leg3;
+        let s_cross_leg3 = 2.0833333333333335 * t202 / t210;
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
+        let t212 = 1.0 / s_cross_leg3;
+        let t213 = 4.166666666666667 * t212;
+        let t214 = 1.0 / t194;
+        let t215 = 0.48 * t191;
+        let minus_c_arm_leg3 = t214 * (t215 * t199 + t14 * t202);
+        let c_cross_leg3 = (t197 - (0.0576 + t206) - 0.3136 * t208)
             / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t306 * (t307 * t316 - t14 * t312);
-        let s_cross_leg3 = 2.0833333333333335 * t316 / (0.56 * c_rod_leg3);
+        let s_arm_leg3 = t214 * (t215 * t202 - t14 * t199);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t344 = t323 * minus_c_armcross_leg3;
-        let t347 = 1.5464739353293548 * t344 + 0.5 * c_rod_leg3;
-        let t350 = 0.24 * s_arm_leg3;
-        let t351 = pose[2] + t350;
-        let s_rod_leg3 = 1.7857142857142858 * t323;
+        let t233 = 0.5 * minus_c_armcross_leg3;
+        let t234 = 1.7857142857142858 / c_rod_leg3;
+        let t235 = t205 * t234;
+        let garm_vx_leg3 = t213 * (t233 + 0.8660254037844387 * t235);
+        let t239 = 0.24 * c_cross_leg3;
+        let t241 = 0.8660254037844387 * minus_c_armcross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t356 = s_rod_leg3 * s_armcross_leg3;
-        let t357 = t351 * t356;
-        let t360 = 0.20784609690826528 * s_arm_leg3;
-        let t363 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t344;
-        let t367 = t321 * (0.56 * t363) + 0.28 * t357;
-        let t372 = s_arm_leg3 * t356;
-        let t374 = 0.1344 * (minus_c_arm_leg3 * t363) - 0.0672 * t372;
-        let t379 = t360 * t367 + 0.8660254037844387 * t351 * t374 + 0.14 * (t316 * t347);
-        ::overact::guard::leg(t379, 0.06758306237512474, "leg3")?;
-        let t380 = 1.0 / t379;
-        let garm_vx_leg3 = (t321 * (0.56 * t347) - 0.4849742261192857 * t357) * t380;
-        let garm_vy_leg3 = t367 * t380;
-        let t383 = 0.20784609690826528 * minus_c_arm_leg3;
-        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t351) * t380;
-        let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
-            + garm_vz_leg3 * twist[2];
-        let t392 = rate_arm_leg3 * rate_arm_leg3;
-        let t395 = t299 - (t383 - 0.17320508075688776);
-        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t363)
-            + 0.0672 * (s_arm_leg3 * t347)) * t380;
-        let minus_gcross_vx_leg3 = (0.11639381426862856 * t372
-            + 0.1344 * (minus_c_arm_leg3 * t347)) * t380;
-        let minus_gcross_vy_leg3 = t374 * t380;
-        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
-            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
-        let t413 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (t321 * t360
-            + 0.20784609690826528 * (minus_c_arm_leg3 * t351)) * t380;
-        let minus_grod_vy_leg3 = 0.25 * t316 * t380;
-        let rate_rod_leg3 = grod_vx_leg3 * twist[0] - minus_grod_vy_leg3 * twist[1];
-        let t426 = t413 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t428 = 0.5 * rate_cross_leg3;
-        let t430 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t431 = t428 + t430;
-        let t434 = minus_c_armcross_leg3 * rate_rod_leg3;
-        let t436 = t426 * t426 + t431 * t431 + t434 * t434;
-        let t439 = 0.12 * minus_c_arm_leg3;
-        let t441 = t114 - (t439 - 0.1);
-        let t446 = t441 * t426 - t395 * t431 - t351 * t434;
-        let t450 = 1.3333333333333333 * (t413 * t430);
-        let t452 = t428 * t434;
-        let t456 = garm_vy_leg3
-            * (t383 * t392 + t395 * t436 + t431 * t446 + t441 * t450 + t351 * t452);
-        let t462 = t413 * t434;
-        let t467 = garm_vx_leg3
-            * (t426 * t446 - (t439 * t392 + t441 * t436) + t351 * t462 + t395 * t450);
-        let t474 = t395 * t452 - t441 * t462;
-        let rate_dot_arm_leg3 = t456 - t467
-            - garm_vz_leg3 * (t350 * t392 - t351 * t436 + t474 + t474);
-        let t479 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t481 = garm_vx_leg1 * t109 + garm_vx_leg2 * t296 + garm_vx_leg3 * t479;
-        let t486 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t248 = t233 * twist[0] + t241 * twist[1] - s_armcross_leg3 * twist[2];
+        let t249 = t149 - t150;
+        let rate_arm_leg3 = t213 * (t248 + t235 * t249);
+        let rate_rod_leg3 = t234 * t249;
+        let t266 = 0.5 * s_armcross_leg3 * twist[0]
+            + 0.8660254037844387 * s_armcross_leg3 * twist[1]
+            + minus_c_armcross_leg3 * twist[2] - c_cross_leg3 * t212 * t248;
+        let rate_cross_leg3 = t234 * (t266 - t239 * (t213 * t235) * t249);
+        let t273 = rate_rod_leg3 * rate_rod_leg3 + rate_cross_leg3 * rate_cross_leg3;
+        let t281 = t239 * (rate_arm_leg3 * rate_arm_leg3) + t210 * t273
+            - t235 * (rate_cross_leg3 * (t205 * rate_cross_leg3) - t205 * t273);
+        let rate_dot_arm_leg3 = t213 * t281;
+        let t283 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t285 = garm_vx_leg1 * t81 + garm_vx_leg2 * t185 + garm_vx_leg3 * t283;
+        let t290 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t486, 14.869730172882845, "actuators")?;
-        let t487 = 1.0 / t486;
-        let t493 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+        ::overact::guard::platform(t290, 14.869730172882841, "actuators")?;
+        let t291 = 1.0 / t290;
+        let garm_vy_leg2 = t113 * (t140 + 0.5 * t115);
+        let garm_vy_leg3 = t213 * (t241 - 0.5 * t235);
+        let t303 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vx_leg3 * garm_vy_leg3;
-        let t494 = t493 * t487;
-        let t501 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t493 * t494;
-        ::overact::guard::platform(t501, 14.869730172882843, "actuators")?;
-        let t502 = 1.0 / t501;
-        let t509 = garm_vy_leg1 * t109 + garm_vy_leg2 * t296 + garm_vy_leg3 * t479
-            - t481 * t494;
-        let t520 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
-            + garm_vx_leg3 * garm_vz_leg3;
-        let t521 = t520 * t487;
-        let t523 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
-            + garm_vy_leg3 * garm_vz_leg3 - t493 * t521;
-        let t524 = t523 * t502;
-        let t533 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + garm_vz_leg3 * garm_vz_leg3 - t520 * t521 - t523 * t524;
-        ::overact::guard::platform(t533, 34.855350201355726, "actuators")?;
-        let t543 = (garm_vz_leg1 * t109 + garm_vz_leg2 * t296 + garm_vz_leg3 * t479
-            - t481 * t521 - t524 * t509) / t533;
-        let t545 = t502 * t509 - t524 * t543;
-        Ok([t481 * t487 - t494 * t545 - t521 * t543, t545, t543])
+        let t304 = t303 * t291;
+        let t311 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t303 * t304;
+        ::overact::guard::platform(t311, 14.869730172882846, "actuators")?;
+        let t312 = 1.0 / t311;
+        let t319 = garm_vy_leg1 * t81 + garm_vy_leg2 * t185 + garm_vy_leg3 * t283
+            - t285 * t304;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t41;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t113;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t213;
+        let t328 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+            + garm_vx_leg3 * minus_garm_vz_leg3;
+        let t329 = t328 * t291;
+        let t336 = t303 * t329
+            - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
+                + garm_vy_leg3 * minus_garm_vz_leg3);
+        let t337 = t336 * t312;
+        let t346 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+            + minus_garm_vz_leg2 * minus_garm_vz_leg2
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t328 * t329 - t336 * t337;
+        ::overact::guard::platform(t346, 34.855350201355726, "actuators")?;
+        let t356 = (t285 * t329
+            - (minus_garm_vz_leg1 * t81 + minus_garm_vz_leg2 * t185
+                + minus_garm_vz_leg3 * t283) - t337 * t319) / t346;
+        let t358 = t312 * t319 - t337 * t356;
+        Ok([t285 * t291 - t304 * t358 + t329 * t356, t358, t356])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1906,7 +1645,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 951 operations (311 additions, 627 multiplications, 13 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 825 intermediates.
+    /// 846 operations (271 additions, 560 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 720 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1915,8 +1654,7 @@ impl Delta {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 52]; 3], ::overact::Error> {
-        let t0 = pose[0] + 0.05;
-        let t1 = t0 - 0.2;
+        let t1 = pose[0] + 0.05 - 0.2;
         let t2 = t1 * t1;
         let t3 = pose[2] * pose[2];
         let t5 = 0.2304 * (t2 + t3);
@@ -1929,535 +1667,500 @@ impl Delta {
         let t16 = t5 - t12 * t12;
         ::overact::guard::reach(t16, "leg1")?;
         let t17 = ::overact::math::sqrt(t16);
-        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
         let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t21 = 0.24 * c_arm_leg1;
-        let t23 = t0 - (0.2 + t21);
-        let t24 = 1.0 / t17;
-        let t25 = 2.0 * t24;
-        let garm_vx_leg1 = t23 * t25;
-        let t27 = 0.48 * t24;
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t35 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t35, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t35);
+        let t24 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t24, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t24);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t35) / (0.2688 * c_rod_leg1);
-        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
-            - minus_s_arm_leg1 * c_cross_leg1;
-        let t49 = 1.0 / c_rod_leg1;
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let t36 = 0.56 * c_rod_leg1;
+        let s_cross_leg1 = 2.0833333333333335 * t17 / t36;
+        ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let gcross_vy_leg1 = t27
-            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t49)
-                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t49));
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t27;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t27;
-        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
-            - minus_gcross_vz_leg1 * twist[2];
-        let grod_vy_leg1 = 1.7857142857142858 * t49;
+        let t40 = 1.0 / s_cross_leg1;
+        let t41 = 4.166666666666667 * t40;
+        let garm_vx_leg1 = c_armcross_leg1 * t41;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t49 = 0.24 * c_cross_leg1;
+        let t52 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
+        let t53 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7857142857142858 * t53;
+        let t55 = pose[1] * grod_vy_leg1;
+        let rate_arm_leg1 = t41 * (t52 + t55 * twist[1]);
+        let t59 = rate_arm_leg1 * rate_arm_leg1;
+        let t61 = c_cross_leg1 * t40;
+        let garm_vy_leg1 = t41 * t55;
+        let t64 = t49 * garm_vy_leg1;
+        let t70 = t61 * t52 + t64 * twist[1] + s_armcross_leg1 * twist[0]
+            + c_armcross_leg1 * twist[2];
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t70;
+        let t72 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t69 = s_armcross_leg1 * rate_rod_leg1;
-        let t71 = pose[1] * (rate_cross_leg1 * t69);
-        let garm_vy_leg1 = pose[1] * t25;
-        let t76 = 0.24 * minus_s_arm_leg1;
-        let t77 = pose[2] - t76;
-        let garm_vz_leg1 = t77 * t25;
-        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
-            + garm_vz_leg1 * twist[2];
-        let t81 = rate_arm_leg1 * rate_arm_leg1;
-        let t84 = rate_cross_leg1 * rate_cross_leg1;
-        let t86 = c_armcross_leg1 * rate_rod_leg1;
-        let t88 = t69 * t69 + t84 + t86 * t86;
-        let t93 = acceleration[0] - (t71 - (t21 * t81 + t23 * t88) + t71);
-        let t95 = pose[1] * rate_cross_leg1;
-        let t96 = rate_cross_leg1 * t95;
-        let t99 = acceleration[1] - (t96 - pose[1] * t88);
-        let t103 = pose[1] * (rate_cross_leg1 * t86);
-        let t109 = acceleration[2] - (t103 - (t76 * t81 + t77 * t88) + t103);
-        let rate_dot_arm_leg1 = garm_vx_leg1 * t93 + garm_vy_leg1 * t99
-            + garm_vz_leg1 * t109;
-        let t112 = garm_vx_leg1 * rate_dot_arm_leg1;
-        let t113 = garm_vy_leg1 * rate_dot_arm_leg1;
-        let t114 = garm_vz_leg1 * rate_dot_arm_leg1;
-        let t115 = 9.81 * c_arm_leg1;
-        let t119 = 9.81 * minus_s_arm_leg1;
-        let rate_dot_cross_leg1 = gcross_vy_leg1 * t99 - minus_gcross_vx_leg1 * t93
-            - minus_gcross_vz_leg1 * t109;
-        let t134 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t135 = c_rod_leg1 * rate_cross_leg1;
-        let t136 = rate_rod_leg1 * t135;
-        let t137 = t134 + t136;
-        let t139 = 1.7857142857142858 * t95;
-        let t140 = rate_rod_leg1 * t139;
-        let t141 = c_rod_leg1 * t140;
-        let t142 = s_rod_leg1 * t137 + t141;
-        let t145 = 3.188775510204082 * t96;
-        let t148 = t136 + t137;
-        let t150 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t151 = t150 - t140;
-        let t154 = c_rod_leg1 * t148 - s_rod_leg1 * (t140 - t151);
-        let t158 = 3.188775510204082 * (t95 * t95);
-        let t164 = t139 * t135;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t99;
-        let t168 = rate_rod_leg1 * rate_rod_leg1;
-        let t171 = s_rod_leg1 * (t164 + rate_dot_rod_leg1) + c_rod_leg1 * (t168 - t158);
-        let t178 = c_rod_leg1 * t151 - t141;
-        let t179 = minus_gcross_vx_leg1 * t178;
-        let t181 = gcross_vy_leg1 * t178 + t145;
-        let t182 = minus_gcross_vz_leg1 * t178;
-        let t183 = 1.7857142857142858 * acceleration[1];
-        let t189 = grod_vy_leg1 * rate_dot_rod_leg1;
-        let t190 = 1.7857142857142858 * acceleration[0];
-        let t192 = 0.24 * rate_dot_arm_leg1 - t115;
-        let t193 = 0.24 * t192;
-        let t194 = garm_vx_leg1 * t193;
-        let t200 = garm_vy_leg1 * t193;
-        let t208 = acceleration[2] + 9.81;
-        let t209 = 1.7857142857142858 * t208;
-        let t210 = garm_vz_leg1 * t193;
-        let t216 = 0.8928571428571429 * t17;
-        let t220 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
-        let t224 = 0.24 * c_cross_leg1;
-        let t226 = t216 * (t164 - rate_dot_rod_leg1) + t220 * (t158 + t168)
-            - t224 * t148;
-        let t230 = t119 - 0.24 * t81;
-        let t233 = s_rod_leg1 * (c_cross_leg1 * t192 - s_cross_leg1 * t230);
-        let t241 = c_cross_leg1 * t230 + s_cross_leg1 * t192;
-        let t251 = t150 * t216 + t134 * t220 + t84 * t224;
-        let t261 = pose[1] + 0.04330127018922194;
-        let t262 = t261 - 0.17320508075688776;
-        let t264 = pose[0] - 0.025;
-        let t265 = t264 + 0.1;
-        let t266 = 0.5 * t265;
-        let t267 = 0.8660254037844387 * t262 - t266;
-        let t270 = 0.2304 * (t267 * t267 + t3);
-        let t271 = 1.0 / t270;
-        let t272 = 0.48 * t267;
-        let t273 = t265 * t265;
-        let t276 = t273 + t262 * t262 + t3;
-        let t278 = t276 - 0.3136 + 0.0576;
-        let t281 = t270 - t278 * t278;
+        let t74 = rate_rod_leg1 * rate_rod_leg1;
+        let t75 = t72 + t74;
+        let t78 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t49 * t59 + t36 * t75;
+        let t79 = pose[1] * minus_rate_cross_leg1;
+        let t80 = minus_rate_cross_leg1 * t79;
+        let t83 = acceleration[1] - (t80 - pose[1] * t75);
+        let rate_dot_arm_leg1 = t41 * (t78 + t55 * t83);
+        let t87 = garm_vx_leg1 * rate_dot_arm_leg1;
+        let t88 = garm_vy_leg1 * rate_dot_arm_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t41;
+        let t90 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
+        let t91 = 9.81 * c_arm_leg1;
+        let t95 = 9.81 * minus_s_arm_leg1;
+        let minus_gcross_vx_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 * t61 + s_armcross_leg1);
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t118 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
+        let t122 = t61 * t78 + t64 * t83 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + 0.24 * s_cross_leg1 * t59 + t118
+            + t118;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t122;
+        let t124 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t126 = rate_rod_leg1 * (1.7857142857142858 * t70);
+        let t127 = t124 + t126;
+        let t130 = c_rod_leg1 * (1.7857142857142858 * t118);
+        let t131 = s_rod_leg1 * t127 + t130;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * t64;
+        let t135 = 3.188775510204082 * t80;
+        let minus_gcross_vz_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 - s_armcross_leg1 * t61);
+        let t141 = t118 - t122;
+        let t145 = t126 + t127;
+        let t147 = 3.188775510204082 * (pose[1] * (t118 + t141)) - c_rod_leg1 * t145;
+        let t149 = t79 * t79;
+        let t158 = 3.188775510204082 * (t70 * t79);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t83;
+        let t162 = 3.188775510204082 * t149;
+        let t165 = s_rod_leg1 * (t158 + rate_dot_rod_leg1) + c_rod_leg1 * (t74 - t162);
+        let t173 = t130 + c_rod_leg1 * (1.7857142857142858 * t141);
+        let t174 = minus_gcross_vx_leg1 * t173;
+        let t176 = t135 - minus_gcross_vy_leg1 * t173;
+        let t177 = minus_gcross_vz_leg1 * t173;
+        let t178 = 1.7857142857142858 * acceleration[1];
+        let t184 = grod_vy_leg1 * rate_dot_rod_leg1;
+        let t185 = 1.7857142857142858 * acceleration[0];
+        let t187 = 0.24 * rate_dot_arm_leg1 - t91;
+        let t188 = 0.24 * t187;
+        let t189 = garm_vx_leg1 * t188;
+        let t195 = garm_vy_leg1 * t188;
+        let t203 = acceleration[2] + 9.81;
+        let t204 = 1.7857142857142858 * t203;
+        let t205 = minus_garm_vz_leg1 * t188;
+        let t215 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
+        let t220 = 0.8928571428571429 * t17 * (t158 - rate_dot_rod_leg1)
+            + t215 * (t162 + t74) + t49 * t145;
+        let t224 = t95 - 0.24 * t59;
+        let t227 = s_rod_leg1 * (c_cross_leg1 * t187 - s_cross_leg1 * t224);
+        let t235 = c_cross_leg1 * t224 + s_cross_leg1 * t187;
+        let t246 = t49 * t72 - (1.594387755102041 * (t17 * t122) + t124 * t215);
+        let t257 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t260 = pose[0] - 0.025 + 0.1;
+        let t261 = 0.5 * t260;
+        let t262 = 0.8660254037844387 * t257 - t261;
+        let t265 = 0.2304 * (t262 * t262 + t3);
+        let t266 = t260 * t260;
+        let t269 = t266 + t257 * t257 + t3;
+        let t271 = t269 - 0.3136 + 0.0576;
+        let t273 = t265 - t271 * t271;
+        ::overact::guard::reach(t273, "leg2")?;
+        let t274 = ::overact::math::sqrt(t273);
+        let t276 = 0.8660254037844387 * t260;
+        let t278 = t276 + 0.5 * t257;
+        let t279 = t278 * t278;
+        let t281 = 1.0 - 3.188775510204082 * t279;
         ::overact::guard::reach(t281, "leg2")?;
-        let t282 = ::overact::math::sqrt(t281);
-        let c_arm_leg2 = t271 * (t272 * t278 - t14 * t282);
-        let t287 = t267 - 0.24 * c_arm_leg2;
-        let t288 = 0.8660254037844387 * t265;
-        let t290 = t288 + 0.5 * t262;
-        let t291 = t290 * t290;
-        let t295 = 1.0 - 3.188775510204082 * t291;
-        ::overact::guard::reach(t295, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t295);
-        let c_cross_leg2 = (t276 - (0.0576 + t291) - 0.3136 * t295)
+        let c_rod_leg2 = ::overact::math::sqrt(t281);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t283 = 0.56 * c_rod_leg2;
+        let s_cross_leg2 = 2.0833333333333335 * t274 / t283;
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
+        let t285 = 1.0 / s_cross_leg2;
+        let t286 = 4.166666666666667 * t285;
+        let t287 = 1.0 / c_rod_leg2;
+        let t288 = 1.7857142857142858 * t287;
+        let t289 = t278 * t288;
+        let t291 = 1.0 / t265;
+        let t292 = 0.48 * t262;
+        let c_arm_leg2 = t291 * (t292 * t271 - t14 * t274);
+        let c_cross_leg2 = (t269 - (0.0576 + t279) - 0.3136 * t281)
             / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t271 * (t14 * t278 + t272 * t282);
-        let s_cross_leg2 = 2.0833333333333335 * t282 / (0.56 * c_rod_leg2);
+        let minus_s_arm_leg2 = t291 * (t14 * t271 + t292 * t274);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t311 = t290 * c_armcross_leg2;
-        let t314 = 1.5464739353293548 * t311 - 0.5 * c_rod_leg2;
-        let t317 = 0.24 * minus_s_arm_leg2;
-        let t318 = pose[2] - t317;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t290;
+        let t310 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t286 * (0.8660254037844387 * t289 - t310);
+        let t313 = 0.8660254037844387 * c_armcross_leg2;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t323 = minus_s_rod_leg2 * s_armcross_leg2;
-        let t324 = t318 * t323;
-        let t327 = 0.20784609690826528 * minus_s_arm_leg2;
-        let t330 = 0.8928571428571429 * t311 + 0.8660254037844387 * c_rod_leg2;
-        let t334 = t287 * (0.56 * t330) - 0.28 * t324;
-        let t339 = minus_s_arm_leg2 * t323;
-        let t341 = 0.1344 * (c_arm_leg2 * t330) - 0.0672 * t339;
-        let t346 = t327 * t334 - 0.8660254037844387 * t318 * t341 - 0.14 * (t282 * t314);
-        ::overact::guard::leg(t346, 0.06758306237512474, "leg2")?;
-        let t347 = 1.0 / t346;
-        let garm_vx_leg2 = (t287 * (0.56 * t314) - 0.4849742261192857 * t324) * t347;
-        let t349 = 0.12 * c_arm_leg2;
-        let garm_vy_leg2 = t334 * t347;
-        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t318) * t347;
-        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
-            + garm_vz_leg2 * twist[2];
-        let t359 = rate_arm_leg2 * rate_arm_leg2;
-        let t362 = t264 + 0.1 + t349;
-        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t314)
-            - 0.11639381426862856 * (minus_s_arm_leg2 * t330)) * t347;
-        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t314)
-            - 0.11639381426862856 * t339) * t347;
-        let minus_gcross_vy_leg2 = t341 * t347;
-        let rate_cross_leg2 = gcross_vz_leg2 * twist[2]
-            - (minus_gcross_vx_leg2 * twist[0] + minus_gcross_vy_leg2 * twist[1]);
-        let t380 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t318) - t287 * t327)
-            * t347;
-        let minus_grod_vy_leg2 = 0.25 * t282 * t347;
-        let rate_rod_leg2 = grod_vx_leg2 * twist[0] - minus_grod_vy_leg2 * twist[1];
-        let t393 = t380 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t396 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t397 = 0.5 * rate_cross_leg2;
-        let t398 = t396 - t397;
-        let t401 = c_armcross_leg2 * rate_rod_leg2;
-        let t403 = t393 * t393 + t398 * t398 + t401 * t401;
-        let t406 = 0.20784609690826528 * c_arm_leg2;
-        let t408 = t261 - (0.17320508075688776 + t406);
-        let t413 = t408 * t398 - t362 * t393 + t318 * t401;
-        let t416 = t380 * t401;
-        let t419 = 1.3333333333333333 * (t380 * t396);
-        let t423 = acceleration[0]
-            - (t349 * t359 - t362 * t403 - t393 * t413 + t318 * t416 + t408 * t419);
-        let t430 = t397 * t401;
-        let t435 = acceleration[1]
-            - (t398 * t413 - (t406 * t359 + t408 * t403) + t318 * t430 - t362 * t419);
-        let t443 = t408 * t430 + t362 * t416;
-        let t446 = acceleration[2] + t317 * t359 + t318 * t403 + t443 + t443;
-        let rate_dot_arm_leg2 = garm_vx_leg2 * t423 + garm_vy_leg2 * t435
-            + garm_vz_leg2 * t446;
-        let t449 = garm_vx_leg2 * rate_dot_arm_leg2;
-        let t450 = garm_vy_leg2 * rate_dot_arm_leg2;
-        let t451 = garm_vz_leg2 * rate_dot_arm_leg2;
-        let t452 = 9.81 * c_arm_leg2;
-        let t456 = 9.81 * minus_s_arm_leg2;
-        let t466 = 1.7857142857142858 * t413;
-        let t467 = rate_rod_leg2 * t466;
-        let t468 = c_rod_leg2 * t467;
-        let t469 = c_rod_leg2 * rate_cross_leg2;
-        let t470 = rate_rod_leg2 * t469;
-        let rate_dot_cross_leg2 = gcross_vz_leg2 * t446
-            - (minus_gcross_vx_leg2 * t423 + minus_gcross_vy_leg2 * t435);
-        let t476 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t477 = t470 - t476;
-        let t479 = t468 - minus_s_rod_leg2 * t477;
-        let t481 = t466 * t469;
-        let t482 = grod_vx_leg2 * t481;
-        let t484 = minus_grod_vy_leg2 * t481;
-        let t489 = 3.188775510204082 * (t413 * t413);
-        let t490 = t469 * t469;
-        let t491 = t489 - t490;
-        let t493 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t494 = t493 - t467;
-        let t497 = t470 + t477;
-        let t499 = minus_s_rod_leg2 * (t467 - t494) + c_rod_leg2 * t497;
-        let t506 = rate_rod_leg2 * rate_rod_leg2;
-        let rate_dot_rod_leg2 = grod_vx_leg2 * t423 - minus_grod_vy_leg2 * t435;
-        let t514 = c_rod_leg2 * (t506 - t489)
-            - minus_s_rod_leg2 * (t481 + rate_dot_rod_leg2);
-        let t523 = c_rod_leg2 * t494 - t468;
-        let t525 = t482 - minus_gcross_vx_leg2 * t523;
-        let t527 = minus_gcross_vy_leg2 * t523 + t484;
-        let t528 = gcross_vz_leg2 * t523;
-        let t531 = t481 - rate_dot_rod_leg2;
-        let t533 = minus_s_rod_leg2 * (t490 - t506) + c_rod_leg2 * t531;
-        let t541 = grod_vx_leg2 * rate_dot_rod_leg2;
-        let t542 = minus_grod_vy_leg2 * rate_dot_rod_leg2;
-        let t544 = 0.24 * rate_dot_arm_leg2 - t452;
-        let t545 = 0.24 * t544;
-        let t546 = garm_vx_leg2 * t545;
-        let t554 = garm_vy_leg2 * t545;
-        let t562 = garm_vz_leg2 * t545;
-        let t568 = 0.8928571428571429 * t282;
-        let t571 = 0.42857142857142855 * (t290 * s_cross_leg2);
-        let t575 = 0.24 * c_cross_leg2;
-        let t577 = t568 * t531 - t571 * (t489 + t506) - t575 * t497;
-        let t581 = t456 - 0.24 * t359;
-        let t584 = minus_s_rod_leg2 * (c_cross_leg2 * t544 - s_cross_leg2 * t581);
-        let t589 = c_cross_leg2 * t581 + s_cross_leg2 * t544;
-        let t606 = t493 * t568 + t476 * t571 + rate_cross_leg2 * rate_cross_leg2 * t575;
-        let t616 = pose[1] - 0.04330127018922194;
-        let t617 = t616 + 0.17320508075688776;
-        let t619 = t266 + 0.8660254037844387 * t617;
-        let t622 = 0.2304 * (t619 * t619 + t3);
-        let t623 = 1.0 / t622;
-        let t624 = 0.48 * t619;
-        let t627 = t273 + t617 * t617 + t3;
-        let t629 = t627 - 0.3136 + 0.0576;
-        let t632 = t622 - t629 * t629;
-        ::overact::guard::reach(t632, "leg3")?;
-        let t633 = ::overact::math::sqrt(t632);
-        let minus_c_arm_leg3 = t623 * (t624 * t629 + t14 * t633);
-        let t638 = t619 - 0.24 * minus_c_arm_leg3;
-        let t640 = t288 - 0.5 * t617;
-        let t641 = t640 * t640;
-        let t645 = 1.0 - 3.188775510204082 * t641;
-        ::overact::guard::reach(t645, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t645);
-        let c_cross_leg3 = (t627 - (0.0576 + t641) - 0.3136 * t645)
+        let t322 = 0.24 * c_cross_leg2;
+        let t327 = t313 * twist[1] - t310 * twist[0] - s_armcross_leg2 * twist[2];
+        let t328 = 0.8660254037844387 * twist[0];
+        let t329 = 0.5 * twist[1];
+        let t330 = t328 + t329;
+        let rate_arm_leg2 = t286 * (t327 + t289 * t330);
+        let t334 = rate_arm_leg2 * rate_arm_leg2;
+        let minus_rate_rod_leg2 = t288 * t330;
+        let t337 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t338 = 0.5 * s_armcross_leg2;
+        let t340 = 0.8660254037844387 * s_armcross_leg2;
+        let t345 = c_cross_leg2 * t285;
+        let t349 = t322 * (t286 * t289);
+        let t351 = t338 * twist[0] - t340 * twist[1] - c_armcross_leg2 * twist[2]
+            - t345 * t327 - t349 * t330;
+        let rate_cross_leg2 = t288 * t351;
+        let t353 = rate_cross_leg2 * rate_cross_leg2;
+        let t354 = t337 + t353;
+        let t357 = t313 * acceleration[1] - t310 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t322 * t334 + t283 * t354;
+        let t358 = 0.8660254037844387 * acceleration[0];
+        let t359 = 0.5 * acceleration[1];
+        let t360 = t358 + t359;
+        let t362 = t278 * rate_cross_leg2;
+        let t363 = rate_cross_leg2 * t362;
+        let t365 = t360 + t278 * t354 - t363;
+        let rate_dot_arm_leg2 = t286 * (t357 + t289 * t365);
+        let t369 = garm_vx_leg2 * rate_dot_arm_leg2;
+        let garm_vy_leg2 = t286 * (t313 + 0.5 * t289);
+        let t373 = garm_vy_leg2 * rate_dot_arm_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t286;
+        let t375 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
+        let t376 = 9.81 * c_arm_leg2;
+        let t380 = 9.81 * minus_s_arm_leg2;
+        let gcross_vx_leg2 = t288 * (t310 * t345 + t338 - 0.8660254037844387 * t349);
+        let minus_s_rod_leg2 = 1.7857142857142858 * t278;
+        let t404 = t278 * (rate_cross_leg2 * minus_rate_rod_leg2);
+        let t407 = t338 * acceleration[0] - t340 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2]
+            - (0.24 * s_cross_leg2 * t334 - t404 - t404);
+        let t411 = t407 - t345 * t357 - t349 * t365;
+        let rate_dot_cross_leg2 = t288 * t411;
+        let t413 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t415 = minus_rate_rod_leg2 * (1.7857142857142858 * t351);
+        let t416 = t413 + t415;
+        let t419 = c_rod_leg2 * (1.7857142857142858 * t404);
+        let t420 = minus_s_rod_leg2 * t416 + t419;
+        let t422 = 2.76156059880242 * t363;
+        let minus_gcross_vy_leg2 = t288 * (t313 * t345 + t340 + 0.5 * t349);
+        let t430 = 1.594387755102041 * t363;
+        let gcross_vz_leg2 = t288 * (s_armcross_leg2 * t345 - c_armcross_leg2);
+        let t436 = t411 - t404;
+        let t440 = t415 + t416;
+        let t442 = 3.188775510204082 * (t278 * (t404 - t436)) - c_rod_leg2 * t440;
+        let t444 = t362 * t362;
+        let t447 = t287 * (t444 - t351 * t351);
+        let t455 = 3.188775510204082 * (t351 * t362);
+        let minus_rate_dot_rod_leg2 = t288 * t365;
+        let t459 = 3.188775510204082 * t444;
+        let t462 = minus_s_rod_leg2 * (t455 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t337 - t459);
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t287;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t287;
+        let t474 = c_rod_leg2 * (1.7857142857142858 * t436) - t419;
+        let t476 = gcross_vx_leg2 * t474 + t422;
+        let t478 = t430 - minus_gcross_vy_leg2 * t474;
+        let t479 = gcross_vz_leg2 * t474;
+        let t480 = 1.7857142857142858 * t360;
+        let t488 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
+        let t489 = minus_grod_vy_leg2 * minus_rate_dot_rod_leg2;
+        let t491 = 0.24 * rate_dot_arm_leg2 - t376;
+        let t492 = 0.24 * t491;
+        let t493 = garm_vx_leg2 * t492;
+        let t501 = garm_vy_leg2 * t492;
+        let t510 = minus_garm_vz_leg2 * t492;
+        let t519 = 0.42857142857142855 * (t278 * s_cross_leg2);
+        let t524 = 0.8928571428571429 * t274 * (minus_rate_dot_rod_leg2 - t455)
+            - t519 * (t459 + t337) + t322 * t440;
+        let t528 = t380 - 0.24 * t334;
+        let t531 = minus_s_rod_leg2 * (c_cross_leg2 * t491 - s_cross_leg2 * t528);
+        let t536 = c_cross_leg2 * t528 + s_cross_leg2 * t491;
+        let t553 = 1.594387755102041 * (t274 * t411) + t413 * t519 + t322 * t353;
+        let t564 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t566 = t261 + 0.8660254037844387 * t564;
+        let t569 = 0.2304 * (t566 * t566 + t3);
+        let t572 = t266 + t564 * t564 + t3;
+        let t574 = t572 - 0.3136 + 0.0576;
+        let t576 = t569 - t574 * t574;
+        ::overact::guard::reach(t576, "leg3")?;
+        let t577 = ::overact::math::sqrt(t576);
+        let t580 = t276 - 0.5 * t564;
+        let t581 = t580 * t580;
+        let t583 = 1.0 - 3.188775510204082 * t581;
+        ::overact::guard::reach(t583, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t583);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let t585 = 0.56 * c_rod_leg3;
+        let s_cross_leg3 = 2.0833333333333335 * t577 / t585;
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
+        let t587 = 1.0 / s_cross_leg3;
+        let t588 = 4.166666666666667 * t587;
+        let t589 = 1.0 / t569;
+        let t590 = 0.48 * t566;
+        let minus_c_arm_leg3 = t589 * (t590 * t574 + t14 * t577);
+        let c_cross_leg3 = (t572 - (0.0576 + t581) - 0.3136 * t583)
             / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t623 * (t624 * t633 - t14 * t629);
-        let s_cross_leg3 = 2.0833333333333335 * t633 / (0.56 * c_rod_leg3);
+        let s_arm_leg3 = t589 * (t590 * t577 - t14 * t574);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t661 = t640 * minus_c_armcross_leg3;
-        let t664 = 1.5464739353293548 * t661 + 0.5 * c_rod_leg3;
-        let t667 = 0.24 * s_arm_leg3;
-        let t668 = pose[2] + t667;
-        let s_rod_leg3 = 1.7857142857142858 * t640;
+        let t608 = 0.5 * minus_c_armcross_leg3;
+        let t609 = 1.0 / c_rod_leg3;
+        let t610 = 1.7857142857142858 * t609;
+        let t611 = t580 * t610;
+        let garm_vx_leg3 = t588 * (t608 + 0.8660254037844387 * t611);
+        let t616 = 0.8660254037844387 * minus_c_armcross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t673 = s_rod_leg3 * s_armcross_leg3;
-        let t674 = t668 * t673;
-        let t677 = 0.20784609690826528 * s_arm_leg3;
-        let t680 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t661;
-        let t684 = t638 * (0.56 * t680) + 0.28 * t674;
-        let t689 = s_arm_leg3 * t673;
-        let t691 = 0.1344 * (minus_c_arm_leg3 * t680) - 0.0672 * t689;
-        let t696 = t677 * t684 + 0.8660254037844387 * t668 * t691 + 0.14 * (t633 * t664);
-        ::overact::guard::leg(t696, 0.06758306237512474, "leg3")?;
-        let t697 = 1.0 / t696;
-        let garm_vx_leg3 = (t638 * (0.56 * t664) - 0.4849742261192857 * t674) * t697;
-        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t680)
-            + 0.0672 * (s_arm_leg3 * t664)) * t697;
-        let minus_gcross_vx_leg3 = (0.11639381426862856 * t689
-            + 0.1344 * (minus_c_arm_leg3 * t664)) * t697;
-        let minus_gcross_vy_leg3 = t691 * t697;
-        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
-            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
-        let t716 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (t638 * t677
-            + 0.20784609690826528 * (minus_c_arm_leg3 * t668)) * t697;
-        let minus_grod_vy_leg3 = 0.25 * t633 * t697;
-        let rate_rod_leg3 = grod_vx_leg3 * twist[0] - minus_grod_vy_leg3 * twist[1];
-        let t729 = t716 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t730 = 0.12 * minus_c_arm_leg3;
-        let t732 = t264 - (t730 - 0.1);
-        let t734 = 0.20784609690826528 * minus_c_arm_leg3;
-        let t736 = t616 - (t734 - 0.17320508075688776);
-        let t737 = 0.5 * rate_cross_leg3;
-        let t739 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t740 = t737 + t739;
-        let t743 = minus_c_armcross_leg3 * rate_rod_leg3;
-        let t745 = t732 * t729 - t736 * t740 - t668 * t743;
-        let garm_vy_leg3 = t684 * t697;
-        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t668) * t697;
-        let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
-            + garm_vz_leg3 * twist[2];
-        let t756 = rate_arm_leg3 * rate_arm_leg3;
-        let t762 = t729 * t729 + t740 * t740 + t743 * t743;
-        let t766 = t716 * t743;
-        let t769 = 1.3333333333333333 * (t716 * t739);
-        let t773 = acceleration[0]
-            - (t729 * t745 - (t730 * t756 + t732 * t762) + t668 * t766 + t736 * t769);
-        let t781 = t737 * t743;
-        let t785 = acceleration[1] + t734 * t756 + t736 * t762 + t740 * t745
-            + t732 * t769 + t668 * t781;
-        let t793 = t736 * t781 - t732 * t766;
-        let t796 = acceleration[2] - (t667 * t756 - t668 * t762 + t793 + t793);
-        let rate_dot_arm_leg3 = garm_vx_leg3 * t773 + garm_vy_leg3 * t785
-            + garm_vz_leg3 * t796;
-        let t799 = garm_vx_leg3 * rate_dot_arm_leg3;
-        let t800 = garm_vy_leg3 * rate_dot_arm_leg3;
-        let t801 = garm_vz_leg3 * rate_dot_arm_leg3;
-        let t802 = 9.81 * minus_c_arm_leg3;
-        let t806 = 9.81 * s_arm_leg3;
-        let rate_dot_cross_leg3 = gcross_vz_leg3 * t796
-            - (minus_gcross_vx_leg3 * t773 + minus_gcross_vy_leg3 * t785);
-        let t821 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t822 = c_rod_leg3 * rate_cross_leg3;
-        let t823 = rate_rod_leg3 * t822;
-        let t824 = t821 + t823;
-        let t826 = 1.7857142857142858 * t745;
-        let t827 = rate_rod_leg3 * t826;
-        let t828 = c_rod_leg3 * t827;
-        let t829 = s_rod_leg3 * t824 + t828;
-        let t831 = t826 * t822;
-        let t832 = grod_vx_leg3 * t831;
-        let t834 = minus_grod_vy_leg3 * t831;
-        let t839 = 3.188775510204082 * (t745 * t745);
-        let t840 = t822 * t822;
-        let t841 = t839 - t840;
-        let t843 = t823 + t824;
-        let t845 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t846 = t845 - t827;
-        let t849 = c_rod_leg3 * t843 - s_rod_leg3 * (t827 - t846);
-        let rate_dot_rod_leg3 = grod_vx_leg3 * t773 - minus_grod_vy_leg3 * t785;
-        let t862 = rate_rod_leg3 * rate_rod_leg3;
-        let t865 = s_rod_leg3 * (t831 + rate_dot_rod_leg3) + c_rod_leg3 * (t862 - t839);
-        let t873 = c_rod_leg3 * t846 - t828;
-        let t875 = t832 - minus_gcross_vx_leg3 * t873;
-        let t877 = minus_gcross_vy_leg3 * t873 + t834;
-        let t878 = gcross_vz_leg3 * t873;
-        let t882 = t831 - rate_dot_rod_leg3;
-        let t884 = s_rod_leg3 * (t840 - t862) - c_rod_leg3 * t882;
-        let t891 = grod_vx_leg3 * rate_dot_rod_leg3;
-        let t892 = minus_grod_vy_leg3 * rate_dot_rod_leg3;
-        let t894 = t802 + 0.24 * rate_dot_arm_leg3;
-        let t895 = 0.24 * t894;
-        let t896 = garm_vx_leg3 * t895;
-        let t904 = garm_vy_leg3 * t895;
-        let t912 = garm_vz_leg3 * t895;
-        let t918 = 0.8928571428571429 * t633;
-        let t921 = 0.42857142857142855 * (t640 * s_cross_leg3);
-        let t925 = 0.24 * c_cross_leg3;
-        let t927 = t918 * t882 + t921 * (t839 + t862) - t925 * t843;
-        let t930 = t806 + 0.24 * t756;
-        let t934 = s_rod_leg3 * (s_cross_leg3 * t930 + c_cross_leg3 * t894);
-        let t939 = s_cross_leg3 * t894 - c_cross_leg3 * t930;
-        let t956 = t845 * t918 + t821 * t921 + rate_cross_leg3 * rate_cross_leg3 * t925;
+        let t624 = 0.24 * c_cross_leg3;
+        let t629 = t608 * twist[0] + t616 * twist[1] - s_armcross_leg3 * twist[2];
+        let t630 = t328 - t329;
+        let rate_arm_leg3 = t588 * (t629 + t611 * t630);
+        let t634 = rate_arm_leg3 * rate_arm_leg3;
+        let rate_rod_leg3 = t610 * t630;
+        let t637 = rate_rod_leg3 * rate_rod_leg3;
+        let t638 = 0.5 * s_armcross_leg3;
+        let t640 = 0.8660254037844387 * s_armcross_leg3;
+        let t645 = c_cross_leg3 * t587;
+        let t649 = t624 * (t588 * t611);
+        let t651 = t638 * twist[0] + t640 * twist[1] + minus_c_armcross_leg3 * twist[2]
+            - t645 * t629 - t649 * t630;
+        let rate_cross_leg3 = t610 * t651;
+        let t653 = rate_cross_leg3 * rate_cross_leg3;
+        let t654 = t637 + t653;
+        let t657 = t608 * acceleration[0] + t616 * acceleration[1]
+            - s_armcross_leg3 * acceleration[2] + t624 * t634 + t585 * t654;
+        let t658 = t358 - t359;
+        let t659 = t580 * rate_cross_leg3;
+        let t660 = rate_cross_leg3 * t659;
+        let t663 = t658 - (t660 - t580 * t654);
+        let rate_dot_arm_leg3 = t588 * (t657 + t611 * t663);
+        let t667 = garm_vx_leg3 * rate_dot_arm_leg3;
+        let garm_vy_leg3 = t588 * (t616 - 0.5 * t611);
+        let t671 = garm_vy_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t588;
+        let t673 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
+        let t674 = 9.81 * minus_c_arm_leg3;
+        let t678 = 9.81 * s_arm_leg3;
+        let gcross_vx_leg3 = t610 * (t638 - t608 * t645 - 0.8660254037844387 * t649);
+        let s_rod_leg3 = 1.7857142857142858 * t580;
+        let t702 = t580 * (rate_cross_leg3 * rate_rod_leg3);
+        let t705 = t638 * acceleration[0] + t640 * acceleration[1]
+            + minus_c_armcross_leg3 * acceleration[2]
+            - (0.24 * s_cross_leg3 * t634 - t702 - t702);
+        let t709 = t705 - t645 * t657 - t649 * t663;
+        let rate_dot_cross_leg3 = t610 * t709;
+        let t711 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t713 = rate_rod_leg3 * (1.7857142857142858 * t651);
+        let t714 = t711 + t713;
+        let t717 = c_rod_leg3 * (1.7857142857142858 * t702);
+        let t718 = s_rod_leg3 * t714 + t717;
+        let t720 = 2.76156059880242 * t660;
+        let gcross_vy_leg3 = t610 * (t640 - t616 * t645 + 0.5 * t649);
+        let t728 = 1.594387755102041 * t660;
+        let gcross_vz_leg3 = t610 * (s_armcross_leg3 * t645 + minus_c_armcross_leg3);
+        let t734 = t713 + t714;
+        let t736 = t709 - t702;
+        let t740 = c_rod_leg3 * t734 - 3.188775510204082 * (t580 * (t702 - t736));
+        let t742 = t659 * t659;
+        let t745 = t609 * (t742 - t651 * t651);
+        let t753 = 3.188775510204082 * (t651 * t659);
+        let rate_dot_rod_leg3 = t610 * t663;
+        let t757 = 3.188775510204082 * t742;
+        let t760 = s_rod_leg3 * (t753 + rate_dot_rod_leg3) + c_rod_leg3 * (t637 - t757);
+        let grod_vx_leg3 = 1.5464739353293548 * t609;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t609;
+        let t772 = c_rod_leg3 * (1.7857142857142858 * t736) - t717;
+        let t774 = gcross_vx_leg3 * t772 + t720;
+        let t776 = gcross_vy_leg3 * t772 - t728;
+        let t777 = gcross_vz_leg3 * t772;
+        let t778 = 1.7857142857142858 * t658;
+        let t786 = grod_vx_leg3 * rate_dot_rod_leg3;
+        let t787 = minus_grod_vy_leg3 * rate_dot_rod_leg3;
+        let t789 = t674 + 0.24 * rate_dot_arm_leg3;
+        let t790 = 0.24 * t789;
+        let t791 = garm_vx_leg3 * t790;
+        let t799 = garm_vy_leg3 * t790;
+        let t808 = minus_garm_vz_leg3 * t790;
+        let t817 = 0.42857142857142855 * (t580 * s_cross_leg3);
+        let t822 = 0.8928571428571429 * t577 * (t753 - rate_dot_rod_leg3)
+            + t817 * (t757 + t637) - t624 * t734;
+        let t825 = t678 + 0.24 * t634;
+        let t829 = s_rod_leg3 * (s_cross_leg3 * t825 + c_cross_leg3 * t789);
+        let t834 = s_cross_leg3 * t789 - c_cross_leg3 * t825;
+        let t851 = 1.594387755102041 * (t577 * t709) + t711 * t817 + t624 * t653;
         Ok([
             [
-                t112, -(garm_vx_leg1 * t115), -(garm_vx_leg1 * t119), t112,
+                t87, -(garm_vx_leg1 * t91), -(garm_vx_leg1 * t95), t87,
                 garm_vx_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
-                garm_vx_leg1, -(minus_gcross_vx_leg1 * t142), -(minus_gcross_vx_leg1 * t154),
-                -(minus_gcross_vx_leg1 * t171), -t179, -(minus_gcross_vx_leg1 * t183), 0.0,
-                t190
+                garm_vx_leg1, minus_gcross_vx_leg1 * t131, -(minus_gcross_vx_leg1 * t147),
+                -(minus_gcross_vx_leg1 * t165), -t174, -(minus_gcross_vx_leg1 * t178), 0.0,
+                t185
                     - 0.10285714285714286
-                        * (17.36111111111111 * t194 - 5.444444444444445 * t179),
-                garm_vx_leg1 * t226 + minus_gcross_vx_leg1 * t233,
-                garm_vx_leg1 * t251 - minus_gcross_vx_leg1 * t241,
-                t194,
-                t449,
-                -(garm_vx_leg2 * t452),
-                -(garm_vx_leg2 * t456),
-                t449,
+                        * (17.36111111111111 * t189 - 5.444444444444445 * t174),
+                garm_vx_leg1 * t220 + minus_gcross_vx_leg1 * t227,
+                garm_vx_leg1 * t246 - minus_gcross_vx_leg1 * t235,
+                t189,
+                t369,
+                -(garm_vx_leg2 * t376),
+                -(garm_vx_leg2 * t380),
+                t369,
                 garm_vx_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vx_leg2, rate_arm_leg2),
                 garm_vx_leg2,
-                -(minus_gcross_vx_leg2 * t479 + t482),
-                grod_vx_leg2 * t491 - minus_gcross_vx_leg2 * t499,
-                -(minus_gcross_vx_leg2 * t514 + grod_vx_leg2 * t476),
-                t525,
-                minus_gcross_vx_leg2 * t533 + grod_vx_leg2 * t493,
-                t541,
-                t190
+                gcross_vx_leg2 * t420 - t422,
+                gcross_vx_leg2 * t442 - 4.9313582121471775 * t447,
+                gcross_vx_leg2 * t462 + minus_grod_vx_leg2 * t413,
+                t476,
+                -(gcross_vx_leg2 * t480 + 1.5464739353293548 * rate_dot_cross_leg2),
+                t488,
+                t185
                     - 0.10285714285714286
-                        * (17.36111111111111 * t546 + 5.444444444444445 * t525
-                            + 5.444444444444445 * t541),
-                garm_vx_leg2 * t577 - minus_gcross_vx_leg2 * t584
-                    - grod_vx_leg2 * (c_rod_leg2 * t589),
-                garm_vx_leg2 * t606 - minus_gcross_vx_leg2 * t589,
-                t546,
-                t799,
-                garm_vx_leg3 * t802,
-                garm_vx_leg3 * t806,
-                t799,
+                        * (17.36111111111111 * t493 + 5.444444444444445 * t476
+                            + 5.444444444444445 * t488),
+                garm_vx_leg2 * t524 + gcross_vx_leg2 * t531
+                    + minus_grod_vx_leg2 * (c_rod_leg2 * t536),
+                garm_vx_leg2 * t553 + gcross_vx_leg2 * t536,
+                t493,
+                t667,
+                garm_vx_leg3 * t674,
+                garm_vx_leg3 * t678,
+                t667,
                 garm_vx_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
                 garm_vx_leg3,
-                -(minus_gcross_vx_leg3 * t829 + t832),
-                grod_vx_leg3 * t841 - minus_gcross_vx_leg3 * t849,
-                grod_vx_leg3 * t821 - minus_gcross_vx_leg3 * t865,
-                t875,
-                grod_vx_leg3 * t845 - minus_gcross_vx_leg3 * t884,
-                t891,
-                t190
+                gcross_vx_leg3 * t718 - t720,
+                gcross_vx_leg3 * t740 + 4.9313582121471775 * t745,
+                gcross_vx_leg3 * t760 + grod_vx_leg3 * t711,
+                t774,
+                gcross_vx_leg3 * t778 + 1.5464739353293548 * rate_dot_cross_leg3,
+                t786,
+                t185
                     - 0.10285714285714286
-                        * (17.36111111111111 * t896 + 5.444444444444445 * t875
-                            + 5.444444444444445 * t891),
-                garm_vx_leg3 * t927 + minus_gcross_vx_leg3 * t934
-                    - grod_vx_leg3 * (c_rod_leg3 * t939),
-                garm_vx_leg3 * t956 - minus_gcross_vx_leg3 * t939,
-                t896,
+                        * (17.36111111111111 * t791 + 5.444444444444445 * t774
+                            + 5.444444444444445 * t786),
+                garm_vx_leg3 * t822 - gcross_vx_leg3 * t829
+                    - grod_vx_leg3 * (c_rod_leg3 * t834),
+                garm_vx_leg3 * t851 + gcross_vx_leg3 * t834,
+                t791,
                 acceleration[0],
             ],
             [
-                t113, -(garm_vy_leg1 * t115), -(garm_vy_leg1 * t119), t113,
+                t88, -(garm_vy_leg1 * t91), -(garm_vy_leg1 * t95), t88,
                 garm_vy_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
-                garm_vy_leg1, gcross_vy_leg1 * t142 - t145,
-                gcross_vy_leg1 * t154 + grod_vy_leg1 * (t158 - t135 * t135),
-                gcross_vy_leg1 * t171 + grod_vy_leg1 * t134, t181,
-                gcross_vy_leg1 * t183 + 1.7857142857142858 * rate_dot_cross_leg1, t189,
-                t183
+                garm_vy_leg1, minus_gcross_vy_leg1 * t131 - t135,
+                5.694241982507289 * (t53 * (t149 - t70 * t70))
+                    - minus_gcross_vy_leg1 * t147,
+                -(minus_gcross_vy_leg1 * t165 + grod_vy_leg1 * t124),
+                t176,
+                -(minus_gcross_vy_leg1 * t178
+                    + 1.7857142857142858 * minus_rate_dot_cross_leg1),
+                t184,
+                t178
                     - 0.10285714285714286
-                        * (17.36111111111111 * t200 + 5.444444444444445 * t181
-                            + 5.444444444444445 * t189),
-                garm_vy_leg1 * t226 - gcross_vy_leg1 * t233 - 1.7857142857142858 * t241,
-                garm_vy_leg1 * t251 + gcross_vy_leg1 * t241,
-                t200,
-                t450,
-                -(garm_vy_leg2 * t452),
-                -(garm_vy_leg2 * t456),
-                t450,
+                        * (17.36111111111111 * t195 + 5.444444444444445 * t176
+                            + 5.444444444444445 * t184),
+                garm_vy_leg1 * t220 + minus_gcross_vy_leg1 * t227
+                    - 1.7857142857142858 * t235,
+                garm_vy_leg1 * t246 - minus_gcross_vy_leg1 * t235,
+                t195,
+                t373,
+                -(garm_vy_leg2 * t376),
+                -(garm_vy_leg2 * t380),
+                t373,
                 garm_vy_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 garm_vy_leg2,
-                t484 - minus_gcross_vy_leg2 * t479,
-                -(minus_gcross_vy_leg2 * t499 + minus_grod_vy_leg2 * t491),
-                minus_grod_vy_leg2 * t476 - minus_gcross_vy_leg2 * t514,
-                -t527,
-                minus_gcross_vy_leg2 * t533 - 0.8928571428571429 * rate_dot_cross_leg2,
-                -t542,
-                t183
+                -(minus_gcross_vy_leg2 * t420 + t430),
+                -(minus_gcross_vy_leg2 * t442 + 2.8471209912536444 * t447),
+                minus_grod_vy_leg2 * t413 - minus_gcross_vy_leg2 * t462,
+                t478,
+                minus_gcross_vy_leg2 * t480 - 0.8928571428571429 * rate_dot_cross_leg2,
+                t489,
+                t178
                     - 0.10285714285714286
-                        * (17.36111111111111 * t554 - 5.444444444444445 * t527
-                            - 5.444444444444445 * t542),
-                garm_vy_leg2 * t577 - minus_gcross_vy_leg2 * t584
-                    + 0.8928571428571429 * t589,
-                garm_vy_leg2 * t606 - minus_gcross_vy_leg2 * t589,
-                t554,
-                t800,
-                garm_vy_leg3 * t802,
-                garm_vy_leg3 * t806,
-                t800,
+                        * (17.36111111111111 * t501 + 5.444444444444445 * t478
+                            + 5.444444444444445 * t489),
+                garm_vy_leg2 * t524 - minus_gcross_vy_leg2 * t531
+                    + 0.8928571428571429 * t536,
+                garm_vy_leg2 * t553 - minus_gcross_vy_leg2 * t536,
+                t501,
+                t671,
+                garm_vy_leg3 * t674,
+                garm_vy_leg3 * t678,
+                t671,
                 garm_vy_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_vy_leg3, rate_arm_leg3),
                 garm_vy_leg3,
-                t834 - minus_gcross_vy_leg3 * t829,
-                -(minus_gcross_vy_leg3 * t849 + minus_grod_vy_leg3 * t841),
-                -(minus_gcross_vy_leg3 * t865 + minus_grod_vy_leg3 * t821),
-                -t877,
-                -(minus_gcross_vy_leg3 * t884
-                    + 0.8928571428571429 * rate_dot_cross_leg3),
-                -t892,
-                t183
+                gcross_vy_leg3 * t718 + t728,
+                gcross_vy_leg3 * t740 - 2.8471209912536444 * t745,
+                gcross_vy_leg3 * t760 - minus_grod_vy_leg3 * t711,
+                t776,
+                gcross_vy_leg3 * t778 - 0.8928571428571429 * rate_dot_cross_leg3,
+                -t787,
+                t178
                     - 0.10285714285714286
-                        * (17.36111111111111 * t904 - 5.444444444444445 * t877
-                            - 5.444444444444445 * t892),
-                garm_vy_leg3 * t927 + minus_gcross_vy_leg3 * t934
-                    + 0.8928571428571429 * t939,
-                garm_vy_leg3 * t956 - minus_gcross_vy_leg3 * t939,
-                t904,
+                        * (17.36111111111111 * t799 + 5.444444444444445 * t776
+                            - 5.444444444444445 * t787),
+                garm_vy_leg3 * t822 - gcross_vy_leg3 * t829 + 0.8928571428571429 * t834,
+                garm_vy_leg3 * t851 + gcross_vy_leg3 * t834,
+                t799,
                 acceleration[1],
             ],
             [
-                t114, -(garm_vz_leg1 * t115), -(garm_vz_leg1 * t119), t114,
-                garm_vz_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vz_leg1, rate_arm_leg1),
-                garm_vz_leg1, -(minus_gcross_vz_leg1 * t142), -(minus_gcross_vz_leg1 * t154),
-                -(minus_gcross_vz_leg1 * t171), -t182, -(minus_gcross_vz_leg1 * t183), 0.0,
-                t209
-                    - 0.10285714285714286
-                        * (17.36111111111111 * t210 - 5.444444444444445 * t182),
-                garm_vz_leg1 * t226 + minus_gcross_vz_leg1 * t233,
-                garm_vz_leg1 * t251 - minus_gcross_vz_leg1 * t241,
-                t210,
-                t451,
-                -(garm_vz_leg2 * t452),
-                -(garm_vz_leg2 * t456),
-                t451,
-                garm_vz_leg2 * rate_arm_leg2,
-                ::overact::math::signed(garm_vz_leg2, rate_arm_leg2),
-                garm_vz_leg2,
-                gcross_vz_leg2 * t479,
-                gcross_vz_leg2 * t499,
-                gcross_vz_leg2 * t514,
-                t528,
-                -(gcross_vz_leg2 * t533),
+                -t90, minus_garm_vz_leg1 * t91, minus_garm_vz_leg1 * t95, -t90,
+                -(minus_garm_vz_leg1 * rate_arm_leg1),
+                -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1), -minus_garm_vz_leg1,
+                minus_gcross_vz_leg1 * t131, -(minus_gcross_vz_leg1 * t147),
+                -(minus_gcross_vz_leg1 * t165), -t177, -(minus_gcross_vz_leg1 * t178), 0.0,
+                t204
+                    + 0.10285714285714286
+                        * (17.36111111111111 * t205 + 5.444444444444445 * t177),
+                minus_gcross_vz_leg1 * t227 - minus_garm_vz_leg1 * t220,
+                -(minus_garm_vz_leg1 * t246 + minus_gcross_vz_leg1 * t235),
+                -t205,
+                -t375,
+                minus_garm_vz_leg2 * t376,
+                minus_garm_vz_leg2 * t380,
+                -t375,
+                -(minus_garm_vz_leg2 * rate_arm_leg2),
+                -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2),
+                -minus_garm_vz_leg2,
+                gcross_vz_leg2 * t420,
+                gcross_vz_leg2 * t442,
+                gcross_vz_leg2 * t462,
+                t479,
+                -(gcross_vz_leg2 * t480),
                 0.0,
-                t209
+                t204
                     - 0.10285714285714286
-                        * (17.36111111111111 * t562 + 5.444444444444445 * t528),
-                garm_vz_leg2 * t577 + gcross_vz_leg2 * t584,
-                garm_vz_leg2 * t606 + gcross_vz_leg2 * t589,
-                t562,
-                t801,
-                garm_vz_leg3 * t802,
-                garm_vz_leg3 * t806,
-                t801,
-                garm_vz_leg3 * rate_arm_leg3,
-                ::overact::math::signed(garm_vz_leg3, rate_arm_leg3),
-                garm_vz_leg3,
-                gcross_vz_leg3 * t829,
-                gcross_vz_leg3 * t849,
-                gcross_vz_leg3 * t865,
-                t878,
-                gcross_vz_leg3 * t884,
+                        * (5.444444444444445 * t479 - 17.36111111111111 * t510),
+                gcross_vz_leg2 * t531 - minus_garm_vz_leg2 * t524,
+                gcross_vz_leg2 * t536 - minus_garm_vz_leg2 * t553,
+                -t510,
+                -t673,
+                -(minus_garm_vz_leg3 * t674),
+                -(minus_garm_vz_leg3 * t678),
+                -t673,
+                -(minus_garm_vz_leg3 * rate_arm_leg3),
+                -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3),
+                -minus_garm_vz_leg3,
+                gcross_vz_leg3 * t718,
+                gcross_vz_leg3 * t740,
+                gcross_vz_leg3 * t760,
+                t777,
+                gcross_vz_leg3 * t778,
                 0.0,
-                t209
+                t204
                     - 0.10285714285714286
-                        * (17.36111111111111 * t912 + 5.444444444444445 * t878),
-                garm_vz_leg3 * t927 - gcross_vz_leg3 * t934,
-                garm_vz_leg3 * t956 + gcross_vz_leg3 * t939,
-                t912,
-                t208,
+                        * (5.444444444444445 * t777 - 17.36111111111111 * t808),
+                -(minus_garm_vz_leg3 * t822 + gcross_vz_leg3 * t829),
+                gcross_vz_leg3 * t834 - minus_garm_vz_leg3 * t851,
+                -t808,
+                t203,
             ],
         ])
     }
@@ -2472,7 +2175,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 867 operations (261 additions, 602 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 9 signs, 753 intermediates.
+    /// 733 operations (223 additions, 504 multiplications, 6 divisions), 0 square roots, 9 trigonometric pairs, 9 signs, 619 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2482,494 +2185,453 @@ impl Delta {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 52]; 3], ::overact::Error> {
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
+        let [(s_arm_leg1, c_arm_leg1), (s_cross_leg1, c_cross_leg1),
+        (s_rod_leg1, c_rod_leg1), (s_cross_leg2, c_cross_leg2), (s_arm_leg2, c_arm_leg2),
+        (s_rod_leg2, c_rod_leg2), (s_cross_leg3, c_cross_leg3), (s_rod_leg3, c_rod_leg3),
+        (s_arm_leg3, c_arm_leg3)] = ::overact::math::sin_cos_all([
+            joints[0], joints[1], joints[2], joints[4], joints[3], joints[5], joints[7], joints[8],
+            joints[6],
+        ]);
+        ::overact::guard::leg(s_cross_leg1, 0.89794672585951, "leg1")?;
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258595101, "leg2")?;
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258595097, "leg3")?;
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
         let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t12 = c_armcross_leg1 * c_rod_leg1;
-        let t13 = s_armcross_leg1 * c_rod_leg1;
-        let t16 = c_arm_leg1 * t13 - s_arm_leg1 * t12;
-        ::overact::guard::leg(t16, 0.89794672585951, "leg1")?;
-        let t17 = 1.0 / t16;
-        let t18 = 4.166666666666667 * t17;
-        let garm_vx_leg1 = t12 * t18;
-        let t20 = 0.56 * s_rod_leg1;
-        let t21 = 1.7857142857142858 * t17;
-        let gcross_vz_leg1 = s_arm_leg1 * t21;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t21;
-        let t27 = 1.0 / c_rod_leg1;
-        let minus_gcross_vy_leg1 = t21
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t27)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t27));
-        let rate_cross_leg1 = gcross_vz_leg1 * twist[2]
-            - (minus_gcross_vx_leg1 * twist[0] + minus_gcross_vy_leg1 * twist[1]);
-        let grod_vy_leg1 = 1.7857142857142858 * t27;
+        let t10 = 1.0 / s_cross_leg1;
+        let t11 = 4.166666666666667 * t10;
+        let garm_vx_leg1 = c_armcross_leg1 * t11;
+        let t16 = 0.24 * c_cross_leg1;
+        let t19 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
+        let t22 = 1.0 / c_rod_leg1;
+        let t23 = s_rod_leg1 * t22;
+        let rate_arm_leg1 = t11 * (t19 + t23 * twist[1]);
+        let t27 = rate_arm_leg1 * rate_arm_leg1;
+        let grod_vy_leg1 = 1.7857142857142858 * t22;
+        let t31 = c_cross_leg1 * t10;
+        let garm_vy_leg1 = t11 * t23;
+        let t34 = t16 * garm_vy_leg1;
+        let t40 = t31 * t19 + t34 * twist[1] + s_armcross_leg1 * twist[0]
+            + c_armcross_leg1 * twist[2];
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t40;
+        let t42 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t40 = s_armcross_leg1 * rate_rod_leg1;
-        let t42 = t20 * (rate_cross_leg1 * t40);
-        let garm_vy_leg1 = s_rod_leg1 * t18;
-        let minus_garm_vz_leg1 = t13 * t18;
-        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
-            - minus_garm_vz_leg1 * twist[2];
-        let t51 = rate_arm_leg1 * rate_arm_leg1;
-        let t55 = rate_cross_leg1 * rate_cross_leg1;
-        let t57 = c_armcross_leg1 * rate_rod_leg1;
-        let t59 = t40 * t40 + t55 + t57 * t57;
-        let t64 = acceleration[0]
-            - (t42 - (0.24 * c_arm_leg1 * t51 + 0.56 * t12 * t59) + t42);
-        let t66 = t20 * rate_cross_leg1;
-        let t67 = rate_cross_leg1 * t66;
-        let t70 = acceleration[1] - (t67 - t20 * t59);
-        let t79 = t20 * (rate_cross_leg1 * t57);
-        let t82 = acceleration[2]
-            - (0.24 * s_arm_leg1 * t51 + 0.56 * t13 * t59 + t79 + t79);
-        let rate_dot_arm_leg1 = garm_vx_leg1 * t64 + garm_vy_leg1 * t70
-            - minus_garm_vz_leg1 * t82;
-        let t85 = garm_vx_leg1 * rate_dot_arm_leg1;
-        let t86 = garm_vy_leg1 * rate_dot_arm_leg1;
-        let t87 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
-        let t88 = 9.81 * c_arm_leg1;
-        let t92 = 9.81 * s_arm_leg1;
-        let rate_dot_cross_leg1 = gcross_vz_leg1 * t82
-            - (minus_gcross_vx_leg1 * t64 + minus_gcross_vy_leg1 * t70);
-        let t107 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t108 = c_rod_leg1 * rate_cross_leg1;
-        let t109 = rate_rod_leg1 * t108;
-        let t110 = t107 + t109;
-        let t112 = 1.7857142857142858 * t66;
-        let t113 = rate_rod_leg1 * t112;
-        let t114 = c_rod_leg1 * t113;
-        let t115 = s_rod_leg1 * t110 + t114;
-        let t118 = 3.188775510204082 * t67;
-        let t121 = t109 + t110;
-        let t123 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t124 = t123 - t113;
-        let t127 = c_rod_leg1 * t121 - s_rod_leg1 * (t113 - t124);
-        let t130 = 3.188775510204082 * (t66 * t66);
-        let t137 = t112 * t108;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t70;
-        let t141 = rate_rod_leg1 * rate_rod_leg1;
-        let t144 = s_rod_leg1 * (t137 + rate_dot_rod_leg1) + c_rod_leg1 * (t141 - t130);
-        let t151 = c_rod_leg1 * t124 - t114;
-        let t152 = minus_gcross_vx_leg1 * t151;
-        let t154 = t118 - minus_gcross_vy_leg1 * t151;
-        let t155 = gcross_vz_leg1 * t151;
-        let t156 = 1.7857142857142858 * acceleration[1];
-        let t162 = grod_vy_leg1 * rate_dot_rod_leg1;
-        let t163 = 1.7857142857142858 * acceleration[0];
-        let t165 = 0.24 * rate_dot_arm_leg1 - t88;
-        let t166 = 0.24 * t165;
-        let t167 = garm_vx_leg1 * t166;
-        let t173 = garm_vy_leg1 * t166;
-        let t181 = acceleration[2] + 9.81;
-        let t182 = 1.7857142857142858 * t181;
-        let t184 = minus_garm_vz_leg1 * t166;
-        let t189 = 0.24 * t16;
-        let t193 = s_rod_leg1 * (0.24 * s_cross_leg1);
-        let t197 = 0.24 * c_cross_leg1;
-        let t199 = t189 * (t137 - rate_dot_rod_leg1) + t193 * (t130 + t141)
-            - t197 * t121;
-        let t202 = t92 + 0.24 * t51;
-        let t206 = s_rod_leg1 * (s_cross_leg1 * t202 + c_cross_leg1 * t165);
-        let t214 = s_cross_leg1 * t165 - c_cross_leg1 * t202;
-        let t224 = t123 * t189 + t107 * t193 + t55 * t197;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
+        let t44 = rate_rod_leg1 * rate_rod_leg1;
+        let t45 = t42 + t44;
+        let t48 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t16 * t27 + 0.56 * c_rod_leg1 * t45;
+        let t49 = 0.56 * s_rod_leg1;
+        let t50 = t49 * minus_rate_cross_leg1;
+        let t51 = minus_rate_cross_leg1 * t50;
+        let t54 = acceleration[1] - (t51 - t49 * t45);
+        let rate_dot_arm_leg1 = t11 * (t48 + t23 * t54);
+        let t58 = garm_vx_leg1 * rate_dot_arm_leg1;
+        let t59 = garm_vy_leg1 * rate_dot_arm_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t11;
+        let t61 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
+        let t62 = 9.81 * c_arm_leg1;
+        let t66 = 9.81 * s_arm_leg1;
+        let minus_gcross_vx_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 * t31 + s_armcross_leg1);
+        let t85 = 0.24 * s_cross_leg1;
+        let t88 = t49 * (minus_rate_cross_leg1 * rate_rod_leg1);
+        let t92 = t31 * t48 + t34 * t54 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + t85 * t27 + t88 + t88;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t92;
+        let t94 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t96 = rate_rod_leg1 * (1.7857142857142858 * t40);
+        let t97 = t94 + t96;
+        let t100 = c_rod_leg1 * (1.7857142857142858 * t88);
+        let t101 = s_rod_leg1 * t97 + t100;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * t34;
+        let t105 = 3.188775510204082 * t51;
+        let minus_gcross_vz_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 - s_armcross_leg1 * t31);
+        let t111 = t88 - t92;
+        let t115 = t96 + t97;
+        let t117 = s_rod_leg1 * (1.7857142857142858 * (t88 + t111)) - c_rod_leg1 * t115;
+        let t119 = t50 * t50;
+        let t128 = 3.188775510204082 * (t40 * t50);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t54;
+        let t132 = 3.188775510204082 * t119;
+        let t135 = s_rod_leg1 * (t128 + rate_dot_rod_leg1) + c_rod_leg1 * (t44 - t132);
+        let t143 = t100 + c_rod_leg1 * (1.7857142857142858 * t111);
+        let t144 = minus_gcross_vx_leg1 * t143;
+        let t146 = t105 - minus_gcross_vy_leg1 * t143;
+        let t147 = minus_gcross_vz_leg1 * t143;
+        let t148 = 1.7857142857142858 * acceleration[1];
+        let t154 = grod_vy_leg1 * rate_dot_rod_leg1;
+        let t155 = 1.7857142857142858 * acceleration[0];
+        let t157 = 0.24 * rate_dot_arm_leg1 - t62;
+        let t158 = 0.24 * t157;
+        let t159 = garm_vx_leg1 * t158;
+        let t165 = garm_vy_leg1 * t158;
+        let t173 = acceleration[2] + 9.81;
+        let t174 = 1.7857142857142858 * t173;
+        let t175 = minus_garm_vz_leg1 * t158;
+        let t181 = s_cross_leg1 * c_rod_leg1;
+        let t185 = t85 * s_rod_leg1;
+        let t190 = 0.24 * t181 * (t128 - rate_dot_rod_leg1) + t185 * (t132 + t44)
+            + t16 * t115;
+        let t193 = t66 + 0.24 * t27;
+        let t197 = s_rod_leg1 * (s_cross_leg1 * t193 + c_cross_leg1 * t157);
+        let t205 = s_cross_leg1 * t157 - c_cross_leg1 * t193;
+        let t216 = t16 * t42 - (0.42857142857142855 * (t181 * t92) + t94 * t185);
+        let t228 = 1.0 / s_cross_leg2;
+        let t229 = 4.166666666666667 * t228;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t246 = s_armcross_leg2 * c_rod_leg2;
-        let t247 = s_armcross_leg2 * s_rod_leg2;
-        let t248 = t246 * t247;
-        let t250 = 0.5 * c_armcross_leg2;
-        let t251 = t250 * c_rod_leg2;
-        let t252 = 0.8660254037844387 * c_armcross_leg2;
-        let t255 = t252 * s_rod_leg2 + 0.5 * c_rod_leg2;
-        let t259 = 0.4849742261192857 * t246;
-        let t260 = 0.24 * s_arm_leg2;
-        let t261 = 0.56 * t246;
-        let t264 = t259 - 0.8660254037844387 * (t260 + t261);
-        let t267 = t250 * s_rod_leg2 - 0.8660254037844387 * c_rod_leg2;
-        let t271 = 0.6272 * (t251 * t267) + 0.1568 * t248;
-        let t277 = 0.1344 * (c_arm_leg2 * t267) + 0.0672 * (s_arm_leg2 * t247);
-        let t283 = c_arm_leg2 * t246;
-        let t285 = 0.1344 * (s_arm_leg2 * t251) - 0.0672 * t283;
-        let t287 = t264 * t271 + t259 * t277 + 0.56 * t255 * t285;
-        ::overact::guard::leg(t287, 0.06758306237509017, "leg2")?;
-        let t288 = 1.0 / t287;
-        let garm_vx_leg2 = (0.2715855666268 * t248 + 0.6272 * (t251 * t255)) * t288;
-        let garm_vy_leg2 = t271 * t288;
-        let garm_vz_leg2 = (0.1568 * (t255 * t246) - 0.2715855666268 * (t267 * t246))
-            * t288;
-        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
-            + garm_vz_leg2 * twist[2];
-        let t303 = rate_arm_leg2 * rate_arm_leg2;
-        let t306 = t251 + 0.8660254037844387 * s_rod_leg2;
-        let t307 = 0.56 * t306;
-        let gcross_vx_leg2 = (0.56 * t247 * t264 - 0.1344 * (c_arm_leg2 * t255)) * t288;
-        let minus_gcross_vy_leg2 = t277 * t288;
-        let minus_gcross_vz_leg2 = (0.56 * t267 * t264 + 0.0672 * (s_arm_leg2 * t255))
-            * t288;
-        let rate_cross_leg2 = gcross_vx_leg2 * twist[0] - minus_gcross_vy_leg2 * twist[1]
-            - minus_gcross_vz_leg2 * twist[2];
-        let t326 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (1.12 * t251 * t264 + 0.11639381426862856 * t283) * t288;
-        let minus_grod_vy_leg2 = t285 * t288;
-        let rate_rod_leg2 = grod_vx_leg2 * twist[0] - minus_grod_vy_leg2 * twist[1];
-        let t338 = t326 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t341 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t342 = 0.5 * rate_cross_leg2;
-        let t343 = t341 - t342;
-        let t346 = c_armcross_leg2 * rate_rod_leg2;
-        let t348 = t338 * t338 + t343 * t343 + t346 * t346;
-        let t354 = t252 * c_rod_leg2 - 0.5 * s_rod_leg2;
-        let t355 = 0.56 * t354;
-        let t359 = t307 * t338 + t355 * t343 - t261 * t346;
-        let t362 = t326 * t341;
-        let t365 = t326 * t346;
-        let t368 = 0.12 * c_arm_leg2 * t303 + t307 * t348 - t338 * t359
-            + 0.7466666666666667 * (t354 * t362) - t261 * t365;
-        let t369 = acceleration[0] - t368;
-        let t379 = t342 * t346;
-        let t382 = t343 * t359 - (0.20784609690826528 * c_arm_leg2 * t303 + t355 * t348)
-            + 0.7466666666666667 * (t306 * t362) - t261 * t379;
-        let t383 = acceleration[1] - t382;
-        let t391 = t307 * t365 - t355 * t379;
-        let t394 = acceleration[2] - (t260 * t303 + t261 * t348 + t391 + t391);
-        let rate_dot_arm_leg2 = garm_vx_leg2 * t369 + garm_vy_leg2 * t383
-            + garm_vz_leg2 * t394;
-        let t397 = garm_vx_leg2 * rate_dot_arm_leg2;
-        let t398 = garm_vy_leg2 * rate_dot_arm_leg2;
-        let t399 = garm_vz_leg2 * rate_dot_arm_leg2;
-        let t400 = 9.81 * c_arm_leg2;
-        let t404 = 9.81 * s_arm_leg2;
-        let rate_dot_cross_leg2 = gcross_vx_leg2 * t369 - minus_gcross_vy_leg2 * t383
-            - minus_gcross_vz_leg2 * t394;
-        let t419 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t420 = c_rod_leg2 * rate_cross_leg2;
-        let t421 = rate_rod_leg2 * t420;
-        let t422 = t419 + t421;
-        let t424 = 1.7857142857142858 * t359;
-        let t425 = rate_rod_leg2 * t424;
-        let t426 = c_rod_leg2 * t425;
-        let t427 = s_rod_leg2 * t422 + t426;
-        let t429 = t424 * t420;
-        let t430 = grod_vx_leg2 * t429;
-        let t432 = minus_grod_vy_leg2 * t429;
-        let t436 = t421 + t422;
-        let t438 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t439 = t438 - t425;
-        let t442 = c_rod_leg2 * t436 - s_rod_leg2 * (t425 - t439);
-        let t445 = 3.188775510204082 * (t359 * t359);
-        let t446 = t420 * t420;
-        let t447 = t445 - t446;
-        let rate_dot_rod_leg2 = grod_vx_leg2 * t369 - minus_grod_vy_leg2 * t383;
-        let t459 = rate_rod_leg2 * rate_rod_leg2;
-        let t462 = s_rod_leg2 * (t429 + rate_dot_rod_leg2) + c_rod_leg2 * (t459 - t445);
-        let t471 = c_rod_leg2 * t439 - t426;
-        let t473 = gcross_vx_leg2 * t471 + t430;
-        let t475 = minus_gcross_vy_leg2 * t471 + t432;
-        let t476 = minus_gcross_vz_leg2 * t471;
-        let t479 = t429 - rate_dot_rod_leg2;
-        let t481 = s_rod_leg2 * (t446 - t459) - c_rod_leg2 * t479;
-        let t489 = grod_vx_leg2 * rate_dot_rod_leg2;
-        let t490 = minus_grod_vy_leg2 * rate_dot_rod_leg2;
-        let t492 = 0.24 * rate_dot_arm_leg2 - t400;
-        let t493 = 0.24 * t492;
-        let t494 = garm_vx_leg2 * t493;
-        let t502 = garm_vy_leg2 * t493;
-        let t510 = garm_vz_leg2 * t493;
-        let t517 = s_rod_leg2 * (0.24 * s_cross_leg2);
-        let t520 = 3.5714285714285716 * t285;
-        let t523 = 0.24 * c_cross_leg2;
-        let t525 = t517 * (t445 + t459) - t520 * t479 - t523 * t436;
-        let t528 = t404 + 0.24 * t303;
-        let t532 = s_rod_leg2 * (s_cross_leg2 * t528 + c_cross_leg2 * t492);
-        let t537 = s_cross_leg2 * t492 - c_cross_leg2 * t528;
-        let t554 = t419 * t517 - t438 * t520 + rate_cross_leg2 * rate_cross_leg2 * t523;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
+        let t238 = 0.5 * c_armcross_leg2;
+        let t241 = 1.0 / c_rod_leg2;
+        let t242 = s_rod_leg2 * t241;
+        let minus_garm_vx_leg2 = t229 * (t238 + 0.8660254037844387 * t242);
+        let t246 = 0.8660254037844387 * c_armcross_leg2;
+        let t252 = 0.24 * c_cross_leg2;
+        let t257 = t246 * twist[1] - t238 * twist[0] - s_armcross_leg2 * twist[2];
+        let t258 = 0.8660254037844387 * twist[0];
+        let t259 = 0.5 * twist[1];
+        let t260 = t258 + t259;
+        let rate_arm_leg2 = t229 * (t257 - t242 * t260);
+        let t264 = rate_arm_leg2 * rate_arm_leg2;
+        let t267 = 1.7857142857142858 * t241;
+        let minus_rate_rod_leg2 = t267 * t260;
+        let t269 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t270 = 0.5 * s_armcross_leg2;
+        let t272 = 0.8660254037844387 * s_armcross_leg2;
+        let t277 = c_cross_leg2 * t228;
+        let t281 = t252 * (t229 * t242);
+        let t283 = t270 * twist[0] - t272 * twist[1] - c_armcross_leg2 * twist[2]
+            - t277 * t257 + t281 * t260;
+        let rate_cross_leg2 = t267 * t283;
+        let t285 = rate_cross_leg2 * rate_cross_leg2;
+        let t286 = t269 + t285;
+        let t289 = t246 * acceleration[1] - t238 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t252 * t264 + 0.56 * c_rod_leg2 * t286;
+        let t290 = 0.8660254037844387 * acceleration[0];
+        let t291 = 0.5 * acceleration[1];
+        let t292 = t290 + t291;
+        let t293 = 0.56 * s_rod_leg2;
+        let t294 = t293 * rate_cross_leg2;
+        let t295 = rate_cross_leg2 * t294;
+        let t298 = t292 + t295 - t293 * t286;
+        let rate_dot_arm_leg2 = t229 * (t289 - t242 * t298);
+        let t302 = minus_garm_vx_leg2 * rate_dot_arm_leg2;
+        let garm_vy_leg2 = t229 * (t246 - 0.5 * t242);
+        let t306 = garm_vy_leg2 * rate_dot_arm_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t229;
+        let t308 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
+        let t309 = 9.81 * c_arm_leg2;
+        let t313 = 9.81 * s_arm_leg2;
+        let gcross_vx_leg2 = t267 * (t238 * t277 + t270 + 0.8660254037844387 * t281);
+        let t333 = 0.24 * s_cross_leg2;
+        let t336 = t293 * (rate_cross_leg2 * minus_rate_rod_leg2);
+        let t341 = t270 * acceleration[0] - t272 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (t333 * t264 + t336 + t336)
+            - t277 * t289;
+        let t343 = t341 + t281 * t298;
+        let rate_dot_cross_leg2 = t267 * t343;
+        let t345 = s_rod_leg2 * rate_dot_cross_leg2;
+        let t347 = minus_rate_rod_leg2 * (1.7857142857142858 * t283);
+        let t348 = t345 - t347;
+        let t351 = c_rod_leg2 * (1.7857142857142858 * t336);
+        let t352 = s_rod_leg2 * t348 - t351;
+        let t354 = 2.76156059880242 * t295;
+        let gcross_vy_leg2 = t267 * (0.5 * t281 - (t246 * t277 + t272));
+        let t362 = 1.594387755102041 * t295;
+        let gcross_vz_leg2 = t267 * (s_armcross_leg2 * t277 - c_armcross_leg2);
+        let t368 = t343 + t336;
+        let t372 = t348 - t347;
+        let t374 = s_rod_leg2 * (1.7857142857142858 * (t336 + t368)) + c_rod_leg2 * t372;
+        let t376 = t294 * t294;
+        let t379 = t241 * (t376 - t283 * t283);
+        let t387 = 3.188775510204082 * (t283 * t294);
+        let minus_rate_dot_rod_leg2 = t267 * t298;
+        let t391 = 3.188775510204082 * t376;
+        let t394 = s_rod_leg2 * (t387 - minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t269 - t391);
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t241;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t241;
+        let t406 = t351 + c_rod_leg2 * (1.7857142857142858 * t368);
+        let t408 = gcross_vx_leg2 * t406 - t354;
+        let t410 = gcross_vy_leg2 * t406 - t362;
+        let t411 = gcross_vz_leg2 * t406;
+        let t412 = 1.7857142857142858 * t292;
+        let t420 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
+        let t421 = minus_grod_vy_leg2 * minus_rate_dot_rod_leg2;
+        let t424 = 0.24 * rate_dot_arm_leg2 - t309;
+        let t425 = 0.24 * t424;
+        let t426 = minus_garm_vx_leg2 * t425;
+        let t433 = garm_vy_leg2 * t425;
+        let t442 = minus_garm_vz_leg2 * t425;
+        let t449 = t313 + 0.24 * t264;
+        let t451 = s_cross_leg2 * t424 - c_cross_leg2 * t449;
+        let t454 = s_cross_leg2 * c_rod_leg2;
+        let t458 = t333 * s_rod_leg2;
+        let t463 = 0.24 * t454 * (t387 + minus_rate_dot_rod_leg2) + t458 * (t391 + t269)
+            - t252 * t372;
+        let t468 = s_rod_leg2 * (s_cross_leg2 * t449 + c_cross_leg2 * t424);
+        let t486 = 0.42857142857142855 * (t454 * t343) + t345 * t458 + t252 * t285;
+        let t497 = 1.0 / s_cross_leg3;
+        let t498 = 4.166666666666667 * t497;
+        let t501 = 1.0 / c_rod_leg3;
+        let t502 = s_rod_leg3 * t501;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t576 = s_armcross_leg3 * c_rod_leg3;
-        let t577 = s_armcross_leg3 * s_rod_leg3;
-        let t578 = t576 * t577;
-        let t580 = 0.5 * c_armcross_leg3;
-        let t581 = t580 * c_rod_leg3;
-        let t582 = 0.8660254037844387 * c_armcross_leg3;
-        let t585 = t582 * s_rod_leg3 - 0.5 * c_rod_leg3;
-        let t589 = 0.4849742261192857 * t576;
-        let t592 = t580 * s_rod_leg3 + 0.8660254037844387 * c_rod_leg3;
-        let t597 = 0.1344 * (c_arm_leg3 * t592) + 0.0672 * (s_arm_leg3 * t577);
-        let t599 = 0.24 * s_arm_leg3;
-        let t600 = 0.56 * t576;
-        let t603 = 0.8660254037844387 * (t599 + t600) - t589;
-        let t607 = 0.6272 * (t581 * t592) + 0.1568 * t578;
-        let t613 = c_arm_leg3 * t576;
-        let t615 = 0.1344 * (s_arm_leg3 * t581) - 0.0672 * t613;
-        let t617 = t589 * t597 - t603 * t607 + 0.56 * t585 * t615;
-        ::overact::guard::leg(t617, 0.06758306237509014, "leg3")?;
-        let t618 = 1.0 / t617;
-        let garm_vx_leg3 = (0.2715855666268 * t578 + 0.6272 * (t581 * t585)) * t618;
-        let minus_garm_vy_leg3 = t607 * t618;
-        let minus_garm_vz_leg3 = (0.2715855666268 * (t592 * t576)
-            - 0.1568 * (t585 * t576)) * t618;
-        let rate_arm_leg3 = garm_vx_leg3 * twist[0] - minus_garm_vy_leg3 * twist[1]
-            - minus_garm_vz_leg3 * twist[2];
-        let t633 = rate_arm_leg3 * rate_arm_leg3;
-        let t636 = 0.8660254037844387 * s_rod_leg3 - t581;
-        let t637 = 0.56 * t636;
-        let gcross_vy_leg3 = t597 * t618;
-        let minus_gcross_vx_leg3 = (0.56 * t577 * t603 + 0.1344 * (c_arm_leg3 * t585))
-            * t618;
-        let gcross_vz_leg3 = (0.56 * t592 * t603 - 0.0672 * (s_arm_leg3 * t585)) * t618;
-        let rate_cross_leg3 = gcross_vy_leg3 * twist[1] - minus_gcross_vx_leg3 * twist[0]
-            + gcross_vz_leg3 * twist[2];
-        let t656 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (0.11639381426862856 * t613 - 1.12 * t581 * t603) * t618;
-        let grod_vy_leg3 = t615 * t618;
-        let rate_rod_leg3 = grod_vx_leg3 * twist[0] + grod_vy_leg3 * twist[1];
-        let t668 = t656 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t670 = 0.5 * rate_cross_leg3;
-        let t672 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t673 = t670 + t672;
-        let t676 = c_armcross_leg3 * rate_rod_leg3;
-        let t678 = t668 * t668 + t673 * t673 + t676 * t676;
-        let t684 = t582 * c_rod_leg3 + 0.5 * s_rod_leg3;
-        let t685 = 0.56 * t684;
-        let t689 = t637 * t668 + t685 * t673 - t600 * t676;
-        let t692 = t656 * t676;
-        let t694 = t656 * t672;
-        let t698 = 0.12 * c_arm_leg3 * t633 - t637 * t678 + t668 * t689 + t600 * t692
-            - 0.7466666666666667 * (t684 * t694);
-        let t699 = acceleration[0] - t698;
-        let t709 = t670 * t676;
-        let t712 = 0.20784609690826528 * c_arm_leg3 * t633 + t685 * t678 - t673 * t689
-            - (0.7466666666666667 * (t636 * t694) + t600 * t709);
-        let t713 = acceleration[1] - t712;
-        let t721 = t685 * t709 + t637 * t692;
-        let t724 = acceleration[2] - (t599 * t633 + t600 * t678 + t721 + t721);
-        let rate_dot_arm_leg3 = garm_vx_leg3 * t699 - minus_garm_vy_leg3 * t713
-            - minus_garm_vz_leg3 * t724;
-        let t727 = garm_vx_leg3 * rate_dot_arm_leg3;
-        let t728 = minus_garm_vy_leg3 * rate_dot_arm_leg3;
-        let t729 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
-        let t730 = 9.81 * c_arm_leg3;
-        let t734 = 9.81 * s_arm_leg3;
-        let rate_dot_cross_leg3 = gcross_vy_leg3 * t713 - minus_gcross_vx_leg3 * t699
-            + gcross_vz_leg3 * t724;
-        let t749 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t750 = c_rod_leg3 * rate_cross_leg3;
-        let t751 = rate_rod_leg3 * t750;
-        let t752 = t749 + t751;
-        let t754 = 1.7857142857142858 * t689;
-        let t755 = rate_rod_leg3 * t754;
-        let t756 = c_rod_leg3 * t755;
-        let t757 = s_rod_leg3 * t752 + t756;
-        let t759 = t754 * t750;
-        let t760 = grod_vx_leg3 * t759;
-        let t763 = grod_vy_leg3 * t759;
-        let t767 = 3.188775510204082 * (t689 * t689);
-        let t768 = t750 * t750;
-        let t769 = t767 - t768;
-        let t771 = t751 + t752;
-        let t773 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t774 = t773 - t755;
-        let t777 = c_rod_leg3 * t771 - s_rod_leg3 * (t755 - t774);
-        let rate_dot_rod_leg3 = grod_vx_leg3 * t699 + grod_vy_leg3 * t713;
-        let t790 = rate_rod_leg3 * rate_rod_leg3;
-        let t793 = s_rod_leg3 * (t759 + rate_dot_rod_leg3) + c_rod_leg3 * (t790 - t767);
-        let t801 = c_rod_leg3 * t774 - t756;
-        let t803 = t760 - minus_gcross_vx_leg3 * t801;
-        let t805 = gcross_vy_leg3 * t801 + t763;
-        let t806 = gcross_vz_leg3 * t801;
-        let t810 = t759 - rate_dot_rod_leg3;
-        let t812 = s_rod_leg3 * (t768 - t790) - c_rod_leg3 * t810;
-        let t819 = grod_vx_leg3 * rate_dot_rod_leg3;
-        let t820 = grod_vy_leg3 * rate_dot_rod_leg3;
-        let t822 = 0.24 * rate_dot_arm_leg3 - t730;
-        let t823 = 0.24 * t822;
-        let t824 = garm_vx_leg3 * t823;
-        let t833 = minus_garm_vy_leg3 * t823;
-        let t841 = minus_garm_vz_leg3 * t823;
-        let t847 = s_rod_leg3 * (0.24 * s_cross_leg3);
-        let t850 = 3.5714285714285716 * t615;
-        let t853 = 0.24 * c_cross_leg3;
-        let t855 = t847 * (t767 + t790) - t850 * t810 - t853 * t771;
-        let t858 = t734 + 0.24 * t633;
-        let t862 = s_rod_leg3 * (s_cross_leg3 * t858 + c_cross_leg3 * t822);
-        let t867 = s_cross_leg3 * t822 - c_cross_leg3 * t858;
-        let t884 = t749 * t847 - t773 * t850 + rate_cross_leg3 * rate_cross_leg3 * t853;
+        let t512 = 0.5 * c_armcross_leg3;
+        let garm_vx_leg3 = t498 * (0.8660254037844387 * t502 - t512);
+        let t515 = 0.24 * c_cross_leg3;
+        let t516 = t258 - t259;
+        let t519 = 0.8660254037844387 * c_armcross_leg3;
+        let t523 = t512 * twist[0] + t519 * twist[1] + s_armcross_leg3 * twist[2];
+        let rate_arm_leg3 = t498 * (t502 * t516 - t523);
+        let t526 = rate_arm_leg3 * rate_arm_leg3;
+        let t529 = 1.7857142857142858 * t501;
+        let rate_rod_leg3 = t529 * t516;
+        let t531 = rate_rod_leg3 * rate_rod_leg3;
+        let t532 = c_cross_leg3 * t497;
+        let t534 = 0.5 * s_armcross_leg3;
+        let t536 = 0.8660254037844387 * s_armcross_leg3;
+        let t543 = t515 * (t498 * t502);
+        let t545 = t532 * t523 + t534 * twist[0] + t536 * twist[1]
+            - c_armcross_leg3 * twist[2] - t543 * t516;
+        let rate_cross_leg3 = t529 * t545;
+        let t547 = rate_cross_leg3 * rate_cross_leg3;
+        let t548 = t531 + t547;
+        let t556 = t515 * t526 + 0.56 * c_rod_leg3 * t548
+            - (t512 * acceleration[0] + t519 * acceleration[1]
+                + s_armcross_leg3 * acceleration[2]);
+        let t557 = t290 - t291;
+        let t558 = 0.56 * s_rod_leg3;
+        let t559 = t558 * rate_cross_leg3;
+        let t560 = rate_cross_leg3 * t559;
+        let t563 = t557 - (t560 - t558 * t548);
+        let rate_dot_arm_leg3 = t498 * (t556 + t502 * t563);
+        let t567 = garm_vx_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vy_leg3 = t498 * (t519 + 0.5 * t502);
+        let t571 = minus_garm_vy_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t498;
+        let t573 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
+        let t574 = 9.81 * c_arm_leg3;
+        let t578 = 9.81 * s_arm_leg3;
+        let gcross_vx_leg3 = t529 * (t512 * t532 + t534 - 0.8660254037844387 * t543);
+        let t598 = 0.24 * s_cross_leg3;
+        let t601 = t558 * (rate_cross_leg3 * rate_rod_leg3);
+        let t606 = t534 * acceleration[0] + t536 * acceleration[1]
+            - c_armcross_leg3 * acceleration[2] - (t598 * t526 - t601 - t601)
+            - t532 * t556;
+        let t608 = t606 - t543 * t563;
+        let rate_dot_cross_leg3 = t529 * t608;
+        let t610 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t612 = rate_rod_leg3 * (1.7857142857142858 * t545);
+        let t613 = t610 + t612;
+        let t616 = c_rod_leg3 * (1.7857142857142858 * t601);
+        let t617 = s_rod_leg3 * t613 + t616;
+        let t619 = 2.76156059880242 * t560;
+        let gcross_vy_leg3 = t529 * (t519 * t532 + t536 + 0.5 * t543);
+        let t627 = 1.594387755102041 * t560;
+        let gcross_vz_leg3 = t529 * (s_armcross_leg3 * t532 - c_armcross_leg3);
+        let t633 = t612 + t613;
+        let t635 = t608 - t601;
+        let t639 = c_rod_leg3 * t633 - s_rod_leg3 * (1.7857142857142858 * (t601 - t635));
+        let t641 = t559 * t559;
+        let t644 = t501 * (t641 - t545 * t545);
+        let t652 = 3.188775510204082 * (t545 * t559);
+        let rate_dot_rod_leg3 = t529 * t563;
+        let t656 = 3.188775510204082 * t641;
+        let t659 = s_rod_leg3 * (t652 + rate_dot_rod_leg3) + c_rod_leg3 * (t531 - t656);
+        let grod_vx_leg3 = 1.5464739353293548 * t501;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t501;
+        let t671 = c_rod_leg3 * (1.7857142857142858 * t635) - t616;
+        let t673 = gcross_vx_leg3 * t671 + t619;
+        let t675 = gcross_vy_leg3 * t671 - t627;
+        let t676 = gcross_vz_leg3 * t671;
+        let t677 = 1.7857142857142858 * t557;
+        let t685 = grod_vx_leg3 * rate_dot_rod_leg3;
+        let t686 = minus_grod_vy_leg3 * rate_dot_rod_leg3;
+        let t688 = 0.24 * rate_dot_arm_leg3 - t574;
+        let t689 = 0.24 * t688;
+        let t690 = garm_vx_leg3 * t689;
+        let t699 = minus_garm_vy_leg3 * t689;
+        let t707 = minus_garm_vz_leg3 * t689;
+        let t712 = s_cross_leg3 * c_rod_leg3;
+        let t716 = t598 * s_rod_leg3;
+        let t721 = 0.24 * t712 * (t652 - rate_dot_rod_leg3) + t716 * (t656 + t531)
+            - t515 * t633;
+        let t724 = t578 + 0.24 * t526;
+        let t728 = s_rod_leg3 * (s_cross_leg3 * t724 + c_cross_leg3 * t688);
+        let t733 = s_cross_leg3 * t688 - c_cross_leg3 * t724;
+        let t750 = 0.42857142857142855 * (t712 * t608) + t610 * t716 + t515 * t547;
         Ok([
             [
-                t85, -(garm_vx_leg1 * t88), garm_vx_leg1 * t92, t85, garm_vx_leg1 * rate_arm_leg1,
+                t58, -(garm_vx_leg1 * t62), garm_vx_leg1 * t66, t58, garm_vx_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_vx_leg1, rate_arm_leg1), garm_vx_leg1,
-                -(minus_gcross_vx_leg1 * t115), -(minus_gcross_vx_leg1 * t127),
-                -(minus_gcross_vx_leg1 * t144), -t152, -(minus_gcross_vx_leg1 * t156), 0.0,
-                t163
+                minus_gcross_vx_leg1 * t101, -(minus_gcross_vx_leg1 * t117),
+                -(minus_gcross_vx_leg1 * t135), -t144, -(minus_gcross_vx_leg1 * t148), 0.0,
+                t155
                     - 0.10285714285714286
-                        * (17.36111111111111 * t167 - 5.444444444444445 * t152),
-                garm_vx_leg1 * t199 + minus_gcross_vx_leg1 * t206,
-                garm_vx_leg1 * t224 - minus_gcross_vx_leg1 * t214,
-                t167,
-                t397,
-                -(garm_vx_leg2 * t400),
-                garm_vx_leg2 * t404,
-                t397,
-                garm_vx_leg2 * rate_arm_leg2,
-                ::overact::math::signed(garm_vx_leg2, rate_arm_leg2),
-                garm_vx_leg2,
-                gcross_vx_leg2 * t427 - t430,
-                gcross_vx_leg2 * t442 + grod_vx_leg2 * t447,
-                gcross_vx_leg2 * t462 + grod_vx_leg2 * t419,
-                t473,
-                gcross_vx_leg2 * t481 + grod_vx_leg2 * t438,
-                t489,
-                t163
+                        * (17.36111111111111 * t159 - 5.444444444444445 * t144),
+                garm_vx_leg1 * t190 + minus_gcross_vx_leg1 * t197,
+                garm_vx_leg1 * t216 - minus_gcross_vx_leg1 * t205,
+                t159,
+                -t302,
+                minus_garm_vx_leg2 * t309,
+                -(minus_garm_vx_leg2 * t313),
+                -t302,
+                -(minus_garm_vx_leg2 * rate_arm_leg2),
+                -::overact::math::signed(minus_garm_vx_leg2, rate_arm_leg2),
+                -minus_garm_vx_leg2,
+                gcross_vx_leg2 * t352 + t354,
+                gcross_vx_leg2 * t374 - 4.9313582121471775 * t379,
+                gcross_vx_leg2 * t394 - minus_grod_vx_leg2 * t345,
+                t408,
+                -(gcross_vx_leg2 * t412 + 1.5464739353293548 * rate_dot_cross_leg2),
+                t420,
+                t155
                     - 0.10285714285714286
-                        * (17.36111111111111 * t494 + 5.444444444444445 * t473
-                            + 5.444444444444445 * t489),
-                garm_vx_leg2 * t525 - gcross_vx_leg2 * t532
-                    - grod_vx_leg2 * (c_rod_leg2 * t537),
-                garm_vx_leg2 * t554 + gcross_vx_leg2 * t537,
-                t494,
-                t727,
-                -(garm_vx_leg3 * t730),
-                garm_vx_leg3 * t734,
-                t727,
+                        * (5.444444444444445 * t408 - 17.36111111111111 * t426
+                            + 5.444444444444445 * t420),
+                minus_grod_vx_leg2 * (c_rod_leg2 * t451)
+                    - (minus_garm_vx_leg2 * t463 + gcross_vx_leg2 * t468),
+                gcross_vx_leg2 * t451 - minus_garm_vx_leg2 * t486,
+                -t426,
+                t567,
+                -(garm_vx_leg3 * t574),
+                garm_vx_leg3 * t578,
+                t567,
                 garm_vx_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
                 garm_vx_leg3,
-                -(minus_gcross_vx_leg3 * t757 + t760),
-                grod_vx_leg3 * t769 - minus_gcross_vx_leg3 * t777,
-                grod_vx_leg3 * t749 - minus_gcross_vx_leg3 * t793,
-                t803,
-                grod_vx_leg3 * t773 - minus_gcross_vx_leg3 * t812,
-                t819,
-                t163
+                gcross_vx_leg3 * t617 - t619,
+                gcross_vx_leg3 * t639 + 4.9313582121471775 * t644,
+                gcross_vx_leg3 * t659 + grod_vx_leg3 * t610,
+                t673,
+                gcross_vx_leg3 * t677 + 1.5464739353293548 * rate_dot_cross_leg3,
+                t685,
+                t155
                     - 0.10285714285714286
-                        * (17.36111111111111 * t824 + 5.444444444444445 * t803
-                            + 5.444444444444445 * t819),
-                garm_vx_leg3 * t855 + minus_gcross_vx_leg3 * t862
-                    - grod_vx_leg3 * (c_rod_leg3 * t867),
-                garm_vx_leg3 * t884 - minus_gcross_vx_leg3 * t867,
-                t824,
+                        * (17.36111111111111 * t690 + 5.444444444444445 * t673
+                            + 5.444444444444445 * t685),
+                garm_vx_leg3 * t721 - gcross_vx_leg3 * t728
+                    - grod_vx_leg3 * (c_rod_leg3 * t733),
+                garm_vx_leg3 * t750 + gcross_vx_leg3 * t733,
+                t690,
                 acceleration[0],
             ],
             [
-                t86, -(garm_vy_leg1 * t88), garm_vy_leg1 * t92, t86, garm_vy_leg1 * rate_arm_leg1,
+                t59, -(garm_vy_leg1 * t62), garm_vy_leg1 * t66, t59, garm_vy_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_vy_leg1, rate_arm_leg1), garm_vy_leg1,
-                -(minus_gcross_vy_leg1 * t115 + t118),
-                grod_vy_leg1 * (t130 - t108 * t108) - minus_gcross_vy_leg1 * t127,
-                grod_vy_leg1 * t107 - minus_gcross_vy_leg1 * t144, t154,
-                1.7857142857142858 * rate_dot_cross_leg1 - minus_gcross_vy_leg1 * t156, t162,
-                t156
+                minus_gcross_vy_leg1 * t101 - t105,
+                5.694241982507289 * (t22 * (t119 - t40 * t40))
+                    - minus_gcross_vy_leg1 * t117,
+                -(minus_gcross_vy_leg1 * t135 + grod_vy_leg1 * t94),
+                t146,
+                -(minus_gcross_vy_leg1 * t148
+                    + 1.7857142857142858 * minus_rate_dot_cross_leg1),
+                t154,
+                t148
                     - 0.10285714285714286
-                        * (17.36111111111111 * t173 + 5.444444444444445 * t154
-                            + 5.444444444444445 * t162),
-                garm_vy_leg1 * t199 + minus_gcross_vy_leg1 * t206
-                    - 1.7857142857142858 * t214,
-                garm_vy_leg1 * t224 - minus_gcross_vy_leg1 * t214,
-                t173,
-                t398,
-                -(garm_vy_leg2 * t400),
-                garm_vy_leg2 * t404,
-                t398,
+                        * (17.36111111111111 * t165 + 5.444444444444445 * t146
+                            + 5.444444444444445 * t154),
+                garm_vy_leg1 * t190 + minus_gcross_vy_leg1 * t197
+                    - 1.7857142857142858 * t205,
+                garm_vy_leg1 * t216 - minus_gcross_vy_leg1 * t205,
+                t165,
+                t306,
+                -(garm_vy_leg2 * t309),
+                garm_vy_leg2 * t313,
+                t306,
                 garm_vy_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 garm_vy_leg2,
-                t432 - minus_gcross_vy_leg2 * t427,
-                -(minus_gcross_vy_leg2 * t442 + minus_grod_vy_leg2 * t447),
-                -(minus_gcross_vy_leg2 * t462 + minus_grod_vy_leg2 * t419),
-                -t475,
-                -(minus_gcross_vy_leg2 * t481
-                    + 0.8928571428571429 * rate_dot_cross_leg2),
-                -t490,
-                t156
+                gcross_vy_leg2 * t352 + t362,
+                gcross_vy_leg2 * t374 - 2.8471209912536444 * t379,
+                gcross_vy_leg2 * t394 - minus_grod_vy_leg2 * t345,
+                t410,
+                -(gcross_vy_leg2 * t412 + 0.8928571428571429 * rate_dot_cross_leg2),
+                t421,
+                t148
                     - 0.10285714285714286
-                        * (17.36111111111111 * t502 - 5.444444444444445 * t475
-                            - 5.444444444444445 * t490),
-                garm_vy_leg2 * t525 + minus_gcross_vy_leg2 * t532
-                    + 0.8928571428571429 * t537,
-                garm_vy_leg2 * t554 - minus_gcross_vy_leg2 * t537,
-                t502,
-                -t728,
-                minus_garm_vy_leg3 * t730,
-                -(minus_garm_vy_leg3 * t734),
-                -t728,
+                        * (17.36111111111111 * t433 + 5.444444444444445 * t410
+                            + 5.444444444444445 * t421),
+                garm_vy_leg2 * t463 - gcross_vy_leg2 * t468 + 0.8928571428571429 * t451,
+                garm_vy_leg2 * t486 + gcross_vy_leg2 * t451,
+                t433,
+                -t571,
+                minus_garm_vy_leg3 * t574,
+                -(minus_garm_vy_leg3 * t578),
+                -t571,
                 -(minus_garm_vy_leg3 * rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vy_leg3, rate_arm_leg3),
                 -minus_garm_vy_leg3,
-                gcross_vy_leg3 * t757 - t763,
-                gcross_vy_leg3 * t777 + grod_vy_leg3 * t769,
-                gcross_vy_leg3 * t793 + grod_vy_leg3 * t749,
-                t805,
-                gcross_vy_leg3 * t812 - 0.8928571428571429 * rate_dot_cross_leg3,
-                t820,
-                t156
+                gcross_vy_leg3 * t617 + t627,
+                gcross_vy_leg3 * t639 - 2.8471209912536444 * t644,
+                gcross_vy_leg3 * t659 - minus_grod_vy_leg3 * t610,
+                t675,
+                gcross_vy_leg3 * t677 - 0.8928571428571429 * rate_dot_cross_leg3,
+                -t686,
+                t148
                     - 0.10285714285714286
-                        * (5.444444444444445 * t805 - 17.36111111111111 * t833
-                            + 5.444444444444445 * t820),
-                0.8928571428571429 * t867
-                    - (minus_garm_vy_leg3 * t855 + gcross_vy_leg3 * t862),
-                gcross_vy_leg3 * t867 - minus_garm_vy_leg3 * t884,
-                -t833,
+                        * (5.444444444444445 * t675 - 17.36111111111111 * t699
+                            - 5.444444444444445 * t686),
+                0.8928571428571429 * t733
+                    - (minus_garm_vy_leg3 * t721 + gcross_vy_leg3 * t728),
+                gcross_vy_leg3 * t733 - minus_garm_vy_leg3 * t750,
+                -t699,
                 acceleration[1],
             ],
             [
-                -t87, minus_garm_vz_leg1 * t88, -(minus_garm_vz_leg1 * t92), -t87,
+                -t61, minus_garm_vz_leg1 * t62, -(minus_garm_vz_leg1 * t66), -t61,
                 -(minus_garm_vz_leg1 * rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1), -minus_garm_vz_leg1,
-                gcross_vz_leg1 * t115, gcross_vz_leg1 * t127, gcross_vz_leg1 * t144, t155,
-                gcross_vz_leg1 * t156, 0.0,
-                t182
-                    - 0.10285714285714286
-                        * (5.444444444444445 * t155 - 17.36111111111111 * t184),
-                -(minus_garm_vz_leg1 * t199 + gcross_vz_leg1 * t206),
-                gcross_vz_leg1 * t214 - minus_garm_vz_leg1 * t224,
-                -t184,
-                t399,
-                -(garm_vz_leg2 * t400),
-                garm_vz_leg2 * t404,
-                t399,
-                garm_vz_leg2 * rate_arm_leg2,
-                ::overact::math::signed(garm_vz_leg2, rate_arm_leg2),
-                garm_vz_leg2,
-                -(minus_gcross_vz_leg2 * t427),
-                -(minus_gcross_vz_leg2 * t442),
-                -(minus_gcross_vz_leg2 * t462),
-                -t476,
-                -(minus_gcross_vz_leg2 * t481),
+                minus_gcross_vz_leg1 * t101, -(minus_gcross_vz_leg1 * t117),
+                -(minus_gcross_vz_leg1 * t135), -t147, -(minus_gcross_vz_leg1 * t148), 0.0,
+                t174
+                    + 0.10285714285714286
+                        * (17.36111111111111 * t175 + 5.444444444444445 * t147),
+                minus_gcross_vz_leg1 * t197 - minus_garm_vz_leg1 * t190,
+                -(minus_garm_vz_leg1 * t216 + minus_gcross_vz_leg1 * t205),
+                -t175,
+                -t308,
+                minus_garm_vz_leg2 * t309,
+                -(minus_garm_vz_leg2 * t313),
+                -t308,
+                -(minus_garm_vz_leg2 * rate_arm_leg2),
+                -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2),
+                -minus_garm_vz_leg2,
+                gcross_vz_leg2 * t352,
+                gcross_vz_leg2 * t374,
+                gcross_vz_leg2 * t394,
+                t411,
+                -(gcross_vz_leg2 * t412),
                 0.0,
-                t182
+                t174
                     - 0.10285714285714286
-                        * (17.36111111111111 * t510 - 5.444444444444445 * t476),
-                garm_vz_leg2 * t525 + minus_gcross_vz_leg2 * t532,
-                garm_vz_leg2 * t554 - minus_gcross_vz_leg2 * t537,
-                t510,
-                -t729,
-                minus_garm_vz_leg3 * t730,
-                -(minus_garm_vz_leg3 * t734),
-                -t729,
+                        * (5.444444444444445 * t411 - 17.36111111111111 * t442),
+                -(minus_garm_vz_leg2 * t463 + gcross_vz_leg2 * t468),
+                gcross_vz_leg2 * t451 - minus_garm_vz_leg2 * t486,
+                -t442,
+                -t573,
+                minus_garm_vz_leg3 * t574,
+                -(minus_garm_vz_leg3 * t578),
+                -t573,
                 -(minus_garm_vz_leg3 * rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3),
                 -minus_garm_vz_leg3,
-                gcross_vz_leg3 * t757,
-                gcross_vz_leg3 * t777,
-                gcross_vz_leg3 * t793,
-                t806,
-                gcross_vz_leg3 * t812,
+                gcross_vz_leg3 * t617,
+                gcross_vz_leg3 * t639,
+                gcross_vz_leg3 * t659,
+                t676,
+                gcross_vz_leg3 * t677,
                 0.0,
-                t182
+                t174
                     - 0.10285714285714286
-                        * (5.444444444444445 * t806 - 17.36111111111111 * t841),
-                -(minus_garm_vz_leg3 * t855 + gcross_vz_leg3 * t862),
-                gcross_vz_leg3 * t867 - minus_garm_vz_leg3 * t884,
-                -t841,
-                t181,
+                        * (5.444444444444445 * t676 - 17.36111111111111 * t707),
+                -(minus_garm_vz_leg3 * t721 + gcross_vz_leg3 * t728),
+                gcross_vz_leg3 * t733 - minus_garm_vz_leg3 * t750,
+                -t707,
+                t173,
             ],
         ])
     }
@@ -2984,7 +2646,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 1034 operations (348 additions, 670 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 906 intermediates.
+    /// 935 operations (311 additions, 606 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 807 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2995,8 +2657,7 @@ impl Delta {
         start: &[f64; 3],
     ) -> Result<[[f64; 52]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = pose[0] + 0.05;
-        let t1 = t0 - 0.2;
+        let t1 = pose[0] + 0.05 - 0.2;
         let t2 = t1 * t1;
         let t3 = pose[2] * pose[2];
         let t5 = 0.2304 * (t2 + t3);
@@ -3009,581 +2670,548 @@ impl Delta {
         let t16 = t5 - t12 * t12;
         ::overact::guard::reach(t16, "leg1")?;
         let t17 = ::overact::math::sqrt(t16);
-        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
         let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t21 = 0.24 * c_arm_leg1;
-        let t23 = t0 - (0.2 + t21);
-        let t24 = 1.0 / t17;
-        let t25 = 2.0 * t24;
-        let garm_vx_leg1 = t23 * t25;
-        let t27 = garm_vx_leg1 * actuator_accelerations[0];
-        let garm_vy_leg1 = pose[1] * t25;
-        let t29 = garm_vy_leg1 * actuator_accelerations[0];
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let t34 = 0.24 * minus_s_arm_leg1;
-        let t35 = pose[2] - t34;
-        let garm_vz_leg1 = t35 * t25;
-        let t37 = garm_vz_leg1 * actuator_accelerations[0];
-        let t38 = 9.81 * c_arm_leg1;
-        let t42 = 9.81 * minus_s_arm_leg1;
-        let t46 = garm_vx_leg1 * actuator_velocities[0];
-        let t47 = garm_vy_leg1 * actuator_velocities[0];
-        let t48 = garm_vz_leg1 * actuator_velocities[0];
-        let t52 = 0.48 * t24;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t52;
-        let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t57 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t57, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t57);
+        let t24 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t24, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t24);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t57) / (0.2688 * c_rod_leg1);
-        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
-            - minus_s_arm_leg1 * c_cross_leg1;
-        let t71 = 1.0 / c_rod_leg1;
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let t36 = 0.56 * c_rod_leg1;
+        let s_cross_leg1 = 2.0833333333333335 * t17 / t36;
+        ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let gcross_vy_leg1 = t52
-            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t71)
-                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t71));
-        let t83 = pose[1] + 0.04330127018922194;
-        let t84 = t83 - 0.17320508075688776;
-        let t86 = pose[0] - 0.025;
-        let t87 = t86 + 0.1;
-        let t88 = 0.5 * t87;
-        let t89 = 0.8660254037844387 * t84 - t88;
-        let t92 = 0.2304 * (t89 * t89 + t3);
-        let t93 = 1.0 / t92;
-        let t94 = 0.48 * t89;
-        let t95 = t87 * t87;
-        let t98 = t95 + t84 * t84 + t3;
-        let t100 = t98 - 0.3136 + 0.0576;
-        let t103 = t92 - t100 * t100;
-        ::overact::guard::reach(t103, "leg2")?;
-        let t104 = ::overact::math::sqrt(t103);
-        let c_arm_leg2 = t93 * (t94 * t100 - t14 * t104);
-        let t109 = t89 - 0.24 * c_arm_leg2;
-        let t110 = 0.8660254037844387 * t87;
-        let t112 = t110 + 0.5 * t84;
-        let t113 = t112 * t112;
-        let t117 = 1.0 - 3.188775510204082 * t113;
-        ::overact::guard::reach(t117, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t117);
-        let c_cross_leg2 = (t98 - (0.0576 + t113) - 0.3136 * t117)
-            / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t93 * (t14 * t100 + t94 * t104);
-        let s_cross_leg2 = 2.0833333333333335 * t104 / (0.56 * c_rod_leg2);
+        let t40 = 1.0 / s_cross_leg1;
+        let t41 = 4.166666666666667 * t40;
+        let garm_vx_leg1 = c_armcross_leg1 * t41;
+        let t43 = garm_vx_leg1 * actuator_accelerations[0];
+        let t44 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7857142857142858 * t44;
+        let t46 = pose[1] * grod_vy_leg1;
+        let garm_vy_leg1 = t41 * t46;
+        let t48 = garm_vy_leg1 * actuator_accelerations[0];
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t41;
+        let t53 = minus_garm_vz_leg1 * actuator_accelerations[0];
+        let t54 = 9.81 * c_arm_leg1;
+        let t58 = 9.81 * minus_s_arm_leg1;
+        let t62 = garm_vx_leg1 * actuator_velocities[0];
+        let t63 = garm_vy_leg1 * actuator_velocities[0];
+        let t64 = minus_garm_vz_leg1 * actuator_velocities[0];
+        let t68 = c_cross_leg1 * t40;
+        let minus_gcross_vx_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 * t68 + s_armcross_leg1);
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t75 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t78 = pose[0] - 0.025 + 0.1;
+        let t79 = 0.5 * t78;
+        let t80 = 0.8660254037844387 * t75 - t79;
+        let t83 = 0.2304 * (t80 * t80 + t3);
+        let t84 = t78 * t78;
+        let t87 = t84 + t75 * t75 + t3;
+        let t89 = t87 - 0.3136 + 0.0576;
+        let t91 = t83 - t89 * t89;
+        ::overact::guard::reach(t91, "leg2")?;
+        let t92 = ::overact::math::sqrt(t91);
+        let t94 = 0.8660254037844387 * t78;
+        let t96 = t94 + 0.5 * t75;
+        let t97 = t96 * t96;
+        let t99 = 1.0 - 3.188775510204082 * t97;
+        ::overact::guard::reach(t99, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t99);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t101 = 0.56 * c_rod_leg2;
+        let s_cross_leg2 = 2.0833333333333335 * t92 / t101;
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
+        let t103 = 1.0 / s_cross_leg2;
+        let t104 = 4.166666666666667 * t103;
+        let t105 = 1.0 / c_rod_leg2;
+        let t106 = 1.7857142857142858 * t105;
+        let t107 = t96 * t106;
+        let t109 = 1.0 / t83;
+        let t110 = 0.48 * t80;
+        let c_arm_leg2 = t109 * (t110 * t89 - t14 * t92);
+        let c_cross_leg2 = (t87 - (0.0576 + t97) - 0.3136 * t99) / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t109 * (t14 * t89 + t110 * t92);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t133 = t112 * c_armcross_leg2;
-        let t136 = 0.8928571428571429 * t133 + 0.8660254037844387 * c_rod_leg2;
-        let t139 = 0.24 * minus_s_arm_leg2;
-        let t140 = pose[2] - t139;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t112;
-        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
-            - minus_s_arm_leg2 * c_cross_leg2;
-        let t145 = minus_s_rod_leg2 * s_armcross_leg2;
-        let t146 = t140 * t145;
-        let t148 = t109 * (0.56 * t136) - 0.28 * t146;
-        let t149 = 0.20784609690826528 * minus_s_arm_leg2;
-        let t154 = minus_s_arm_leg2 * t145;
-        let t156 = 0.1344 * (c_arm_leg2 * t136) - 0.0672 * t154;
-        let t161 = 1.5464739353293548 * t133 - 0.5 * c_rod_leg2;
-        let t164 = t149 * t148 - 0.8660254037844387 * t140 * t156 - 0.14 * (t104 * t161);
-        ::overact::guard::leg(t164, 0.06758306237512474, "leg2")?;
-        let t165 = 1.0 / t164;
-        let garm_vy_leg2 = t148 * t165;
-        let t169 = pose[1] - 0.04330127018922194;
-        let t170 = t169 + 0.17320508075688776;
-        let t172 = t88 + 0.8660254037844387 * t170;
-        let t175 = 0.2304 * (t172 * t172 + t3);
-        let t176 = 1.0 / t175;
-        let t177 = 0.48 * t172;
-        let t180 = t95 + t170 * t170 + t3;
-        let t182 = t180 - 0.3136 + 0.0576;
-        let t185 = t175 - t182 * t182;
-        ::overact::guard::reach(t185, "leg3")?;
-        let t186 = ::overact::math::sqrt(t185);
-        let minus_c_arm_leg3 = t176 * (t177 * t182 + t14 * t186);
-        let t191 = t172 - 0.24 * minus_c_arm_leg3;
-        let t193 = t110 - 0.5 * t170;
-        let t194 = t193 * t193;
-        let t196 = 1.0 - 3.188775510204082 * t194;
-        ::overact::guard::reach(t196, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t196);
-        let c_cross_leg3 = (t180 - (0.0576 + t194) - 0.3136 * t196)
+        let t128 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t104 * (0.8660254037844387 * t107 - t128);
+        let t134 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t136 = t79 + 0.8660254037844387 * t134;
+        let t139 = 0.2304 * (t136 * t136 + t3);
+        let t142 = t84 + t134 * t134 + t3;
+        let t144 = t142 - 0.3136 + 0.0576;
+        let t146 = t139 - t144 * t144;
+        ::overact::guard::reach(t146, "leg3")?;
+        let t147 = ::overact::math::sqrt(t146);
+        let t150 = t94 - 0.5 * t134;
+        let t151 = t150 * t150;
+        let t153 = 1.0 - 3.188775510204082 * t151;
+        ::overact::guard::reach(t153, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t153);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let t155 = 0.56 * c_rod_leg3;
+        let s_cross_leg3 = 2.0833333333333335 * t147 / t155;
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
+        let t157 = 1.0 / s_cross_leg3;
+        let t158 = 4.166666666666667 * t157;
+        let t159 = 1.0 / t139;
+        let t160 = 0.48 * t136;
+        let minus_c_arm_leg3 = t159 * (t160 * t144 + t14 * t147);
+        let c_cross_leg3 = (t142 - (0.0576 + t151) - 0.3136 * t153)
             / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t176 * (t177 * t186 - t14 * t182);
-        let s_cross_leg3 = 2.0833333333333335 * t186 / (0.56 * c_rod_leg3);
+        let s_arm_leg3 = t159 * (t160 * t147 - t14 * t144);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t215 = t193 * minus_c_armcross_leg3;
-        let t217 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t215;
-        let t220 = 0.24 * s_arm_leg3;
-        let t221 = pose[2] + t220;
-        let s_rod_leg3 = 1.7857142857142858 * t193;
+        let t178 = 0.5 * minus_c_armcross_leg3;
+        let t179 = 1.0 / c_rod_leg3;
+        let t180 = 1.7857142857142858 * t179;
+        let t181 = t150 * t180;
+        let garm_vx_leg3 = t158 * (t178 + 0.8660254037844387 * t181);
+        let t186 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3;
+        ::overact::guard::platform(t186, 14.869730172882841, "actuators")?;
+        ::overact::guard::platform(t186, 14.869730172882841, "actuators")?;
+        let t187 = 1.0 / t186;
+        let t188 = 0.24 * c_cross_leg1;
+        let t189 = actuator_velocities[0] * actuator_velocities[0];
+        let t191 = garm_vx_leg2 * actuator_velocities[1];
+        let t193 = garm_vx_leg3 * actuator_velocities[2];
+        let t194 = t62 + t191 + t193;
+        let t197 = 0.8660254037844387 * c_armcross_leg2;
+        let garm_vy_leg2 = t104 * (t197 + 0.5 * t107);
+        let t203 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let garm_vy_leg3 = t158 * (t203 - 0.5 * t181);
+        let t208 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3;
+        let t209 = t208 * t187;
+        let t216 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t208 * t209;
+        ::overact::guard::platform(t216, 14.869730172882846, "actuators")?;
+        ::overact::guard::platform(t216, 14.869730172882846, "actuators")?;
+        let t217 = 1.0 / t216;
+        let t218 = garm_vy_leg2 * actuator_velocities[1];
+        let t220 = garm_vy_leg3 * actuator_velocities[2];
+        let t223 = t63 + t218 + t220 - t194 * t209;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t104;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t226 = s_rod_leg3 * s_armcross_leg3;
-        let t227 = t221 * t226;
-        let t229 = t191 * (0.56 * t217) + 0.28 * t227;
-        let t230 = 0.20784609690826528 * s_arm_leg3;
-        let t235 = s_arm_leg3 * t226;
-        let t237 = 0.1344 * (minus_c_arm_leg3 * t217) - 0.0672 * t235;
-        let t242 = 1.5464739353293548 * t215 + 0.5 * c_rod_leg3;
-        let t245 = t230 * t229 + 0.8660254037844387 * t221 * t237 + 0.14 * (t186 * t242);
-        ::overact::guard::leg(t245, 0.06758306237512474, "leg3")?;
-        let t246 = 1.0 / t245;
-        let garm_vy_leg3 = t229 * t246;
-        let garm_vx_leg2 = (t109 * (0.56 * t161) - 0.4849742261192857 * t146) * t165;
-        let garm_vx_leg3 = (t191 * (0.56 * t242) - 0.4849742261192857 * t227) * t246;
-        let t264 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
-            + garm_vx_leg3 * garm_vy_leg3;
-        let t269 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t269, 14.869730172882845, "actuators")?;
-        ::overact::guard::platform(t269, 14.869730172882845, "actuators")?;
-        let t270 = 1.0 / t269;
-        let t271 = t264 * t270;
-        let t273 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t264 * t271;
-        ::overact::guard::platform(t273, 14.869730172882843, "actuators")?;
-        ::overact::guard::platform(t273, 14.869730172882843, "actuators")?;
-        let t274 = 1.0 / t273;
-        let t275 = garm_vy_leg2 * actuator_velocities[1];
-        let t277 = garm_vy_leg3 * actuator_velocities[2];
-        let t279 = garm_vx_leg2 * actuator_velocities[1];
-        let t281 = garm_vx_leg3 * actuator_velocities[2];
-        let t282 = t46 + t279 + t281;
-        let t284 = t47 + t275 + t277 - t282 * t271;
-        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t140) * t165;
-        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t221) * t246;
-        let t301 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
-            + garm_vx_leg3 * garm_vz_leg3;
-        let t302 = t301 * t270;
-        let t304 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
-            + garm_vy_leg3 * garm_vz_leg3 - t264 * t302;
-        let t305 = t304 * t274;
-        let t314 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + garm_vz_leg3 * garm_vz_leg3 - t301 * t302 - t304 * t305;
-        ::overact::guard::platform(t314, 34.855350201355726, "actuators")?;
-        ::overact::guard::platform(t314, 34.855350201355726, "actuators")?;
-        let t315 = 1.0 / t314;
-        let t316 = garm_vz_leg2 * actuator_velocities[1];
-        let t318 = garm_vz_leg3 * actuator_velocities[2];
-        let t324 = t315 * (t48 + t316 + t318 - t282 * t302 - t305 * t284);
-        let t326 = t274 * t284 - t305 * t324;
-        let t332 = t282 * t270 - t271 * t326 - t302 * t324;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t52;
-        let rate_cross_leg1 = gcross_vy_leg1 * t326 - minus_gcross_vx_leg1 * t332
-            - minus_gcross_vz_leg1 * t324;
-        let grod_vy_leg1 = 1.7857142857142858 * t71;
-        let rate_rod_leg1 = grod_vy_leg1 * t326;
-        let t340 = s_armcross_leg1 * rate_rod_leg1;
-        let t342 = pose[1] * (rate_cross_leg1 * t340);
-        let t343 = actuator_velocities[0] * actuator_velocities[0];
-        let t346 = rate_cross_leg1 * rate_cross_leg1;
-        let t348 = c_armcross_leg1 * rate_rod_leg1;
-        let t350 = t340 * t340 + t346 + t348 * t348;
-        let t354 = t342 - (t21 * t343 + t23 * t350) + t342;
-        let t356 = pose[1] * rate_cross_leg1;
-        let t357 = rate_cross_leg1 * t356;
-        let t359 = t357 - pose[1] * t350;
-        let t363 = pose[1] * (rate_cross_leg1 * t348);
-        let t368 = t363 - (t34 * t343 + t35 * t350) + t363;
-        let minus_rate_dot_arm_leg1 = garm_vx_leg1 * t354 + garm_vy_leg1 * t359
-            + garm_vz_leg1 * t368;
-        let t371 = actuator_accelerations[0] + minus_rate_dot_arm_leg1;
-        let t373 = actuator_velocities[1] * actuator_velocities[1];
-        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t161)
-            - 0.11639381426862856 * (minus_s_arm_leg2 * t136)) * t165;
-        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t161)
-            - 0.11639381426862856 * t154) * t165;
-        let minus_gcross_vy_leg2 = t156 * t165;
-        let rate_cross_leg2 = gcross_vz_leg2 * t324
-            - (minus_gcross_vx_leg2 * t332 + minus_gcross_vy_leg2 * t326);
-        let t392 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t140) - t109 * t149)
-            * t165;
-        let minus_grod_vy_leg2 = 0.25 * t104 * t165;
-        let rate_rod_leg2 = grod_vx_leg2 * t332 - minus_grod_vy_leg2 * t326;
-        let t405 = t392 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t408 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t409 = 0.5 * rate_cross_leg2;
-        let t410 = t408 - t409;
-        let t413 = c_armcross_leg2 * rate_rod_leg2;
-        let t415 = t405 * t405 + t410 * t410 + t413 * t413;
-        let t418 = 0.20784609690826528 * c_arm_leg2;
-        let t420 = t83 - (0.17320508075688776 + t418);
-        let t421 = t409 * t413;
-        let t423 = 0.12 * c_arm_leg2;
-        let t425 = t86 + 0.1 + t423;
-        let t426 = t392 * t413;
-        let t428 = t420 * t421 + t425 * t426;
-        let t430 = t139 * t373 + t140 * t415 + t428 + t428;
-        let t439 = t420 * t410 - t425 * t405 + t140 * t413;
-        let t444 = 1.3333333333333333 * (t392 * t408);
-        let t447 = t423 * t373 - t425 * t415 - t405 * t439 + t140 * t426 + t420 * t444;
-        let t457 = t410 * t439 - (t418 * t373 + t420 * t415) + t140 * t421 - t425 * t444;
-        let rate_dot_arm_leg2 = garm_vz_leg2 * t430
-            - (garm_vx_leg2 * t447 + garm_vy_leg2 * t457);
-        let t461 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t464 = 0.20784609690826528 * minus_c_arm_leg3;
-        let t465 = actuator_velocities[2] * actuator_velocities[2];
-        let t468 = t169 - (t464 - 0.17320508075688776);
-        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t217)
-            + 0.0672 * (s_arm_leg3 * t242)) * t246;
-        let minus_gcross_vx_leg3 = (0.11639381426862856 * t235
-            + 0.1344 * (minus_c_arm_leg3 * t242)) * t246;
-        let minus_gcross_vy_leg3 = t237 * t246;
-        let rate_cross_leg3 = gcross_vz_leg3 * t324
-            - (minus_gcross_vx_leg3 * t332 + minus_gcross_vy_leg3 * t326);
-        let t486 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (t191 * t230
-            + 0.20784609690826528 * (minus_c_arm_leg3 * t221)) * t246;
-        let minus_grod_vy_leg3 = 0.25 * t186 * t246;
-        let rate_rod_leg3 = grod_vx_leg3 * t332 - minus_grod_vy_leg3 * t326;
-        let t499 = t486 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t501 = 0.5 * rate_cross_leg3;
-        let t503 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t504 = t501 + t503;
-        let t507 = minus_c_armcross_leg3 * rate_rod_leg3;
-        let t509 = t499 * t499 + t504 * t504 + t507 * t507;
-        let t512 = 0.12 * minus_c_arm_leg3;
-        let t514 = t86 - (t512 - 0.1);
-        let t519 = t514 * t499 - t468 * t504 - t221 * t507;
-        let t523 = 1.3333333333333333 * (t486 * t503);
-        let t525 = t501 * t507;
-        let t528 = t464 * t465 + t468 * t509 + t504 * t519 + t514 * t523 + t221 * t525;
-        let t535 = t486 * t507;
-        let t539 = t499 * t519 - (t512 * t465 + t514 * t509) + t221 * t535 + t468 * t523;
-        let t547 = t468 * t525 - t514 * t535;
-        let t549 = t220 * t465 - t221 * t509 + t547 + t547;
-        let rate_dot_arm_leg3 = garm_vy_leg3 * t528 - garm_vx_leg3 * t539
-            - garm_vz_leg3 * t549;
-        let t552 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t559 = garm_vx_leg1 * t371 + garm_vx_leg2 * t461 + garm_vx_leg3 * t552;
-        let t561 = garm_vy_leg1 * t371 + garm_vy_leg2 * t461 + garm_vy_leg3 * t552
-            - t271 * t559;
-        let t572 = t315
-            * (garm_vz_leg1 * t371 + garm_vz_leg2 * t461 + garm_vz_leg3 * t552
-                - t302 * t559 - t305 * t561);
-        let t574 = t274 * t561 - t305 * t572;
-        let t575 = t574 - t359;
-        let t581 = t270 * t559 - t271 * t574 - t302 * t572;
-        let rate_dot_cross_leg1 = gcross_vy_leg1 * t575
-            - minus_gcross_vx_leg1 * (t581 - t354)
-            - minus_gcross_vz_leg1 * (t572 - t368);
-        let t588 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t589 = c_rod_leg1 * rate_cross_leg1;
-        let t590 = rate_rod_leg1 * t589;
-        let t591 = t588 + t590;
-        let t593 = 1.7857142857142858 * t356;
-        let t594 = rate_rod_leg1 * t593;
-        let t595 = c_rod_leg1 * t594;
-        let t596 = s_rod_leg1 * t591 + t595;
-        let t599 = 3.188775510204082 * t357;
-        let t602 = t590 + t591;
-        let t604 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t605 = t604 - t594;
-        let t608 = c_rod_leg1 * t602 - s_rod_leg1 * (t594 - t605);
-        let t612 = 3.188775510204082 * (t356 * t356);
-        let t618 = t593 * t589;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t575;
-        let t622 = rate_rod_leg1 * rate_rod_leg1;
-        let t625 = s_rod_leg1 * (t618 + rate_dot_rod_leg1) + c_rod_leg1 * (t622 - t612);
-        let t632 = c_rod_leg1 * t605 - t595;
-        let t633 = minus_gcross_vx_leg1 * t632;
-        let t635 = gcross_vy_leg1 * t632 + t599;
-        let t636 = minus_gcross_vz_leg1 * t632;
-        let t637 = 1.7857142857142858 * t574;
-        let t643 = grod_vy_leg1 * rate_dot_rod_leg1;
-        let t644 = 1.7857142857142858 * t581;
-        let t646 = 0.24 * actuator_accelerations[0] - t38;
-        let t647 = 0.24 * t646;
-        let t648 = garm_vx_leg1 * t647;
-        let t654 = garm_vy_leg1 * t647;
-        let t662 = t572 + 9.81;
-        let t663 = 1.7857142857142858 * t662;
-        let t664 = garm_vz_leg1 * t647;
-        let t670 = 0.8928571428571429 * t17;
-        let t674 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
-        let t678 = 0.24 * c_cross_leg1;
-        let t680 = t670 * (t618 - rate_dot_rod_leg1) + t674 * (t612 + t622)
-            - t678 * t602;
-        let t684 = t42 - 0.24 * t343;
-        let t687 = s_rod_leg1 * (c_cross_leg1 * t646 - s_cross_leg1 * t684);
-        let t695 = c_cross_leg1 * t684 + s_cross_leg1 * t646;
-        let t705 = t670 * t604 + t674 * t588 + t346 * t678;
-        let t715 = garm_vx_leg2 * actuator_accelerations[1];
-        let t716 = garm_vy_leg2 * actuator_accelerations[1];
-        let t717 = garm_vz_leg2 * actuator_accelerations[1];
-        let t718 = 9.81 * c_arm_leg2;
-        let t722 = 9.81 * minus_s_arm_leg2;
-        let t729 = 1.7857142857142858 * t439;
-        let t730 = rate_rod_leg2 * t729;
-        let t731 = c_rod_leg2 * t730;
-        let t732 = c_rod_leg2 * rate_cross_leg2;
-        let t733 = rate_rod_leg2 * t732;
-        let t736 = t581 - t447;
-        let t738 = t574 - t457;
-        let rate_dot_cross_leg2 = gcross_vz_leg2 * (t572 + t430)
-            - (minus_gcross_vx_leg2 * t736 + minus_gcross_vy_leg2 * t738);
-        let t742 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t743 = t733 - t742;
-        let t745 = t731 - minus_s_rod_leg2 * t743;
-        let t747 = t729 * t732;
-        let t748 = grod_vx_leg2 * t747;
-        let t750 = minus_grod_vy_leg2 * t747;
-        let t755 = 3.188775510204082 * (t439 * t439);
-        let t756 = t732 * t732;
-        let t757 = t755 - t756;
-        let t759 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t760 = t759 - t730;
-        let t763 = t733 + t743;
-        let t765 = minus_s_rod_leg2 * (t730 - t760) + c_rod_leg2 * t763;
-        let t772 = rate_rod_leg2 * rate_rod_leg2;
-        let rate_dot_rod_leg2 = grod_vx_leg2 * t736 - minus_grod_vy_leg2 * t738;
-        let t780 = c_rod_leg2 * (t772 - t755)
-            - minus_s_rod_leg2 * (t747 + rate_dot_rod_leg2);
-        let t789 = c_rod_leg2 * t760 - t731;
-        let t791 = t748 - minus_gcross_vx_leg2 * t789;
-        let t793 = minus_gcross_vy_leg2 * t789 + t750;
-        let t794 = gcross_vz_leg2 * t789;
-        let t797 = t747 - rate_dot_rod_leg2;
-        let t799 = minus_s_rod_leg2 * (t756 - t772) + c_rod_leg2 * t797;
-        let t807 = grod_vx_leg2 * rate_dot_rod_leg2;
-        let t808 = minus_grod_vy_leg2 * rate_dot_rod_leg2;
-        let t810 = 0.24 * actuator_accelerations[1] - t718;
-        let t811 = 0.24 * t810;
-        let t812 = garm_vx_leg2 * t811;
-        let t820 = garm_vy_leg2 * t811;
-        let t828 = garm_vz_leg2 * t811;
-        let t834 = 0.8928571428571429 * t104;
-        let t837 = 0.42857142857142855 * (t112 * s_cross_leg2);
-        let t841 = 0.24 * c_cross_leg2;
-        let t843 = t834 * t797 - t837 * (t755 + t772) - t841 * t763;
-        let t847 = t722 - 0.24 * t373;
-        let t850 = minus_s_rod_leg2 * (c_cross_leg2 * t810 - s_cross_leg2 * t847);
-        let t855 = c_cross_leg2 * t847 + s_cross_leg2 * t810;
-        let t872 = t834 * t759 + t837 * t742 + rate_cross_leg2 * rate_cross_leg2 * t841;
-        let t882 = garm_vx_leg3 * actuator_accelerations[2];
-        let t883 = garm_vy_leg3 * actuator_accelerations[2];
-        let t884 = garm_vz_leg3 * actuator_accelerations[2];
-        let t885 = 9.81 * minus_c_arm_leg3;
-        let t889 = 9.81 * s_arm_leg3;
-        let t898 = t581 - t539;
-        let t900 = t574 + t528;
-        let rate_dot_cross_leg3 = gcross_vz_leg3 * (t572 - t549)
-            - (minus_gcross_vx_leg3 * t898 + minus_gcross_vy_leg3 * t900);
-        let t904 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t905 = c_rod_leg3 * rate_cross_leg3;
-        let t906 = rate_rod_leg3 * t905;
-        let t907 = t904 + t906;
-        let t909 = 1.7857142857142858 * t519;
-        let t910 = rate_rod_leg3 * t909;
-        let t911 = c_rod_leg3 * t910;
-        let t912 = s_rod_leg3 * t907 + t911;
-        let t914 = t909 * t905;
-        let t915 = grod_vx_leg3 * t914;
-        let t917 = minus_grod_vy_leg3 * t914;
-        let t922 = 3.188775510204082 * (t519 * t519);
-        let t923 = t905 * t905;
-        let t924 = t922 - t923;
-        let t926 = t906 + t907;
-        let t928 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t929 = t928 - t910;
-        let t932 = c_rod_leg3 * t926 - s_rod_leg3 * (t910 - t929);
-        let rate_dot_rod_leg3 = grod_vx_leg3 * t898 - minus_grod_vy_leg3 * t900;
-        let t945 = rate_rod_leg3 * rate_rod_leg3;
-        let t948 = s_rod_leg3 * (t914 + rate_dot_rod_leg3) + c_rod_leg3 * (t945 - t922);
-        let t956 = c_rod_leg3 * t929 - t911;
-        let t958 = t915 - minus_gcross_vx_leg3 * t956;
-        let t960 = minus_gcross_vy_leg3 * t956 + t917;
-        let t961 = gcross_vz_leg3 * t956;
-        let t965 = t914 - rate_dot_rod_leg3;
-        let t967 = s_rod_leg3 * (t923 - t945) - c_rod_leg3 * t965;
-        let t974 = grod_vx_leg3 * rate_dot_rod_leg3;
-        let t975 = minus_grod_vy_leg3 * rate_dot_rod_leg3;
-        let t977 = t885 + 0.24 * actuator_accelerations[2];
-        let t978 = 0.24 * t977;
-        let t979 = garm_vx_leg3 * t978;
-        let t987 = garm_vy_leg3 * t978;
-        let t995 = garm_vz_leg3 * t978;
-        let t1001 = 0.8928571428571429 * t186;
-        let t1004 = 0.42857142857142855 * (t193 * s_cross_leg3);
-        let t1008 = 0.24 * c_cross_leg3;
-        let t1010 = t1001 * t965 + t1004 * (t922 + t945) - t1008 * t926;
-        let t1013 = t889 + 0.24 * t465;
-        let t1017 = s_rod_leg3 * (s_cross_leg3 * t1013 + c_cross_leg3 * t977);
-        let t1022 = s_cross_leg3 * t977 - c_cross_leg3 * t1013;
-        let t1039 = t1001 * t928 + t1004 * t904
-            + rate_cross_leg3 * rate_cross_leg3 * t1008;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t158;
+        let t237 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+            + garm_vx_leg3 * minus_garm_vz_leg3;
+        let t238 = t237 * t187;
+        let t245 = t208 * t238
+            - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
+                + garm_vy_leg3 * minus_garm_vz_leg3);
+        let t246 = t245 * t217;
+        let t255 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+            + minus_garm_vz_leg2 * minus_garm_vz_leg2
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t237 * t238 - t245 * t246;
+        ::overact::guard::platform(t255, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t255, 34.855350201355726, "actuators")?;
+        let t256 = 1.0 / t255;
+        let t258 = minus_garm_vz_leg2 * actuator_velocities[1];
+        let t260 = minus_garm_vz_leg3 * actuator_velocities[2];
+        let t265 = t256 * (t194 * t238 - (t64 + t258 + t260) - t246 * t223);
+        let t267 = t217 * t223 - t246 * t265;
+        let t271 = t194 * t187 - t209 * t267 + t238 * t265;
+        let t276 = t188 * garm_vy_leg1;
+        let t282 = t68 * (c_armcross_leg1 * t271 - s_armcross_leg1 * t265) + t276 * t267
+            + s_armcross_leg1 * t271 + c_armcross_leg1 * t265;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t282;
+        let t284 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t267;
+        let t286 = rate_rod_leg1 * rate_rod_leg1;
+        let t287 = t284 + t286;
+        let t289 = t188 * t189 + t36 * t287;
+        let t290 = pose[1] * minus_rate_cross_leg1;
+        let t291 = minus_rate_cross_leg1 * t290;
+        let t293 = t291 - pose[1] * t287;
+        let rate_dot_arm_leg1 = t41 * (t289 - t46 * t293);
+        let t297 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t299 = 0.24 * c_cross_leg2;
+        let t300 = actuator_velocities[1] * actuator_velocities[1];
+        let t302 = 0.8660254037844387 * t271;
+        let t303 = 0.5 * t267;
+        let t304 = t302 + t303;
+        let minus_rate_rod_leg2 = t106 * t304;
+        let t306 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t307 = 0.5 * s_armcross_leg2;
+        let t309 = 0.8660254037844387 * s_armcross_leg2;
+        let t314 = c_cross_leg2 * t103;
+        let t321 = t307 * t271 - t309 * t267 - c_armcross_leg2 * t265
+            - t314 * (t197 * t267 - t128 * t271 - s_armcross_leg2 * t265);
+        let t323 = t299 * (t104 * t107);
+        let t325 = t321 - t323 * t304;
+        let rate_cross_leg2 = t106 * t325;
+        let t327 = rate_cross_leg2 * rate_cross_leg2;
+        let t328 = t306 + t327;
+        let t330 = t299 * t300 + t101 * t328;
+        let t332 = t96 * rate_cross_leg2;
+        let t333 = rate_cross_leg2 * t332;
+        let t334 = t96 * t328 - t333;
+        let rate_dot_arm_leg2 = t104 * (t330 + t107 * t334);
+        let t338 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t341 = 0.24 * c_cross_leg3;
+        let t342 = actuator_velocities[2] * actuator_velocities[2];
+        let t344 = t302 - t303;
+        let rate_rod_leg3 = t180 * t344;
+        let t346 = rate_rod_leg3 * rate_rod_leg3;
+        let t347 = 0.5 * s_armcross_leg3;
+        let t349 = 0.8660254037844387 * s_armcross_leg3;
+        let t354 = c_cross_leg3 * t157;
+        let t361 = t347 * t271 + t349 * t267 + minus_c_armcross_leg3 * t265
+            - t354 * (t178 * t271 + t203 * t267 - s_armcross_leg3 * t265);
+        let t363 = t341 * (t158 * t181);
+        let t365 = t361 - t363 * t344;
+        let rate_cross_leg3 = t180 * t365;
+        let t367 = rate_cross_leg3 * rate_cross_leg3;
+        let t368 = t346 + t367;
+        let t370 = t341 * t342 + t155 * t368;
+        let t371 = t150 * rate_cross_leg3;
+        let t372 = rate_cross_leg3 * t371;
+        let t374 = t372 - t150 * t368;
+        let rate_dot_arm_leg3 = t158 * (t370 - t181 * t374);
+        let t378 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t380 = garm_vx_leg1 * t297 + garm_vx_leg2 * t338 + garm_vx_leg3 * t378;
+        let t388 = garm_vy_leg1 * t297 + garm_vy_leg2 * t338 + garm_vy_leg3 * t378
+            - t209 * t380;
+        let t399 = t256
+            * (t238 * t380
+                - (minus_garm_vz_leg1 * t297 + minus_garm_vz_leg2 * t338
+                    + minus_garm_vz_leg3 * t378) - t246 * t388);
+        let t401 = t217 * t388 - t246 * t399;
+        let t405 = t187 * t380 - t209 * t401 + t238 * t399;
+        let t411 = t401 - t293;
+        let t420 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
+        let t424 = t68 * (c_armcross_leg1 * t405 - s_armcross_leg1 * t399 + t289)
+            + t276 * t411 + s_armcross_leg1 * t405 + c_armcross_leg1 * t399
+            + 0.24 * s_cross_leg1 * t189 + t420 + t420;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t424;
+        let t426 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t428 = rate_rod_leg1 * (1.7857142857142858 * t282);
+        let t429 = t426 + t428;
+        let t432 = c_rod_leg1 * (1.7857142857142858 * t420);
+        let t433 = s_rod_leg1 * t429 + t432;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * t276;
+        let t437 = 3.188775510204082 * t291;
+        let minus_gcross_vz_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 - s_armcross_leg1 * t68);
+        let t443 = t420 - t424;
+        let t447 = t428 + t429;
+        let t449 = 3.188775510204082 * (pose[1] * (t420 + t443)) - c_rod_leg1 * t447;
+        let t451 = t290 * t290;
+        let t460 = 3.188775510204082 * (t282 * t290);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t411;
+        let t464 = 3.188775510204082 * t451;
+        let t467 = s_rod_leg1 * (t460 + rate_dot_rod_leg1) + c_rod_leg1 * (t286 - t464);
+        let t475 = t432 + c_rod_leg1 * (1.7857142857142858 * t443);
+        let t476 = minus_gcross_vx_leg1 * t475;
+        let t478 = t437 - minus_gcross_vy_leg1 * t475;
+        let t479 = minus_gcross_vz_leg1 * t475;
+        let t480 = 1.7857142857142858 * t401;
+        let t486 = grod_vy_leg1 * rate_dot_rod_leg1;
+        let t487 = 1.7857142857142858 * t405;
+        let t489 = 0.24 * actuator_accelerations[0] - t54;
+        let t490 = 0.24 * t489;
+        let t491 = garm_vx_leg1 * t490;
+        let t497 = garm_vy_leg1 * t490;
+        let t505 = t399 + 9.81;
+        let t506 = 1.7857142857142858 * t505;
+        let t507 = minus_garm_vz_leg1 * t490;
+        let t517 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
+        let t522 = 0.8928571428571429 * t17 * (t460 - rate_dot_rod_leg1)
+            + t517 * (t464 + t286) + t188 * t447;
+        let t526 = t58 - 0.24 * t189;
+        let t529 = s_rod_leg1 * (c_cross_leg1 * t489 - s_cross_leg1 * t526);
+        let t537 = c_cross_leg1 * t526 + s_cross_leg1 * t489;
+        let t548 = t188 * t284 - (1.594387755102041 * (t17 * t424) + t517 * t426);
+        let t558 = garm_vx_leg2 * actuator_accelerations[1];
+        let t559 = garm_vy_leg2 * actuator_accelerations[1];
+        let t560 = minus_garm_vz_leg2 * actuator_accelerations[1];
+        let t561 = 9.81 * c_arm_leg2;
+        let t565 = 9.81 * minus_s_arm_leg2;
+        let gcross_vx_leg2 = t106 * (t128 * t314 + t307 - 0.8660254037844387 * t323);
+        let minus_s_rod_leg2 = 1.7857142857142858 * t96;
+        let t586 = t96 * (rate_cross_leg2 * minus_rate_rod_leg2);
+        let t589 = t307 * t405 - t309 * t401 - c_armcross_leg2 * t399
+            - (0.24 * s_cross_leg2 * t300 - t586 - t586);
+        let t598 = 0.8660254037844387 * t405;
+        let t599 = 0.5 * t401;
+        let t600 = t598 + t599;
+        let t601 = t600 + t334;
+        let t603 = t589
+            - t314 * (t197 * t401 - t128 * t405 - s_armcross_leg2 * t399 + t330)
+            - t323 * t601;
+        let rate_dot_cross_leg2 = t106 * t603;
+        let t605 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t607 = minus_rate_rod_leg2 * (1.7857142857142858 * t325);
+        let t608 = t605 + t607;
+        let t611 = c_rod_leg2 * (1.7857142857142858 * t586);
+        let t612 = minus_s_rod_leg2 * t608 + t611;
+        let t614 = 2.76156059880242 * t333;
+        let minus_gcross_vy_leg2 = t106 * (t197 * t314 + t309 + 0.5 * t323);
+        let t622 = 1.594387755102041 * t333;
+        let gcross_vz_leg2 = t106 * (s_armcross_leg2 * t314 - c_armcross_leg2);
+        let t628 = t603 - t586;
+        let t632 = t607 + t608;
+        let t634 = 3.188775510204082 * (t96 * (t586 - t628)) - c_rod_leg2 * t632;
+        let t636 = t332 * t332;
+        let t639 = t105 * (t636 - t325 * t325);
+        let t647 = 3.188775510204082 * (t325 * t332);
+        let minus_rate_dot_rod_leg2 = t106 * t601;
+        let t651 = 3.188775510204082 * t636;
+        let t654 = minus_s_rod_leg2 * (t647 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t306 - t651);
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t105;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t105;
+        let t666 = c_rod_leg2 * (1.7857142857142858 * t628) - t611;
+        let t668 = gcross_vx_leg2 * t666 + t614;
+        let t670 = t622 - minus_gcross_vy_leg2 * t666;
+        let t671 = gcross_vz_leg2 * t666;
+        let t672 = 1.7857142857142858 * t600;
+        let t680 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
+        let t681 = minus_grod_vy_leg2 * minus_rate_dot_rod_leg2;
+        let t683 = 0.24 * actuator_accelerations[1] - t561;
+        let t684 = 0.24 * t683;
+        let t685 = garm_vx_leg2 * t684;
+        let t693 = garm_vy_leg2 * t684;
+        let t702 = minus_garm_vz_leg2 * t684;
+        let t711 = 0.42857142857142855 * (t96 * s_cross_leg2);
+        let t716 = 0.8928571428571429 * t92 * (minus_rate_dot_rod_leg2 - t647)
+            - t711 * (t651 + t306) + t299 * t632;
+        let t720 = t565 - 0.24 * t300;
+        let t723 = minus_s_rod_leg2 * (c_cross_leg2 * t683 - s_cross_leg2 * t720);
+        let t728 = c_cross_leg2 * t720 + s_cross_leg2 * t683;
+        let t745 = 1.594387755102041 * (t92 * t603) + t711 * t605 + t299 * t327;
+        let t755 = garm_vx_leg3 * actuator_accelerations[2];
+        let t756 = garm_vy_leg3 * actuator_accelerations[2];
+        let t757 = minus_garm_vz_leg3 * actuator_accelerations[2];
+        let t758 = 9.81 * minus_c_arm_leg3;
+        let t762 = 9.81 * s_arm_leg3;
+        let gcross_vx_leg3 = t180 * (t347 - t178 * t354 - 0.8660254037844387 * t363);
+        let s_rod_leg3 = 1.7857142857142858 * t150;
+        let t783 = t150 * (rate_cross_leg3 * rate_rod_leg3);
+        let t786 = t347 * t405 + t349 * t401 + minus_c_armcross_leg3 * t399
+            - (0.24 * s_cross_leg3 * t342 - t783 - t783);
+        let t795 = t598 - t599;
+        let t796 = t795 - t374;
+        let t798 = t786
+            - t354 * (t178 * t405 + t203 * t401 - s_armcross_leg3 * t399 + t370)
+            - t363 * t796;
+        let rate_dot_cross_leg3 = t180 * t798;
+        let t800 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t802 = rate_rod_leg3 * (1.7857142857142858 * t365);
+        let t803 = t800 + t802;
+        let t806 = c_rod_leg3 * (1.7857142857142858 * t783);
+        let t807 = s_rod_leg3 * t803 + t806;
+        let t809 = 2.76156059880242 * t372;
+        let gcross_vy_leg3 = t180 * (t349 - t203 * t354 + 0.5 * t363);
+        let t817 = 1.594387755102041 * t372;
+        let gcross_vz_leg3 = t180 * (s_armcross_leg3 * t354 + minus_c_armcross_leg3);
+        let t823 = t802 + t803;
+        let t825 = t798 - t783;
+        let t829 = c_rod_leg3 * t823 - 3.188775510204082 * (t150 * (t783 - t825));
+        let t831 = t371 * t371;
+        let t834 = t179 * (t831 - t365 * t365);
+        let t842 = 3.188775510204082 * (t365 * t371);
+        let rate_dot_rod_leg3 = t180 * t796;
+        let t846 = 3.188775510204082 * t831;
+        let t849 = s_rod_leg3 * (t842 + rate_dot_rod_leg3) + c_rod_leg3 * (t346 - t846);
+        let grod_vx_leg3 = 1.5464739353293548 * t179;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t179;
+        let t861 = c_rod_leg3 * (1.7857142857142858 * t825) - t806;
+        let t863 = gcross_vx_leg3 * t861 + t809;
+        let t865 = gcross_vy_leg3 * t861 - t817;
+        let t866 = gcross_vz_leg3 * t861;
+        let t867 = 1.7857142857142858 * t795;
+        let t875 = grod_vx_leg3 * rate_dot_rod_leg3;
+        let t876 = minus_grod_vy_leg3 * rate_dot_rod_leg3;
+        let t878 = t758 + 0.24 * actuator_accelerations[2];
+        let t879 = 0.24 * t878;
+        let t880 = garm_vx_leg3 * t879;
+        let t888 = garm_vy_leg3 * t879;
+        let t897 = minus_garm_vz_leg3 * t879;
+        let t906 = 0.42857142857142855 * (t150 * s_cross_leg3);
+        let t911 = 0.8928571428571429 * t147 * (t842 - rate_dot_rod_leg3)
+            + t906 * (t846 + t346) - t341 * t823;
+        let t914 = t762 + 0.24 * t342;
+        let t918 = s_rod_leg3 * (s_cross_leg3 * t914 + c_cross_leg3 * t878);
+        let t923 = s_cross_leg3 * t878 - c_cross_leg3 * t914;
+        let t940 = 1.594387755102041 * (t147 * t798) + t906 * t800 + t341 * t367;
         Ok([
             [
-                t27, -(garm_vx_leg1 * t38), -(garm_vx_leg1 * t42), t27, t46,
+                t43, -(garm_vx_leg1 * t54), -(garm_vx_leg1 * t58), t43, t62,
                 ::overact::math::signed(garm_vx_leg1, actuator_velocities[0]), garm_vx_leg1,
-                -(minus_gcross_vx_leg1 * t596), -(minus_gcross_vx_leg1 * t608),
-                -(minus_gcross_vx_leg1 * t625), -t633, -(minus_gcross_vx_leg1 * t637), 0.0,
-                t644
+                minus_gcross_vx_leg1 * t433, -(minus_gcross_vx_leg1 * t449),
+                -(minus_gcross_vx_leg1 * t467), -t476, -(minus_gcross_vx_leg1 * t480), 0.0,
+                t487
                     - 0.10285714285714286
-                        * (17.36111111111111 * t648 - 5.444444444444445 * t633),
-                garm_vx_leg1 * t680 + minus_gcross_vx_leg1 * t687,
-                garm_vx_leg1 * t705 - minus_gcross_vx_leg1 * t695,
-                t648,
-                t715,
-                -(garm_vx_leg2 * t718),
-                -(garm_vx_leg2 * t722),
-                t715,
-                t279,
+                        * (17.36111111111111 * t491 - 5.444444444444445 * t476),
+                garm_vx_leg1 * t522 + minus_gcross_vx_leg1 * t529,
+                garm_vx_leg1 * t548 - minus_gcross_vx_leg1 * t537,
+                t491,
+                t558,
+                -(garm_vx_leg2 * t561),
+                -(garm_vx_leg2 * t565),
+                t558,
+                t191,
                 ::overact::math::signed(garm_vx_leg2, actuator_velocities[1]),
                 garm_vx_leg2,
-                -(minus_gcross_vx_leg2 * t745 + t748),
-                grod_vx_leg2 * t757 - minus_gcross_vx_leg2 * t765,
-                -(minus_gcross_vx_leg2 * t780 + grod_vx_leg2 * t742),
-                t791,
-                minus_gcross_vx_leg2 * t799 + grod_vx_leg2 * t759,
-                t807,
-                t644
+                gcross_vx_leg2 * t612 - t614,
+                gcross_vx_leg2 * t634 - 4.9313582121471775 * t639,
+                gcross_vx_leg2 * t654 + minus_grod_vx_leg2 * t605,
+                t668,
+                -(gcross_vx_leg2 * t672 + 1.5464739353293548 * rate_dot_cross_leg2),
+                t680,
+                t487
                     - 0.10285714285714286
-                        * (17.36111111111111 * t812 + 5.444444444444445 * t791
-                            + 5.444444444444445 * t807),
-                garm_vx_leg2 * t843 - minus_gcross_vx_leg2 * t850
-                    - grod_vx_leg2 * (c_rod_leg2 * t855),
-                garm_vx_leg2 * t872 - minus_gcross_vx_leg2 * t855,
-                t812,
-                t882,
-                garm_vx_leg3 * t885,
-                garm_vx_leg3 * t889,
-                t882,
-                t281,
+                        * (17.36111111111111 * t685 + 5.444444444444445 * t668
+                            + 5.444444444444445 * t680),
+                garm_vx_leg2 * t716 + gcross_vx_leg2 * t723
+                    + minus_grod_vx_leg2 * (c_rod_leg2 * t728),
+                garm_vx_leg2 * t745 + gcross_vx_leg2 * t728,
+                t685,
+                t755,
+                garm_vx_leg3 * t758,
+                garm_vx_leg3 * t762,
+                t755,
+                t193,
                 ::overact::math::signed(garm_vx_leg3, actuator_velocities[2]),
                 garm_vx_leg3,
-                -(minus_gcross_vx_leg3 * t912 + t915),
-                grod_vx_leg3 * t924 - minus_gcross_vx_leg3 * t932,
-                grod_vx_leg3 * t904 - minus_gcross_vx_leg3 * t948,
-                t958,
-                grod_vx_leg3 * t928 - minus_gcross_vx_leg3 * t967,
-                t974,
-                t644
+                gcross_vx_leg3 * t807 - t809,
+                gcross_vx_leg3 * t829 + 4.9313582121471775 * t834,
+                gcross_vx_leg3 * t849 + grod_vx_leg3 * t800,
+                t863,
+                gcross_vx_leg3 * t867 + 1.5464739353293548 * rate_dot_cross_leg3,
+                t875,
+                t487
                     - 0.10285714285714286
-                        * (17.36111111111111 * t979 + 5.444444444444445 * t958
-                            + 5.444444444444445 * t974),
-                garm_vx_leg3 * t1010 + minus_gcross_vx_leg3 * t1017
-                    - grod_vx_leg3 * (c_rod_leg3 * t1022),
-                garm_vx_leg3 * t1039 - minus_gcross_vx_leg3 * t1022,
-                t979,
-                t581,
+                        * (17.36111111111111 * t880 + 5.444444444444445 * t863
+                            + 5.444444444444445 * t875),
+                garm_vx_leg3 * t911 - gcross_vx_leg3 * t918
+                    - grod_vx_leg3 * (c_rod_leg3 * t923),
+                garm_vx_leg3 * t940 + gcross_vx_leg3 * t923,
+                t880,
+                t405,
             ],
             [
-                t29, -(garm_vy_leg1 * t38), -(garm_vy_leg1 * t42), t29, t47,
+                t48, -(garm_vy_leg1 * t54), -(garm_vy_leg1 * t58), t48, t63,
                 ::overact::math::signed(garm_vy_leg1, actuator_velocities[0]), garm_vy_leg1,
-                gcross_vy_leg1 * t596 - t599,
-                gcross_vy_leg1 * t608 + grod_vy_leg1 * (t612 - t589 * t589),
-                gcross_vy_leg1 * t625 + grod_vy_leg1 * t588, t635,
-                gcross_vy_leg1 * t637 + 1.7857142857142858 * rate_dot_cross_leg1, t643,
-                t637
+                minus_gcross_vy_leg1 * t433 - t437,
+                5.694241982507289 * (t44 * (t451 - t282 * t282))
+                    - minus_gcross_vy_leg1 * t449,
+                -(minus_gcross_vy_leg1 * t467 + grod_vy_leg1 * t426),
+                t478,
+                -(minus_gcross_vy_leg1 * t480
+                    + 1.7857142857142858 * minus_rate_dot_cross_leg1),
+                t486,
+                t480
                     - 0.10285714285714286
-                        * (17.36111111111111 * t654 + 5.444444444444445 * t635
-                            + 5.444444444444445 * t643),
-                garm_vy_leg1 * t680 - gcross_vy_leg1 * t687 - 1.7857142857142858 * t695,
-                garm_vy_leg1 * t705 + gcross_vy_leg1 * t695,
-                t654,
-                t716,
-                -(garm_vy_leg2 * t718),
-                -(garm_vy_leg2 * t722),
-                t716,
-                t275,
+                        * (17.36111111111111 * t497 + 5.444444444444445 * t478
+                            + 5.444444444444445 * t486),
+                garm_vy_leg1 * t522 + minus_gcross_vy_leg1 * t529
+                    - 1.7857142857142858 * t537,
+                garm_vy_leg1 * t548 - minus_gcross_vy_leg1 * t537,
+                t497,
+                t559,
+                -(garm_vy_leg2 * t561),
+                -(garm_vy_leg2 * t565),
+                t559,
+                t218,
                 ::overact::math::signed(garm_vy_leg2, actuator_velocities[1]),
                 garm_vy_leg2,
-                t750 - minus_gcross_vy_leg2 * t745,
-                -(minus_gcross_vy_leg2 * t765 + minus_grod_vy_leg2 * t757),
-                minus_grod_vy_leg2 * t742 - minus_gcross_vy_leg2 * t780,
-                -t793,
-                minus_gcross_vy_leg2 * t799 - 0.8928571428571429 * rate_dot_cross_leg2,
-                -t808,
-                t637
+                -(minus_gcross_vy_leg2 * t612 + t622),
+                -(minus_gcross_vy_leg2 * t634 + 2.8471209912536444 * t639),
+                minus_grod_vy_leg2 * t605 - minus_gcross_vy_leg2 * t654,
+                t670,
+                minus_gcross_vy_leg2 * t672 - 0.8928571428571429 * rate_dot_cross_leg2,
+                t681,
+                t480
                     - 0.10285714285714286
-                        * (17.36111111111111 * t820 - 5.444444444444445 * t793
-                            - 5.444444444444445 * t808),
-                garm_vy_leg2 * t843 - minus_gcross_vy_leg2 * t850
-                    + 0.8928571428571429 * t855,
-                garm_vy_leg2 * t872 - minus_gcross_vy_leg2 * t855,
-                t820,
-                t883,
-                garm_vy_leg3 * t885,
-                garm_vy_leg3 * t889,
-                t883,
-                t277,
+                        * (17.36111111111111 * t693 + 5.444444444444445 * t670
+                            + 5.444444444444445 * t681),
+                garm_vy_leg2 * t716 - minus_gcross_vy_leg2 * t723
+                    + 0.8928571428571429 * t728,
+                garm_vy_leg2 * t745 - minus_gcross_vy_leg2 * t728,
+                t693,
+                t756,
+                garm_vy_leg3 * t758,
+                garm_vy_leg3 * t762,
+                t756,
+                t220,
                 ::overact::math::signed(garm_vy_leg3, actuator_velocities[2]),
                 garm_vy_leg3,
-                t917 - minus_gcross_vy_leg3 * t912,
-                -(minus_gcross_vy_leg3 * t932 + minus_grod_vy_leg3 * t924),
-                -(minus_gcross_vy_leg3 * t948 + minus_grod_vy_leg3 * t904),
-                -t960,
-                -(minus_gcross_vy_leg3 * t967
-                    + 0.8928571428571429 * rate_dot_cross_leg3),
-                -t975,
-                t637
+                gcross_vy_leg3 * t807 + t817,
+                gcross_vy_leg3 * t829 - 2.8471209912536444 * t834,
+                gcross_vy_leg3 * t849 - minus_grod_vy_leg3 * t800,
+                t865,
+                gcross_vy_leg3 * t867 - 0.8928571428571429 * rate_dot_cross_leg3,
+                -t876,
+                t480
                     - 0.10285714285714286
-                        * (17.36111111111111 * t987 - 5.444444444444445 * t960
-                            - 5.444444444444445 * t975),
-                garm_vy_leg3 * t1010 + minus_gcross_vy_leg3 * t1017
-                    + 0.8928571428571429 * t1022,
-                garm_vy_leg3 * t1039 - minus_gcross_vy_leg3 * t1022,
-                t987,
-                t574,
+                        * (17.36111111111111 * t888 + 5.444444444444445 * t865
+                            - 5.444444444444445 * t876),
+                garm_vy_leg3 * t911 - gcross_vy_leg3 * t918 + 0.8928571428571429 * t923,
+                garm_vy_leg3 * t940 + gcross_vy_leg3 * t923,
+                t888,
+                t401,
             ],
             [
-                t37, -(garm_vz_leg1 * t38), -(garm_vz_leg1 * t42), t37, t48,
-                ::overact::math::signed(garm_vz_leg1, actuator_velocities[0]), garm_vz_leg1,
-                -(minus_gcross_vz_leg1 * t596), -(minus_gcross_vz_leg1 * t608),
-                -(minus_gcross_vz_leg1 * t625), -t636, -(minus_gcross_vz_leg1 * t637), 0.0,
-                t663
-                    - 0.10285714285714286
-                        * (17.36111111111111 * t664 - 5.444444444444445 * t636),
-                garm_vz_leg1 * t680 + minus_gcross_vz_leg1 * t687,
-                garm_vz_leg1 * t705 - minus_gcross_vz_leg1 * t695,
-                t664,
-                t717,
-                -(garm_vz_leg2 * t718),
-                -(garm_vz_leg2 * t722),
-                t717,
-                t316,
-                ::overact::math::signed(garm_vz_leg2, actuator_velocities[1]),
-                garm_vz_leg2,
-                gcross_vz_leg2 * t745,
-                gcross_vz_leg2 * t765,
-                gcross_vz_leg2 * t780,
-                t794,
-                -(gcross_vz_leg2 * t799),
+                -t53, minus_garm_vz_leg1 * t54, minus_garm_vz_leg1 * t58, -t53, -t64,
+                -::overact::math::signed(minus_garm_vz_leg1, actuator_velocities[0]),
+                -minus_garm_vz_leg1, minus_gcross_vz_leg1 * t433, -(minus_gcross_vz_leg1 * t449),
+                -(minus_gcross_vz_leg1 * t467), -t479, -(minus_gcross_vz_leg1 * t480), 0.0,
+                t506
+                    + 0.10285714285714286
+                        * (17.36111111111111 * t507 + 5.444444444444445 * t479),
+                minus_gcross_vz_leg1 * t529 - minus_garm_vz_leg1 * t522,
+                -(minus_garm_vz_leg1 * t548 + minus_gcross_vz_leg1 * t537),
+                -t507,
+                -t560,
+                minus_garm_vz_leg2 * t561,
+                minus_garm_vz_leg2 * t565,
+                -t560,
+                -t258,
+                -::overact::math::signed(minus_garm_vz_leg2, actuator_velocities[1]),
+                -minus_garm_vz_leg2,
+                gcross_vz_leg2 * t612,
+                gcross_vz_leg2 * t634,
+                gcross_vz_leg2 * t654,
+                t671,
+                -(gcross_vz_leg2 * t672),
                 0.0,
-                t663
+                t506
                     - 0.10285714285714286
-                        * (17.36111111111111 * t828 + 5.444444444444445 * t794),
-                garm_vz_leg2 * t843 + gcross_vz_leg2 * t850,
-                garm_vz_leg2 * t872 + gcross_vz_leg2 * t855,
-                t828,
-                t884,
-                garm_vz_leg3 * t885,
-                garm_vz_leg3 * t889,
-                t884,
-                t318,
-                ::overact::math::signed(garm_vz_leg3, actuator_velocities[2]),
-                garm_vz_leg3,
-                gcross_vz_leg3 * t912,
-                gcross_vz_leg3 * t932,
-                gcross_vz_leg3 * t948,
-                t961,
-                gcross_vz_leg3 * t967,
+                        * (5.444444444444445 * t671 - 17.36111111111111 * t702),
+                gcross_vz_leg2 * t723 - minus_garm_vz_leg2 * t716,
+                gcross_vz_leg2 * t728 - minus_garm_vz_leg2 * t745,
+                -t702,
+                -t757,
+                -(minus_garm_vz_leg3 * t758),
+                -(minus_garm_vz_leg3 * t762),
+                -t757,
+                -t260,
+                -::overact::math::signed(minus_garm_vz_leg3, actuator_velocities[2]),
+                -minus_garm_vz_leg3,
+                gcross_vz_leg3 * t807,
+                gcross_vz_leg3 * t829,
+                gcross_vz_leg3 * t849,
+                t866,
+                gcross_vz_leg3 * t867,
                 0.0,
-                t663
+                t506
                     - 0.10285714285714286
-                        * (17.36111111111111 * t995 + 5.444444444444445 * t961),
-                garm_vz_leg3 * t1010 - gcross_vz_leg3 * t1017,
-                garm_vz_leg3 * t1039 + gcross_vz_leg3 * t1022,
-                t995,
-                t662,
+                        * (5.444444444444445 * t866 - 17.36111111111111 * t897),
+                -(minus_garm_vz_leg3 * t911 + gcross_vz_leg3 * t918),
+                gcross_vz_leg3 * t923 - minus_garm_vz_leg3 * t940,
+                -t897,
+                t505,
             ],
         ])
     }
@@ -3597,7 +3225,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 1033 operations (362 additions, 657 multiplications, 14 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 940 intermediates.
+    /// 930 operations (322 additions, 592 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 837 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3606,434 +3234,394 @@ impl Delta {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 52]; 3], ::overact::Error> {
-        let t0 = pose[0] + 0.05;
-        let t1 = t0 - 0.2;
+        let t1 = pose[0] + 0.05 - 0.2;
         let t2 = t1 * t1;
         let t3 = pose[2] * pose[2];
         let t5 = 0.2304 * (t2 + t3);
-        let t6 = 1.0 / t5;
-        let t7 = 0.48 * t1;
-        let t8 = pose[1] * pose[1];
-        let t10 = t2 + t8 + t3;
-        let t12 = t10 - 0.3136 + 0.0576;
-        let t14 = 0.48 * pose[2];
-        let t16 = t5 - t12 * t12;
+        let t6 = pose[1] * pose[1];
+        let t8 = t2 + t6 + t3;
+        let t10 = t8 - 0.3136 + 0.0576;
+        let t12 = t5 - t10 * t10;
+        ::overact::guard::reach(t12, "leg1")?;
+        let t13 = ::overact::math::sqrt(t12);
+        let t16 = 1.0 - 3.188775510204082 * t6;
         ::overact::guard::reach(t16, "leg1")?;
-        let t17 = ::overact::math::sqrt(t16);
-        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
-        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t21 = 0.24 * c_arm_leg1;
-        let t23 = t0 - (0.2 + t21);
-        let t24 = 1.0 / t17;
-        let t25 = 2.0 * t24;
-        let garm_vx_leg1 = t23 * t25;
-        let t27 = 0.48 * t24;
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t35 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t35, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t35);
+        let c_rod_leg1 = ::overact::math::sqrt(t16);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t35) / (0.2688 * c_rod_leg1);
-        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
-            - minus_s_arm_leg1 * c_cross_leg1;
-        let t49 = 1.0 / c_rod_leg1;
+        let t18 = 0.56 * c_rod_leg1;
+        let s_cross_leg1 = 2.0833333333333335 * t13 / t18;
+        ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
+        let t20 = 1.0 / s_cross_leg1;
+        let t21 = 4.166666666666667 * t20;
+        let t22 = 1.0 / t5;
+        let t23 = 0.48 * t1;
+        let t25 = 0.48 * pose[2];
+        let c_arm_leg1 = t22 * (t23 * t10 - t25 * t13);
+        let c_cross_leg1 = (t8 - (0.0576 + t6) - 0.3136 * t16) / (0.2688 * c_rod_leg1);
+        let minus_s_arm_leg1 = t22 * (t25 * t10 + t23 * t13);
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let gcross_vy_leg1 = t27
-            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t49)
-                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t49));
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t27;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t27;
-        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
-            - minus_gcross_vz_leg1 * twist[2];
-        let grod_vy_leg1 = 1.7857142857142858 * t49;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t48 = 0.24 * c_cross_leg1;
+        let t51 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
+        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
+        let t53 = pose[1] * grod_vy_leg1;
+        let rate_arm_leg1 = t21 * (t51 + t53 * twist[1]);
+        let t57 = rate_arm_leg1 * rate_arm_leg1;
+        let t59 = c_cross_leg1 * t20;
+        let garm_vy_leg1 = t21 * t53;
+        let t62 = t48 * garm_vy_leg1;
+        let t68 = t59 * t51 + t62 * twist[1] + s_armcross_leg1 * twist[0]
+            + c_armcross_leg1 * twist[2];
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t68;
+        let t70 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t69 = s_armcross_leg1 * rate_rod_leg1;
-        let t71 = pose[1] * (rate_cross_leg1 * t69);
-        let garm_vy_leg1 = pose[1] * t25;
-        let t76 = 0.24 * minus_s_arm_leg1;
-        let t77 = pose[2] - t76;
-        let garm_vz_leg1 = t77 * t25;
-        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
-            + garm_vz_leg1 * twist[2];
-        let t81 = rate_arm_leg1 * rate_arm_leg1;
-        let t84 = rate_cross_leg1 * rate_cross_leg1;
-        let t86 = c_armcross_leg1 * rate_rod_leg1;
-        let t88 = t69 * t69 + t84 + t86 * t86;
-        let t93 = acceleration[0] - (t71 - (t21 * t81 + t23 * t88) + t71);
-        let t95 = pose[1] * rate_cross_leg1;
-        let t99 = acceleration[1] - (rate_cross_leg1 * t95 - pose[1] * t88);
-        let t103 = pose[1] * (rate_cross_leg1 * t86);
-        let t109 = acceleration[2] - (t103 - (t76 * t81 + t77 * t88) + t103);
-        let rate_dot_arm_leg1 = garm_vx_leg1 * t93 + garm_vy_leg1 * t99
-            + garm_vz_leg1 * t109;
-        let t112 = 9.81 * c_arm_leg1;
-        let t113 = 9.81 * minus_s_arm_leg1;
-        let t115 = pose[1] + 0.04330127018922194;
-        let t116 = t115 - 0.17320508075688776;
-        let t118 = pose[0] - 0.025;
-        let t119 = t118 + 0.1;
-        let t120 = 0.5 * t119;
-        let t121 = 0.8660254037844387 * t116 - t120;
-        let t124 = 0.2304 * (t121 * t121 + t3);
-        let t125 = 1.0 / t124;
-        let t126 = 0.48 * t121;
-        let t127 = t119 * t119;
-        let t130 = t127 + t116 * t116 + t3;
-        let t132 = t130 - 0.3136 + 0.0576;
-        let t135 = t124 - t132 * t132;
-        ::overact::guard::reach(t135, "leg2")?;
-        let t136 = ::overact::math::sqrt(t135);
-        let c_arm_leg2 = t125 * (t126 * t132 - t14 * t136);
-        let t141 = t121 - 0.24 * c_arm_leg2;
-        let t142 = 0.8660254037844387 * t119;
-        let t144 = t142 + 0.5 * t116;
-        let t145 = t144 * t144;
-        let t149 = 1.0 - 3.188775510204082 * t145;
-        ::overact::guard::reach(t149, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t149);
-        let c_cross_leg2 = (t130 - (0.0576 + t145) - 0.3136 * t149)
+        let t72 = rate_rod_leg1 * rate_rod_leg1;
+        let t73 = t70 + t72;
+        let t76 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t48 * t57 + t18 * t73;
+        let t77 = pose[1] * minus_rate_cross_leg1;
+        let t81 = acceleration[1] - (minus_rate_cross_leg1 * t77 - pose[1] * t73);
+        let rate_dot_arm_leg1 = t21 * (t76 + t53 * t81);
+        let t85 = 9.81 * c_arm_leg1;
+        let t86 = 9.81 * minus_s_arm_leg1;
+        let t89 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t92 = pose[0] - 0.025 + 0.1;
+        let t93 = 0.5 * t92;
+        let t94 = 0.8660254037844387 * t89 - t93;
+        let t97 = 0.2304 * (t94 * t94 + t3);
+        let t98 = 1.0 / t97;
+        let t99 = 0.48 * t94;
+        let t100 = t92 * t92;
+        let t103 = t100 + t89 * t89 + t3;
+        let t105 = t103 - 0.3136 + 0.0576;
+        let t108 = t97 - t105 * t105;
+        ::overact::guard::reach(t108, "leg2")?;
+        let t109 = ::overact::math::sqrt(t108);
+        let c_arm_leg2 = t98 * (t99 * t105 - t25 * t109);
+        let t114 = 0.8660254037844387 * t92;
+        let t116 = t114 + 0.5 * t89;
+        let t117 = t116 * t116;
+        let t119 = 1.0 - 3.188775510204082 * t117;
+        ::overact::guard::reach(t119, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t119);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t121 = 0.56 * c_rod_leg2;
+        let s_cross_leg2 = 2.0833333333333335 * t109 / t121;
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
+        let minus_s_arm_leg2 = t98 * (t25 * t105 + t99 * t109);
+        let c_cross_leg2 = (t103 - (0.0576 + t117) - 0.3136 * t119)
             / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t125 * (t14 * t132 + t126 * t136);
-        let s_cross_leg2 = 2.0833333333333335 * t136 / (0.56 * c_rod_leg2);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
-            + minus_s_arm_leg2 * s_cross_leg2;
-        let t165 = t144 * c_armcross_leg2;
-        let t168 = 1.5464739353293548 * t165 - 0.5 * c_rod_leg2;
-        let t171 = 0.24 * minus_s_arm_leg2;
-        let t172 = pose[2] - t171;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t144;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t177 = minus_s_rod_leg2 * s_armcross_leg2;
-        let t178 = t172 * t177;
-        let t181 = 0.20784609690826528 * minus_s_arm_leg2;
-        let t184 = 0.8928571428571429 * t165 + 0.8660254037844387 * c_rod_leg2;
-        let t188 = t141 * (0.56 * t184) - 0.28 * t178;
-        let t193 = minus_s_arm_leg2 * t177;
-        let t195 = 0.1344 * (c_arm_leg2 * t184) - 0.0672 * t193;
-        let t200 = t181 * t188 - 0.8660254037844387 * t172 * t195 - 0.14 * (t136 * t168);
-        ::overact::guard::leg(t200, 0.06758306237512474, "leg2")?;
-        let t201 = 1.0 / t200;
-        let garm_vx_leg2 = (t141 * (0.56 * t168) - 0.4849742261192857 * t178) * t201;
-        let t203 = pose[1] - 0.04330127018922194;
-        let t204 = t203 + 0.17320508075688776;
-        let t206 = t142 - 0.5 * t204;
-        let t207 = t206 * t206;
-        let t209 = 1.0 - 3.188775510204082 * t207;
-        ::overact::guard::reach(t209, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t209);
-        let t212 = t120 + 0.8660254037844387 * t204;
-        let t215 = 0.2304 * (t212 * t212 + t3);
-        let t216 = 1.0 / t215;
-        let t217 = 0.48 * t212;
-        let t220 = t127 + t204 * t204 + t3;
-        let t222 = t220 - 0.3136 + 0.0576;
-        let t224 = t215 - t222 * t222;
-        ::overact::guard::reach(t224, "leg3")?;
-        let t225 = ::overact::math::sqrt(t224);
-        let s_arm_leg3 = t216 * (t217 * t225 - t14 * t222);
-        let t230 = 0.24 * s_arm_leg3;
-        let t231 = pose[2] + t230;
-        let t234 = 0.20784609690826528 * s_arm_leg3;
-        let minus_c_arm_leg3 = t216 * (t217 * t222 + t14 * t225);
-        let t240 = t212 - 0.24 * minus_c_arm_leg3;
-        let c_cross_leg3 = (t220 - (0.0576 + t207) - 0.3136 * t209)
+        let t136 = 1.0 / s_cross_leg2;
+        let t137 = 4.166666666666667 * t136;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t137;
+        let t140 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t142 = t93 + 0.8660254037844387 * t140;
+        let t145 = 0.2304 * (t142 * t142 + t3);
+        let t148 = t100 + t140 * t140 + t3;
+        let t150 = t148 - 0.3136 + 0.0576;
+        let t152 = t145 - t150 * t150;
+        ::overact::guard::reach(t152, "leg3")?;
+        let t153 = ::overact::math::sqrt(t152);
+        let t156 = t114 - 0.5 * t140;
+        let t157 = t156 * t156;
+        let t159 = 1.0 - 3.188775510204082 * t157;
+        ::overact::guard::reach(t159, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t159);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let t161 = 0.56 * c_rod_leg3;
+        let s_cross_leg3 = 2.0833333333333335 * t153 / t161;
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
+        let t163 = 1.0 / s_cross_leg3;
+        let t164 = 4.166666666666667 * t163;
+        let t165 = 1.0 / t145;
+        let t166 = 0.48 * t142;
+        let minus_c_arm_leg3 = t165 * (t166 * t150 + t25 * t153);
+        let c_cross_leg3 = (t148 - (0.0576 + t157) - 0.3136 * t159)
             / (0.2688 * c_rod_leg3);
-        let s_cross_leg3 = 2.0833333333333335 * t225 / (0.56 * c_rod_leg3);
+        let s_arm_leg3 = t165 * (t166 * t153 - t25 * t150);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t254 = t206 * minus_c_armcross_leg3;
-        let t256 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t254;
-        let s_rod_leg3 = 1.7857142857142858 * t206;
+        let t184 = 0.5 * minus_c_armcross_leg3;
+        let t185 = 1.0 / c_rod_leg3;
+        let t186 = 1.7857142857142858 * t185;
+        let t187 = t156 * t186;
+        let garm_vx_leg3 = t164 * (t184 + 0.8660254037844387 * t187);
+        let t192 = 1.0 / c_rod_leg2;
+        let t193 = 1.7857142857142858 * t192;
+        let t194 = t116 * t193;
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t199 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t137 * (0.8660254037844387 * t194 - t199);
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t263 = s_rod_leg3 * s_armcross_leg3;
-        let t264 = t231 * t263;
-        let t266 = t240 * (0.56 * t256) + 0.28 * t264;
-        let t271 = s_arm_leg3 * t263;
-        let t273 = 0.1344 * (minus_c_arm_leg3 * t256) - 0.0672 * t271;
-        let t278 = 1.5464739353293548 * t254 + 0.5 * c_rod_leg3;
-        let t281 = t234 * t266 + 0.8660254037844387 * t231 * t273 + 0.14 * (t225 * t278);
-        ::overact::guard::leg(t281, 0.06758306237512474, "leg3")?;
-        let t282 = 1.0 / t281;
-        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t231) * t282;
-        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t172) * t201;
-        let garm_vx_leg3 = (t240 * (0.56 * t278) - 0.4849742261192857 * t264) * t282;
-        let garm_vy_leg3 = t266 * t282;
-        let t298 = garm_vz_leg1 * garm_vy_leg3 - garm_vy_leg1 * garm_vz_leg3;
-        let garm_vy_leg2 = t188 * t201;
-        let t303 = garm_vz_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vz_leg3;
-        let t308 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
-        let t310 = garm_vx_leg2 * t298 - garm_vy_leg2 * t303 + garm_vz_leg2 * t308;
-        ::overact::guard::platform(t310, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t310, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t310, 87.78853732233405, "kept actuators")?;
-        let t311 = 1.0 / t310;
-        let t312 = (garm_vx_leg2 * garm_vz_leg3 - garm_vz_leg2 * garm_vx_leg3) * t311;
-        let t313 = grod_vy_leg1 * t312;
-        let t314 = 1.7857142857142858 * t95;
-        let t315 = c_rod_leg1 * rate_cross_leg1;
-        let t316 = t314 * t315;
-        let t317 = t313 * t316;
-        let t321 = (garm_vy_leg2 * garm_vz_leg3 - garm_vz_leg2 * garm_vy_leg3) * t311;
-        let t328 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t311;
-        let t330 = minus_gcross_vx_leg1 * t321 + gcross_vy_leg1 * t312
-            + minus_gcross_vz_leg1 * t328;
-        let rate_dot_cross_leg1 = gcross_vy_leg1 * t99 - minus_gcross_vx_leg1 * t93
-            - minus_gcross_vz_leg1 * t109;
-        let t336 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t337 = rate_rod_leg1 * t315;
-        let t338 = t336 + t337;
-        let t340 = rate_rod_leg1 * t314;
-        let t341 = c_rod_leg1 * t340;
-        let t342 = s_rod_leg1 * t338 + t341;
-        let t345 = t303 * t311;
-        let t346 = grod_vy_leg1 * t345;
-        let t347 = t346 * t316;
-        let t348 = t298 * t311;
-        let t352 = t308 * t311;
-        let t354 = minus_gcross_vx_leg1 * t348 + gcross_vy_leg1 * t345
-            + minus_gcross_vz_leg1 * t352;
-        let t360 = (garm_vz_leg1 * garm_vy_leg2 - garm_vy_leg1 * garm_vz_leg2) * t311;
-        let t365 = (garm_vz_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vz_leg2) * t311;
-        let t371 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t311;
-        let t373 = minus_gcross_vx_leg1 * t360 + gcross_vy_leg1 * t365
-            + minus_gcross_vz_leg1 * t371;
-        let t375 = grod_vy_leg1 * t365;
-        let t376 = t375 * t316;
-        let t378 = t337 + t338;
-        let t380 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t381 = t380 - t340;
-        let t384 = c_rod_leg1 * t378 - s_rod_leg1 * (t340 - t381);
-        let t387 = 3.188775510204082 * (t95 * t95);
-        let t389 = t387 - t315 * t315;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t99;
-        let t401 = rate_rod_leg1 * rate_rod_leg1;
-        let t404 = s_rod_leg1 * (t316 + rate_dot_rod_leg1) + c_rod_leg1 * (t401 - t387);
-        let t415 = c_rod_leg1 * t381 - t341;
-        let t417 = t330 * t415 + t317;
-        let t419 = t354 * t415 + t347;
-        let t421 = t373 * t415 + t376;
-        let t422 = 1.7857142857142858 * acceleration[1];
-        let t432 = t313 * rate_dot_rod_leg1;
-        let t433 = t346 * rate_dot_rod_leg1;
-        let t434 = t375 * rate_dot_rod_leg1;
-        let t438 = acceleration[2] + 9.81;
-        let t440 = t321 * acceleration[0] - t312 * acceleration[1] + t328 * t438;
-        let t441 = 1.7857142857142858 * t440;
-        let t443 = 0.24 * rate_dot_arm_leg1 - t112;
-        let t455 = t348 * acceleration[0] - t345 * acceleration[1] + t352 * t438;
-        let t456 = 1.7857142857142858 * t455;
-        let t464 = t365 * acceleration[1] - t360 * acceleration[0] - t371 * t438;
-        let t465 = 1.7857142857142858 * t464;
-        let t469 = 0.8928571428571429 * t17;
-        let t473 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
-        let t477 = 0.24 * c_cross_leg1;
-        let t482 = t113 - 0.24 * t81;
-        let t485 = s_rod_leg1 * (c_cross_leg1 * t443 - s_cross_leg1 * t482);
-        let t490 = c_cross_leg1 * t482 + s_cross_leg1 * t443;
-        let t491 = c_rod_leg1 * t490;
-        let t493 = t469 * (t316 - rate_dot_rod_leg1) + t473 * (t387 + t401) - t477 * t378
-            + t330 * t485 + t313 * t491;
-        let t510 = 0.12 * c_arm_leg2;
-        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
-            + garm_vz_leg2 * twist[2];
-        let t516 = rate_arm_leg2 * rate_arm_leg2;
-        let t519 = t118 + 0.1 + t510;
-        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t168)
-            - 0.11639381426862856 * (minus_s_arm_leg2 * t184)) * t201;
-        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t168)
-            - 0.11639381426862856 * t193) * t201;
-        let minus_gcross_vy_leg2 = t195 * t201;
-        let rate_cross_leg2 = gcross_vz_leg2 * twist[2]
-            - (minus_gcross_vx_leg2 * twist[0] + minus_gcross_vy_leg2 * twist[1]);
-        let t537 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t172) - t141 * t181)
-            * t201;
-        let minus_grod_vy_leg2 = 0.25 * t136 * t201;
-        let rate_rod_leg2 = grod_vx_leg2 * twist[0] - minus_grod_vy_leg2 * twist[1];
-        let t550 = t537 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t553 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t554 = 0.5 * rate_cross_leg2;
-        let t555 = t553 - t554;
-        let t558 = c_armcross_leg2 * rate_rod_leg2;
-        let t560 = t550 * t550 + t555 * t555 + t558 * t558;
-        let t563 = 0.20784609690826528 * c_arm_leg2;
-        let t565 = t115 - (0.17320508075688776 + t563);
-        let t570 = t565 * t555 - t519 * t550 + t172 * t558;
-        let t573 = t537 * t558;
-        let t576 = 1.3333333333333333 * (t537 * t553);
-        let t580 = acceleration[0]
-            - (t510 * t516 - t519 * t560 - t550 * t570 + t172 * t573 + t565 * t576);
-        let t587 = t554 * t558;
-        let t592 = acceleration[1]
-            - (t555 * t570 - (t563 * t516 + t565 * t560) + t172 * t587 - t519 * t576);
-        let t600 = t565 * t587 + t519 * t573;
-        let t603 = acceleration[2] + t171 * t516 + t172 * t560 + t600 + t600;
-        let rate_dot_arm_leg2 = garm_vx_leg2 * t580 + garm_vy_leg2 * t592
-            + garm_vz_leg2 * t603;
-        let t606 = 9.81 * c_arm_leg2;
-        let t607 = 9.81 * minus_s_arm_leg2;
-        let t613 = minus_gcross_vy_leg2 * t312 - minus_gcross_vx_leg2 * t321
-            + gcross_vz_leg2 * t328;
-        let t614 = 1.7857142857142858 * t570;
-        let t615 = rate_rod_leg2 * t614;
-        let t616 = c_rod_leg2 * t615;
-        let t617 = c_rod_leg2 * rate_cross_leg2;
-        let t618 = rate_rod_leg2 * t617;
-        let rate_dot_cross_leg2 = gcross_vz_leg2 * t603
-            - (minus_gcross_vx_leg2 * t580 + minus_gcross_vy_leg2 * t592);
-        let t624 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t625 = t618 - t624;
-        let t627 = t616 - minus_s_rod_leg2 * t625;
-        let t631 = grod_vx_leg2 * t321 + minus_grod_vy_leg2 * t312;
-        let t632 = t614 * t617;
-        let t633 = t631 * t632;
-        let t639 = minus_gcross_vy_leg2 * t345 - minus_gcross_vx_leg2 * t348
-            + gcross_vz_leg2 * t352;
-        let t643 = grod_vx_leg2 * t348 + minus_grod_vy_leg2 * t345;
-        let t644 = t643 * t632;
-        let t650 = minus_gcross_vx_leg2 * t360 - minus_gcross_vy_leg2 * t365
-            - gcross_vz_leg2 * t371;
-        let t654 = grod_vx_leg2 * t360 + minus_grod_vy_leg2 * t365;
-        let t655 = t654 * t632;
-        let t657 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t658 = t657 - t615;
-        let t661 = t618 + t625;
-        let t663 = minus_s_rod_leg2 * (t615 - t658) + c_rod_leg2 * t661;
-        let t666 = 3.188775510204082 * (t570 * t570);
-        let t667 = t617 * t617;
-        let t668 = t666 - t667;
-        let t677 = rate_rod_leg2 * rate_rod_leg2;
-        let rate_dot_rod_leg2 = grod_vx_leg2 * t580 - minus_grod_vy_leg2 * t592;
-        let t685 = c_rod_leg2 * (t677 - t666)
-            - minus_s_rod_leg2 * (t632 + rate_dot_rod_leg2);
-        let t696 = c_rod_leg2 * t658 - t616;
-        let t698 = t613 * t696 + t633;
-        let t700 = t639 * t696 + t644;
-        let t702 = t650 * t696 - t655;
-        let t706 = t632 - rate_dot_rod_leg2;
-        let t708 = minus_s_rod_leg2 * (t667 - t677) + c_rod_leg2 * t706;
-        let t717 = t631 * rate_dot_rod_leg2;
-        let t718 = t643 * rate_dot_rod_leg2;
-        let t719 = t654 * rate_dot_rod_leg2;
-        let t724 = 0.24 * rate_dot_arm_leg2 - t606;
-        let t737 = t607 - 0.24 * t516;
-        let t740 = minus_s_rod_leg2 * (c_cross_leg2 * t724 - s_cross_leg2 * t737);
-        let t744 = c_cross_leg2 * t737 + s_cross_leg2 * t724;
-        let t745 = c_rod_leg2 * t744;
-        let t748 = 0.8928571428571429 * t136;
-        let t751 = 0.42857142857142855 * (t144 * s_cross_leg2);
-        let t755 = 0.24 * c_cross_leg2;
-        let t761 = t748 * t706 - t751 * (t666 + t677) - t755 * t661 + t639 * t740
-            - t643 * t745;
-        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t256)
-            + 0.0672 * (s_arm_leg3 * t278)) * t282;
-        let minus_gcross_vx_leg3 = (0.11639381426862856 * t271
-            + 0.1344 * (minus_c_arm_leg3 * t278)) * t282;
-        let minus_gcross_vy_leg3 = t273 * t282;
-        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
-            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
-        let t793 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (t240 * t234
-            + 0.20784609690826528 * (minus_c_arm_leg3 * t231)) * t282;
-        let minus_grod_vy_leg3 = 0.25 * t225 * t282;
-        let rate_rod_leg3 = grod_vx_leg3 * twist[0] - minus_grod_vy_leg3 * twist[1];
-        let t806 = t793 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t807 = 0.12 * minus_c_arm_leg3;
-        let t809 = t118 - (t807 - 0.1);
-        let t811 = 0.20784609690826528 * minus_c_arm_leg3;
-        let t813 = t203 - (t811 - 0.17320508075688776);
-        let t814 = 0.5 * rate_cross_leg3;
-        let t816 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t817 = t814 + t816;
-        let t820 = minus_c_armcross_leg3 * rate_rod_leg3;
-        let t822 = t809 * t806 - t813 * t817 - t231 * t820;
-        let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
-            + garm_vz_leg3 * twist[2];
-        let t829 = rate_arm_leg3 * rate_arm_leg3;
-        let t835 = t806 * t806 + t817 * t817 + t820 * t820;
-        let t839 = t793 * t820;
-        let t842 = 1.3333333333333333 * (t793 * t816);
-        let t846 = acceleration[0]
-            - (t806 * t822 - (t807 * t829 + t809 * t835) + t231 * t839 + t813 * t842);
-        let t854 = t814 * t820;
-        let t858 = acceleration[1] + t811 * t829 + t813 * t835 + t817 * t822
-            + t809 * t842 + t231 * t854;
-        let t866 = t813 * t854 - t809 * t839;
-        let t869 = acceleration[2] - (t230 * t829 - t231 * t835 + t866 + t866);
-        let rate_dot_arm_leg3 = garm_vx_leg3 * t846 + garm_vy_leg3 * t858
-            + garm_vz_leg3 * t869;
-        let t872 = 9.81 * minus_c_arm_leg3;
-        let t873 = 9.81 * s_arm_leg3;
-        let t879 = minus_gcross_vy_leg3 * t312 - minus_gcross_vx_leg3 * t321
-            + gcross_vz_leg3 * t328;
-        let rate_dot_cross_leg3 = gcross_vz_leg3 * t869
-            - (minus_gcross_vx_leg3 * t846 + minus_gcross_vy_leg3 * t858);
-        let t885 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t886 = c_rod_leg3 * rate_cross_leg3;
-        let t887 = rate_rod_leg3 * t886;
-        let t888 = t885 + t887;
-        let t890 = 1.7857142857142858 * t822;
-        let t891 = rate_rod_leg3 * t890;
-        let t892 = c_rod_leg3 * t891;
-        let t893 = s_rod_leg3 * t888 + t892;
-        let t897 = grod_vx_leg3 * t321 + minus_grod_vy_leg3 * t312;
-        let t898 = t890 * t886;
-        let t899 = t897 * t898;
-        let t905 = minus_gcross_vy_leg3 * t345 - minus_gcross_vx_leg3 * t348
-            + gcross_vz_leg3 * t352;
-        let t909 = grod_vx_leg3 * t348 + minus_grod_vy_leg3 * t345;
-        let t910 = t909 * t898;
-        let t916 = minus_gcross_vx_leg3 * t360 - minus_gcross_vy_leg3 * t365
-            - gcross_vz_leg3 * t371;
-        let t920 = grod_vx_leg3 * t360 + minus_grod_vy_leg3 * t365;
-        let t921 = t920 * t898;
-        let t923 = t887 + t888;
-        let t925 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t926 = t925 - t891;
-        let t929 = c_rod_leg3 * t923 - s_rod_leg3 * (t891 - t926);
-        let t932 = 3.188775510204082 * (t822 * t822);
-        let t933 = t886 * t886;
-        let t934 = t932 - t933;
-        let rate_dot_rod_leg3 = grod_vx_leg3 * t846 - minus_grod_vy_leg3 * t858;
-        let t948 = rate_rod_leg3 * rate_rod_leg3;
-        let t951 = s_rod_leg3 * (t898 + rate_dot_rod_leg3) + c_rod_leg3 * (t948 - t932);
-        let t962 = c_rod_leg3 * t926 - t892;
-        let t964 = t879 * t962 + t899;
-        let t966 = t905 * t962 + t910;
-        let t968 = t916 * t962 - t921;
-        let t971 = t898 - rate_dot_rod_leg3;
-        let t973 = s_rod_leg3 * (t933 - t948) - c_rod_leg3 * t971;
-        let t983 = t897 * rate_dot_rod_leg3;
-        let t984 = t909 * rate_dot_rod_leg3;
-        let t985 = t920 * rate_dot_rod_leg3;
-        let t993 = t872 + 0.24 * rate_dot_arm_leg3;
-        let t1002 = t873 + 0.24 * t829;
-        let t1006 = s_rod_leg3 * (s_cross_leg3 * t1002 + c_cross_leg3 * t993);
-        let t1010 = s_cross_leg3 * t993 - c_cross_leg3 * t1002;
-        let t1011 = c_rod_leg3 * t1010;
-        let t1017 = 0.8928571428571429 * t225;
-        let t1020 = 0.42857142857142855 * (t206 * s_cross_leg3);
-        let t1024 = 0.24 * c_cross_leg3;
-        let t1030 = t1017 * t971 + t1020 * (t932 + t948) - t1024 * t923 - t916 * t1006
-            + t920 * t1011;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t164;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t21;
+        let t210 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let garm_vy_leg3 = t164 * (t210 - 0.5 * t187);
+        let t215 = garm_vy_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vy_leg3;
+        let t217 = 0.8660254037844387 * c_armcross_leg2;
+        let garm_vy_leg2 = t137 * (t217 + 0.5 * t194);
+        let garm_vx_leg1 = c_armcross_leg1 * t21;
+        let t224 = garm_vx_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vx_leg3;
+        let t229 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
+        let t231 = garm_vx_leg2 * t215 - garm_vy_leg2 * t224 - minus_garm_vz_leg2 * t229;
+        ::overact::guard::platform(t231, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t231, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t231, 87.78853732233405, "kept actuators")?;
+        let t232 = 1.0 / t231;
+        let t233 = (minus_garm_vz_leg2 * garm_vx_leg3
+            - garm_vx_leg2 * minus_garm_vz_leg3) * t232;
+        let t234 = grod_vy_leg1 * t233;
+        let t236 = 3.188775510204082 * (t68 * t77);
+        let t237 = t234 * t236;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * t62;
+        let minus_gcross_vx_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 * t59 + s_armcross_leg1);
+        let t246 = (minus_garm_vz_leg2 * garm_vy_leg3
+            - garm_vy_leg2 * minus_garm_vz_leg3) * t232;
+        let minus_gcross_vz_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 - s_armcross_leg1 * t59);
+        let t255 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t232;
+        let t257 = minus_gcross_vy_leg1 * t233 - minus_gcross_vx_leg1 * t246
+            - minus_gcross_vz_leg1 * t255;
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t268 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
+        let t272 = t59 * t76 + t62 * t81 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + 0.24 * s_cross_leg1 * t57 + t268
+            + t268;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t272;
+        let t274 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t276 = rate_rod_leg1 * (1.7857142857142858 * t68);
+        let t277 = t274 + t276;
+        let t280 = c_rod_leg1 * (1.7857142857142858 * t268);
+        let t281 = s_rod_leg1 * t277 + t280;
+        let t284 = t224 * t232;
+        let t285 = grod_vy_leg1 * t284;
+        let t286 = t285 * t236;
+        let t288 = t215 * t232;
+        let t291 = t229 * t232;
+        let t293 = minus_gcross_vy_leg1 * t284 - minus_gcross_vx_leg1 * t288
+            - minus_gcross_vz_leg1 * t291;
+        let t299 = (garm_vy_leg1 * minus_garm_vz_leg2
+            - minus_garm_vz_leg1 * garm_vy_leg2) * t232;
+        let t304 = (garm_vx_leg1 * minus_garm_vz_leg2
+            - minus_garm_vz_leg1 * garm_vx_leg2) * t232;
+        let t310 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t232;
+        let t312 = minus_gcross_vx_leg1 * t299 - minus_gcross_vy_leg1 * t304
+            + minus_gcross_vz_leg1 * t310;
+        let t314 = grod_vy_leg1 * t304;
+        let t315 = t314 * t236;
+        let t317 = t268 - t272;
+        let t321 = t276 + t277;
+        let t323 = 3.188775510204082 * (pose[1] * (t268 + t317)) - c_rod_leg1 * t321;
+        let t325 = t77 * t77;
+        let t328 = 3.188775510204082 * (t325 - t68 * t68);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t81;
+        let t340 = 3.188775510204082 * t325;
+        let t343 = s_rod_leg1 * (t236 + rate_dot_rod_leg1) + c_rod_leg1 * (t72 - t340);
+        let t355 = t280 + c_rod_leg1 * (1.7857142857142858 * t317);
+        let t357 = t257 * t355 - t237;
+        let t359 = t293 * t355 - t286;
+        let t361 = t312 * t355 + t315;
+        let t362 = 1.7857142857142858 * acceleration[1];
+        let t364 = 1.7857142857142858 * t272;
+        let t373 = t234 * rate_dot_rod_leg1;
+        let t374 = t285 * rate_dot_rod_leg1;
+        let t375 = t314 * rate_dot_rod_leg1;
+        let t379 = acceleration[2] + 9.81;
+        let t381 = t246 * acceleration[0] - t233 * acceleration[1] + t255 * t379;
+        let t382 = 1.7857142857142858 * t381;
+        let t384 = 0.24 * rate_dot_arm_leg1 - t85;
+        let t396 = t288 * acceleration[0] - t284 * acceleration[1] + t291 * t379;
+        let t397 = 1.7857142857142858 * t396;
+        let t405 = t304 * acceleration[1] - t299 * acceleration[0] - t310 * t379;
+        let t406 = 1.7857142857142858 * t405;
+        let t414 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
+        let t422 = t86 - 0.24 * t57;
+        let t425 = s_rod_leg1 * (c_cross_leg1 * t384 - s_cross_leg1 * t422);
+        let t427 = 0.8928571428571429 * t13 * (t236 - rate_dot_rod_leg1)
+            + t414 * (t340 + t72) + t48 * t321 - t257 * t425;
+        let t430 = c_cross_leg1 * t422 + s_cross_leg1 * t384;
+        let t431 = c_rod_leg1 * t430;
+        let t456 = 0.24 * c_cross_leg2;
+        let t461 = t217 * twist[1] - t199 * twist[0] - s_armcross_leg2 * twist[2];
+        let t462 = 0.8660254037844387 * twist[0];
+        let t463 = 0.5 * twist[1];
+        let t464 = t462 + t463;
+        let rate_arm_leg2 = t137 * (t461 + t194 * t464);
+        let t468 = rate_arm_leg2 * rate_arm_leg2;
+        let minus_rate_rod_leg2 = t193 * t464;
+        let t471 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t472 = 0.5 * s_armcross_leg2;
+        let t474 = 0.8660254037844387 * s_armcross_leg2;
+        let t479 = c_cross_leg2 * t136;
+        let t483 = t456 * (t137 * t194);
+        let t485 = t472 * twist[0] - t474 * twist[1] - c_armcross_leg2 * twist[2]
+            - t479 * t461 - t483 * t464;
+        let rate_cross_leg2 = t193 * t485;
+        let t487 = rate_cross_leg2 * rate_cross_leg2;
+        let t488 = t471 + t487;
+        let t491 = t217 * acceleration[1] - t199 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t456 * t468 + t121 * t488;
+        let t492 = 0.8660254037844387 * acceleration[0];
+        let t493 = 0.5 * acceleration[1];
+        let t494 = t492 + t493;
+        let t496 = t116 * rate_cross_leg2;
+        let t499 = t494 + t116 * t488 - rate_cross_leg2 * t496;
+        let rate_dot_arm_leg2 = t137 * (t491 + t194 * t499);
+        let t503 = 9.81 * c_arm_leg2;
+        let t504 = 9.81 * minus_s_arm_leg2;
+        let gcross_vx_leg2 = t193 * (t199 * t479 + t472 - 0.8660254037844387 * t483);
+        let minus_gcross_vy_leg2 = t193 * (t217 * t479 + t474 + 0.5 * t483);
+        let gcross_vz_leg2 = t193 * (s_armcross_leg2 * t479 - c_armcross_leg2);
+        let t523 = gcross_vx_leg2 * t246 + minus_gcross_vy_leg2 * t233
+            + gcross_vz_leg2 * t255;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t116;
+        let t533 = t116 * (rate_cross_leg2 * minus_rate_rod_leg2);
+        let t536 = t472 * acceleration[0] - t474 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2]
+            - (0.24 * s_cross_leg2 * t468 - t533 - t533);
+        let t540 = t536 - t479 * t491 - t483 * t499;
+        let rate_dot_cross_leg2 = t193 * t540;
+        let t542 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t544 = minus_rate_rod_leg2 * (1.7857142857142858 * t485);
+        let t545 = t542 + t544;
+        let t548 = c_rod_leg2 * (1.7857142857142858 * t533);
+        let t549 = minus_s_rod_leg2 * t545 + t548;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t192;
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t192;
+        let t555 = minus_grod_vy_leg2 * t233 - minus_grod_vx_leg2 * t246;
+        let t557 = 3.188775510204082 * (t485 * t496);
+        let t558 = t555 * t557;
+        let t564 = gcross_vx_leg2 * t288 + minus_gcross_vy_leg2 * t284
+            + gcross_vz_leg2 * t291;
+        let t568 = minus_grod_vy_leg2 * t284 - minus_grod_vx_leg2 * t288;
+        let t569 = t568 * t557;
+        let t573 = minus_grod_vx_leg2 * t299 - minus_grod_vy_leg2 * t304;
+        let t574 = t573 * t557;
+        let t579 = gcross_vx_leg2 * t299 + minus_gcross_vy_leg2 * t304
+            + gcross_vz_leg2 * t310;
+        let t582 = t540 - t533;
+        let t586 = t544 + t545;
+        let t588 = 3.188775510204082 * (t116 * (t533 - t582)) - c_rod_leg2 * t586;
+        let t590 = t496 * t496;
+        let t593 = 3.188775510204082 * (t590 - t485 * t485);
+        let minus_rate_dot_rod_leg2 = t193 * t499;
+        let t605 = 3.188775510204082 * t590;
+        let t608 = minus_s_rod_leg2 * (t557 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t471 - t605);
+        let t620 = c_rod_leg2 * (1.7857142857142858 * t582) - t548;
+        let t622 = t523 * t620 - t558;
+        let t624 = t564 * t620 - t569;
+        let t626 = t579 * t620 + t574;
+        let t627 = 1.7857142857142858 * t540;
+        let t629 = 1.7857142857142858 * t494;
+        let t638 = t555 * minus_rate_dot_rod_leg2;
+        let t639 = t568 * minus_rate_dot_rod_leg2;
+        let t640 = t573 * minus_rate_dot_rod_leg2;
+        let t645 = 0.24 * rate_dot_arm_leg2 - t503;
+        let t658 = t504 - 0.24 * t468;
+        let t661 = minus_s_rod_leg2 * (c_cross_leg2 * t645 - s_cross_leg2 * t658);
+        let t665 = c_cross_leg2 * t658 + s_cross_leg2 * t645;
+        let t666 = c_rod_leg2 * t665;
+        let t673 = 0.42857142857142855 * (t116 * s_cross_leg2);
+        let t680 = 0.8928571428571429 * t109 * (minus_rate_dot_rod_leg2 - t557)
+            - t673 * (t605 + t471) + t456 * t586 + t564 * t661;
+        let t702 = 0.24 * c_cross_leg3;
+        let t707 = t184 * twist[0] + t210 * twist[1] - s_armcross_leg3 * twist[2];
+        let t708 = t462 - t463;
+        let rate_arm_leg3 = t164 * (t707 + t187 * t708);
+        let t712 = rate_arm_leg3 * rate_arm_leg3;
+        let rate_rod_leg3 = t186 * t708;
+        let t715 = rate_rod_leg3 * rate_rod_leg3;
+        let t716 = 0.5 * s_armcross_leg3;
+        let t718 = 0.8660254037844387 * s_armcross_leg3;
+        let t723 = c_cross_leg3 * t163;
+        let t727 = t702 * (t164 * t187);
+        let t729 = t716 * twist[0] + t718 * twist[1] + minus_c_armcross_leg3 * twist[2]
+            - t723 * t707 - t727 * t708;
+        let rate_cross_leg3 = t186 * t729;
+        let t731 = rate_cross_leg3 * rate_cross_leg3;
+        let t732 = t715 + t731;
+        let t735 = t184 * acceleration[0] + t210 * acceleration[1]
+            - s_armcross_leg3 * acceleration[2] + t702 * t712 + t161 * t732;
+        let t736 = t492 - t493;
+        let t737 = t156 * rate_cross_leg3;
+        let t741 = t736 - (rate_cross_leg3 * t737 - t156 * t732);
+        let rate_dot_arm_leg3 = t164 * (t735 + t187 * t741);
+        let t745 = 9.81 * minus_c_arm_leg3;
+        let t746 = 9.81 * s_arm_leg3;
+        let gcross_vx_leg3 = t186 * (t716 - t184 * t723 - 0.8660254037844387 * t727);
+        let gcross_vy_leg3 = t186 * (t718 - t210 * t723 + 0.5 * t727);
+        let gcross_vz_leg3 = t186 * (s_armcross_leg3 * t723 + minus_c_armcross_leg3);
+        let t765 = gcross_vx_leg3 * t246 - gcross_vy_leg3 * t233 + gcross_vz_leg3 * t255;
+        let s_rod_leg3 = 1.7857142857142858 * t156;
+        let t775 = t156 * (rate_cross_leg3 * rate_rod_leg3);
+        let t778 = t716 * acceleration[0] + t718 * acceleration[1]
+            + minus_c_armcross_leg3 * acceleration[2]
+            - (0.24 * s_cross_leg3 * t712 - t775 - t775);
+        let t782 = t778 - t723 * t735 - t727 * t741;
+        let rate_dot_cross_leg3 = t186 * t782;
+        let t784 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t786 = rate_rod_leg3 * (1.7857142857142858 * t729);
+        let t787 = t784 + t786;
+        let t790 = c_rod_leg3 * (1.7857142857142858 * t775);
+        let t791 = s_rod_leg3 * t787 + t790;
+        let grod_vx_leg3 = 1.5464739353293548 * t185;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t185;
+        let t797 = grod_vx_leg3 * t246 + minus_grod_vy_leg3 * t233;
+        let t799 = 3.188775510204082 * (t729 * t737);
+        let t800 = t797 * t799;
+        let t806 = gcross_vx_leg3 * t288 - gcross_vy_leg3 * t284 + gcross_vz_leg3 * t291;
+        let t810 = grod_vx_leg3 * t288 + minus_grod_vy_leg3 * t284;
+        let t811 = t810 * t799;
+        let t817 = gcross_vy_leg3 * t304 - gcross_vx_leg3 * t299 - gcross_vz_leg3 * t310;
+        let t821 = grod_vx_leg3 * t299 + minus_grod_vy_leg3 * t304;
+        let t822 = t821 * t799;
+        let t824 = t786 + t787;
+        let t826 = t782 - t775;
+        let t830 = c_rod_leg3 * t824 - 3.188775510204082 * (t156 * (t775 - t826));
+        let t832 = t737 * t737;
+        let t835 = 3.188775510204082 * (t832 - t729 * t729);
+        let rate_dot_rod_leg3 = t186 * t741;
+        let t847 = 3.188775510204082 * t832;
+        let t850 = s_rod_leg3 * (t799 + rate_dot_rod_leg3) + c_rod_leg3 * (t715 - t847);
+        let t862 = c_rod_leg3 * (1.7857142857142858 * t826) - t790;
+        let t864 = t765 * t862 + t800;
+        let t866 = t806 * t862 + t811;
+        let t868 = t817 * t862 - t822;
+        let t869 = 1.7857142857142858 * t736;
+        let t871 = 1.7857142857142858 * t782;
+        let t880 = t797 * rate_dot_rod_leg3;
+        let t881 = t810 * rate_dot_rod_leg3;
+        let t882 = t821 * rate_dot_rod_leg3;
+        let t890 = t745 + 0.24 * rate_dot_arm_leg3;
+        let t899 = t746 + 0.24 * t712;
+        let t903 = s_rod_leg3 * (s_cross_leg3 * t899 + c_cross_leg3 * t890);
+        let t907 = s_cross_leg3 * t890 - c_cross_leg3 * t899;
+        let t908 = c_rod_leg3 * t907;
+        let t918 = 0.42857142857142855 * (t156 * s_cross_leg3);
+        let t925 = 0.8928571428571429 * t153 * (t799 - rate_dot_rod_leg3)
+            + t918 * (t847 + t715) - t702 * t824 - t817 * t903;
         Ok([
             [
-                rate_dot_arm_leg1, -t112, -t113, rate_dot_arm_leg1, rate_arm_leg1,
-                ::overact::math::sign(rate_arm_leg1), 1.0, t317 - t330 * t342,
-                -(t330 * t384 + t313 * t389), -(t330 * t404 + t313 * t336), -t417,
-                -(t330 * t422 + t313 * t380), -t432,
-                t441
+                rate_dot_arm_leg1, -t85, -t86, rate_dot_arm_leg1, rate_arm_leg1,
+                ::overact::math::sign(rate_arm_leg1), 1.0, t237 - t257 * t281,
+                t257 * t323 - t234 * t328, t257 * t343 + t234 * t274, t357,
+                t257 * t362 + t234 * t364, -t373,
+                t382
                     - 0.10285714285714286
-                        * (4.166666666666667 * t443 - 5.444444444444445 * t417
-                            - 5.444444444444445 * t432),
-                t493,
-                t380 * t469 + t336 * t473 + t84 * t477 - t330 * t490,
-                0.24 * t443,
+                        * (4.166666666666667 * t384 + 5.444444444444445 * t357
+                            - 5.444444444444445 * t373),
+                t427 + t234 * t431,
+                t48 * t70 - (1.594387755102041 * (t13 * t272) + t274 * t414)
+                    + t257 * t430,
+                0.24 * t384,
                 0.0,
                 0.0,
                 0.0,
@@ -4041,15 +3629,15 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t613 * t627 - t633,
-                t613 * t663 + t631 * t668,
-                t613 * t685 - t631 * t624,
-                t698,
-                t631 * t657 - t613 * t708,
-                t717,
-                t441 - 0.56 * (t698 + t717),
-                t613 * t740 - t631 * t745,
-                t613 * t744,
+                t523 * t549 + t558,
+                t523 * t588 + t555 * t593,
+                t523 * t608 - t555 * t542,
+                t622,
+                t555 * t627 - t523 * t629,
+                -t638,
+                t382 - 0.56 * (t622 - t638),
+                t523 * t661 - t555 * t666,
+                t523 * t665,
                 0.0,
                 0.0,
                 0.0,
@@ -4058,34 +3646,34 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t879 * t893 - t899,
-                t879 * t929 + t897 * t934,
-                t879 * t951 + t897 * t885,
-                t964,
-                t879 * t973 + t897 * t925,
-                t983,
-                t441 - 0.56 * (t964 + t983),
-                -(t879 * t1006 + t897 * t1011),
-                t879 * t1010,
+                t765 * t791 - t800,
+                t765 * t830 + t797 * t835,
+                t765 * t850 + t797 * t784,
+                t864,
+                t765 * t869 + t797 * t871,
+                t880,
+                t382 - 0.56 * (t864 + t880),
+                -(t765 * t903 + t797 * t908),
+                t765 * t907,
                 0.0,
-                t440,
+                t381,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t347 - t354 * t342, -(t354 * t384 + t346 * t389),
-                -(t354 * t404 + t346 * t336), -t419, -(t354 * t422 + t346 * t380), -t433,
-                t456 + 0.56 * (t419 + t433), t354 * t485 + t346 * t491, -(t354 * t490), 0.0,
-                rate_dot_arm_leg2, -t606, -t607, rate_dot_arm_leg2, rate_arm_leg2,
-                ::overact::math::sign(rate_arm_leg2), 1.0, t639 * t627 - t644,
-                t639 * t663 + t643 * t668, t639 * t685 - t643 * t624, t700,
-                t643 * t657 - t639 * t708, t718,
-                t456
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t286 - t293 * t281, t293 * t323 - t285 * t328,
+                t293 * t343 + t285 * t274, t359, t293 * t362 + t285 * t364, -t374,
+                t397 - 0.56 * (t359 - t374), t285 * t431 - t293 * t425, t293 * t430, 0.0,
+                rate_dot_arm_leg2, -t503, -t504, rate_dot_arm_leg2, rate_arm_leg2,
+                ::overact::math::sign(rate_arm_leg2), 1.0, t564 * t549 + t569,
+                t564 * t588 + t568 * t593, t564 * t608 - t568 * t542, t624,
+                t568 * t627 - t564 * t629, -t639,
+                t397
                     - 0.10285714285714286
-                        * (4.166666666666667 * t724 + 5.444444444444445 * t700
-                            + 5.444444444444445 * t718),
-                t761,
-                t657 * t748 + t624 * t751 + rate_cross_leg2 * rate_cross_leg2 * t755
-                    + t639 * t744,
-                0.24 * t724,
+                        * (4.166666666666667 * t645 + 5.444444444444445 * t624
+                            - 5.444444444444445 * t639),
+                t680 - t568 * t666,
+                1.594387755102041 * (t109 * t540) + t542 * t673 + t456 * t487
+                    + t564 * t665,
+                0.24 * t645,
                 0.0,
                 0.0,
                 0.0,
@@ -4093,38 +3681,38 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t905 * t893 - t910,
-                t905 * t929 + t909 * t934,
-                t905 * t951 + t909 * t885,
-                t966,
-                t905 * t973 + t909 * t925,
-                t984,
-                t456 - 0.56 * (t966 + t984),
-                -(t905 * t1006 + t909 * t1011),
-                t905 * t1010,
+                t806 * t791 - t811,
+                t806 * t830 + t810 * t835,
+                t806 * t850 + t810 * t784,
+                t866,
+                t806 * t869 + t810 * t871,
+                t881,
+                t397 - 0.56 * (t866 + t881),
+                -(t806 * t903 + t810 * t908),
+                t806 * t907,
                 0.0,
-                t455,
+                t396,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t373 * t342 - t376, t373 * t384 + t375 * t389,
-                t373 * t404 + t375 * t336, t421, t373 * t422 + t375 * t380, t434,
-                t465 - 0.56 * (t421 + t434), -(t373 * t485 + t375 * t491), t373 * t490, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t650 * t627 + t655, t650 * t663 - t654 * t668,
-                t650 * t685 + t654 * t624, t702, -(t650 * t708 + t654 * t657), -t719,
-                t465 - 0.56 * (t702 - t719), t650 * t740 + t654 * t745, t650 * t744, 0.0,
-                rate_dot_arm_leg3, t872, t873, rate_dot_arm_leg3, rate_arm_leg3,
-                ::overact::math::sign(rate_arm_leg3), 1.0, t916 * t893 + t921,
-                t916 * t929 - t920 * t934, t916 * t951 - t920 * t885, t968,
-                t916 * t973 - t920 * t925, -t985,
-                t465
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t312 * t281 + t315), t312 * t323 + t314 * t328,
+                t312 * t343 - t314 * t274, t361, t312 * t362 - t314 * t364, t375,
+                t406 - 0.56 * (t361 + t375), -(t312 * t425 + t314 * t431), t312 * t430, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t574 - t579 * t549, t573 * t593 - t579 * t588,
+                -(t579 * t608 + t573 * t542), -t626, t579 * t629 + t573 * t627, -t640,
+                t406 + 0.56 * (t626 + t640), -(t579 * t661 + t573 * t666), -(t579 * t665), 0.0,
+                rate_dot_arm_leg3, t745, t746, rate_dot_arm_leg3, rate_arm_leg3,
+                ::overact::math::sign(rate_arm_leg3), 1.0, t817 * t791 + t822,
+                t817 * t830 - t821 * t835, t817 * t850 - t821 * t784, t868,
+                t817 * t869 - t821 * t871, -t882,
+                t406
                     - 0.10285714285714286
-                        * (4.166666666666667 * t993 + 5.444444444444445 * t968
-                            - 5.444444444444445 * t985),
-                t1030,
-                t925 * t1017 + t885 * t1020 + rate_cross_leg3 * rate_cross_leg3 * t1024
-                    + t916 * t1010,
-                0.24 * t993,
-                t464,
+                        * (4.166666666666667 * t890 + 5.444444444444445 * t868
+                            - 5.444444444444445 * t882),
+                t925 + t821 * t908,
+                1.594387755102041 * (t153 * t782) + t784 * t918 + t702 * t731
+                    + t817 * t907,
+                0.24 * t890,
+                t405,
             ],
         ])
     }
@@ -4139,7 +3727,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 949 operations (312 additions, 632 multiplications, 5 divisions), 0 square roots, 9 trigonometric pairs, 3 signs, 868 intermediates.
+    /// 818 operations (274 additions, 537 multiplications, 7 divisions), 0 square roots, 9 trigonometric pairs, 3 signs, 737 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4149,382 +3737,336 @@ impl Delta {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 52]; 3], ::overact::Error> {
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
+        let [(s_cross_leg1, c_cross_leg1), (s_arm_leg1, c_arm_leg1),
+        (s_rod_leg1, c_rod_leg1), (s_arm_leg2, c_arm_leg2), (s_cross_leg2, c_cross_leg2),
+        (s_cross_leg3, c_cross_leg3), (s_arm_leg3, c_arm_leg3), (s_rod_leg3, c_rod_leg3),
+        (s_rod_leg2, c_rod_leg2)] = ::overact::math::sin_cos_all([
+            joints[1], joints[0], joints[2], joints[3], joints[4], joints[7], joints[6], joints[8],
+            joints[5],
+        ]);
+        ::overact::guard::leg(s_cross_leg1, 0.89794672585951, "leg1")?;
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258595101, "leg2")?;
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258595097, "leg3")?;
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t2 = 1.0 / s_cross_leg1;
+        let t3 = 4.166666666666667 * t2;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
         let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t12 = c_armcross_leg1 * c_rod_leg1;
-        let t13 = s_armcross_leg1 * c_rod_leg1;
-        let t16 = c_arm_leg1 * t13 - s_arm_leg1 * t12;
-        ::overact::guard::leg(t16, 0.89794672585951, "leg1")?;
-        let t17 = 1.0 / t16;
-        let t18 = 4.166666666666667 * t17;
-        let garm_vx_leg1 = t12 * t18;
-        let t20 = 0.56 * s_rod_leg1;
-        let t21 = 1.7857142857142858 * t17;
-        let gcross_vz_leg1 = s_arm_leg1 * t21;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t21;
-        let t27 = 1.0 / c_rod_leg1;
-        let minus_gcross_vy_leg1 = t21
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t27)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t27));
-        let rate_cross_leg1 = gcross_vz_leg1 * twist[2]
-            - (minus_gcross_vx_leg1 * twist[0] + minus_gcross_vy_leg1 * twist[1]);
-        let grod_vy_leg1 = 1.7857142857142858 * t27;
+        let t15 = 0.24 * c_cross_leg1;
+        let t18 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
+        let t21 = 1.0 / c_rod_leg1;
+        let t22 = s_rod_leg1 * t21;
+        let rate_arm_leg1 = t3 * (t18 + t22 * twist[1]);
+        let t26 = rate_arm_leg1 * rate_arm_leg1;
+        let grod_vy_leg1 = 1.7857142857142858 * t21;
+        let t30 = c_cross_leg1 * t2;
+        let garm_vy_leg1 = t3 * t22;
+        let t33 = t15 * garm_vy_leg1;
+        let t39 = t30 * t18 + t33 * twist[1] + s_armcross_leg1 * twist[0]
+            + c_armcross_leg1 * twist[2];
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t39;
+        let t41 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t40 = s_armcross_leg1 * rate_rod_leg1;
-        let t42 = t20 * (rate_cross_leg1 * t40);
-        let garm_vy_leg1 = s_rod_leg1 * t18;
-        let minus_garm_vz_leg1 = t13 * t18;
-        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
-            - minus_garm_vz_leg1 * twist[2];
-        let t51 = rate_arm_leg1 * rate_arm_leg1;
-        let t55 = rate_cross_leg1 * rate_cross_leg1;
-        let t57 = c_armcross_leg1 * rate_rod_leg1;
-        let t59 = t40 * t40 + t55 + t57 * t57;
-        let t64 = acceleration[0]
-            - (t42 - (0.24 * c_arm_leg1 * t51 + 0.56 * t12 * t59) + t42);
-        let t66 = t20 * rate_cross_leg1;
-        let t70 = acceleration[1] - (rate_cross_leg1 * t66 - t20 * t59);
-        let t79 = t20 * (rate_cross_leg1 * t57);
-        let t82 = acceleration[2]
-            - (0.24 * s_arm_leg1 * t51 + 0.56 * t13 * t59 + t79 + t79);
-        let rate_dot_arm_leg1 = garm_vx_leg1 * t64 + garm_vy_leg1 * t70
-            - minus_garm_vz_leg1 * t82;
-        let t85 = 9.81 * c_arm_leg1;
-        let t86 = 9.81 * s_arm_leg1;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
+        let t43 = rate_rod_leg1 * rate_rod_leg1;
+        let t44 = t41 + t43;
+        let t47 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t15 * t26 + 0.56 * c_rod_leg1 * t44;
+        let t48 = 0.56 * s_rod_leg1;
+        let t49 = t48 * minus_rate_cross_leg1;
+        let t53 = acceleration[1] - (minus_rate_cross_leg1 * t49 - t48 * t44);
+        let rate_dot_arm_leg1 = t3 * (t47 + t22 * t53);
+        let t57 = 9.81 * c_arm_leg1;
+        let t58 = 9.81 * s_arm_leg1;
+        let minus_gcross_vx_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 * t30 + s_armcross_leg1);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t98 = 0.8660254037844387 * c_armcross_leg2;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t103 = t98 * s_rod_leg2 + 0.5 * c_rod_leg2;
-        let t104 = s_armcross_leg2 * c_rod_leg2;
-        let t107 = 0.5 * c_armcross_leg2;
-        let t110 = t107 * s_rod_leg2 - 0.8660254037844387 * c_rod_leg2;
-        let t114 = 0.4849742261192857 * t104;
-        let t115 = 0.24 * s_arm_leg2;
-        let t116 = 0.56 * t104;
-        let t119 = t114 - 0.8660254037844387 * (t115 + t116);
-        let t120 = t107 * c_rod_leg2;
-        let t123 = s_armcross_leg2 * s_rod_leg2;
-        let t124 = t104 * t123;
-        let t126 = 0.6272 * (t120 * t110) + 0.1568 * t124;
-        let t132 = 0.1344 * (c_arm_leg2 * t110) + 0.0672 * (s_arm_leg2 * t123);
-        let t138 = c_arm_leg2 * t104;
-        let t140 = 0.1344 * (s_arm_leg2 * t120) - 0.0672 * t138;
-        let t142 = t119 * t126 + t114 * t132 + 0.56 * t103 * t140;
-        ::overact::guard::leg(t142, 0.06758306237509017, "leg2")?;
-        let t143 = 1.0 / t142;
-        let garm_vz_leg2 = (0.1568 * (t103 * t104) - 0.2715855666268 * (t110 * t104))
-            * t143;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
+        let t73 = 1.0 / s_cross_leg2;
+        let t74 = 4.166666666666667 * t73;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t74;
+        let t78 = 1.0 / s_cross_leg3;
+        let t79 = 4.166666666666667 * t78;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t157 = s_armcross_leg3 * c_rod_leg3;
-        let t158 = s_armcross_leg3 * s_rod_leg3;
-        let t159 = t157 * t158;
-        let t161 = 0.5 * c_armcross_leg3;
-        let t162 = t161 * c_rod_leg3;
-        let t163 = 0.8660254037844387 * c_armcross_leg3;
-        let t166 = t163 * s_rod_leg3 - 0.5 * c_rod_leg3;
-        let t170 = 0.4849742261192857 * t157;
-        let t173 = t161 * s_rod_leg3 + 0.8660254037844387 * c_rod_leg3;
-        let t178 = 0.1344 * (c_arm_leg3 * t173) + 0.0672 * (s_arm_leg3 * t158);
-        let t180 = 0.24 * s_arm_leg3;
-        let t181 = 0.56 * t157;
-        let t184 = 0.8660254037844387 * (t180 + t181) - t170;
-        let t188 = 0.6272 * (t162 * t173) + 0.1568 * t159;
-        let t194 = c_arm_leg3 * t157;
-        let t196 = 0.1344 * (s_arm_leg3 * t162) - 0.0672 * t194;
-        let t198 = t170 * t178 - t184 * t188 + 0.56 * t166 * t196;
-        ::overact::guard::leg(t198, 0.06758306237509014, "leg3")?;
-        let t199 = 1.0 / t198;
-        let garm_vx_leg3 = (0.2715855666268 * t159 + 0.6272 * (t162 * t166)) * t199;
-        let garm_vx_leg2 = (0.2715855666268 * t124 + 0.6272 * (t120 * t103)) * t143;
-        let minus_garm_vz_leg3 = (0.2715855666268 * (t173 * t157)
-            - 0.1568 * (t166 * t157)) * t199;
-        let t214 = garm_vz_leg2 * garm_vx_leg3 + garm_vx_leg2 * minus_garm_vz_leg3;
-        let garm_vy_leg2 = t126 * t143;
-        let minus_garm_vy_leg3 = t188 * t199;
-        let t219 = garm_vy_leg2 * minus_garm_vz_leg3 - garm_vz_leg2 * minus_garm_vy_leg3;
-        let t225 = garm_vy_leg2 * garm_vx_leg3 + garm_vx_leg2 * minus_garm_vy_leg3;
-        let t227 = garm_vx_leg1 * t219 - garm_vy_leg1 * t214 - minus_garm_vz_leg1 * t225;
-        ::overact::guard::platform(t227, 87.78853732246624, "kept actuators")?;
-        ::overact::guard::platform(t227, 87.78853732246624, "kept actuators")?;
-        ::overact::guard::platform(t227, 87.78853732246624, "kept actuators")?;
-        let t228 = 1.0 / t227;
-        let t229 = t214 * t228;
-        let t231 = t219 * t228;
-        let t234 = t225 * t228;
-        let t236 = minus_gcross_vy_leg1 * t229 - minus_gcross_vx_leg1 * t231
-            + gcross_vz_leg1 * t234;
-        let rate_dot_cross_leg1 = gcross_vz_leg1 * t82
-            - (minus_gcross_vx_leg1 * t64 + minus_gcross_vy_leg1 * t70);
-        let t242 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t243 = c_rod_leg1 * rate_cross_leg1;
-        let t244 = rate_rod_leg1 * t243;
-        let t245 = t242 + t244;
-        let t247 = 1.7857142857142858 * t66;
-        let t248 = rate_rod_leg1 * t247;
-        let t249 = c_rod_leg1 * t248;
-        let t250 = s_rod_leg1 * t245 + t249;
-        let t252 = grod_vy_leg1 * t229;
-        let t253 = t247 * t243;
-        let t254 = t252 * t253;
-        let t259 = (garm_vy_leg1 * minus_garm_vz_leg3
-            + minus_garm_vz_leg1 * minus_garm_vy_leg3) * t228;
-        let t264 = (minus_garm_vz_leg1 * garm_vx_leg3
-            - garm_vx_leg1 * minus_garm_vz_leg3) * t228;
-        let t270 = (garm_vx_leg1 * minus_garm_vy_leg3 + garm_vy_leg1 * garm_vx_leg3)
-            * t228;
-        let t272 = minus_gcross_vx_leg1 * t259 + minus_gcross_vy_leg1 * t264
-            - gcross_vz_leg1 * t270;
-        let t274 = grod_vy_leg1 * t264;
-        let t275 = t274 * t253;
-        let t280 = (garm_vy_leg1 * garm_vz_leg2 + minus_garm_vz_leg1 * garm_vy_leg2)
-            * t228;
-        let t285 = (garm_vx_leg1 * garm_vz_leg2 + minus_garm_vz_leg1 * garm_vx_leg2)
-            * t228;
-        let t291 = (garm_vx_leg1 * garm_vy_leg2 - garm_vy_leg1 * garm_vx_leg2) * t228;
-        let t293 = minus_gcross_vx_leg1 * t280 - minus_gcross_vy_leg1 * t285
-            - gcross_vz_leg1 * t291;
-        let t295 = grod_vy_leg1 * t285;
-        let t296 = t295 * t253;
-        let t298 = t244 + t245;
-        let t300 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t301 = t300 - t248;
-        let t304 = c_rod_leg1 * t298 - s_rod_leg1 * (t248 - t301);
-        let t307 = 3.188775510204082 * (t66 * t66);
-        let t309 = t307 - t243 * t243;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t70;
-        let t321 = rate_rod_leg1 * rate_rod_leg1;
-        let t324 = s_rod_leg1 * (t253 + rate_dot_rod_leg1) + c_rod_leg1 * (t321 - t307);
-        let t335 = c_rod_leg1 * t301 - t249;
-        let t337 = t236 * t335 - t254;
-        let t339 = t272 * t335 - t275;
-        let t341 = t293 * t335 + t296;
-        let t342 = 1.7857142857142858 * acceleration[1];
-        let t352 = t252 * rate_dot_rod_leg1;
-        let t353 = t274 * rate_dot_rod_leg1;
-        let t354 = t295 * rate_dot_rod_leg1;
-        let t358 = acceleration[2] + 9.81;
-        let t360 = t231 * acceleration[0] - t229 * acceleration[1] + t234 * t358;
-        let t361 = 1.7857142857142858 * t360;
-        let t363 = 0.24 * rate_dot_arm_leg1 - t85;
-        let t375 = t259 * acceleration[0] + t264 * acceleration[1] + t270 * t358;
-        let t376 = 1.7857142857142858 * t375;
-        let t384 = t285 * acceleration[1] - t280 * acceleration[0] - t291 * t358;
-        let t385 = 1.7857142857142858 * t384;
-        let t389 = 0.24 * t16;
-        let t393 = s_rod_leg1 * (0.24 * s_cross_leg1);
-        let t397 = 0.24 * c_cross_leg1;
-        let t401 = t86 + 0.24 * t51;
-        let t405 = s_rod_leg1 * (s_cross_leg1 * t401 + c_cross_leg1 * t363);
-        let t410 = s_cross_leg1 * t363 - c_cross_leg1 * t401;
-        let t411 = c_rod_leg1 * t410;
-        let t413 = t389 * (t253 - rate_dot_rod_leg1) + t393 * (t307 + t321) - t397 * t298
-            - t236 * t405 + t252 * t411;
-        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
-            + garm_vz_leg2 * twist[2];
-        let t436 = rate_arm_leg2 * rate_arm_leg2;
-        let t439 = t120 + 0.8660254037844387 * s_rod_leg2;
-        let t440 = 0.56 * t439;
-        let gcross_vx_leg2 = (0.56 * t123 * t119 - 0.1344 * (c_arm_leg2 * t103)) * t143;
-        let minus_gcross_vy_leg2 = t132 * t143;
-        let minus_gcross_vz_leg2 = (0.56 * t110 * t119 + 0.0672 * (s_arm_leg2 * t103))
-            * t143;
-        let rate_cross_leg2 = gcross_vx_leg2 * twist[0] - minus_gcross_vy_leg2 * twist[1]
-            - minus_gcross_vz_leg2 * twist[2];
-        let t459 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (1.12 * t120 * t119 + 0.11639381426862856 * t138) * t143;
-        let minus_grod_vy_leg2 = t140 * t143;
-        let rate_rod_leg2 = grod_vx_leg2 * twist[0] - minus_grod_vy_leg2 * twist[1];
-        let t471 = t459 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t474 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t475 = 0.5 * rate_cross_leg2;
-        let t476 = t474 - t475;
-        let t479 = c_armcross_leg2 * rate_rod_leg2;
-        let t481 = t471 * t471 + t476 * t476 + t479 * t479;
-        let t487 = t98 * c_rod_leg2 - 0.5 * s_rod_leg2;
-        let t488 = 0.56 * t487;
-        let t492 = t440 * t471 + t488 * t476 - t116 * t479;
-        let t495 = t459 * t474;
-        let t498 = t459 * t479;
-        let t501 = 0.12 * c_arm_leg2 * t436 + t440 * t481 - t471 * t492
-            + 0.7466666666666667 * (t487 * t495) - t116 * t498;
-        let t502 = acceleration[0] - t501;
-        let t512 = t475 * t479;
-        let t515 = t476 * t492 - (0.20784609690826528 * c_arm_leg2 * t436 + t488 * t481)
-            + 0.7466666666666667 * (t439 * t495) - t116 * t512;
-        let t516 = acceleration[1] - t515;
-        let t524 = t440 * t498 - t488 * t512;
-        let t527 = acceleration[2] - (t115 * t436 + t116 * t481 + t524 + t524);
-        let rate_dot_arm_leg2 = garm_vx_leg2 * t502 + garm_vy_leg2 * t516
-            + garm_vz_leg2 * t527;
-        let t530 = 9.81 * c_arm_leg2;
-        let t531 = 9.81 * s_arm_leg2;
-        let t537 = gcross_vx_leg2 * t231 + minus_gcross_vy_leg2 * t229
-            - minus_gcross_vz_leg2 * t234;
-        let rate_dot_cross_leg2 = gcross_vx_leg2 * t502 - minus_gcross_vy_leg2 * t516
-            - minus_gcross_vz_leg2 * t527;
-        let t543 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t544 = c_rod_leg2 * rate_cross_leg2;
-        let t545 = rate_rod_leg2 * t544;
-        let t546 = t543 + t545;
-        let t548 = 1.7857142857142858 * t492;
-        let t549 = rate_rod_leg2 * t548;
-        let t550 = c_rod_leg2 * t549;
-        let t551 = s_rod_leg2 * t546 + t550;
-        let t555 = grod_vx_leg2 * t231 + minus_grod_vy_leg2 * t229;
-        let t556 = t548 * t544;
-        let t557 = t555 * t556;
-        let t563 = minus_gcross_vy_leg2 * t264 - gcross_vx_leg2 * t259
-            + minus_gcross_vz_leg2 * t270;
-        let t567 = minus_grod_vy_leg2 * t264 - grod_vx_leg2 * t259;
-        let t568 = t567 * t556;
-        let t574 = minus_gcross_vz_leg2 * t291
-            - (gcross_vx_leg2 * t280 + minus_gcross_vy_leg2 * t285);
-        let t578 = grod_vx_leg2 * t280 + minus_grod_vy_leg2 * t285;
-        let t579 = t578 * t556;
-        let t581 = t545 + t546;
-        let t583 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t584 = t583 - t549;
-        let t587 = c_rod_leg2 * t581 - s_rod_leg2 * (t549 - t584);
-        let t590 = 3.188775510204082 * (t492 * t492);
-        let t591 = t544 * t544;
-        let t592 = t590 - t591;
-        let rate_dot_rod_leg2 = grod_vx_leg2 * t502 - minus_grod_vy_leg2 * t516;
-        let t606 = rate_rod_leg2 * rate_rod_leg2;
-        let t609 = s_rod_leg2 * (t556 + rate_dot_rod_leg2) + c_rod_leg2 * (t606 - t590);
-        let t620 = c_rod_leg2 * t584 - t550;
-        let t622 = t537 * t620 + t557;
-        let t624 = t563 * t620 + t568;
-        let t626 = t574 * t620 - t579;
-        let t629 = t556 - rate_dot_rod_leg2;
-        let t631 = s_rod_leg2 * (t591 - t606) - c_rod_leg2 * t629;
-        let t641 = t555 * rate_dot_rod_leg2;
-        let t642 = t567 * rate_dot_rod_leg2;
-        let t643 = t578 * rate_dot_rod_leg2;
-        let t648 = 0.24 * rate_dot_arm_leg2 - t530;
-        let t660 = t531 + 0.24 * t436;
-        let t664 = s_rod_leg2 * (s_cross_leg2 * t660 + c_cross_leg2 * t648);
-        let t668 = s_cross_leg2 * t648 - c_cross_leg2 * t660;
-        let t669 = c_rod_leg2 * t668;
-        let t673 = s_rod_leg2 * (0.24 * s_cross_leg2);
-        let t676 = 3.5714285714285716 * t140;
-        let t679 = 0.24 * c_cross_leg2;
-        let t685 = t673 * (t590 + t606) - t676 * t629 - t679 * t581 - t563 * t664
-            - t567 * t669;
-        let rate_arm_leg3 = garm_vx_leg3 * twist[0] - minus_garm_vy_leg3 * twist[1]
-            - minus_garm_vz_leg3 * twist[2];
-        let t706 = rate_arm_leg3 * rate_arm_leg3;
-        let t709 = 0.8660254037844387 * s_rod_leg3 - t162;
-        let t710 = 0.56 * t709;
-        let gcross_vy_leg3 = t178 * t199;
-        let minus_gcross_vx_leg3 = (0.56 * t158 * t184 + 0.1344 * (c_arm_leg3 * t166))
-            * t199;
-        let gcross_vz_leg3 = (0.56 * t173 * t184 - 0.0672 * (s_arm_leg3 * t166)) * t199;
-        let rate_cross_leg3 = gcross_vy_leg3 * twist[1] - minus_gcross_vx_leg3 * twist[0]
-            + gcross_vz_leg3 * twist[2];
-        let t729 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (0.11639381426862856 * t194 - 1.12 * t162 * t184) * t199;
-        let grod_vy_leg3 = t196 * t199;
-        let rate_rod_leg3 = grod_vx_leg3 * twist[0] + grod_vy_leg3 * twist[1];
-        let t741 = t729 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t743 = 0.5 * rate_cross_leg3;
-        let t745 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t746 = t743 + t745;
-        let t749 = c_armcross_leg3 * rate_rod_leg3;
-        let t751 = t741 * t741 + t746 * t746 + t749 * t749;
-        let t757 = t163 * c_rod_leg3 + 0.5 * s_rod_leg3;
-        let t758 = 0.56 * t757;
-        let t762 = t710 * t741 + t758 * t746 - t181 * t749;
-        let t765 = t729 * t749;
-        let t767 = t729 * t745;
-        let t771 = 0.12 * c_arm_leg3 * t706 - t710 * t751 + t741 * t762 + t181 * t765
-            - 0.7466666666666667 * (t757 * t767);
-        let t772 = acceleration[0] - t771;
-        let t782 = t743 * t749;
-        let t785 = 0.20784609690826528 * c_arm_leg3 * t706 + t758 * t751 - t746 * t762
-            - (0.7466666666666667 * (t709 * t767) + t181 * t782);
-        let t786 = acceleration[1] - t785;
-        let t794 = t758 * t782 + t710 * t765;
-        let t797 = acceleration[2] - (t180 * t706 + t181 * t751 + t794 + t794);
-        let rate_dot_arm_leg3 = garm_vx_leg3 * t772 - minus_garm_vy_leg3 * t786
-            - minus_garm_vz_leg3 * t797;
-        let t800 = 9.81 * c_arm_leg3;
-        let t801 = 9.81 * s_arm_leg3;
-        let t807 = gcross_vz_leg3 * t234
-            - (minus_gcross_vx_leg3 * t231 + gcross_vy_leg3 * t229);
-        let rate_dot_cross_leg3 = gcross_vy_leg3 * t786 - minus_gcross_vx_leg3 * t772
-            + gcross_vz_leg3 * t797;
-        let t813 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t814 = c_rod_leg3 * rate_cross_leg3;
-        let t815 = rate_rod_leg3 * t814;
-        let t816 = t813 + t815;
-        let t818 = 1.7857142857142858 * t762;
-        let t819 = rate_rod_leg3 * t818;
-        let t820 = c_rod_leg3 * t819;
-        let t821 = s_rod_leg3 * t816 + t820;
-        let t825 = grod_vx_leg3 * t231 - grod_vy_leg3 * t229;
-        let t826 = t818 * t814;
-        let t827 = t825 * t826;
-        let t833 = minus_gcross_vx_leg3 * t259 - gcross_vy_leg3 * t264
-            - gcross_vz_leg3 * t270;
-        let t837 = grod_vx_leg3 * t259 + grod_vy_leg3 * t264;
-        let t838 = t837 * t826;
-        let t844 = minus_gcross_vx_leg3 * t280 + gcross_vy_leg3 * t285
-            - gcross_vz_leg3 * t291;
-        let t848 = grod_vy_leg3 * t285 - grod_vx_leg3 * t280;
-        let t849 = t848 * t826;
-        let t851 = t815 + t816;
-        let t853 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t854 = t853 - t819;
-        let t857 = c_rod_leg3 * t851 - s_rod_leg3 * (t819 - t854);
-        let t860 = 3.188775510204082 * (t762 * t762);
-        let t861 = t814 * t814;
-        let t862 = t860 - t861;
-        let rate_dot_rod_leg3 = grod_vx_leg3 * t772 + grod_vy_leg3 * t786;
-        let t876 = rate_rod_leg3 * rate_rod_leg3;
-        let t879 = s_rod_leg3 * (t826 + rate_dot_rod_leg3) + c_rod_leg3 * (t876 - t860);
-        let t890 = c_rod_leg3 * t854 - t820;
-        let t892 = t807 * t890 + t827;
-        let t894 = t833 * t890 - t838;
-        let t896 = t844 * t890 + t849;
-        let t899 = t826 - rate_dot_rod_leg3;
-        let t901 = s_rod_leg3 * (t861 - t876) - c_rod_leg3 * t899;
-        let t911 = t825 * rate_dot_rod_leg3;
-        let t912 = t837 * rate_dot_rod_leg3;
-        let t913 = t848 * rate_dot_rod_leg3;
-        let t921 = 0.24 * rate_dot_arm_leg3 - t800;
-        let t930 = t801 + 0.24 * t706;
-        let t934 = s_rod_leg3 * (s_cross_leg3 * t930 + c_cross_leg3 * t921);
-        let t938 = s_cross_leg3 * t921 - c_cross_leg3 * t930;
-        let t939 = c_rod_leg3 * t938;
-        let t946 = s_rod_leg3 * (0.24 * s_cross_leg3);
-        let t949 = 3.5714285714285716 * t196;
-        let t952 = 0.24 * c_cross_leg3;
-        let t958 = t946 * (t860 + t876) - t949 * t899 - t952 * t851 - t844 * t934
-            - t848 * t939;
+        let t88 = 0.8660254037844387 * c_armcross_leg3;
+        let t91 = 1.0 / c_rod_leg3;
+        let t92 = s_rod_leg3 * t91;
+        let minus_garm_vy_leg3 = t79 * (t88 + 0.5 * t92);
+        let t97 = 0.8660254037844387 * c_armcross_leg2;
+        let t100 = 1.0 / c_rod_leg2;
+        let t101 = s_rod_leg2 * t100;
+        let garm_vy_leg2 = t74 * (t97 - 0.5 * t101);
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t79;
+        let t107 = minus_garm_vz_leg2 * minus_garm_vy_leg3
+            + garm_vy_leg2 * minus_garm_vz_leg3;
+        let garm_vx_leg1 = c_armcross_leg1 * t3;
+        let t111 = 0.5 * c_armcross_leg3;
+        let garm_vx_leg3 = t79 * (0.8660254037844387 * t92 - t111);
+        let t115 = 0.5 * c_armcross_leg2;
+        let minus_garm_vx_leg2 = t74 * (t115 + 0.8660254037844387 * t101);
+        let t120 = minus_garm_vz_leg2 * garm_vx_leg3
+            + minus_garm_vx_leg2 * minus_garm_vz_leg3;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t3;
+        let t126 = garm_vy_leg2 * garm_vx_leg3 - minus_garm_vx_leg2 * minus_garm_vy_leg3;
+        let t128 = garm_vx_leg1 * t107 + garm_vy_leg1 * t120 - minus_garm_vz_leg1 * t126;
+        ::overact::guard::platform(t128, 87.78853732246625, "kept actuators")?;
+        ::overact::guard::platform(t128, 87.78853732246625, "kept actuators")?;
+        ::overact::guard::platform(t128, 87.78853732246625, "kept actuators")?;
+        let t129 = 1.0 / t128;
+        let t130 = t107 * t129;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * t33;
+        let t133 = t120 * t129;
+        let minus_gcross_vz_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 - s_armcross_leg1 * t30);
+        let t139 = t126 * t129;
+        let t141 = minus_gcross_vx_leg1 * t130 + minus_gcross_vy_leg1 * t133
+            + minus_gcross_vz_leg1 * t139;
+        let t148 = 0.24 * s_cross_leg1;
+        let t151 = t48 * (minus_rate_cross_leg1 * rate_rod_leg1);
+        let t155 = t30 * t47 + t33 * t53 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + t148 * t26 + t151 + t151;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t155;
+        let t157 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t159 = rate_rod_leg1 * (1.7857142857142858 * t39);
+        let t160 = t157 + t159;
+        let t163 = c_rod_leg1 * (1.7857142857142858 * t151);
+        let t164 = s_rod_leg1 * t160 + t163;
+        let t166 = grod_vy_leg1 * t133;
+        let t168 = 3.188775510204082 * (t39 * t49);
+        let t169 = t166 * t168;
+        let t174 = (minus_garm_vz_leg1 * garm_vx_leg3
+            - garm_vx_leg1 * minus_garm_vz_leg3) * t129;
+        let t175 = grod_vy_leg1 * t174;
+        let t176 = t175 * t168;
+        let t180 = (garm_vy_leg1 * minus_garm_vz_leg3
+            + minus_garm_vz_leg1 * minus_garm_vy_leg3) * t129;
+        let t187 = (garm_vx_leg1 * minus_garm_vy_leg3 + garm_vy_leg1 * garm_vx_leg3)
+            * t129;
+        let t189 = minus_gcross_vx_leg1 * t180 + minus_gcross_vy_leg1 * t174
+            + minus_gcross_vz_leg1 * t187;
+        let t195 = (garm_vx_leg1 * minus_garm_vz_leg2
+            + minus_garm_vz_leg1 * minus_garm_vx_leg2) * t129;
+        let t196 = grod_vy_leg1 * t195;
+        let t197 = t196 * t168;
+        let t201 = (minus_garm_vz_leg1 * garm_vy_leg2
+            - garm_vy_leg1 * minus_garm_vz_leg2) * t129;
+        let t208 = (garm_vx_leg1 * garm_vy_leg2 + garm_vy_leg1 * minus_garm_vx_leg2)
+            * t129;
+        let t210 = minus_gcross_vx_leg1 * t201 + minus_gcross_vy_leg1 * t195
+            + minus_gcross_vz_leg1 * t208;
+        let t213 = t49 * t49;
+        let t216 = 3.188775510204082 * (t213 - t39 * t39);
+        let t218 = t151 - t155;
+        let t222 = t159 + t160;
+        let t224 = s_rod_leg1 * (1.7857142857142858 * (t151 + t218)) - c_rod_leg1 * t222;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t53;
+        let t236 = 3.188775510204082 * t213;
+        let t239 = s_rod_leg1 * (t168 + rate_dot_rod_leg1) + c_rod_leg1 * (t43 - t236);
+        let t251 = t163 + c_rod_leg1 * (1.7857142857142858 * t218);
+        let t253 = t169 - t141 * t251;
+        let t255 = t189 * t251 - t176;
+        let t257 = t210 * t251 - t197;
+        let t258 = 1.7857142857142858 * acceleration[1];
+        let t260 = 1.7857142857142858 * t155;
+        let t269 = t166 * rate_dot_rod_leg1;
+        let t270 = t175 * rate_dot_rod_leg1;
+        let t271 = t196 * rate_dot_rod_leg1;
+        let t275 = acceleration[2] + 9.81;
+        let t277 = t130 * acceleration[0] + t133 * acceleration[1] + t139 * t275;
+        let t278 = 1.7857142857142858 * t277;
+        let t280 = 0.24 * rate_dot_arm_leg1 - t57;
+        let t292 = t180 * acceleration[0] + t174 * acceleration[1] + t187 * t275;
+        let t293 = 1.7857142857142858 * t292;
+        let t301 = t201 * acceleration[0] + t195 * acceleration[1] + t208 * t275;
+        let t302 = 1.7857142857142858 * t301;
+        let t306 = s_cross_leg1 * c_rod_leg1;
+        let t310 = t148 * s_rod_leg1;
+        let t317 = t58 + 0.24 * t26;
+        let t321 = s_rod_leg1 * (s_cross_leg1 * t317 + c_cross_leg1 * t280);
+        let t323 = 0.24 * t306 * (t168 - rate_dot_rod_leg1) + t310 * (t236 + t43)
+            + t15 * t222 + t141 * t321;
+        let t326 = s_cross_leg1 * t280 - c_cross_leg1 * t317;
+        let t327 = c_rod_leg1 * t326;
+        let t352 = 0.24 * c_cross_leg2;
+        let t357 = t97 * twist[1] - t115 * twist[0] - s_armcross_leg2 * twist[2];
+        let t358 = 0.8660254037844387 * twist[0];
+        let t359 = 0.5 * twist[1];
+        let t360 = t358 + t359;
+        let rate_arm_leg2 = t74 * (t357 - t101 * t360);
+        let t364 = rate_arm_leg2 * rate_arm_leg2;
+        let t367 = 1.7857142857142858 * t100;
+        let minus_rate_rod_leg2 = t367 * t360;
+        let t369 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t370 = 0.5 * s_armcross_leg2;
+        let t372 = 0.8660254037844387 * s_armcross_leg2;
+        let t377 = c_cross_leg2 * t73;
+        let t381 = t352 * (t74 * t101);
+        let t383 = t370 * twist[0] - t372 * twist[1] - c_armcross_leg2 * twist[2]
+            - t377 * t357 + t381 * t360;
+        let rate_cross_leg2 = t367 * t383;
+        let t385 = rate_cross_leg2 * rate_cross_leg2;
+        let t386 = t369 + t385;
+        let t389 = t97 * acceleration[1] - t115 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t352 * t364 + 0.56 * c_rod_leg2 * t386;
+        let t390 = 0.8660254037844387 * acceleration[0];
+        let t391 = 0.5 * acceleration[1];
+        let t392 = t390 + t391;
+        let t393 = 0.56 * s_rod_leg2;
+        let t394 = t393 * rate_cross_leg2;
+        let t398 = t392 + rate_cross_leg2 * t394 - t393 * t386;
+        let rate_dot_arm_leg2 = t74 * (t389 - t101 * t398);
+        let t402 = 9.81 * c_arm_leg2;
+        let t403 = 9.81 * s_arm_leg2;
+        let gcross_vx_leg2 = t367 * (t115 * t377 + t370 + 0.8660254037844387 * t381);
+        let gcross_vy_leg2 = t367 * (0.5 * t381 - (t97 * t377 + t372));
+        let gcross_vz_leg2 = t367 * (s_armcross_leg2 * t377 - c_armcross_leg2);
+        let t422 = gcross_vx_leg2 * t130 + gcross_vy_leg2 * t133 + gcross_vz_leg2 * t139;
+        let t428 = 0.24 * s_cross_leg2;
+        let t431 = t393 * (rate_cross_leg2 * minus_rate_rod_leg2);
+        let t436 = t370 * acceleration[0] - t372 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (t428 * t364 + t431 + t431)
+            - t377 * t389;
+        let t438 = t436 + t381 * t398;
+        let rate_dot_cross_leg2 = t367 * t438;
+        let t440 = s_rod_leg2 * rate_dot_cross_leg2;
+        let t442 = minus_rate_rod_leg2 * (1.7857142857142858 * t383);
+        let t443 = t440 - t442;
+        let t446 = c_rod_leg2 * (1.7857142857142858 * t431);
+        let t447 = s_rod_leg2 * t443 - t446;
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t100;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t100;
+        let t453 = minus_grod_vx_leg2 * t130 + minus_grod_vy_leg2 * t133;
+        let t455 = 3.188775510204082 * (t383 * t394);
+        let t456 = t453 * t455;
+        let t462 = gcross_vx_leg2 * t180 + gcross_vy_leg2 * t174 + gcross_vz_leg2 * t187;
+        let t466 = minus_grod_vx_leg2 * t180 + minus_grod_vy_leg2 * t174;
+        let t467 = t466 * t455;
+        let t473 = gcross_vx_leg2 * t201 + gcross_vy_leg2 * t195 + gcross_vz_leg2 * t208;
+        let t477 = minus_grod_vx_leg2 * t201 + minus_grod_vy_leg2 * t195;
+        let t478 = t477 * t455;
+        let t480 = t438 + t431;
+        let t484 = t443 - t442;
+        let t486 = s_rod_leg2 * (1.7857142857142858 * (t431 + t480)) + c_rod_leg2 * t484;
+        let t488 = t394 * t394;
+        let t491 = 3.188775510204082 * (t488 - t383 * t383);
+        let minus_rate_dot_rod_leg2 = t367 * t398;
+        let t503 = 3.188775510204082 * t488;
+        let t506 = s_rod_leg2 * (t455 - minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t369 - t503);
+        let t518 = t446 + c_rod_leg2 * (1.7857142857142858 * t480);
+        let t520 = t422 * t518 - t456;
+        let t522 = t467 - t462 * t518;
+        let t524 = t478 - t473 * t518;
+        let t525 = 1.7857142857142858 * t392;
+        let t527 = 1.7857142857142858 * t438;
+        let t536 = t453 * minus_rate_dot_rod_leg2;
+        let t537 = t466 * minus_rate_dot_rod_leg2;
+        let t538 = t477 * minus_rate_dot_rod_leg2;
+        let t543 = 0.24 * rate_dot_arm_leg2 - t402;
+        let t556 = t403 + 0.24 * t364;
+        let t558 = s_cross_leg2 * t543 - c_cross_leg2 * t556;
+        let t559 = c_rod_leg2 * t558;
+        let t564 = s_rod_leg2 * (s_cross_leg2 * t556 + c_cross_leg2 * t543);
+        let t567 = s_cross_leg2 * c_rod_leg2;
+        let t571 = t428 * s_rod_leg2;
+        let t578 = 0.24 * t567 * (t455 + minus_rate_dot_rod_leg2) + t571 * (t503 + t369)
+            - t352 * t484 + t462 * t564;
+        let t595 = 0.24 * c_cross_leg3;
+        let t596 = t358 - t359;
+        let t602 = t111 * twist[0] + t88 * twist[1] + s_armcross_leg3 * twist[2];
+        let rate_arm_leg3 = t79 * (t92 * t596 - t602);
+        let t605 = rate_arm_leg3 * rate_arm_leg3;
+        let t608 = 1.7857142857142858 * t91;
+        let rate_rod_leg3 = t608 * t596;
+        let t610 = rate_rod_leg3 * rate_rod_leg3;
+        let t611 = c_cross_leg3 * t78;
+        let t613 = 0.5 * s_armcross_leg3;
+        let t615 = 0.8660254037844387 * s_armcross_leg3;
+        let t622 = t595 * (t79 * t92);
+        let t624 = t611 * t602 + t613 * twist[0] + t615 * twist[1]
+            - c_armcross_leg3 * twist[2] - t622 * t596;
+        let rate_cross_leg3 = t608 * t624;
+        let t626 = rate_cross_leg3 * rate_cross_leg3;
+        let t627 = t610 + t626;
+        let t635 = t595 * t605 + 0.56 * c_rod_leg3 * t627
+            - (t111 * acceleration[0] + t88 * acceleration[1]
+                + s_armcross_leg3 * acceleration[2]);
+        let t636 = t390 - t391;
+        let t637 = 0.56 * s_rod_leg3;
+        let t638 = t637 * rate_cross_leg3;
+        let t642 = t636 - (rate_cross_leg3 * t638 - t637 * t627);
+        let rate_dot_arm_leg3 = t79 * (t635 + t92 * t642);
+        let t646 = 9.81 * c_arm_leg3;
+        let t647 = 9.81 * s_arm_leg3;
+        let gcross_vx_leg3 = t608 * (t111 * t611 + t613 - 0.8660254037844387 * t622);
+        let gcross_vy_leg3 = t608 * (t88 * t611 + t615 + 0.5 * t622);
+        let gcross_vz_leg3 = t608 * (s_armcross_leg3 * t611 - c_armcross_leg3);
+        let t666 = gcross_vx_leg3 * t130 + gcross_vy_leg3 * t133 + gcross_vz_leg3 * t139;
+        let t672 = 0.24 * s_cross_leg3;
+        let t675 = t637 * (rate_cross_leg3 * rate_rod_leg3);
+        let t680 = t613 * acceleration[0] + t615 * acceleration[1]
+            - c_armcross_leg3 * acceleration[2] - (t672 * t605 - t675 - t675)
+            - t611 * t635;
+        let t682 = t680 - t622 * t642;
+        let rate_dot_cross_leg3 = t608 * t682;
+        let t684 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t686 = rate_rod_leg3 * (1.7857142857142858 * t624);
+        let t687 = t684 + t686;
+        let t690 = c_rod_leg3 * (1.7857142857142858 * t675);
+        let t691 = s_rod_leg3 * t687 + t690;
+        let grod_vx_leg3 = 1.5464739353293548 * t91;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t91;
+        let t697 = grod_vx_leg3 * t130 - minus_grod_vy_leg3 * t133;
+        let t699 = 3.188775510204082 * (t624 * t638);
+        let t700 = t697 * t699;
+        let t706 = gcross_vx_leg3 * t180 + gcross_vy_leg3 * t174 + gcross_vz_leg3 * t187;
+        let t710 = minus_grod_vy_leg3 * t174 - grod_vx_leg3 * t180;
+        let t711 = t710 * t699;
+        let t717 = gcross_vx_leg3 * t201 + gcross_vy_leg3 * t195 + gcross_vz_leg3 * t208;
+        let t721 = minus_grod_vy_leg3 * t195 - grod_vx_leg3 * t201;
+        let t722 = t721 * t699;
+        let t724 = t686 + t687;
+        let t726 = t682 - t675;
+        let t730 = c_rod_leg3 * t724 - s_rod_leg3 * (1.7857142857142858 * (t675 - t726));
+        let t732 = t638 * t638;
+        let t735 = 3.188775510204082 * (t732 - t624 * t624);
+        let rate_dot_rod_leg3 = t608 * t642;
+        let t747 = 3.188775510204082 * t732;
+        let t750 = s_rod_leg3 * (t699 + rate_dot_rod_leg3) + c_rod_leg3 * (t610 - t747);
+        let t762 = c_rod_leg3 * (1.7857142857142858 * t726) - t690;
+        let t764 = t666 * t762 + t700;
+        let t766 = t711 - t706 * t762;
+        let t768 = t722 - t717 * t762;
+        let t769 = 1.7857142857142858 * t636;
+        let t771 = 1.7857142857142858 * t682;
+        let t780 = t697 * rate_dot_rod_leg3;
+        let t781 = t710 * rate_dot_rod_leg3;
+        let t782 = t721 * rate_dot_rod_leg3;
+        let t790 = 0.24 * rate_dot_arm_leg3 - t646;
+        let t799 = t647 + 0.24 * t605;
+        let t803 = s_rod_leg3 * (s_cross_leg3 * t799 + c_cross_leg3 * t790);
+        let t807 = s_cross_leg3 * t790 - c_cross_leg3 * t799;
+        let t808 = c_rod_leg3 * t807;
+        let t814 = s_cross_leg3 * c_rod_leg3;
+        let t818 = t672 * s_rod_leg3;
+        let t825 = 0.24 * t814 * (t699 - rate_dot_rod_leg3) + t818 * (t747 + t610)
+            - t595 * t724 + t717 * t803;
         Ok([
             [
-                rate_dot_arm_leg1, -t85, t86, rate_dot_arm_leg1, rate_arm_leg1,
-                ::overact::math::sign(rate_arm_leg1), 1.0, t236 * t250 + t254,
-                t236 * t304 - t252 * t309, t236 * t324 - t252 * t242, t337,
-                t236 * t342 - t252 * t300, -t352,
-                t361
+                rate_dot_arm_leg1, -t57, t58, rate_dot_arm_leg1, rate_arm_leg1,
+                ::overact::math::sign(rate_arm_leg1), 1.0, t141 * t164 - t169,
+                t166 * t216 - t141 * t224, -(t141 * t239 + t166 * t157), t253,
+                -(t141 * t258 + t166 * t260), t269,
+                t278
                     - 0.10285714285714286
-                        * (4.166666666666667 * t363 + 5.444444444444445 * t337
-                            - 5.444444444444445 * t352),
-                t413,
-                t300 * t389 + t242 * t393 + t55 * t397 + t236 * t410,
-                0.24 * t363,
+                        * (4.166666666666667 * t280 + 5.444444444444445 * t253
+                            + 5.444444444444445 * t269),
+                t323 - t166 * t327,
+                t15 * t41 - (0.42857142857142855 * (t306 * t155) + t157 * t310)
+                    - t141 * t326,
+                0.24 * t280,
                 0.0,
                 0.0,
                 0.0,
@@ -4532,15 +4074,15 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t537 * t551 - t557,
-                t537 * t587 + t555 * t592,
-                t537 * t609 + t555 * t543,
-                t622,
-                t537 * t631 + t555 * t583,
-                t641,
-                t361 - 0.56 * (t622 + t641),
-                -(t537 * t664 + t555 * t669),
-                t537 * t668,
+                t422 * t447 + t456,
+                t422 * t486 - t453 * t491,
+                t422 * t506 - t453 * t440,
+                t520,
+                -(t422 * t525 + t453 * t527),
+                t536,
+                t278 - 0.56 * (t520 + t536),
+                t453 * t559 - t422 * t564,
+                t422 * t558,
                 0.0,
                 0.0,
                 0.0,
@@ -4549,34 +4091,34 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t807 * t821 - t827,
-                t807 * t857 + t825 * t862,
-                t807 * t879 + t825 * t813,
-                t892,
-                t807 * t901 + t825 * t853,
-                t911,
-                t361 - 0.56 * (t892 + t911),
-                -(t807 * t934 + t825 * t939),
-                t807 * t938,
+                t666 * t691 - t700,
+                t666 * t730 + t697 * t735,
+                t666 * t750 + t697 * t684,
+                t764,
+                t666 * t769 + t697 * t771,
+                t780,
+                t278 - 0.56 * (t764 + t780),
+                -(t666 * t803 + t697 * t808),
+                t666 * t807,
                 0.0,
-                t360,
+                t277,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t272 * t250 + t275, t272 * t304 - t274 * t309,
-                t272 * t324 - t274 * t242, t339, t272 * t342 - t274 * t300, -t353,
-                -(t376 + 0.56 * (t339 - t353)), t274 * t411 - t272 * t405, t272 * t410, 0.0,
-                rate_dot_arm_leg2, -t530, t531, rate_dot_arm_leg2, rate_arm_leg2,
-                ::overact::math::sign(rate_arm_leg2), 1.0, t563 * t551 - t568,
-                t563 * t587 + t567 * t592, t563 * t609 + t567 * t543, t624,
-                t563 * t631 + t567 * t583, t642,
-                -(t376
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t176 - t189 * t164, t189 * t224 - t175 * t216,
+                t189 * t239 + t175 * t157, t255, t189 * t258 + t175 * t260, -t270,
+                -(t293 + 0.56 * (t255 - t270)), t175 * t327 - t189 * t321, t189 * t326, 0.0,
+                rate_dot_arm_leg2, -t402, t403, rate_dot_arm_leg2, rate_arm_leg2,
+                ::overact::math::sign(rate_arm_leg2), 1.0, -(t462 * t447 + t467),
+                t466 * t491 - t462 * t486, t466 * t440 - t462 * t506, t522,
+                t462 * t525 + t466 * t527, -t537,
+                -(t293
                     + 0.10285714285714286
-                        * (4.166666666666667 * t648 + 5.444444444444445 * t624
-                            + 5.444444444444445 * t642)),
-                t685,
-                t543 * t673 - t583 * t676 + rate_cross_leg2 * rate_cross_leg2 * t679
-                    + t563 * t668,
-                0.24 * t648,
+                        * (4.166666666666667 * t543 + 5.444444444444445 * t522
+                            - 5.444444444444445 * t537)),
+                t578 - t466 * t559,
+                0.42857142857142855 * (t567 * t438) + t440 * t571 + t352 * t385
+                    - t462 * t558,
+                0.24 * t543,
                 0.0,
                 0.0,
                 0.0,
@@ -4584,38 +4126,38 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t833 * t821 + t838,
-                t833 * t857 - t837 * t862,
-                t833 * t879 - t837 * t813,
-                t894,
-                t833 * t901 - t837 * t853,
-                -t912,
-                -(t376 + 0.56 * (t894 - t912)),
-                t837 * t939 - t833 * t934,
-                t833 * t938,
+                -(t706 * t691 + t711),
+                t710 * t735 - t706 * t730,
+                t710 * t684 - t706 * t750,
+                t766,
+                t710 * t771 - t706 * t769,
+                t781,
+                -(t293 + 0.56 * (t766 + t781)),
+                t706 * t803 - t710 * t808,
+                -(t706 * t807),
                 0.0,
-                -t375,
+                -t292,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t293 * t250 - t296, t293 * t304 + t295 * t309,
-                t293 * t324 + t295 * t242, t341, t293 * t342 + t295 * t300, t354,
-                t385 - 0.56 * (t341 + t354), -(t293 * t405 + t295 * t411), t293 * t410, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t574 * t551 + t579, t574 * t587 - t578 * t592,
-                t574 * t609 - t578 * t543, t626, t574 * t631 - t578 * t583, -t643,
-                t385 - 0.56 * (t626 - t643), t578 * t669 - t574 * t664, t574 * t668, 0.0,
-                rate_dot_arm_leg3, -t800, t801, rate_dot_arm_leg3, rate_arm_leg3,
-                ::overact::math::sign(rate_arm_leg3), 1.0, t844 * t821 - t849,
-                t844 * t857 + t848 * t862, t844 * t879 + t848 * t813, t896,
-                t844 * t901 + t848 * t853, t913,
-                t385
-                    - 0.10285714285714286
-                        * (4.166666666666667 * t921 + 5.444444444444445 * t896
-                            + 5.444444444444445 * t913),
-                t958,
-                t813 * t946 - t853 * t949 + rate_cross_leg3 * rate_cross_leg3 * t952
-                    + t844 * t938,
-                0.24 * t921,
-                t384,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t197 - t210 * t164, t210 * t224 - t196 * t216,
+                t210 * t239 + t196 * t157, t257, t210 * t258 + t196 * t260, -t271,
+                -(t302 + 0.56 * (t257 - t271)), t196 * t327 - t210 * t321, t210 * t326, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t473 * t447 + t478), t477 * t491 - t473 * t486,
+                t477 * t440 - t473 * t506, t524, t473 * t525 + t477 * t527, -t538,
+                -(t302 + 0.56 * (t524 - t538)), t473 * t564 - t477 * t559, -(t473 * t558), 0.0,
+                rate_dot_arm_leg3, -t646, t647, rate_dot_arm_leg3, rate_arm_leg3,
+                ::overact::math::sign(rate_arm_leg3), 1.0, -(t717 * t691 + t722),
+                t721 * t735 - t717 * t730, t721 * t684 - t717 * t750, t768,
+                t721 * t771 - t717 * t769, t782,
+                -(t302
+                    + 0.10285714285714286
+                        * (4.166666666666667 * t790 + 5.444444444444445 * t768
+                            + 5.444444444444445 * t782)),
+                t825 - t721 * t808,
+                0.42857142857142855 * (t814 * t682) + t684 * t818 + t595 * t626
+                    - t717 * t807,
+                0.24 * t790,
+                -t301,
             ],
         ])
     }
@@ -4630,7 +4172,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 1125 operations (399 additions, 709 multiplications, 17 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 1038 intermediates.
+    /// 1028 operations (362 additions, 647 multiplications, 19 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 941 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4641,8 +4183,7 @@ impl Delta {
         start: &[f64; 3],
     ) -> Result<[[f64; 52]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = pose[0] + 0.05;
-        let t1 = t0 - 0.2;
+        let t1 = pose[0] + 0.05 - 0.2;
         let t2 = t1 * t1;
         let t3 = pose[2] * pose[2];
         let t5 = 0.2304 * (t2 + t3);
@@ -4655,7 +4196,6 @@ impl Delta {
         let t16 = t5 - t12 * t12;
         ::overact::guard::reach(t16, "leg1")?;
         let t17 = ::overact::math::sqrt(t16);
-        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
         let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
         let t21 = 9.81 * c_arm_leg1;
         let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
@@ -4664,453 +4204,421 @@ impl Delta {
         ::overact::guard::reach(t29, "leg1")?;
         let c_rod_leg1 = ::overact::math::sqrt(t29);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t31 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.7857142857142858 * t31;
-        let t33 = pose[1] + 0.04330127018922194;
-        let t34 = t33 - 0.17320508075688776;
-        let t36 = pose[0] - 0.025;
-        let t37 = t36 + 0.1;
-        let t38 = 0.5 * t37;
-        let t39 = 0.8660254037844387 * t34 - t38;
-        let t42 = 0.2304 * (t39 * t39 + t3);
-        let t43 = 1.0 / t42;
-        let t44 = 0.48 * t39;
-        let t45 = t37 * t37;
-        let t48 = t45 + t34 * t34 + t3;
-        let t50 = t48 - 0.3136 + 0.0576;
-        let t53 = t42 - t50 * t50;
-        ::overact::guard::reach(t53, "leg2")?;
-        let t54 = ::overact::math::sqrt(t53);
-        let c_arm_leg2 = t43 * (t44 * t50 - t14 * t54);
-        let t59 = t39 - 0.24 * c_arm_leg2;
-        let t60 = 0.8660254037844387 * t37;
-        let t62 = t60 + 0.5 * t34;
-        let t63 = t62 * t62;
-        let t67 = 1.0 - 3.188775510204082 * t63;
-        ::overact::guard::reach(t67, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t67);
-        let c_cross_leg2 = (t48 - (0.0576 + t63) - 0.3136 * t67) / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t43 * (t14 * t50 + t44 * t54);
-        let s_cross_leg2 = 2.0833333333333335 * t54 / (0.56 * c_rod_leg2);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
-            + minus_s_arm_leg2 * s_cross_leg2;
-        let t83 = t62 * c_armcross_leg2;
-        let t86 = 1.5464739353293548 * t83 - 0.5 * c_rod_leg2;
-        let t89 = 0.24 * minus_s_arm_leg2;
-        let t90 = pose[2] - t89;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t62;
+        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
+        let t33 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t36 = pose[0] - 0.025 + 0.1;
+        let t37 = 0.5 * t36;
+        let t38 = 0.8660254037844387 * t33 - t37;
+        let t41 = 0.2304 * (t38 * t38 + t3);
+        let t42 = 1.0 / t41;
+        let t43 = 0.48 * t38;
+        let t44 = t36 * t36;
+        let t47 = t44 + t33 * t33 + t3;
+        let t49 = t47 - 0.3136 + 0.0576;
+        let t52 = t41 - t49 * t49;
+        ::overact::guard::reach(t52, "leg2")?;
+        let t53 = ::overact::math::sqrt(t52);
+        let c_arm_leg2 = t42 * (t43 * t49 - t14 * t53);
+        let t58 = 0.8660254037844387 * t36;
+        let t60 = t58 + 0.5 * t33;
+        let t61 = t60 * t60;
+        let t63 = 1.0 - 3.188775510204082 * t61;
+        ::overact::guard::reach(t63, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t63);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t65 = 0.56 * c_rod_leg2;
+        let s_cross_leg2 = 2.0833333333333335 * t53 / t65;
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
+        let minus_s_arm_leg2 = t42 * (t14 * t49 + t43 * t53);
+        let c_cross_leg2 = (t47 - (0.0576 + t61) - 0.3136 * t63) / (0.2688 * c_rod_leg2);
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t95 = minus_s_rod_leg2 * s_armcross_leg2;
-        let t96 = t90 * t95;
-        let t99 = 0.20784609690826528 * minus_s_arm_leg2;
-        let t102 = 0.8928571428571429 * t83 + 0.8660254037844387 * c_rod_leg2;
-        let t106 = t59 * (0.56 * t102) - 0.28 * t96;
-        let t111 = minus_s_arm_leg2 * t95;
-        let t113 = 0.1344 * (c_arm_leg2 * t102) - 0.0672 * t111;
-        let t118 = t99 * t106 - 0.8660254037844387 * t90 * t113 - 0.14 * (t54 * t86);
-        ::overact::guard::leg(t118, 0.06758306237512474, "leg2")?;
-        let t119 = 1.0 / t118;
-        let garm_vx_leg2 = (t59 * (0.56 * t86) - 0.4849742261192857 * t96) * t119;
-        let t121 = pose[1] - 0.04330127018922194;
-        let t122 = t121 + 0.17320508075688776;
-        let t124 = t60 - 0.5 * t122;
-        let t125 = t124 * t124;
-        let t127 = 1.0 - 3.188775510204082 * t125;
-        ::overact::guard::reach(t127, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t127);
-        let t130 = t38 + 0.8660254037844387 * t122;
-        let t133 = 0.2304 * (t130 * t130 + t3);
-        let t134 = 1.0 / t133;
-        let t135 = 0.48 * t130;
-        let t138 = t45 + t122 * t122 + t3;
-        let t140 = t138 - 0.3136 + 0.0576;
-        let t142 = t133 - t140 * t140;
-        ::overact::guard::reach(t142, "leg3")?;
-        let t143 = ::overact::math::sqrt(t142);
-        let s_arm_leg3 = t134 * (t135 * t143 - t14 * t140);
-        let t148 = 0.24 * s_arm_leg3;
-        let t149 = pose[2] + t148;
-        let t152 = 0.20784609690826528 * s_arm_leg3;
-        let minus_c_arm_leg3 = t134 * (t135 * t140 + t14 * t143);
-        let t158 = t130 - 0.24 * minus_c_arm_leg3;
-        let c_cross_leg3 = (t138 - (0.0576 + t125) - 0.3136 * t127)
+        let t80 = 1.0 / s_cross_leg2;
+        let t81 = 4.166666666666667 * t80;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t81;
+        let t84 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t86 = t37 + 0.8660254037844387 * t84;
+        let t89 = 0.2304 * (t86 * t86 + t3);
+        let t92 = t44 + t84 * t84 + t3;
+        let t94 = t92 - 0.3136 + 0.0576;
+        let t96 = t89 - t94 * t94;
+        ::overact::guard::reach(t96, "leg3")?;
+        let t97 = ::overact::math::sqrt(t96);
+        let t100 = t58 - 0.5 * t84;
+        let t101 = t100 * t100;
+        let t103 = 1.0 - 3.188775510204082 * t101;
+        ::overact::guard::reach(t103, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t103);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let t105 = 0.56 * c_rod_leg3;
+        let s_cross_leg3 = 2.0833333333333335 * t97 / t105;
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
+        let t107 = 1.0 / s_cross_leg3;
+        let t108 = 4.166666666666667 * t107;
+        let t109 = 1.0 / t89;
+        let t110 = 0.48 * t86;
+        let minus_c_arm_leg3 = t109 * (t110 * t94 + t14 * t97);
+        let c_cross_leg3 = (t92 - (0.0576 + t101) - 0.3136 * t103)
             / (0.2688 * c_rod_leg3);
-        let s_cross_leg3 = 2.0833333333333335 * t143 / (0.56 * c_rod_leg3);
+        let s_arm_leg3 = t109 * (t110 * t97 - t14 * t94);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t172 = t124 * minus_c_armcross_leg3;
-        let t174 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t172;
-        let s_rod_leg3 = 1.7857142857142858 * t124;
+        let t128 = 0.5 * minus_c_armcross_leg3;
+        let t129 = 1.0 / c_rod_leg3;
+        let t130 = 1.7857142857142858 * t129;
+        let t131 = t100 * t130;
+        let garm_vx_leg3 = t108 * (t128 + 0.8660254037844387 * t131);
+        let t136 = 1.0 / c_rod_leg2;
+        let t137 = 1.7857142857142858 * t136;
+        let t138 = t60 * t137;
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t143 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t81 * (0.8660254037844387 * t138 - t143);
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t181 = s_rod_leg3 * s_armcross_leg3;
-        let t182 = t149 * t181;
-        let t184 = t158 * (0.56 * t174) + 0.28 * t182;
-        let t189 = s_arm_leg3 * t181;
-        let t191 = 0.1344 * (minus_c_arm_leg3 * t174) - 0.0672 * t189;
-        let t196 = 1.5464739353293548 * t172 + 0.5 * c_rod_leg3;
-        let t199 = t152 * t184 + 0.8660254037844387 * t149 * t191 + 0.14 * (t143 * t196);
-        ::overact::guard::leg(t199, 0.06758306237512474, "leg3")?;
-        let t200 = 1.0 / t199;
-        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t149) * t200;
-        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t90) * t119;
-        let garm_vx_leg3 = (t158 * (0.56 * t196) - 0.4849742261192857 * t182) * t200;
-        let t213 = 0.24 * minus_s_arm_leg1;
-        let t214 = pose[2] - t213;
-        let t215 = 1.0 / t17;
-        let t216 = 2.0 * t215;
-        let garm_vz_leg1 = t214 * t216;
-        let garm_vy_leg3 = t184 * t200;
-        let garm_vy_leg1 = pose[1] * t216;
-        let t222 = garm_vz_leg1 * garm_vy_leg3 - garm_vy_leg1 * garm_vz_leg3;
-        let garm_vy_leg2 = t106 * t119;
-        let t226 = 0.24 * c_arm_leg1;
-        let t228 = t0 - (0.2 + t226);
-        let garm_vx_leg1 = t228 * t216;
-        let t231 = garm_vz_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vz_leg3;
-        let t236 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
-        let t238 = garm_vx_leg2 * t222 - garm_vy_leg2 * t231 + garm_vz_leg2 * t236;
-        ::overact::guard::platform(t238, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t238, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t238, 87.78853732233405, "kept actuators")?;
-        let t239 = 1.0 / t238;
-        let t240 = (garm_vx_leg2 * garm_vz_leg3 - garm_vz_leg2 * garm_vx_leg3) * t239;
-        let t241 = grod_vy_leg1 * t240;
-        let t242 = 0.48 * t215;
-        let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t108;
+        let t153 = 0.56 * c_rod_leg1;
+        let s_cross_leg1 = 2.0833333333333335 * t17 / t153;
+        ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
+        let t155 = 1.0 / s_cross_leg1;
+        let t156 = 4.166666666666667 * t155;
+        let t157 = pose[1] * grod_vy_leg1;
+        let garm_vy_leg1 = t156 * t157;
         let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t29) / (0.2688 * c_rod_leg1);
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t156;
+        let t170 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let garm_vy_leg3 = t108 * (t170 - 0.5 * t131);
+        let t175 = garm_vy_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vy_leg3;
+        let t177 = 0.8660254037844387 * c_armcross_leg2;
+        let garm_vy_leg2 = t81 * (t177 + 0.5 * t138);
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let gcross_vy_leg1 = t242
-            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t31)
-                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t31));
-        let t276 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
-            + garm_vx_leg3 * garm_vy_leg3;
-        let t281 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t281, 14.869730172882845, "actuators")?;
-        ::overact::guard::platform(t281, 14.869730172882845, "actuators")?;
-        let t282 = 1.0 / t281;
-        let t283 = t276 * t282;
-        let t285 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t276 * t283;
-        ::overact::guard::platform(t285, 14.869730172882843, "actuators")?;
-        ::overact::guard::platform(t285, 14.869730172882843, "actuators")?;
-        let t286 = 1.0 / t285;
-        let t296 = garm_vx_leg1 * actuator_velocities[0]
+        let garm_vx_leg1 = c_armcross_leg1 * t156;
+        let t187 = garm_vx_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vx_leg3;
+        let t192 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
+        let t194 = garm_vx_leg2 * t175 - garm_vy_leg2 * t187 - minus_garm_vz_leg2 * t192;
+        ::overact::guard::platform(t194, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t194, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t194, 87.78853732233405, "kept actuators")?;
+        let t195 = 1.0 / t194;
+        let t196 = (minus_garm_vz_leg2 * garm_vx_leg3
+            - garm_vx_leg2 * minus_garm_vz_leg3) * t195;
+        let t197 = grod_vy_leg1 * t196;
+        let t198 = c_cross_leg1 * t155;
+        let t203 = garm_vx_leg1 * actuator_velocities[0]
             + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2];
-        let t298 = garm_vy_leg1 * actuator_velocities[0]
+        let t208 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3;
+        ::overact::guard::platform(t208, 14.869730172882841, "actuators")?;
+        ::overact::guard::platform(t208, 14.869730172882841, "actuators")?;
+        let t209 = 1.0 / t208;
+        let t215 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3;
+        let t216 = t215 * t209;
+        let t223 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t215 * t216;
+        ::overact::guard::platform(t223, 14.869730172882846, "actuators")?;
+        ::overact::guard::platform(t223, 14.869730172882846, "actuators")?;
+        let t224 = 1.0 / t223;
+        let t231 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
-            + garm_vy_leg3 * actuator_velocities[2] - t296 * t283;
-        let t309 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
-            + garm_vx_leg3 * garm_vz_leg3;
-        let t310 = t309 * t282;
-        let t312 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
-            + garm_vy_leg3 * garm_vz_leg3 - t276 * t310;
-        let t313 = t312 * t286;
-        let t322 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + garm_vz_leg3 * garm_vz_leg3 - t309 * t310 - t312 * t313;
-        ::overact::guard::platform(t322, 34.855350201355726, "actuators")?;
-        ::overact::guard::platform(t322, 34.855350201355726, "actuators")?;
-        let t323 = 1.0 / t322;
-        let t333 = t323
-            * (garm_vz_leg1 * actuator_velocities[0]
-                + garm_vz_leg2 * actuator_velocities[1]
-                + garm_vz_leg3 * actuator_velocities[2] - t296 * t310 - t313 * t298);
-        let t335 = t286 * t298 - t313 * t333;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t242;
-        let t342 = t296 * t282 - t283 * t335 - t310 * t333;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t242;
-        let rate_cross_leg1 = gcross_vy_leg1 * t335 - minus_gcross_vx_leg1 * t342
-            - minus_gcross_vz_leg1 * t333;
-        let t348 = pose[1] * rate_cross_leg1;
-        let t349 = 1.7857142857142858 * t348;
-        let t350 = c_rod_leg1 * rate_cross_leg1;
-        let t351 = t349 * t350;
-        let t352 = t241 * t351;
-        let t356 = (garm_vy_leg2 * garm_vz_leg3 - garm_vz_leg2 * garm_vy_leg3) * t239;
-        let t363 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t239;
-        let t365 = minus_gcross_vx_leg1 * t356 + gcross_vy_leg1 * t240
-            + minus_gcross_vz_leg1 * t363;
-        let rate_rod_leg1 = grod_vy_leg1 * t335;
-        let t367 = s_armcross_leg1 * rate_rod_leg1;
-        let t369 = pose[1] * (rate_cross_leg1 * t367);
-        let t370 = actuator_velocities[0] * actuator_velocities[0];
-        let t373 = rate_cross_leg1 * rate_cross_leg1;
-        let t375 = c_armcross_leg1 * rate_rod_leg1;
-        let t377 = t367 * t367 + t373 + t375 * t375;
-        let t381 = t369 - (t226 * t370 + t228 * t377) + t369;
-        let t385 = rate_cross_leg1 * t348 - pose[1] * t377;
-        let t389 = pose[1] * (rate_cross_leg1 * t375);
-        let t394 = t389 - (t213 * t370 + t214 * t377) + t389;
-        let minus_rate_dot_arm_leg1 = garm_vx_leg1 * t381 + garm_vy_leg1 * t385
-            + garm_vz_leg1 * t394;
-        let t397 = actuator_accelerations[0] + minus_rate_dot_arm_leg1;
-        let t399 = actuator_velocities[1] * actuator_velocities[1];
-        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t86)
-            - 0.11639381426862856 * (minus_s_arm_leg2 * t102)) * t119;
-        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t86)
-            - 0.11639381426862856 * t111) * t119;
-        let minus_gcross_vy_leg2 = t113 * t119;
-        let rate_cross_leg2 = gcross_vz_leg2 * t333
-            - (minus_gcross_vx_leg2 * t342 + minus_gcross_vy_leg2 * t335);
-        let t418 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t90) - t59 * t99) * t119;
-        let minus_grod_vy_leg2 = 0.25 * t54 * t119;
-        let rate_rod_leg2 = grod_vx_leg2 * t342 - minus_grod_vy_leg2 * t335;
-        let t431 = t418 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t434 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t435 = 0.5 * rate_cross_leg2;
-        let t436 = t434 - t435;
-        let t439 = c_armcross_leg2 * rate_rod_leg2;
-        let t441 = t431 * t431 + t436 * t436 + t439 * t439;
-        let t444 = 0.20784609690826528 * c_arm_leg2;
-        let t446 = t33 - (0.17320508075688776 + t444);
-        let t447 = t435 * t439;
-        let t449 = 0.12 * c_arm_leg2;
-        let t451 = t36 + 0.1 + t449;
-        let t452 = t418 * t439;
-        let t454 = t446 * t447 + t451 * t452;
-        let t456 = t89 * t399 + t90 * t441 + t454 + t454;
-        let t465 = t446 * t436 - t451 * t431 + t90 * t439;
-        let t470 = 1.3333333333333333 * (t418 * t434);
-        let t473 = t449 * t399 - t451 * t441 - t431 * t465 + t90 * t452 + t446 * t470;
-        let t483 = t436 * t465 - (t444 * t399 + t446 * t441) + t90 * t447 - t451 * t470;
-        let rate_dot_arm_leg2 = garm_vz_leg2 * t456
-            - (garm_vx_leg2 * t473 + garm_vy_leg2 * t483);
-        let t487 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t490 = 0.20784609690826528 * minus_c_arm_leg3;
-        let t491 = actuator_velocities[2] * actuator_velocities[2];
-        let t494 = t121 - (t490 - 0.17320508075688776);
-        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t174)
-            + 0.0672 * (s_arm_leg3 * t196)) * t200;
-        let minus_gcross_vx_leg3 = (0.11639381426862856 * t189
-            + 0.1344 * (minus_c_arm_leg3 * t196)) * t200;
-        let minus_gcross_vy_leg3 = t191 * t200;
-        let rate_cross_leg3 = gcross_vz_leg3 * t333
-            - (minus_gcross_vx_leg3 * t342 + minus_gcross_vy_leg3 * t335);
-        let t512 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (t158 * t152
-            + 0.20784609690826528 * (minus_c_arm_leg3 * t149)) * t200;
-        let minus_grod_vy_leg3 = 0.25 * t143 * t200;
-        let rate_rod_leg3 = grod_vx_leg3 * t342 - minus_grod_vy_leg3 * t335;
-        let t525 = t512 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t527 = 0.5 * rate_cross_leg3;
-        let t529 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t530 = t527 + t529;
-        let t533 = minus_c_armcross_leg3 * rate_rod_leg3;
-        let t535 = t525 * t525 + t530 * t530 + t533 * t533;
-        let t538 = 0.12 * minus_c_arm_leg3;
-        let t540 = t36 - (t538 - 0.1);
-        let t545 = t540 * t525 - t494 * t530 - t149 * t533;
-        let t549 = 1.3333333333333333 * (t512 * t529);
-        let t551 = t527 * t533;
-        let t554 = t490 * t491 + t494 * t535 + t530 * t545 + t540 * t549 + t149 * t551;
-        let t561 = t512 * t533;
-        let t565 = t525 * t545 - (t538 * t491 + t540 * t535) + t149 * t561 + t494 * t549;
-        let t573 = t494 * t551 - t540 * t561;
-        let t575 = t148 * t491 - t149 * t535 + t573 + t573;
-        let rate_dot_arm_leg3 = garm_vy_leg3 * t554 - garm_vx_leg3 * t565
-            - garm_vz_leg3 * t575;
-        let t578 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t585 = garm_vx_leg1 * t397 + garm_vx_leg2 * t487 + garm_vx_leg3 * t578;
-        let t587 = garm_vy_leg1 * t397 + garm_vy_leg2 * t487 + garm_vy_leg3 * t578
-            - t283 * t585;
-        let t598 = t323
-            * (garm_vz_leg1 * t397 + garm_vz_leg2 * t487 + garm_vz_leg3 * t578
-                - t310 * t585 - t313 * t587);
-        let t600 = t286 * t587 - t313 * t598;
-        let t601 = t600 - t385;
-        let t607 = t282 * t585 - t283 * t600 - t310 * t598;
-        let rate_dot_cross_leg1 = gcross_vy_leg1 * t601
-            - minus_gcross_vx_leg1 * (t607 - t381)
-            - minus_gcross_vz_leg1 * (t598 - t394);
-        let t614 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t615 = rate_rod_leg1 * t350;
-        let t616 = t614 + t615;
-        let t618 = rate_rod_leg1 * t349;
-        let t619 = c_rod_leg1 * t618;
-        let t620 = s_rod_leg1 * t616 + t619;
-        let t623 = t231 * t239;
-        let t624 = grod_vy_leg1 * t623;
-        let t625 = t624 * t351;
-        let t626 = t222 * t239;
-        let t630 = t236 * t239;
-        let t632 = minus_gcross_vx_leg1 * t626 + gcross_vy_leg1 * t623
-            + minus_gcross_vz_leg1 * t630;
-        let t638 = (garm_vz_leg1 * garm_vy_leg2 - garm_vy_leg1 * garm_vz_leg2) * t239;
-        let t643 = (garm_vz_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vz_leg2) * t239;
-        let t649 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t239;
-        let t651 = minus_gcross_vx_leg1 * t638 + gcross_vy_leg1 * t643
-            + minus_gcross_vz_leg1 * t649;
-        let t653 = grod_vy_leg1 * t643;
-        let t654 = t653 * t351;
-        let t656 = t615 + t616;
-        let t658 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t659 = t658 - t618;
-        let t662 = c_rod_leg1 * t656 - s_rod_leg1 * (t618 - t659);
-        let t665 = 3.188775510204082 * (t348 * t348);
-        let t667 = t665 - t350 * t350;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t601;
-        let t679 = rate_rod_leg1 * rate_rod_leg1;
-        let t682 = s_rod_leg1 * (t351 + rate_dot_rod_leg1) + c_rod_leg1 * (t679 - t665);
-        let t693 = c_rod_leg1 * t659 - t619;
-        let t695 = t365 * t693 + t352;
-        let t697 = t632 * t693 + t625;
-        let t699 = t651 * t693 + t654;
-        let t700 = 1.7857142857142858 * t600;
-        let t710 = t241 * rate_dot_rod_leg1;
-        let t711 = t624 * rate_dot_rod_leg1;
-        let t712 = t653 * rate_dot_rod_leg1;
-        let t716 = t598 + 9.81;
-        let t718 = t356 * t607 - t240 * t600 + t363 * t716;
-        let t719 = 1.7857142857142858 * t718;
-        let t721 = 0.24 * actuator_accelerations[0] - t21;
-        let t733 = t626 * t607 - t623 * t600 + t630 * t716;
-        let t734 = 1.7857142857142858 * t733;
-        let t742 = t643 * t600 - t638 * t607 - t649 * t716;
-        let t743 = 1.7857142857142858 * t742;
-        let t747 = 0.8928571428571429 * t17;
-        let t751 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
-        let t755 = 0.24 * c_cross_leg1;
-        let t760 = t26 - 0.24 * t370;
-        let t763 = s_rod_leg1 * (c_cross_leg1 * t721 - s_cross_leg1 * t760);
-        let t768 = c_cross_leg1 * t760 + s_cross_leg1 * t721;
-        let t769 = c_rod_leg1 * t768;
-        let t771 = t747 * (t351 - rate_dot_rod_leg1) + t751 * (t665 + t679) - t755 * t656
-            + t365 * t763 + t241 * t769;
-        let t788 = 9.81 * c_arm_leg2;
-        let t789 = 9.81 * minus_s_arm_leg2;
-        let t795 = minus_gcross_vy_leg2 * t240 - minus_gcross_vx_leg2 * t356
-            + gcross_vz_leg2 * t363;
-        let t796 = 1.7857142857142858 * t465;
-        let t797 = rate_rod_leg2 * t796;
-        let t798 = c_rod_leg2 * t797;
-        let t799 = c_rod_leg2 * rate_cross_leg2;
-        let t800 = rate_rod_leg2 * t799;
-        let t803 = t607 - t473;
-        let t805 = t600 - t483;
-        let rate_dot_cross_leg2 = gcross_vz_leg2 * (t598 + t456)
-            - (minus_gcross_vx_leg2 * t803 + minus_gcross_vy_leg2 * t805);
-        let t809 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t810 = t800 - t809;
-        let t812 = t798 - minus_s_rod_leg2 * t810;
-        let t816 = grod_vx_leg2 * t356 + minus_grod_vy_leg2 * t240;
-        let t817 = t796 * t799;
-        let t818 = t816 * t817;
-        let t824 = minus_gcross_vy_leg2 * t623 - minus_gcross_vx_leg2 * t626
-            + gcross_vz_leg2 * t630;
-        let t828 = grod_vx_leg2 * t626 + minus_grod_vy_leg2 * t623;
-        let t829 = t828 * t817;
-        let t835 = minus_gcross_vx_leg2 * t638 - minus_gcross_vy_leg2 * t643
-            - gcross_vz_leg2 * t649;
-        let t839 = grod_vx_leg2 * t638 + minus_grod_vy_leg2 * t643;
-        let t840 = t839 * t817;
-        let t842 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t843 = t842 - t797;
-        let t846 = t800 + t810;
-        let t848 = minus_s_rod_leg2 * (t797 - t843) + c_rod_leg2 * t846;
-        let t851 = 3.188775510204082 * (t465 * t465);
-        let t852 = t799 * t799;
-        let t853 = t851 - t852;
-        let t862 = rate_rod_leg2 * rate_rod_leg2;
-        let rate_dot_rod_leg2 = grod_vx_leg2 * t803 - minus_grod_vy_leg2 * t805;
-        let t870 = c_rod_leg2 * (t862 - t851)
-            - minus_s_rod_leg2 * (t817 + rate_dot_rod_leg2);
-        let t881 = c_rod_leg2 * t843 - t798;
-        let t883 = t795 * t881 + t818;
-        let t885 = t824 * t881 + t829;
-        let t887 = t835 * t881 - t840;
-        let t891 = t817 - rate_dot_rod_leg2;
-        let t893 = minus_s_rod_leg2 * (t852 - t862) + c_rod_leg2 * t891;
-        let t902 = t816 * rate_dot_rod_leg2;
-        let t903 = t828 * rate_dot_rod_leg2;
-        let t904 = t839 * rate_dot_rod_leg2;
-        let t909 = 0.24 * actuator_accelerations[1] - t788;
-        let t922 = t789 - 0.24 * t399;
-        let t925 = minus_s_rod_leg2 * (c_cross_leg2 * t909 - s_cross_leg2 * t922);
-        let t929 = c_cross_leg2 * t922 + s_cross_leg2 * t909;
-        let t930 = c_rod_leg2 * t929;
-        let t933 = 0.8928571428571429 * t54;
-        let t936 = 0.42857142857142855 * (t62 * s_cross_leg2);
-        let t940 = 0.24 * c_cross_leg2;
-        let t946 = t933 * t891 - t936 * (t851 + t862) - t940 * t846 + t824 * t925
-            - t828 * t930;
-        let t961 = 9.81 * minus_c_arm_leg3;
-        let t962 = 9.81 * s_arm_leg3;
-        let t968 = minus_gcross_vy_leg3 * t240 - minus_gcross_vx_leg3 * t356
-            + gcross_vz_leg3 * t363;
-        let t971 = t607 - t565;
-        let t973 = t600 + t554;
-        let rate_dot_cross_leg3 = gcross_vz_leg3 * (t598 - t575)
-            - (minus_gcross_vx_leg3 * t971 + minus_gcross_vy_leg3 * t973);
-        let t977 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t978 = c_rod_leg3 * rate_cross_leg3;
-        let t979 = rate_rod_leg3 * t978;
-        let t980 = t977 + t979;
-        let t982 = 1.7857142857142858 * t545;
-        let t983 = rate_rod_leg3 * t982;
-        let t984 = c_rod_leg3 * t983;
-        let t985 = s_rod_leg3 * t980 + t984;
-        let t989 = grod_vx_leg3 * t356 + minus_grod_vy_leg3 * t240;
-        let t990 = t982 * t978;
-        let t991 = t989 * t990;
-        let t997 = minus_gcross_vy_leg3 * t623 - minus_gcross_vx_leg3 * t626
-            + gcross_vz_leg3 * t630;
-        let t1001 = grod_vx_leg3 * t626 + minus_grod_vy_leg3 * t623;
-        let t1002 = t1001 * t990;
-        let t1008 = minus_gcross_vx_leg3 * t638 - minus_gcross_vy_leg3 * t643
-            - gcross_vz_leg3 * t649;
-        let t1012 = grod_vx_leg3 * t638 + minus_grod_vy_leg3 * t643;
-        let t1013 = t1012 * t990;
-        let t1015 = t979 + t980;
-        let t1017 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t1018 = t1017 - t983;
-        let t1021 = c_rod_leg3 * t1015 - s_rod_leg3 * (t983 - t1018);
-        let t1024 = 3.188775510204082 * (t545 * t545);
-        let t1025 = t978 * t978;
-        let t1026 = t1024 - t1025;
-        let rate_dot_rod_leg3 = grod_vx_leg3 * t971 - minus_grod_vy_leg3 * t973;
-        let t1040 = rate_rod_leg3 * rate_rod_leg3;
-        let t1043 = s_rod_leg3 * (t990 + rate_dot_rod_leg3)
-            + c_rod_leg3 * (t1040 - t1024);
-        let t1054 = c_rod_leg3 * t1018 - t984;
-        let t1056 = t968 * t1054 + t991;
-        let t1058 = t997 * t1054 + t1002;
-        let t1060 = t1008 * t1054 - t1013;
-        let t1063 = t990 - rate_dot_rod_leg3;
-        let t1065 = s_rod_leg3 * (t1025 - t1040) - c_rod_leg3 * t1063;
-        let t1075 = t989 * rate_dot_rod_leg3;
-        let t1076 = t1001 * rate_dot_rod_leg3;
-        let t1077 = t1012 * rate_dot_rod_leg3;
-        let t1085 = t961 + 0.24 * actuator_accelerations[2];
-        let t1094 = t962 + 0.24 * t491;
-        let t1098 = s_rod_leg3 * (s_cross_leg3 * t1094 + c_cross_leg3 * t1085);
-        let t1102 = s_cross_leg3 * t1085 - c_cross_leg3 * t1094;
-        let t1103 = c_rod_leg3 * t1102;
-        let t1109 = 0.8928571428571429 * t143;
-        let t1112 = 0.42857142857142855 * (t124 * s_cross_leg3);
-        let t1116 = 0.24 * c_cross_leg3;
-        let t1122 = t1109 * t1063 + t1112 * (t1024 + t1040) - t1116 * t1015
-            - t1008 * t1098 + t1012 * t1103;
+            + garm_vy_leg3 * actuator_velocities[2] - t203 * t216;
+        let t237 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+            + garm_vx_leg3 * minus_garm_vz_leg3;
+        let t238 = t237 * t209;
+        let t245 = t215 * t238
+            - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
+                + garm_vy_leg3 * minus_garm_vz_leg3);
+        let t246 = t245 * t224;
+        let t255 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+            + minus_garm_vz_leg2 * minus_garm_vz_leg2
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t237 * t238 - t245 * t246;
+        ::overact::guard::platform(t255, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t255, 34.855350201355726, "actuators")?;
+        let t256 = 1.0 / t255;
+        let t266 = t256
+            * (t203 * t238
+                - (minus_garm_vz_leg1 * actuator_velocities[0]
+                    + minus_garm_vz_leg2 * actuator_velocities[1]
+                    + minus_garm_vz_leg3 * actuator_velocities[2]) - t246 * t231);
+        let t268 = t224 * t231 - t246 * t266;
+        let t272 = t203 * t209 - t216 * t268 + t238 * t266;
+        let t277 = 0.24 * c_cross_leg1;
+        let t278 = t277 * garm_vy_leg1;
+        let t284 = t198 * (c_armcross_leg1 * t272 - s_armcross_leg1 * t266) + t278 * t268
+            + s_armcross_leg1 * t272 + c_armcross_leg1 * t266;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t284;
+        let t286 = pose[1] * minus_rate_cross_leg1;
+        let t288 = 3.188775510204082 * (t284 * t286);
+        let t289 = t197 * t288;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * t278;
+        let minus_gcross_vx_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 * t198 + s_armcross_leg1);
+        let t298 = (minus_garm_vz_leg2 * garm_vy_leg3
+            - garm_vy_leg2 * minus_garm_vz_leg3) * t195;
+        let minus_gcross_vz_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 - s_armcross_leg1 * t198);
+        let t307 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t195;
+        let t309 = minus_gcross_vy_leg1 * t196 - minus_gcross_vx_leg1 * t298
+            - minus_gcross_vz_leg1 * t307;
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t311 = actuator_velocities[0] * actuator_velocities[0];
+        let t313 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t268;
+        let t315 = rate_rod_leg1 * rate_rod_leg1;
+        let t316 = t313 + t315;
+        let t318 = t277 * t311 + t153 * t316;
+        let t321 = minus_rate_cross_leg1 * t286 - pose[1] * t316;
+        let rate_dot_arm_leg1 = t156 * (t318 - t157 * t321);
+        let t325 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t327 = 0.24 * c_cross_leg2;
+        let t328 = actuator_velocities[1] * actuator_velocities[1];
+        let t330 = 0.8660254037844387 * t272;
+        let t331 = 0.5 * t268;
+        let t332 = t330 + t331;
+        let minus_rate_rod_leg2 = t137 * t332;
+        let t334 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t335 = 0.5 * s_armcross_leg2;
+        let t337 = 0.8660254037844387 * s_armcross_leg2;
+        let t342 = c_cross_leg2 * t80;
+        let t349 = t335 * t272 - t337 * t268 - c_armcross_leg2 * t266
+            - t342 * (t177 * t268 - t143 * t272 - s_armcross_leg2 * t266);
+        let t351 = t327 * (t81 * t138);
+        let t353 = t349 - t351 * t332;
+        let rate_cross_leg2 = t137 * t353;
+        let t355 = rate_cross_leg2 * rate_cross_leg2;
+        let t356 = t334 + t355;
+        let t358 = t327 * t328 + t65 * t356;
+        let t360 = t60 * rate_cross_leg2;
+        let t362 = t60 * t356 - rate_cross_leg2 * t360;
+        let rate_dot_arm_leg2 = t81 * (t358 + t138 * t362);
+        let t366 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t369 = 0.24 * c_cross_leg3;
+        let t370 = actuator_velocities[2] * actuator_velocities[2];
+        let t372 = t330 - t331;
+        let rate_rod_leg3 = t130 * t372;
+        let t374 = rate_rod_leg3 * rate_rod_leg3;
+        let t375 = 0.5 * s_armcross_leg3;
+        let t377 = 0.8660254037844387 * s_armcross_leg3;
+        let t382 = c_cross_leg3 * t107;
+        let t389 = t375 * t272 + t377 * t268 + minus_c_armcross_leg3 * t266
+            - t382 * (t128 * t272 + t170 * t268 - s_armcross_leg3 * t266);
+        let t391 = t369 * (t108 * t131);
+        let t393 = t389 - t391 * t372;
+        let rate_cross_leg3 = t130 * t393;
+        let t395 = rate_cross_leg3 * rate_cross_leg3;
+        let t396 = t374 + t395;
+        let t398 = t369 * t370 + t105 * t396;
+        let t399 = t100 * rate_cross_leg3;
+        let t402 = rate_cross_leg3 * t399 - t100 * t396;
+        let rate_dot_arm_leg3 = t108 * (t398 - t131 * t402);
+        let t406 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t408 = garm_vx_leg1 * t325 + garm_vx_leg2 * t366 + garm_vx_leg3 * t406;
+        let t416 = garm_vy_leg1 * t325 + garm_vy_leg2 * t366 + garm_vy_leg3 * t406
+            - t216 * t408;
+        let t427 = t256
+            * (t238 * t408
+                - (minus_garm_vz_leg1 * t325 + minus_garm_vz_leg2 * t366
+                    + minus_garm_vz_leg3 * t406) - t246 * t416);
+        let t429 = t224 * t416 - t246 * t427;
+        let t433 = t209 * t408 - t216 * t429 + t238 * t427;
+        let t439 = t429 - t321;
+        let t448 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
+        let t452 = t198 * (c_armcross_leg1 * t433 - s_armcross_leg1 * t427 + t318)
+            + t278 * t439 + s_armcross_leg1 * t433 + c_armcross_leg1 * t427
+            + 0.24 * s_cross_leg1 * t311 + t448 + t448;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t452;
+        let t454 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t456 = rate_rod_leg1 * (1.7857142857142858 * t284);
+        let t457 = t454 + t456;
+        let t460 = c_rod_leg1 * (1.7857142857142858 * t448);
+        let t461 = s_rod_leg1 * t457 + t460;
+        let t464 = t187 * t195;
+        let t465 = grod_vy_leg1 * t464;
+        let t466 = t465 * t288;
+        let t468 = t175 * t195;
+        let t471 = t192 * t195;
+        let t473 = minus_gcross_vy_leg1 * t464 - minus_gcross_vx_leg1 * t468
+            - minus_gcross_vz_leg1 * t471;
+        let t479 = (garm_vy_leg1 * minus_garm_vz_leg2
+            - minus_garm_vz_leg1 * garm_vy_leg2) * t195;
+        let t484 = (garm_vx_leg1 * minus_garm_vz_leg2
+            - minus_garm_vz_leg1 * garm_vx_leg2) * t195;
+        let t490 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t195;
+        let t492 = minus_gcross_vx_leg1 * t479 - minus_gcross_vy_leg1 * t484
+            + minus_gcross_vz_leg1 * t490;
+        let t494 = grod_vy_leg1 * t484;
+        let t495 = t494 * t288;
+        let t497 = t448 - t452;
+        let t501 = t456 + t457;
+        let t503 = 3.188775510204082 * (pose[1] * (t448 + t497)) - c_rod_leg1 * t501;
+        let t505 = t286 * t286;
+        let t508 = 3.188775510204082 * (t505 - t284 * t284);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t439;
+        let t520 = 3.188775510204082 * t505;
+        let t523 = s_rod_leg1 * (t288 + rate_dot_rod_leg1) + c_rod_leg1 * (t315 - t520);
+        let t535 = t460 + c_rod_leg1 * (1.7857142857142858 * t497);
+        let t537 = t309 * t535 - t289;
+        let t539 = t473 * t535 - t466;
+        let t541 = t492 * t535 + t495;
+        let t542 = 1.7857142857142858 * t429;
+        let t544 = 1.7857142857142858 * t452;
+        let t553 = t197 * rate_dot_rod_leg1;
+        let t554 = t465 * rate_dot_rod_leg1;
+        let t555 = t494 * rate_dot_rod_leg1;
+        let t559 = t427 + 9.81;
+        let t561 = t298 * t433 - t196 * t429 + t307 * t559;
+        let t562 = 1.7857142857142858 * t561;
+        let t564 = 0.24 * actuator_accelerations[0] - t21;
+        let t576 = t468 * t433 - t464 * t429 + t471 * t559;
+        let t577 = 1.7857142857142858 * t576;
+        let t585 = t484 * t429 - t479 * t433 - t490 * t559;
+        let t586 = 1.7857142857142858 * t585;
+        let t594 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
+        let t602 = t26 - 0.24 * t311;
+        let t605 = s_rod_leg1 * (c_cross_leg1 * t564 - s_cross_leg1 * t602);
+        let t607 = 0.8928571428571429 * t17 * (t288 - rate_dot_rod_leg1)
+            + t594 * (t520 + t315) + t277 * t501 - t309 * t605;
+        let t610 = c_cross_leg1 * t602 + s_cross_leg1 * t564;
+        let t611 = c_rod_leg1 * t610;
+        let t631 = 9.81 * c_arm_leg2;
+        let t632 = 9.81 * minus_s_arm_leg2;
+        let gcross_vx_leg2 = t137 * (t143 * t342 + t335 - 0.8660254037844387 * t351);
+        let minus_gcross_vy_leg2 = t137 * (t177 * t342 + t337 + 0.5 * t351);
+        let gcross_vz_leg2 = t137 * (s_armcross_leg2 * t342 - c_armcross_leg2);
+        let t651 = gcross_vx_leg2 * t298 + minus_gcross_vy_leg2 * t196
+            + gcross_vz_leg2 * t307;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t60;
+        let t661 = t60 * (rate_cross_leg2 * minus_rate_rod_leg2);
+        let t664 = t335 * t433 - t337 * t429 - c_armcross_leg2 * t427
+            - (0.24 * s_cross_leg2 * t328 - t661 - t661);
+        let t673 = 0.8660254037844387 * t433;
+        let t674 = 0.5 * t429;
+        let t675 = t673 + t674;
+        let t676 = t675 + t362;
+        let t678 = t664
+            - t342 * (t177 * t429 - t143 * t433 - s_armcross_leg2 * t427 + t358)
+            - t351 * t676;
+        let rate_dot_cross_leg2 = t137 * t678;
+        let t680 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t682 = minus_rate_rod_leg2 * (1.7857142857142858 * t353);
+        let t683 = t680 + t682;
+        let t686 = c_rod_leg2 * (1.7857142857142858 * t661);
+        let t687 = minus_s_rod_leg2 * t683 + t686;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t136;
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t136;
+        let t693 = minus_grod_vy_leg2 * t196 - minus_grod_vx_leg2 * t298;
+        let t695 = 3.188775510204082 * (t353 * t360);
+        let t696 = t693 * t695;
+        let t702 = gcross_vx_leg2 * t468 + minus_gcross_vy_leg2 * t464
+            + gcross_vz_leg2 * t471;
+        let t706 = minus_grod_vy_leg2 * t464 - minus_grod_vx_leg2 * t468;
+        let t707 = t706 * t695;
+        let t711 = minus_grod_vx_leg2 * t479 - minus_grod_vy_leg2 * t484;
+        let t712 = t711 * t695;
+        let t717 = gcross_vx_leg2 * t479 + minus_gcross_vy_leg2 * t484
+            + gcross_vz_leg2 * t490;
+        let t720 = t678 - t661;
+        let t724 = t682 + t683;
+        let t726 = 3.188775510204082 * (t60 * (t661 - t720)) - c_rod_leg2 * t724;
+        let t728 = t360 * t360;
+        let t731 = 3.188775510204082 * (t728 - t353 * t353);
+        let minus_rate_dot_rod_leg2 = t137 * t676;
+        let t743 = 3.188775510204082 * t728;
+        let t746 = minus_s_rod_leg2 * (t695 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t334 - t743);
+        let t758 = c_rod_leg2 * (1.7857142857142858 * t720) - t686;
+        let t760 = t651 * t758 - t696;
+        let t762 = t702 * t758 - t707;
+        let t764 = t717 * t758 + t712;
+        let t765 = 1.7857142857142858 * t678;
+        let t767 = 1.7857142857142858 * t675;
+        let t776 = t693 * minus_rate_dot_rod_leg2;
+        let t777 = t706 * minus_rate_dot_rod_leg2;
+        let t778 = t711 * minus_rate_dot_rod_leg2;
+        let t783 = 0.24 * actuator_accelerations[1] - t631;
+        let t796 = t632 - 0.24 * t328;
+        let t799 = minus_s_rod_leg2 * (c_cross_leg2 * t783 - s_cross_leg2 * t796);
+        let t803 = c_cross_leg2 * t796 + s_cross_leg2 * t783;
+        let t804 = c_rod_leg2 * t803;
+        let t811 = 0.42857142857142855 * (t60 * s_cross_leg2);
+        let t818 = 0.8928571428571429 * t53 * (minus_rate_dot_rod_leg2 - t695)
+            - t811 * (t743 + t334) + t327 * t724 + t702 * t799;
+        let t835 = 9.81 * minus_c_arm_leg3;
+        let t836 = 9.81 * s_arm_leg3;
+        let gcross_vx_leg3 = t130 * (t375 - t128 * t382 - 0.8660254037844387 * t391);
+        let gcross_vy_leg3 = t130 * (t377 - t170 * t382 + 0.5 * t391);
+        let gcross_vz_leg3 = t130 * (s_armcross_leg3 * t382 + minus_c_armcross_leg3);
+        let t855 = gcross_vx_leg3 * t298 - gcross_vy_leg3 * t196 + gcross_vz_leg3 * t307;
+        let s_rod_leg3 = 1.7857142857142858 * t100;
+        let t865 = t100 * (rate_cross_leg3 * rate_rod_leg3);
+        let t868 = t375 * t433 + t377 * t429 + minus_c_armcross_leg3 * t427
+            - (0.24 * s_cross_leg3 * t370 - t865 - t865);
+        let t877 = t673 - t674;
+        let t878 = t877 - t402;
+        let t880 = t868
+            - t382 * (t128 * t433 + t170 * t429 - s_armcross_leg3 * t427 + t398)
+            - t391 * t878;
+        let rate_dot_cross_leg3 = t130 * t880;
+        let t882 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t884 = rate_rod_leg3 * (1.7857142857142858 * t393);
+        let t885 = t882 + t884;
+        let t888 = c_rod_leg3 * (1.7857142857142858 * t865);
+        let t889 = s_rod_leg3 * t885 + t888;
+        let grod_vx_leg3 = 1.5464739353293548 * t129;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t129;
+        let t895 = grod_vx_leg3 * t298 + minus_grod_vy_leg3 * t196;
+        let t897 = 3.188775510204082 * (t393 * t399);
+        let t898 = t895 * t897;
+        let t904 = gcross_vx_leg3 * t468 - gcross_vy_leg3 * t464 + gcross_vz_leg3 * t471;
+        let t908 = grod_vx_leg3 * t468 + minus_grod_vy_leg3 * t464;
+        let t909 = t908 * t897;
+        let t915 = gcross_vy_leg3 * t484 - gcross_vx_leg3 * t479 - gcross_vz_leg3 * t490;
+        let t919 = grod_vx_leg3 * t479 + minus_grod_vy_leg3 * t484;
+        let t920 = t919 * t897;
+        let t922 = t884 + t885;
+        let t924 = t880 - t865;
+        let t928 = c_rod_leg3 * t922 - 3.188775510204082 * (t100 * (t865 - t924));
+        let t930 = t399 * t399;
+        let t933 = 3.188775510204082 * (t930 - t393 * t393);
+        let rate_dot_rod_leg3 = t130 * t878;
+        let t945 = 3.188775510204082 * t930;
+        let t948 = s_rod_leg3 * (t897 + rate_dot_rod_leg3) + c_rod_leg3 * (t374 - t945);
+        let t960 = c_rod_leg3 * (1.7857142857142858 * t924) - t888;
+        let t962 = t855 * t960 + t898;
+        let t964 = t904 * t960 + t909;
+        let t966 = t915 * t960 - t920;
+        let t967 = 1.7857142857142858 * t877;
+        let t969 = 1.7857142857142858 * t880;
+        let t978 = t895 * rate_dot_rod_leg3;
+        let t979 = t908 * rate_dot_rod_leg3;
+        let t980 = t919 * rate_dot_rod_leg3;
+        let t988 = t835 + 0.24 * actuator_accelerations[2];
+        let t997 = t836 + 0.24 * t370;
+        let t1001 = s_rod_leg3 * (s_cross_leg3 * t997 + c_cross_leg3 * t988);
+        let t1005 = s_cross_leg3 * t988 - c_cross_leg3 * t997;
+        let t1006 = c_rod_leg3 * t1005;
+        let t1016 = 0.42857142857142855 * (t100 * s_cross_leg3);
+        let t1023 = 0.8928571428571429 * t97 * (t897 - rate_dot_rod_leg3)
+            + t1016 * (t945 + t374) - t369 * t922 - t915 * t1001;
         Ok([
             [
                 actuator_accelerations[0], -t21, -t26, actuator_accelerations[0],
                 actuator_velocities[0], ::overact::math::sign(actuator_velocities[0]), 1.0,
-                t352 - t365 * t620, -(t365 * t662 + t241 * t667), -(t365 * t682 + t241 * t614),
-                -t695, -(t365 * t700 + t241 * t658), -t710,
-                t719
+                t289 - t309 * t461, t309 * t503 - t197 * t508, t309 * t523 + t197 * t454, t537,
+                t309 * t542 + t197 * t544, -t553,
+                t562
                     - 0.10285714285714286
-                        * (4.166666666666667 * t721 - 5.444444444444445 * t695
-                            - 5.444444444444445 * t710),
-                t771,
-                t747 * t658 + t751 * t614 + t373 * t755 - t365 * t768,
-                0.24 * t721,
+                        * (4.166666666666667 * t564 + 5.444444444444445 * t537
+                            - 5.444444444444445 * t553),
+                t607 + t197 * t611,
+                t277 * t313 - (1.594387755102041 * (t17 * t452) + t594 * t454)
+                    + t309 * t610,
+                0.24 * t564,
                 0.0,
                 0.0,
                 0.0,
@@ -5118,15 +4626,15 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t795 * t812 - t818,
-                t795 * t848 + t816 * t853,
-                t795 * t870 - t816 * t809,
-                t883,
-                t816 * t842 - t795 * t893,
-                t902,
-                t719 - 0.56 * (t883 + t902),
-                t795 * t925 - t816 * t930,
-                t795 * t929,
+                t651 * t687 + t696,
+                t651 * t726 + t693 * t731,
+                t651 * t746 - t693 * t680,
+                t760,
+                t693 * t765 - t651 * t767,
+                -t776,
+                t562 - 0.56 * (t760 - t776),
+                t651 * t799 - t693 * t804,
+                t651 * t803,
                 0.0,
                 0.0,
                 0.0,
@@ -5135,34 +4643,34 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t968 * t985 - t991,
-                t968 * t1021 + t989 * t1026,
-                t968 * t1043 + t989 * t977,
-                t1056,
-                t968 * t1065 + t989 * t1017,
-                t1075,
-                t719 - 0.56 * (t1056 + t1075),
-                -(t968 * t1098 + t989 * t1103),
-                t968 * t1102,
+                t855 * t889 - t898,
+                t855 * t928 + t895 * t933,
+                t855 * t948 + t895 * t882,
+                t962,
+                t855 * t967 + t895 * t969,
+                t978,
+                t562 - 0.56 * (t962 + t978),
+                -(t855 * t1001 + t895 * t1006),
+                t855 * t1005,
                 0.0,
-                t718,
+                t561,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t625 - t632 * t620, -(t632 * t662 + t624 * t667),
-                -(t632 * t682 + t624 * t614), -t697, -(t632 * t700 + t624 * t658), -t711,
-                t734 + 0.56 * (t697 + t711), t632 * t763 + t624 * t769, -(t632 * t768), 0.0,
-                actuator_accelerations[1], -t788, -t789, actuator_accelerations[1],
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t466 - t473 * t461, t473 * t503 - t465 * t508,
+                t473 * t523 + t465 * t454, t539, t473 * t542 + t465 * t544, -t554,
+                t577 - 0.56 * (t539 - t554), t465 * t611 - t473 * t605, t473 * t610, 0.0,
+                actuator_accelerations[1], -t631, -t632, actuator_accelerations[1],
                 actuator_velocities[1], ::overact::math::sign(actuator_velocities[1]), 1.0,
-                t824 * t812 - t829, t824 * t848 + t828 * t853, t824 * t870 - t828 * t809, t885,
-                t828 * t842 - t824 * t893, t903,
-                t734
+                t702 * t687 + t707, t702 * t726 + t706 * t731, t702 * t746 - t706 * t680, t762,
+                t706 * t765 - t702 * t767, -t777,
+                t577
                     - 0.10285714285714286
-                        * (4.166666666666667 * t909 + 5.444444444444445 * t885
-                            + 5.444444444444445 * t903),
-                t946,
-                t933 * t842 + t936 * t809 + rate_cross_leg2 * rate_cross_leg2 * t940
-                    + t824 * t929,
-                0.24 * t909,
+                        * (4.166666666666667 * t783 + 5.444444444444445 * t762
+                            - 5.444444444444445 * t777),
+                t818 - t706 * t804,
+                1.594387755102041 * (t53 * t678) + t811 * t680 + t327 * t355
+                    + t702 * t803,
+                0.24 * t783,
                 0.0,
                 0.0,
                 0.0,
@@ -5170,38 +4678,38 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t997 * t985 - t1002,
-                t997 * t1021 + t1001 * t1026,
-                t997 * t1043 + t1001 * t977,
-                t1058,
-                t997 * t1065 + t1001 * t1017,
-                t1076,
-                t734 - 0.56 * (t1058 + t1076),
-                -(t997 * t1098 + t1001 * t1103),
-                t997 * t1102,
+                t904 * t889 - t909,
+                t904 * t928 + t908 * t933,
+                t904 * t948 + t908 * t882,
+                t964,
+                t904 * t967 + t908 * t969,
+                t979,
+                t577 - 0.56 * (t964 + t979),
+                -(t904 * t1001 + t908 * t1006),
+                t904 * t1005,
                 0.0,
-                t733,
+                t576,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t651 * t620 - t654, t651 * t662 + t653 * t667,
-                t651 * t682 + t653 * t614, t699, t651 * t700 + t653 * t658, t712,
-                t743 - 0.56 * (t699 + t712), -(t651 * t763 + t653 * t769), t651 * t768, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t835 * t812 + t840, t835 * t848 - t839 * t853,
-                t835 * t870 + t839 * t809, t887, -(t835 * t893 + t839 * t842), -t904,
-                t743 - 0.56 * (t887 - t904), t835 * t925 + t839 * t930, t835 * t929, 0.0,
-                actuator_accelerations[2], t961, t962, actuator_accelerations[2],
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t492 * t461 + t495), t492 * t503 + t494 * t508,
+                t492 * t523 - t494 * t454, t541, t492 * t542 - t494 * t544, t555,
+                t586 - 0.56 * (t541 + t555), -(t492 * t605 + t494 * t611), t492 * t610, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t712 - t717 * t687, t711 * t731 - t717 * t726,
+                -(t717 * t746 + t711 * t680), -t764, t717 * t767 + t711 * t765, -t778,
+                t586 + 0.56 * (t764 + t778), -(t717 * t799 + t711 * t804), -(t717 * t803), 0.0,
+                actuator_accelerations[2], t835, t836, actuator_accelerations[2],
                 actuator_velocities[2], ::overact::math::sign(actuator_velocities[2]), 1.0,
-                t1008 * t985 + t1013, t1008 * t1021 - t1012 * t1026, t1008 * t1043 - t1012 * t977,
-                t1060, t1008 * t1065 - t1012 * t1017, -t1077,
-                t743
+                t915 * t889 + t920, t915 * t928 - t919 * t933, t915 * t948 - t919 * t882, t966,
+                t915 * t967 - t919 * t969, -t980,
+                t586
                     - 0.10285714285714286
-                        * (4.166666666666667 * t1085 + 5.444444444444445 * t1060
-                            - 5.444444444444445 * t1077),
-                t1122,
-                t1109 * t1017 + t1112 * t977 + rate_cross_leg3 * rate_cross_leg3 * t1116
-                    + t1008 * t1102,
-                0.24 * t1085,
-                t742,
+                        * (4.166666666666667 * t988 + 5.444444444444445 * t966
+                            - 5.444444444444445 * t980),
+                t1023 + t919 * t1006,
+                1.594387755102041 * (t97 * t880) + t1016 * t882 + t369 * t395
+                    + t915 * t1005,
+                0.24 * t988,
+                t585,
             ],
         ])
     }
@@ -5215,7 +4723,7 @@ impl Delta {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 882 operations (288 additions, 581 multiplications, 13 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 774 intermediates.
+    /// 777 operations (248 additions, 514 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 669 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5224,8 +4732,7 @@ impl Delta {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
-        let t1 = pose[0] + 0.05;
-        let t2 = t1 - 0.2;
+        let t2 = pose[0] + 0.05 - 0.2;
         let t3 = t2 * t2;
         let t4 = pose[2] * pose[2];
         let t6 = 0.2304 * (t3 + t4);
@@ -5238,415 +4745,381 @@ impl Delta {
         let t17 = t6 - t13 * t13;
         ::overact::guard::reach(t17, "leg1")?;
         let t18 = ::overact::math::sqrt(t17);
-        ::overact::guard::leg(t18, 0.24136807991115974, "leg1")?;
         let c_arm_leg1 = t7 * (t8 * t13 - t15 * t18);
-        let t22 = 0.24 * c_arm_leg1;
-        let t24 = t1 - (0.2 + t22);
-        let t25 = 1.0 / t18;
-        let t26 = 2.0 * t25;
-        let garm_vx_leg1 = t24 * t26;
-        let t28 = 0.48 * t25;
-        let minus_s_arm_leg1 = t7 * (t15 * t13 + t8 * t18);
-        let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t36 = 1.0 - 3.188775510204082 * t9;
-        ::overact::guard::reach(t36, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t36);
+        let t25 = 1.0 - 3.188775510204082 * t9;
+        ::overact::guard::reach(t25, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t25);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let s_cross_leg1 = 2.0833333333333335 * t18 / (0.56 * c_rod_leg1);
-        let c_cross_leg1 = (t11 - (0.0576 + t9) - 0.3136 * t36) / (0.2688 * c_rod_leg1);
-        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
-            - minus_s_arm_leg1 * c_cross_leg1;
-        let t50 = 1.0 / c_rod_leg1;
+        let c_cross_leg1 = (t11 - (0.0576 + t9) - 0.3136 * t25) / (0.2688 * c_rod_leg1);
+        let minus_s_arm_leg1 = t7 * (t15 * t13 + t8 * t18);
+        let t37 = 0.56 * c_rod_leg1;
+        let s_cross_leg1 = 2.0833333333333335 * t18 / t37;
+        ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let gcross_vy_leg1 = t28
-            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t50)
-                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t50));
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t28;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t28;
-        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
-            - minus_gcross_vz_leg1 * twist[2];
-        let grod_vy_leg1 = 1.7857142857142858 * t50;
+        let t41 = 1.0 / s_cross_leg1;
+        let t42 = 4.166666666666667 * t41;
+        let garm_vx_leg1 = c_armcross_leg1 * t42;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t50 = 0.24 * c_cross_leg1;
+        let t53 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
+        let t54 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7857142857142858 * t54;
+        let t56 = pose[1] * grod_vy_leg1;
+        let rate_arm_leg1 = t42 * (t53 + t56 * twist[1]);
+        let t60 = rate_arm_leg1 * rate_arm_leg1;
+        let t62 = c_cross_leg1 * t41;
+        let garm_vy_leg1 = t42 * t56;
+        let t65 = t50 * garm_vy_leg1;
+        let t71 = t62 * t53 + t65 * twist[1] + s_armcross_leg1 * twist[0]
+            + c_armcross_leg1 * twist[2];
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t71;
+        let t73 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t70 = s_armcross_leg1 * rate_rod_leg1;
-        let t72 = pose[1] * (rate_cross_leg1 * t70);
-        let garm_vy_leg1 = pose[1] * t26;
-        let t77 = 0.24 * minus_s_arm_leg1;
-        let t78 = pose[2] - t77;
-        let garm_vz_leg1 = t78 * t26;
-        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
-            + garm_vz_leg1 * twist[2];
-        let t82 = rate_arm_leg1 * rate_arm_leg1;
-        let t85 = rate_cross_leg1 * rate_cross_leg1;
-        let t87 = c_armcross_leg1 * rate_rod_leg1;
-        let t89 = t70 * t70 + t85 + t87 * t87;
-        let t94 = acceleration[0] - (t72 - (t22 * t82 + t24 * t89) + t72);
-        let t96 = pose[1] * rate_cross_leg1;
-        let t97 = rate_cross_leg1 * t96;
-        let t100 = acceleration[1] - (t97 - pose[1] * t89);
-        let t104 = pose[1] * (rate_cross_leg1 * t87);
-        let t110 = acceleration[2] - (t104 - (t77 * t82 + t78 * t89) + t104);
-        let rate_dot_arm_leg1 = garm_vx_leg1 * t94 + garm_vy_leg1 * t100
-            + garm_vz_leg1 * t110;
-        let t116 = pose[1] + 0.04330127018922194;
-        let t117 = t116 - 0.17320508075688776;
-        let t119 = pose[0] - 0.025;
-        let t120 = t119 + 0.1;
-        let t121 = 0.5 * t120;
-        let t122 = 0.8660254037844387 * t117 - t121;
-        let t125 = 0.2304 * (t122 * t122 + t4);
-        let t126 = 1.0 / t125;
-        let t127 = 0.48 * t122;
-        let t128 = t120 * t120;
-        let t131 = t128 + t117 * t117 + t4;
-        let t133 = t131 - 0.3136 + 0.0576;
-        let t136 = t125 - t133 * t133;
-        ::overact::guard::reach(t136, "leg2")?;
-        let t137 = ::overact::math::sqrt(t136);
-        let c_arm_leg2 = t126 * (t127 * t133 - t15 * t137);
-        let t142 = t122 - 0.24 * c_arm_leg2;
-        let t143 = 0.8660254037844387 * t120;
-        let t145 = t143 + 0.5 * t117;
-        let t146 = t145 * t145;
-        let t150 = 1.0 - 3.188775510204082 * t146;
-        ::overact::guard::reach(t150, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t150);
-        let c_cross_leg2 = (t131 - (0.0576 + t146) - 0.3136 * t150)
+        let t75 = rate_rod_leg1 * rate_rod_leg1;
+        let t76 = t73 + t75;
+        let t79 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t50 * t60 + t37 * t76;
+        let t80 = pose[1] * minus_rate_cross_leg1;
+        let t81 = minus_rate_cross_leg1 * t80;
+        let t84 = acceleration[1] - (t81 - pose[1] * t76);
+        let rate_dot_arm_leg1 = t42 * (t79 + t56 * t84);
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t42;
+        let t93 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t96 = pose[0] - 0.025 + 0.1;
+        let t97 = 0.5 * t96;
+        let t98 = 0.8660254037844387 * t93 - t97;
+        let t101 = 0.2304 * (t98 * t98 + t4);
+        let t102 = t96 * t96;
+        let t105 = t102 + t93 * t93 + t4;
+        let t107 = t105 - 0.3136 + 0.0576;
+        let t109 = t101 - t107 * t107;
+        ::overact::guard::reach(t109, "leg2")?;
+        let t110 = ::overact::math::sqrt(t109);
+        let t112 = 0.8660254037844387 * t96;
+        let t114 = t112 + 0.5 * t93;
+        let t115 = t114 * t114;
+        let t117 = 1.0 - 3.188775510204082 * t115;
+        ::overact::guard::reach(t117, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t117);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t119 = 0.56 * c_rod_leg2;
+        let s_cross_leg2 = 2.0833333333333335 * t110 / t119;
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
+        let t121 = 1.0 / s_cross_leg2;
+        let t122 = 4.166666666666667 * t121;
+        let t123 = 1.0 / c_rod_leg2;
+        let t124 = 1.7857142857142858 * t123;
+        let t125 = t114 * t124;
+        let t127 = 1.0 / t101;
+        let t128 = 0.48 * t98;
+        let c_arm_leg2 = t127 * (t128 * t107 - t15 * t110);
+        let c_cross_leg2 = (t105 - (0.0576 + t115) - 0.3136 * t117)
             / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t126 * (t15 * t133 + t127 * t137);
-        let s_cross_leg2 = 2.0833333333333335 * t137 / (0.56 * c_rod_leg2);
+        let minus_s_arm_leg2 = t127 * (t15 * t107 + t128 * t110);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t166 = t145 * c_armcross_leg2;
-        let t169 = 1.5464739353293548 * t166 - 0.5 * c_rod_leg2;
-        let t172 = 0.24 * minus_s_arm_leg2;
-        let t173 = pose[2] - t172;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t145;
+        let t146 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t122 * (0.8660254037844387 * t125 - t146);
+        let t149 = 0.8660254037844387 * c_armcross_leg2;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t178 = minus_s_rod_leg2 * s_armcross_leg2;
-        let t179 = t173 * t178;
-        let t182 = 0.20784609690826528 * minus_s_arm_leg2;
-        let t185 = 0.8928571428571429 * t166 + 0.8660254037844387 * c_rod_leg2;
-        let t189 = t142 * (0.56 * t185) - 0.28 * t179;
-        let t194 = minus_s_arm_leg2 * t178;
-        let t196 = 0.1344 * (c_arm_leg2 * t185) - 0.0672 * t194;
-        let t201 = t182 * t189 - 0.8660254037844387 * t173 * t196 - 0.14 * (t137 * t169);
-        ::overact::guard::leg(t201, 0.06758306237512474, "leg2")?;
-        let t202 = 1.0 / t201;
-        let garm_vx_leg2 = (t142 * (0.56 * t169) - 0.4849742261192857 * t179) * t202;
-        let t204 = 0.12 * c_arm_leg2;
-        let garm_vy_leg2 = t189 * t202;
-        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t173) * t202;
-        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
-            + garm_vz_leg2 * twist[2];
-        let t214 = rate_arm_leg2 * rate_arm_leg2;
-        let t217 = t119 + 0.1 + t204;
-        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t169)
-            - 0.11639381426862856 * (minus_s_arm_leg2 * t185)) * t202;
-        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t169)
-            - 0.11639381426862856 * t194) * t202;
-        let minus_gcross_vy_leg2 = t196 * t202;
-        let rate_cross_leg2 = gcross_vz_leg2 * twist[2]
-            - (minus_gcross_vx_leg2 * twist[0] + minus_gcross_vy_leg2 * twist[1]);
-        let t235 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t173) - t142 * t182)
-            * t202;
-        let minus_grod_vy_leg2 = 0.25 * t137 * t202;
-        let rate_rod_leg2 = grod_vx_leg2 * twist[0] - minus_grod_vy_leg2 * twist[1];
-        let t248 = t235 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t251 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t252 = 0.5 * rate_cross_leg2;
-        let t253 = t251 - t252;
-        let t256 = c_armcross_leg2 * rate_rod_leg2;
-        let t258 = t248 * t248 + t253 * t253 + t256 * t256;
-        let t261 = 0.20784609690826528 * c_arm_leg2;
-        let t263 = t116 - (0.17320508075688776 + t261);
-        let t268 = t263 * t253 - t217 * t248 + t173 * t256;
-        let t271 = t235 * t256;
-        let t274 = 1.3333333333333333 * (t235 * t251);
-        let t278 = acceleration[0]
-            - (t204 * t214 - t217 * t258 - t248 * t268 + t173 * t271 + t263 * t274);
-        let t285 = t252 * t256;
-        let t290 = acceleration[1]
-            - (t253 * t268 - (t261 * t214 + t263 * t258) + t173 * t285 - t217 * t274);
-        let t298 = t263 * t285 + t217 * t271;
-        let t301 = acceleration[2] + t172 * t214 + t173 * t258 + t298 + t298;
-        let rate_dot_arm_leg2 = garm_vx_leg2 * t278 + garm_vy_leg2 * t290
-            + garm_vz_leg2 * t301;
-        let t307 = pose[1] - 0.04330127018922194;
-        let t308 = t307 + 0.17320508075688776;
-        let t310 = t121 + 0.8660254037844387 * t308;
-        let t313 = 0.2304 * (t310 * t310 + t4);
-        let t314 = 1.0 / t313;
-        let t315 = 0.48 * t310;
-        let t318 = t128 + t308 * t308 + t4;
-        let t320 = t318 - 0.3136 + 0.0576;
-        let t323 = t313 - t320 * t320;
-        ::overact::guard::reach(t323, "leg3")?;
-        let t324 = ::overact::math::sqrt(t323);
-        let minus_c_arm_leg3 = t314 * (t315 * t320 + t15 * t324);
-        let t329 = t310 - 0.24 * minus_c_arm_leg3;
-        let t331 = t143 - 0.5 * t308;
-        let t332 = t331 * t331;
-        let t336 = 1.0 - 3.188775510204082 * t332;
-        ::overact::guard::reach(t336, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t336);
-        let c_cross_leg3 = (t318 - (0.0576 + t332) - 0.3136 * t336)
+        let t158 = 0.24 * c_cross_leg2;
+        let t163 = t149 * twist[1] - t146 * twist[0] - s_armcross_leg2 * twist[2];
+        let t164 = 0.8660254037844387 * twist[0];
+        let t165 = 0.5 * twist[1];
+        let t166 = t164 + t165;
+        let rate_arm_leg2 = t122 * (t163 + t125 * t166);
+        let t170 = rate_arm_leg2 * rate_arm_leg2;
+        let minus_rate_rod_leg2 = t124 * t166;
+        let t173 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t174 = 0.5 * s_armcross_leg2;
+        let t176 = 0.8660254037844387 * s_armcross_leg2;
+        let t181 = c_cross_leg2 * t121;
+        let t185 = t158 * (t122 * t125);
+        let t187 = t174 * twist[0] - t176 * twist[1] - c_armcross_leg2 * twist[2]
+            - t181 * t163 - t185 * t166;
+        let rate_cross_leg2 = t124 * t187;
+        let t189 = rate_cross_leg2 * rate_cross_leg2;
+        let t190 = t173 + t189;
+        let t193 = t149 * acceleration[1] - t146 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t158 * t170 + t119 * t190;
+        let t194 = 0.8660254037844387 * acceleration[0];
+        let t195 = 0.5 * acceleration[1];
+        let t196 = t194 + t195;
+        let t198 = t114 * rate_cross_leg2;
+        let t199 = rate_cross_leg2 * t198;
+        let t201 = t196 + t114 * t190 - t199;
+        let rate_dot_arm_leg2 = t122 * (t193 + t125 * t201);
+        let garm_vy_leg2 = t122 * (t149 + 0.5 * t125);
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t122;
+        let t213 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t215 = t97 + 0.8660254037844387 * t213;
+        let t218 = 0.2304 * (t215 * t215 + t4);
+        let t221 = t102 + t213 * t213 + t4;
+        let t223 = t221 - 0.3136 + 0.0576;
+        let t225 = t218 - t223 * t223;
+        ::overact::guard::reach(t225, "leg3")?;
+        let t226 = ::overact::math::sqrt(t225);
+        let t229 = t112 - 0.5 * t213;
+        let t230 = t229 * t229;
+        let t232 = 1.0 - 3.188775510204082 * t230;
+        ::overact::guard::reach(t232, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t232);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let t234 = 0.56 * c_rod_leg3;
+        let s_cross_leg3 = 2.0833333333333335 * t226 / t234;
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
+        let t236 = 1.0 / s_cross_leg3;
+        let t237 = 4.166666666666667 * t236;
+        let t238 = 1.0 / t218;
+        let t239 = 0.48 * t215;
+        let minus_c_arm_leg3 = t238 * (t239 * t223 + t15 * t226);
+        let c_cross_leg3 = (t221 - (0.0576 + t230) - 0.3136 * t232)
             / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t314 * (t315 * t324 - t15 * t320);
-        let s_cross_leg3 = 2.0833333333333335 * t324 / (0.56 * c_rod_leg3);
+        let s_arm_leg3 = t238 * (t239 * t226 - t15 * t223);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t352 = t331 * minus_c_armcross_leg3;
-        let t355 = 1.5464739353293548 * t352 + 0.5 * c_rod_leg3;
-        let t358 = 0.24 * s_arm_leg3;
-        let t359 = pose[2] + t358;
-        let s_rod_leg3 = 1.7857142857142858 * t331;
+        let t257 = 0.5 * minus_c_armcross_leg3;
+        let t258 = 1.0 / c_rod_leg3;
+        let t259 = 1.7857142857142858 * t258;
+        let t260 = t229 * t259;
+        let garm_vx_leg3 = t237 * (t257 + 0.8660254037844387 * t260);
+        let t265 = 0.8660254037844387 * minus_c_armcross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t364 = s_rod_leg3 * s_armcross_leg3;
-        let t365 = t359 * t364;
-        let t368 = 0.20784609690826528 * s_arm_leg3;
-        let t371 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t352;
-        let t375 = t329 * (0.56 * t371) + 0.28 * t365;
-        let t380 = s_arm_leg3 * t364;
-        let t382 = 0.1344 * (minus_c_arm_leg3 * t371) - 0.0672 * t380;
-        let t387 = t368 * t375 + 0.8660254037844387 * t359 * t382 + 0.14 * (t324 * t355);
-        ::overact::guard::leg(t387, 0.06758306237512474, "leg3")?;
-        let t388 = 1.0 / t387;
-        let garm_vx_leg3 = (t329 * (0.56 * t355) - 0.4849742261192857 * t365) * t388;
-        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t371)
-            + 0.0672 * (s_arm_leg3 * t355)) * t388;
-        let minus_gcross_vx_leg3 = (0.11639381426862856 * t380
-            + 0.1344 * (minus_c_arm_leg3 * t355)) * t388;
-        let minus_gcross_vy_leg3 = t382 * t388;
-        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
-            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
-        let t407 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (t329 * t368
-            + 0.20784609690826528 * (minus_c_arm_leg3 * t359)) * t388;
-        let minus_grod_vy_leg3 = 0.25 * t324 * t388;
-        let rate_rod_leg3 = grod_vx_leg3 * twist[0] - minus_grod_vy_leg3 * twist[1];
-        let t420 = t407 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t421 = 0.12 * minus_c_arm_leg3;
-        let t423 = t119 - (t421 - 0.1);
-        let t425 = 0.20784609690826528 * minus_c_arm_leg3;
-        let t427 = t307 - (t425 - 0.17320508075688776);
-        let t428 = 0.5 * rate_cross_leg3;
-        let t430 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t431 = t428 + t430;
-        let t434 = minus_c_armcross_leg3 * rate_rod_leg3;
-        let t436 = t423 * t420 - t427 * t431 - t359 * t434;
-        let garm_vy_leg3 = t375 * t388;
-        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t359) * t388;
-        let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
-            + garm_vz_leg3 * twist[2];
-        let t447 = rate_arm_leg3 * rate_arm_leg3;
-        let t453 = t420 * t420 + t431 * t431 + t434 * t434;
-        let t457 = t407 * t434;
-        let t460 = 1.3333333333333333 * (t407 * t430);
-        let t464 = acceleration[0]
-            - (t420 * t436 - (t421 * t447 + t423 * t453) + t359 * t457 + t427 * t460);
-        let t472 = t428 * t434;
-        let t476 = acceleration[1] + t425 * t447 + t427 * t453 + t431 * t436
-            + t423 * t460 + t359 * t472;
-        let t484 = t427 * t472 - t423 * t457;
-        let t487 = acceleration[2] - (t358 * t447 - t359 * t453 + t484 + t484);
-        let rate_dot_arm_leg3 = garm_vx_leg3 * t464 + garm_vy_leg3 * t476
-            + garm_vz_leg3 * t487;
-        let t493 = 9.81 * c_arm_leg1;
-        let t497 = 9.81 * c_arm_leg2;
-        let t501 = 9.81 * minus_c_arm_leg3;
-        let t505 = 9.81 * minus_s_arm_leg1;
-        let t509 = 9.81 * minus_s_arm_leg2;
-        let t513 = 9.81 * s_arm_leg3;
-        let rate_dot_cross_leg1 = gcross_vy_leg1 * t100 - minus_gcross_vx_leg1 * t94
-            - minus_gcross_vz_leg1 * t110;
-        let t540 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t541 = c_rod_leg1 * rate_cross_leg1;
-        let t542 = rate_rod_leg1 * t541;
-        let t543 = t540 + t542;
-        let t545 = 1.7857142857142858 * t96;
-        let t546 = rate_rod_leg1 * t545;
-        let t547 = c_rod_leg1 * t546;
-        let t548 = s_rod_leg1 * t543 + t547;
-        let t551 = 3.188775510204082 * t97;
-        let t554 = 1.7857142857142858 * t268;
-        let t555 = rate_rod_leg2 * t554;
-        let t556 = c_rod_leg2 * t555;
-        let t557 = c_rod_leg2 * rate_cross_leg2;
-        let t558 = rate_rod_leg2 * t557;
-        let rate_dot_cross_leg2 = gcross_vz_leg2 * t301
-            - (minus_gcross_vx_leg2 * t278 + minus_gcross_vy_leg2 * t290);
-        let t564 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t565 = t558 - t564;
-        let t567 = t556 - minus_s_rod_leg2 * t565;
-        let t569 = t554 * t557;
-        let t570 = grod_vx_leg2 * t569;
-        let t572 = minus_grod_vy_leg2 * t569;
-        let rate_dot_cross_leg3 = gcross_vz_leg3 * t487
-            - (minus_gcross_vx_leg3 * t464 + minus_gcross_vy_leg3 * t476);
-        let t581 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t582 = c_rod_leg3 * rate_cross_leg3;
-        let t583 = rate_rod_leg3 * t582;
-        let t584 = t581 + t583;
-        let t586 = 1.7857142857142858 * t436;
-        let t587 = rate_rod_leg3 * t586;
-        let t588 = c_rod_leg3 * t587;
-        let t589 = s_rod_leg3 * t584 + t588;
-        let t591 = t586 * t582;
-        let t592 = grod_vx_leg3 * t591;
-        let t594 = minus_grod_vy_leg3 * t591;
-        let t598 = t542 + t543;
-        let t600 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t601 = t600 - t546;
-        let t604 = c_rod_leg1 * t598 - s_rod_leg1 * (t546 - t601);
-        let t608 = 3.188775510204082 * (t96 * t96);
-        let t615 = 3.188775510204082 * (t268 * t268);
-        let t616 = t557 * t557;
-        let t617 = t615 - t616;
-        let t619 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t620 = t619 - t555;
-        let t623 = t558 + t565;
-        let t625 = minus_s_rod_leg2 * (t555 - t620) + c_rod_leg2 * t623;
-        let t633 = 3.188775510204082 * (t436 * t436);
-        let t634 = t582 * t582;
-        let t635 = t633 - t634;
-        let t637 = t583 + t584;
-        let t639 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t640 = t639 - t587;
-        let t643 = c_rod_leg3 * t637 - s_rod_leg3 * (t587 - t640);
-        let t650 = t545 * t541;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t100;
-        let t654 = rate_rod_leg1 * rate_rod_leg1;
-        let t657 = s_rod_leg1 * (t650 + rate_dot_rod_leg1) + c_rod_leg1 * (t654 - t608);
-        let t663 = rate_rod_leg2 * rate_rod_leg2;
-        let rate_dot_rod_leg2 = grod_vx_leg2 * t278 - minus_grod_vy_leg2 * t290;
-        let t671 = c_rod_leg2 * (t663 - t615)
-            - minus_s_rod_leg2 * (t569 + rate_dot_rod_leg2);
-        let rate_dot_rod_leg3 = grod_vx_leg3 * t464 - minus_grod_vy_leg3 * t476;
-        let t685 = rate_rod_leg3 * rate_rod_leg3;
-        let t688 = s_rod_leg3 * (t591 + rate_dot_rod_leg3) + c_rod_leg3 * (t685 - t633);
-        let t696 = c_rod_leg1 * t601 - t547;
-        let t702 = c_rod_leg2 * t620 - t556;
-        let t709 = c_rod_leg3 * t640 - t588;
-        let t715 = 1.7857142857142858 * acceleration[1];
-        let t723 = t569 - rate_dot_rod_leg2;
-        let t725 = minus_s_rod_leg2 * (t616 - t663) + c_rod_leg2 * t723;
-        let t736 = t591 - rate_dot_rod_leg3;
-        let t738 = s_rod_leg3 * (t634 - t685) - c_rod_leg3 * t736;
-        let t750 = 0.8928571428571429 * t18;
-        let t754 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
-        let t758 = 0.24 * c_cross_leg1;
-        let t760 = t750 * (t650 - rate_dot_rod_leg1) + t754 * (t608 + t654)
-            - t758 * t598;
-        let t763 = 0.24 * rate_dot_arm_leg1 - t493;
-        let t766 = t505 - 0.24 * t82;
-        let t769 = s_rod_leg1 * (c_cross_leg1 * t763 - s_cross_leg1 * t766);
-        let t777 = c_cross_leg1 * t766 + s_cross_leg1 * t763;
-        let t783 = 0.8928571428571429 * t137;
-        let t786 = 0.42857142857142855 * (t145 * s_cross_leg2);
-        let t790 = 0.24 * c_cross_leg2;
-        let t792 = t783 * t723 - t786 * (t615 + t663) - t790 * t623;
-        let t795 = 0.24 * rate_dot_arm_leg2 - t497;
-        let t798 = t509 - 0.24 * t214;
-        let t801 = minus_s_rod_leg2 * (c_cross_leg2 * t795 - s_cross_leg2 * t798);
-        let t806 = c_cross_leg2 * t798 + s_cross_leg2 * t795;
-        let t818 = 0.8928571428571429 * t324;
-        let t821 = 0.42857142857142855 * (t331 * s_cross_leg3);
-        let t825 = 0.24 * c_cross_leg3;
-        let t827 = t818 * t736 + t821 * (t633 + t685) - t825 * t637;
-        let t830 = t513 + 0.24 * t447;
-        let t833 = t501 + 0.24 * rate_dot_arm_leg3;
-        let t836 = s_rod_leg3 * (s_cross_leg3 * t830 + c_cross_leg3 * t833);
-        let t841 = s_cross_leg3 * t833 - c_cross_leg3 * t830;
-        let t857 = t600 * t750 + t540 * t754 + t85 * t758;
-        let t872 = t619 * t783 + t564 * t786 + rate_cross_leg2 * rate_cross_leg2 * t790;
-        let t887 = t639 * t818 + t581 * t821 + rate_cross_leg3 * rate_cross_leg3 * t825;
+        let t273 = 0.24 * c_cross_leg3;
+        let t278 = t257 * twist[0] + t265 * twist[1] - s_armcross_leg3 * twist[2];
+        let t279 = t164 - t165;
+        let rate_arm_leg3 = t237 * (t278 + t260 * t279);
+        let t283 = rate_arm_leg3 * rate_arm_leg3;
+        let rate_rod_leg3 = t259 * t279;
+        let t286 = rate_rod_leg3 * rate_rod_leg3;
+        let t287 = 0.5 * s_armcross_leg3;
+        let t289 = 0.8660254037844387 * s_armcross_leg3;
+        let t294 = c_cross_leg3 * t236;
+        let t298 = t273 * (t237 * t260);
+        let t300 = t287 * twist[0] + t289 * twist[1] + minus_c_armcross_leg3 * twist[2]
+            - t294 * t278 - t298 * t279;
+        let rate_cross_leg3 = t259 * t300;
+        let t302 = rate_cross_leg3 * rate_cross_leg3;
+        let t303 = t286 + t302;
+        let t306 = t257 * acceleration[0] + t265 * acceleration[1]
+            - s_armcross_leg3 * acceleration[2] + t273 * t283 + t234 * t303;
+        let t307 = t194 - t195;
+        let t308 = t229 * rate_cross_leg3;
+        let t309 = rate_cross_leg3 * t308;
+        let t312 = t307 - (t309 - t229 * t303);
+        let rate_dot_arm_leg3 = t237 * (t306 + t260 * t312);
+        let garm_vy_leg3 = t237 * (t265 - 0.5 * t260);
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t237;
+        let t323 = 9.81 * c_arm_leg1;
+        let t327 = 9.81 * c_arm_leg2;
+        let t331 = 9.81 * minus_c_arm_leg3;
+        let t335 = 9.81 * minus_s_arm_leg1;
+        let t339 = 9.81 * minus_s_arm_leg2;
+        let t343 = 9.81 * s_arm_leg3;
+        let minus_gcross_vx_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 * t62 + s_armcross_leg1);
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t378 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
+        let t382 = t62 * t79 + t65 * t84 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + 0.24 * s_cross_leg1 * t60 + t378
+            + t378;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t382;
+        let t384 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t386 = rate_rod_leg1 * (1.7857142857142858 * t71);
+        let t387 = t384 + t386;
+        let t390 = c_rod_leg1 * (1.7857142857142858 * t378);
+        let t391 = s_rod_leg1 * t387 + t390;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * t65;
+        let t395 = 3.188775510204082 * t81;
+        let minus_gcross_vz_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 - s_armcross_leg1 * t62);
+        let gcross_vx_leg2 = t124 * (t146 * t181 + t174 - 0.8660254037844387 * t185);
+        let minus_s_rod_leg2 = 1.7857142857142858 * t114;
+        let t415 = t114 * (rate_cross_leg2 * minus_rate_rod_leg2);
+        let t418 = t174 * acceleration[0] - t176 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2]
+            - (0.24 * s_cross_leg2 * t170 - t415 - t415);
+        let t422 = t418 - t181 * t193 - t185 * t201;
+        let rate_dot_cross_leg2 = t124 * t422;
+        let t424 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t426 = minus_rate_rod_leg2 * (1.7857142857142858 * t187);
+        let t427 = t424 + t426;
+        let t430 = c_rod_leg2 * (1.7857142857142858 * t415);
+        let t431 = minus_s_rod_leg2 * t427 + t430;
+        let t433 = 2.76156059880242 * t199;
+        let minus_gcross_vy_leg2 = t124 * (t149 * t181 + t176 + 0.5 * t185);
+        let t441 = 1.594387755102041 * t199;
+        let gcross_vz_leg2 = t124 * (s_armcross_leg2 * t181 - c_armcross_leg2);
+        let gcross_vx_leg3 = t259 * (t287 - t257 * t294 - 0.8660254037844387 * t298);
+        let s_rod_leg3 = 1.7857142857142858 * t229;
+        let t461 = t229 * (rate_cross_leg3 * rate_rod_leg3);
+        let t464 = t287 * acceleration[0] + t289 * acceleration[1]
+            + minus_c_armcross_leg3 * acceleration[2]
+            - (0.24 * s_cross_leg3 * t283 - t461 - t461);
+        let t468 = t464 - t294 * t306 - t298 * t312;
+        let rate_dot_cross_leg3 = t259 * t468;
+        let t470 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t472 = rate_rod_leg3 * (1.7857142857142858 * t300);
+        let t473 = t470 + t472;
+        let t476 = c_rod_leg3 * (1.7857142857142858 * t461);
+        let t477 = s_rod_leg3 * t473 + t476;
+        let t479 = 2.76156059880242 * t309;
+        let gcross_vy_leg3 = t259 * (t289 - t265 * t294 + 0.5 * t298);
+        let t487 = 1.594387755102041 * t309;
+        let gcross_vz_leg3 = t259 * (s_armcross_leg3 * t294 + minus_c_armcross_leg3);
+        let t493 = t378 - t382;
+        let t497 = t386 + t387;
+        let t499 = 3.188775510204082 * (pose[1] * (t378 + t493)) - c_rod_leg1 * t497;
+        let t501 = t80 * t80;
+        let t509 = t422 - t415;
+        let t513 = t426 + t427;
+        let t515 = 3.188775510204082 * (t114 * (t415 - t509)) - c_rod_leg2 * t513;
+        let t517 = t198 * t198;
+        let t520 = t123 * (t517 - t187 * t187);
+        let t527 = t472 + t473;
+        let t529 = t468 - t461;
+        let t533 = c_rod_leg3 * t527 - 3.188775510204082 * (t229 * (t461 - t529));
+        let t535 = t308 * t308;
+        let t538 = t258 * (t535 - t300 * t300);
+        let t546 = 3.188775510204082 * (t71 * t80);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t84;
+        let t550 = 3.188775510204082 * t501;
+        let t553 = s_rod_leg1 * (t546 + rate_dot_rod_leg1) + c_rod_leg1 * (t75 - t550);
+        let t560 = 3.188775510204082 * (t187 * t198);
+        let minus_rate_dot_rod_leg2 = t124 * t201;
+        let t564 = 3.188775510204082 * t517;
+        let t567 = minus_s_rod_leg2 * (t560 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t173 - t564);
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t123;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t123;
+        let t578 = 3.188775510204082 * (t300 * t308);
+        let rate_dot_rod_leg3 = t259 * t312;
+        let t582 = 3.188775510204082 * t535;
+        let t585 = s_rod_leg3 * (t578 + rate_dot_rod_leg3) + c_rod_leg3 * (t286 - t582);
+        let grod_vx_leg3 = 1.5464739353293548 * t258;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t258;
+        let t597 = t390 + c_rod_leg1 * (1.7857142857142858 * t493);
+        let t604 = c_rod_leg2 * (1.7857142857142858 * t509) - t430;
+        let t612 = c_rod_leg3 * (1.7857142857142858 * t529) - t476;
+        let t618 = 1.7857142857142858 * acceleration[1];
+        let t624 = 1.7857142857142858 * t196;
+        let t632 = 1.7857142857142858 * t307;
+        let t649 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
+        let t654 = 0.8928571428571429 * t18 * (t546 - rate_dot_rod_leg1)
+            + t649 * (t550 + t75) + t50 * t497;
+        let t657 = 0.24 * rate_dot_arm_leg1 - t323;
+        let t660 = t335 - 0.24 * t60;
+        let t663 = s_rod_leg1 * (c_cross_leg1 * t657 - s_cross_leg1 * t660);
+        let t671 = c_cross_leg1 * t660 + s_cross_leg1 * t657;
+        let t681 = 0.42857142857142855 * (t114 * s_cross_leg2);
+        let t686 = 0.8928571428571429 * t110 * (minus_rate_dot_rod_leg2 - t560)
+            - t681 * (t564 + t173) + t158 * t513;
+        let t689 = 0.24 * rate_dot_arm_leg2 - t327;
+        let t692 = t339 - 0.24 * t170;
+        let t695 = minus_s_rod_leg2 * (c_cross_leg2 * t689 - s_cross_leg2 * t692);
+        let t700 = c_cross_leg2 * t692 + s_cross_leg2 * t689;
+        let t716 = 0.42857142857142855 * (t229 * s_cross_leg3);
+        let t721 = 0.8928571428571429 * t226 * (t578 - rate_dot_rod_leg3)
+            + t716 * (t582 + t286) - t273 * t527;
+        let t724 = t343 + 0.24 * t283;
+        let t727 = t331 + 0.24 * rate_dot_arm_leg3;
+        let t730 = s_rod_leg3 * (s_cross_leg3 * t724 + c_cross_leg3 * t727);
+        let t735 = s_cross_leg3 * t727 - c_cross_leg3 * t724;
+        let t752 = t50 * t73 - (1.594387755102041 * (t18 * t382) + t384 * t649);
+        let t767 = 1.594387755102041 * (t110 * t422) + t424 * t681 + t158 * t189;
+        let t782 = 1.594387755102041 * (t226 * t468) + t470 * t716 + t273 * t302;
         Ok([
             [
                 acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1, garm_vx_leg2 * rate_dot_arm_leg2,
-                garm_vx_leg3 * rate_dot_arm_leg3, -(garm_vx_leg1 * t493), -(garm_vx_leg2 * t497),
-                garm_vx_leg3 * t501, -(garm_vx_leg1 * t505), -(garm_vx_leg2 * t509),
-                garm_vx_leg3 * t513, garm_vx_leg1 * rate_arm_leg1, garm_vx_leg2 * rate_arm_leg2,
+                garm_vx_leg3 * rate_dot_arm_leg3, -(garm_vx_leg1 * t323), -(garm_vx_leg2 * t327),
+                garm_vx_leg3 * t331, -(garm_vx_leg1 * t335), -(garm_vx_leg2 * t339),
+                garm_vx_leg3 * t343, garm_vx_leg1 * rate_arm_leg1, garm_vx_leg2 * rate_arm_leg2,
                 garm_vx_leg3 * rate_arm_leg3, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_vx_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3), garm_vx_leg1, garm_vx_leg2,
-                garm_vx_leg3, -(minus_gcross_vx_leg1 * t548), -(minus_gcross_vx_leg2 * t567 + t570),
-                -(minus_gcross_vx_leg3 * t589 + t592), -(minus_gcross_vx_leg1 * t604),
-                grod_vx_leg2 * t617 - minus_gcross_vx_leg2 * t625,
-                grod_vx_leg3 * t635 - minus_gcross_vx_leg3 * t643, -(minus_gcross_vx_leg1 * t657),
-                -(minus_gcross_vx_leg2 * t671 + grod_vx_leg2 * t564),
-                grod_vx_leg3 * t581 - minus_gcross_vx_leg3 * t688, -(minus_gcross_vx_leg1 * t696),
-                t570 - minus_gcross_vx_leg2 * t702, t592 - minus_gcross_vx_leg3 * t709,
-                -(minus_gcross_vx_leg1 * t715), minus_gcross_vx_leg2 * t725 + grod_vx_leg2 * t619,
-                grod_vx_leg3 * t639 - minus_gcross_vx_leg3 * t738, 0.0,
-                grod_vx_leg2 * rate_dot_rod_leg2, grod_vx_leg3 * rate_dot_rod_leg3,
-                garm_vx_leg1 * t760 + minus_gcross_vx_leg1 * t769,
-                garm_vx_leg2 * t792 - minus_gcross_vx_leg2 * t801
-                    - grod_vx_leg2 * (c_rod_leg2 * t806),
-                garm_vx_leg3 * t827 + minus_gcross_vx_leg3 * t836
-                    - grod_vx_leg3 * (c_rod_leg3 * t841),
-                garm_vx_leg1 * t857 - minus_gcross_vx_leg1 * t777,
-                garm_vx_leg2 * t872 - minus_gcross_vx_leg2 * t806,
-                garm_vx_leg3 * t887 - minus_gcross_vx_leg3 * t841,
+                garm_vx_leg3, minus_gcross_vx_leg1 * t391, gcross_vx_leg2 * t431 - t433,
+                gcross_vx_leg3 * t477 - t479, -(minus_gcross_vx_leg1 * t499),
+                gcross_vx_leg2 * t515 - 4.9313582121471775 * t520,
+                gcross_vx_leg3 * t533 + 4.9313582121471775 * t538, -(minus_gcross_vx_leg1 * t553),
+                gcross_vx_leg2 * t567 + minus_grod_vx_leg2 * t424,
+                gcross_vx_leg3 * t585 + grod_vx_leg3 * t470, -(minus_gcross_vx_leg1 * t597),
+                gcross_vx_leg2 * t604 + t433, gcross_vx_leg3 * t612 + t479,
+                -(minus_gcross_vx_leg1 * t618),
+                -(gcross_vx_leg2 * t624 + 1.5464739353293548 * rate_dot_cross_leg2),
+                gcross_vx_leg3 * t632 + 1.5464739353293548 * rate_dot_cross_leg3, 0.0,
+                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2, grod_vx_leg3 * rate_dot_rod_leg3,
+                garm_vx_leg1 * t654 + minus_gcross_vx_leg1 * t663,
+                garm_vx_leg2 * t686 + gcross_vx_leg2 * t695
+                    + minus_grod_vx_leg2 * (c_rod_leg2 * t700),
+                garm_vx_leg3 * t721 - gcross_vx_leg3 * t730
+                    - grod_vx_leg3 * (c_rod_leg3 * t735),
+                garm_vx_leg1 * t752 - minus_gcross_vx_leg1 * t671,
+                garm_vx_leg2 * t767 + gcross_vx_leg2 * t700,
+                garm_vx_leg3 * t782 + gcross_vx_leg3 * t735,
             ],
             [
                 acceleration[1], garm_vy_leg1 * rate_dot_arm_leg1, garm_vy_leg2 * rate_dot_arm_leg2,
-                garm_vy_leg3 * rate_dot_arm_leg3, -(garm_vy_leg1 * t493), -(garm_vy_leg2 * t497),
-                garm_vy_leg3 * t501, -(garm_vy_leg1 * t505), -(garm_vy_leg2 * t509),
-                garm_vy_leg3 * t513, garm_vy_leg1 * rate_arm_leg1, garm_vy_leg2 * rate_arm_leg2,
+                garm_vy_leg3 * rate_dot_arm_leg3, -(garm_vy_leg1 * t323), -(garm_vy_leg2 * t327),
+                garm_vy_leg3 * t331, -(garm_vy_leg1 * t335), -(garm_vy_leg2 * t339),
+                garm_vy_leg3 * t343, garm_vy_leg1 * rate_arm_leg1, garm_vy_leg2 * rate_arm_leg2,
                 garm_vy_leg3 * rate_arm_leg3, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_vy_leg3, rate_arm_leg3), garm_vy_leg1, garm_vy_leg2,
-                garm_vy_leg3, gcross_vy_leg1 * t548 - t551, t572 - minus_gcross_vy_leg2 * t567,
-                t594 - minus_gcross_vy_leg3 * t589,
-                gcross_vy_leg1 * t604 + grod_vy_leg1 * (t608 - t541 * t541),
-                -(minus_gcross_vy_leg2 * t625 + minus_grod_vy_leg2 * t617),
-                -(minus_gcross_vy_leg3 * t643 + minus_grod_vy_leg3 * t635),
-                gcross_vy_leg1 * t657 + grod_vy_leg1 * t540,
-                minus_grod_vy_leg2 * t564 - minus_gcross_vy_leg2 * t671,
-                -(minus_gcross_vy_leg3 * t688 + minus_grod_vy_leg3 * t581),
-                gcross_vy_leg1 * t696 + t551, -(minus_gcross_vy_leg2 * t702 + t572),
-                -(minus_gcross_vy_leg3 * t709 + t594),
-                gcross_vy_leg1 * t715 + 1.7857142857142858 * rate_dot_cross_leg1,
-                minus_gcross_vy_leg2 * t725 - 0.8928571428571429 * rate_dot_cross_leg2,
-                -(minus_gcross_vy_leg3 * t738
-                    + 0.8928571428571429 * rate_dot_cross_leg3),
+                garm_vy_leg3, minus_gcross_vy_leg1 * t391 - t395,
+                -(minus_gcross_vy_leg2 * t431 + t441), gcross_vy_leg3 * t477 + t487,
+                5.694241982507289 * (t54 * (t501 - t71 * t71))
+                    - minus_gcross_vy_leg1 * t499,
+                -(minus_gcross_vy_leg2 * t515 + 2.8471209912536444 * t520),
+                gcross_vy_leg3 * t533 - 2.8471209912536444 * t538,
+                -(minus_gcross_vy_leg1 * t553 + grod_vy_leg1 * t384),
+                minus_grod_vy_leg2 * t424 - minus_gcross_vy_leg2 * t567,
+                gcross_vy_leg3 * t585 - minus_grod_vy_leg3 * t470,
+                t395 - minus_gcross_vy_leg1 * t597,
+                t441 - minus_gcross_vy_leg2 * t604,
+                gcross_vy_leg3 * t612 - t487,
+                -(minus_gcross_vy_leg1 * t618
+                    + 1.7857142857142858 * minus_rate_dot_cross_leg1),
+                minus_gcross_vy_leg2 * t624 - 0.8928571428571429 * rate_dot_cross_leg2,
+                gcross_vy_leg3 * t632 - 0.8928571428571429 * rate_dot_cross_leg3,
                 grod_vy_leg1 * rate_dot_rod_leg1,
-                -(minus_grod_vy_leg2 * rate_dot_rod_leg2),
+                minus_grod_vy_leg2 * minus_rate_dot_rod_leg2,
                 -(minus_grod_vy_leg3 * rate_dot_rod_leg3),
-                garm_vy_leg1 * t760 - gcross_vy_leg1 * t769 - 1.7857142857142858 * t777,
-                garm_vy_leg2 * t792 - minus_gcross_vy_leg2 * t801
-                    + 0.8928571428571429 * t806,
-                garm_vy_leg3 * t827 + minus_gcross_vy_leg3 * t836
-                    + 0.8928571428571429 * t841,
-                garm_vy_leg1 * t857 + gcross_vy_leg1 * t777,
-                garm_vy_leg2 * t872 - minus_gcross_vy_leg2 * t806,
-                garm_vy_leg3 * t887 - minus_gcross_vy_leg3 * t841,
+                garm_vy_leg1 * t654 + minus_gcross_vy_leg1 * t663
+                    - 1.7857142857142858 * t671,
+                garm_vy_leg2 * t686 - minus_gcross_vy_leg2 * t695
+                    + 0.8928571428571429 * t700,
+                garm_vy_leg3 * t721 - gcross_vy_leg3 * t730 + 0.8928571428571429 * t735,
+                garm_vy_leg1 * t752 - minus_gcross_vy_leg1 * t671,
+                garm_vy_leg2 * t767 - minus_gcross_vy_leg2 * t700,
+                garm_vy_leg3 * t782 + gcross_vy_leg3 * t735,
             ],
             [
-                acceleration[2] + 9.81, garm_vz_leg1 * rate_dot_arm_leg1,
-                garm_vz_leg2 * rate_dot_arm_leg2, garm_vz_leg3 * rate_dot_arm_leg3,
-                -(garm_vz_leg1 * t493), -(garm_vz_leg2 * t497), garm_vz_leg3 * t501,
-                -(garm_vz_leg1 * t505), -(garm_vz_leg2 * t509), garm_vz_leg3 * t513,
-                garm_vz_leg1 * rate_arm_leg1, garm_vz_leg2 * rate_arm_leg2,
-                garm_vz_leg3 * rate_arm_leg3, ::overact::math::signed(garm_vz_leg1, rate_arm_leg1),
-                ::overact::math::signed(garm_vz_leg2, rate_arm_leg2),
-                ::overact::math::signed(garm_vz_leg3, rate_arm_leg3), garm_vz_leg1, garm_vz_leg2,
-                garm_vz_leg3, -(minus_gcross_vz_leg1 * t548), gcross_vz_leg2 * t567,
-                gcross_vz_leg3 * t589, -(minus_gcross_vz_leg1 * t604), gcross_vz_leg2 * t625,
-                gcross_vz_leg3 * t643, -(minus_gcross_vz_leg1 * t657), gcross_vz_leg2 * t671,
-                gcross_vz_leg3 * t688, -(minus_gcross_vz_leg1 * t696), gcross_vz_leg2 * t702,
-                gcross_vz_leg3 * t709, -(minus_gcross_vz_leg1 * t715), -(gcross_vz_leg2 * t725),
-                gcross_vz_leg3 * t738, 0.0, 0.0, 0.0,
-                garm_vz_leg1 * t760 + minus_gcross_vz_leg1 * t769,
-                garm_vz_leg2 * t792 + gcross_vz_leg2 * t801,
-                garm_vz_leg3 * t827 - gcross_vz_leg3 * t836,
-                garm_vz_leg1 * t857 - minus_gcross_vz_leg1 * t777,
-                garm_vz_leg2 * t872 + gcross_vz_leg2 * t806,
-                garm_vz_leg3 * t887 + gcross_vz_leg3 * t841,
+                acceleration[2] + 9.81, -(minus_garm_vz_leg1 * rate_dot_arm_leg1),
+                -(minus_garm_vz_leg2 * rate_dot_arm_leg2),
+                -(minus_garm_vz_leg3 * rate_dot_arm_leg3), minus_garm_vz_leg1 * t323,
+                minus_garm_vz_leg2 * t327, -(minus_garm_vz_leg3 * t331), minus_garm_vz_leg1 * t335,
+                minus_garm_vz_leg2 * t339, -(minus_garm_vz_leg3 * t343),
+                -(minus_garm_vz_leg1 * rate_arm_leg1), -(minus_garm_vz_leg2 * rate_arm_leg2),
+                -(minus_garm_vz_leg3 * rate_arm_leg3),
+                -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1),
+                -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2),
+                -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3), -minus_garm_vz_leg1,
+                -minus_garm_vz_leg2, -minus_garm_vz_leg3, minus_gcross_vz_leg1 * t391,
+                gcross_vz_leg2 * t431, gcross_vz_leg3 * t477, -(minus_gcross_vz_leg1 * t499),
+                gcross_vz_leg2 * t515, gcross_vz_leg3 * t533, -(minus_gcross_vz_leg1 * t553),
+                gcross_vz_leg2 * t567, gcross_vz_leg3 * t585, -(minus_gcross_vz_leg1 * t597),
+                gcross_vz_leg2 * t604, gcross_vz_leg3 * t612, -(minus_gcross_vz_leg1 * t618),
+                -(gcross_vz_leg2 * t624), gcross_vz_leg3 * t632, 0.0, 0.0, 0.0,
+                minus_gcross_vz_leg1 * t663 - minus_garm_vz_leg1 * t654,
+                gcross_vz_leg2 * t695 - minus_garm_vz_leg2 * t686,
+                -(minus_garm_vz_leg3 * t721 + gcross_vz_leg3 * t730),
+                -(minus_garm_vz_leg1 * t752 + minus_gcross_vz_leg1 * t671),
+                gcross_vz_leg2 * t700 - minus_garm_vz_leg2 * t767,
+                gcross_vz_leg3 * t735 - minus_garm_vz_leg3 * t782,
             ],
         ])
     }
@@ -5661,7 +5134,7 @@ impl Delta {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 798 operations (238 additions, 556 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 9 signs, 702 intermediates.
+    /// 664 operations (200 additions, 458 multiplications, 6 divisions), 0 square roots, 9 trigonometric pairs, 9 signs, 568 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5671,374 +5144,336 @@ impl Delta {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
+        let [(s_arm_leg1, c_arm_leg1), (s_cross_leg1, c_cross_leg1),
+        (s_rod_leg1, c_rod_leg1), (s_cross_leg2, c_cross_leg2), (s_arm_leg2, c_arm_leg2),
+        (s_rod_leg2, c_rod_leg2), (s_cross_leg3, c_cross_leg3), (s_rod_leg3, c_rod_leg3),
+        (s_arm_leg3, c_arm_leg3)] = ::overact::math::sin_cos_all([
+            joints[0], joints[1], joints[2], joints[4], joints[3], joints[5], joints[7], joints[8],
+            joints[6],
+        ]);
+        ::overact::guard::leg(s_cross_leg1, 0.89794672585951, "leg1")?;
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258595101, "leg2")?;
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258595097, "leg3")?;
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
         let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t13 = c_armcross_leg1 * c_rod_leg1;
-        let t14 = s_armcross_leg1 * c_rod_leg1;
-        let t17 = c_arm_leg1 * t14 - s_arm_leg1 * t13;
-        ::overact::guard::leg(t17, 0.89794672585951, "leg1")?;
-        let t18 = 1.0 / t17;
-        let t19 = 4.166666666666667 * t18;
-        let garm_vx_leg1 = t13 * t19;
-        let t21 = 0.56 * s_rod_leg1;
-        let t22 = 1.7857142857142858 * t18;
-        let gcross_vz_leg1 = s_arm_leg1 * t22;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t22;
-        let t28 = 1.0 / c_rod_leg1;
-        let minus_gcross_vy_leg1 = t22
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t28)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t28));
-        let rate_cross_leg1 = gcross_vz_leg1 * twist[2]
-            - (minus_gcross_vx_leg1 * twist[0] + minus_gcross_vy_leg1 * twist[1]);
-        let grod_vy_leg1 = 1.7857142857142858 * t28;
+        let t11 = 1.0 / s_cross_leg1;
+        let t12 = 4.166666666666667 * t11;
+        let garm_vx_leg1 = c_armcross_leg1 * t12;
+        let t17 = 0.24 * c_cross_leg1;
+        let t20 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
+        let t23 = 1.0 / c_rod_leg1;
+        let t24 = s_rod_leg1 * t23;
+        let rate_arm_leg1 = t12 * (t20 + t24 * twist[1]);
+        let t28 = rate_arm_leg1 * rate_arm_leg1;
+        let grod_vy_leg1 = 1.7857142857142858 * t23;
+        let t32 = c_cross_leg1 * t11;
+        let garm_vy_leg1 = t12 * t24;
+        let t35 = t17 * garm_vy_leg1;
+        let t41 = t32 * t20 + t35 * twist[1] + s_armcross_leg1 * twist[0]
+            + c_armcross_leg1 * twist[2];
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t41;
+        let t43 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t41 = s_armcross_leg1 * rate_rod_leg1;
-        let t43 = t21 * (rate_cross_leg1 * t41);
-        let garm_vy_leg1 = s_rod_leg1 * t19;
-        let minus_garm_vz_leg1 = t14 * t19;
-        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
-            - minus_garm_vz_leg1 * twist[2];
-        let t52 = rate_arm_leg1 * rate_arm_leg1;
-        let t56 = rate_cross_leg1 * rate_cross_leg1;
-        let t58 = c_armcross_leg1 * rate_rod_leg1;
-        let t60 = t41 * t41 + t56 + t58 * t58;
-        let t65 = acceleration[0]
-            - (t43 - (0.24 * c_arm_leg1 * t52 + 0.56 * t13 * t60) + t43);
-        let t67 = t21 * rate_cross_leg1;
-        let t68 = rate_cross_leg1 * t67;
-        let t71 = acceleration[1] - (t68 - t21 * t60);
-        let t80 = t21 * (rate_cross_leg1 * t58);
-        let t83 = acceleration[2]
-            - (0.24 * s_arm_leg1 * t52 + 0.56 * t14 * t60 + t80 + t80);
-        let rate_dot_arm_leg1 = garm_vx_leg1 * t65 + garm_vy_leg1 * t71
-            - minus_garm_vz_leg1 * t83;
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
+        let t45 = rate_rod_leg1 * rate_rod_leg1;
+        let t46 = t43 + t45;
+        let t49 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t17 * t28 + 0.56 * c_rod_leg1 * t46;
+        let t50 = 0.56 * s_rod_leg1;
+        let t51 = t50 * minus_rate_cross_leg1;
+        let t52 = minus_rate_cross_leg1 * t51;
+        let t55 = acceleration[1] - (t52 - t50 * t46);
+        let rate_dot_arm_leg1 = t12 * (t49 + t24 * t55);
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t12;
+        let t65 = 1.0 / s_cross_leg2;
+        let t66 = 4.166666666666667 * t65;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t101 = s_armcross_leg2 * c_rod_leg2;
-        let t102 = s_armcross_leg2 * s_rod_leg2;
-        let t103 = t101 * t102;
-        let t105 = 0.5 * c_armcross_leg2;
-        let t106 = t105 * c_rod_leg2;
-        let t107 = 0.8660254037844387 * c_armcross_leg2;
-        let t110 = t107 * s_rod_leg2 + 0.5 * c_rod_leg2;
-        let t114 = 0.4849742261192857 * t101;
-        let t115 = 0.24 * s_arm_leg2;
-        let t116 = 0.56 * t101;
-        let t119 = t114 - 0.8660254037844387 * (t115 + t116);
-        let t122 = t105 * s_rod_leg2 - 0.8660254037844387 * c_rod_leg2;
-        let t126 = 0.6272 * (t106 * t122) + 0.1568 * t103;
-        let t132 = 0.1344 * (c_arm_leg2 * t122) + 0.0672 * (s_arm_leg2 * t102);
-        let t138 = c_arm_leg2 * t101;
-        let t140 = 0.1344 * (s_arm_leg2 * t106) - 0.0672 * t138;
-        let t142 = t119 * t126 + t114 * t132 + 0.56 * t110 * t140;
-        ::overact::guard::leg(t142, 0.06758306237509017, "leg2")?;
-        let t143 = 1.0 / t142;
-        let garm_vx_leg2 = (0.2715855666268 * t103 + 0.6272 * (t106 * t110)) * t143;
-        let garm_vy_leg2 = t126 * t143;
-        let garm_vz_leg2 = (0.1568 * (t110 * t101) - 0.2715855666268 * (t122 * t101))
-            * t143;
-        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
-            + garm_vz_leg2 * twist[2];
-        let t158 = rate_arm_leg2 * rate_arm_leg2;
-        let t161 = t106 + 0.8660254037844387 * s_rod_leg2;
-        let t162 = 0.56 * t161;
-        let gcross_vx_leg2 = (0.56 * t102 * t119 - 0.1344 * (c_arm_leg2 * t110)) * t143;
-        let minus_gcross_vy_leg2 = t132 * t143;
-        let minus_gcross_vz_leg2 = (0.56 * t122 * t119 + 0.0672 * (s_arm_leg2 * t110))
-            * t143;
-        let rate_cross_leg2 = gcross_vx_leg2 * twist[0] - minus_gcross_vy_leg2 * twist[1]
-            - minus_gcross_vz_leg2 * twist[2];
-        let t181 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (1.12 * t106 * t119 + 0.11639381426862856 * t138) * t143;
-        let minus_grod_vy_leg2 = t140 * t143;
-        let rate_rod_leg2 = grod_vx_leg2 * twist[0] - minus_grod_vy_leg2 * twist[1];
-        let t193 = t181 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t196 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t197 = 0.5 * rate_cross_leg2;
-        let t198 = t196 - t197;
-        let t201 = c_armcross_leg2 * rate_rod_leg2;
-        let t203 = t193 * t193 + t198 * t198 + t201 * t201;
-        let t209 = t107 * c_rod_leg2 - 0.5 * s_rod_leg2;
-        let t210 = 0.56 * t209;
-        let t214 = t162 * t193 + t210 * t198 - t116 * t201;
-        let t217 = t181 * t196;
-        let t220 = t181 * t201;
-        let t223 = 0.12 * c_arm_leg2 * t158 + t162 * t203 - t193 * t214
-            + 0.7466666666666667 * (t209 * t217) - t116 * t220;
-        let t224 = acceleration[0] - t223;
-        let t234 = t197 * t201;
-        let t237 = t198 * t214 - (0.20784609690826528 * c_arm_leg2 * t158 + t210 * t203)
-            + 0.7466666666666667 * (t161 * t217) - t116 * t234;
-        let t238 = acceleration[1] - t237;
-        let t246 = t162 * t220 - t210 * t234;
-        let t249 = acceleration[2] - (t115 * t158 + t116 * t203 + t246 + t246);
-        let rate_dot_arm_leg2 = garm_vx_leg2 * t224 + garm_vy_leg2 * t238
-            + garm_vz_leg2 * t249;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
+        let t75 = 0.5 * c_armcross_leg2;
+        let t78 = 1.0 / c_rod_leg2;
+        let t79 = s_rod_leg2 * t78;
+        let minus_garm_vx_leg2 = t66 * (t75 + 0.8660254037844387 * t79);
+        let t83 = 0.8660254037844387 * c_armcross_leg2;
+        let t89 = 0.24 * c_cross_leg2;
+        let t94 = t83 * twist[1] - t75 * twist[0] - s_armcross_leg2 * twist[2];
+        let t95 = 0.8660254037844387 * twist[0];
+        let t96 = 0.5 * twist[1];
+        let t97 = t95 + t96;
+        let rate_arm_leg2 = t66 * (t94 - t79 * t97);
+        let t101 = rate_arm_leg2 * rate_arm_leg2;
+        let t104 = 1.7857142857142858 * t78;
+        let minus_rate_rod_leg2 = t104 * t97;
+        let t106 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t107 = 0.5 * s_armcross_leg2;
+        let t109 = 0.8660254037844387 * s_armcross_leg2;
+        let t114 = c_cross_leg2 * t65;
+        let t118 = t89 * (t66 * t79);
+        let t120 = t107 * twist[0] - t109 * twist[1] - c_armcross_leg2 * twist[2]
+            - t114 * t94 + t118 * t97;
+        let rate_cross_leg2 = t104 * t120;
+        let t122 = rate_cross_leg2 * rate_cross_leg2;
+        let t123 = t106 + t122;
+        let t126 = t83 * acceleration[1] - t75 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t89 * t101 + 0.56 * c_rod_leg2 * t123;
+        let t127 = 0.8660254037844387 * acceleration[0];
+        let t128 = 0.5 * acceleration[1];
+        let t129 = t127 + t128;
+        let t130 = 0.56 * s_rod_leg2;
+        let t131 = t130 * rate_cross_leg2;
+        let t132 = rate_cross_leg2 * t131;
+        let t135 = t129 + t132 - t130 * t123;
+        let rate_dot_arm_leg2 = t66 * (t126 - t79 * t135);
+        let garm_vy_leg2 = t66 * (t83 - 0.5 * t79);
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t66;
+        let t148 = 1.0 / s_cross_leg3;
+        let t149 = 4.166666666666667 * t148;
+        let t152 = 1.0 / c_rod_leg3;
+        let t153 = s_rod_leg3 * t152;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t267 = s_armcross_leg3 * c_rod_leg3;
-        let t268 = s_armcross_leg3 * s_rod_leg3;
-        let t269 = t267 * t268;
-        let t271 = 0.5 * c_armcross_leg3;
-        let t272 = t271 * c_rod_leg3;
-        let t273 = 0.8660254037844387 * c_armcross_leg3;
-        let t276 = t273 * s_rod_leg3 - 0.5 * c_rod_leg3;
-        let t280 = 0.4849742261192857 * t267;
-        let t283 = t271 * s_rod_leg3 + 0.8660254037844387 * c_rod_leg3;
-        let t288 = 0.1344 * (c_arm_leg3 * t283) + 0.0672 * (s_arm_leg3 * t268);
-        let t290 = 0.24 * s_arm_leg3;
-        let t291 = 0.56 * t267;
-        let t294 = 0.8660254037844387 * (t290 + t291) - t280;
-        let t298 = 0.6272 * (t272 * t283) + 0.1568 * t269;
-        let t304 = c_arm_leg3 * t267;
-        let t306 = 0.1344 * (s_arm_leg3 * t272) - 0.0672 * t304;
-        let t308 = t280 * t288 - t294 * t298 + 0.56 * t276 * t306;
-        ::overact::guard::leg(t308, 0.06758306237509014, "leg3")?;
-        let t309 = 1.0 / t308;
-        let garm_vx_leg3 = (0.2715855666268 * t269 + 0.6272 * (t272 * t276)) * t309;
-        let minus_garm_vy_leg3 = t298 * t309;
-        let minus_garm_vz_leg3 = (0.2715855666268 * (t283 * t267)
-            - 0.1568 * (t276 * t267)) * t309;
-        let rate_arm_leg3 = garm_vx_leg3 * twist[0] - minus_garm_vy_leg3 * twist[1]
-            - minus_garm_vz_leg3 * twist[2];
-        let t324 = rate_arm_leg3 * rate_arm_leg3;
-        let t327 = 0.8660254037844387 * s_rod_leg3 - t272;
-        let t328 = 0.56 * t327;
-        let gcross_vy_leg3 = t288 * t309;
-        let minus_gcross_vx_leg3 = (0.56 * t268 * t294 + 0.1344 * (c_arm_leg3 * t276))
-            * t309;
-        let gcross_vz_leg3 = (0.56 * t283 * t294 - 0.0672 * (s_arm_leg3 * t276)) * t309;
-        let rate_cross_leg3 = gcross_vy_leg3 * twist[1] - minus_gcross_vx_leg3 * twist[0]
-            + gcross_vz_leg3 * twist[2];
-        let t347 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (0.11639381426862856 * t304 - 1.12 * t272 * t294) * t309;
-        let grod_vy_leg3 = t306 * t309;
-        let rate_rod_leg3 = grod_vx_leg3 * twist[0] + grod_vy_leg3 * twist[1];
-        let t359 = t347 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t361 = 0.5 * rate_cross_leg3;
-        let t363 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t364 = t361 + t363;
-        let t367 = c_armcross_leg3 * rate_rod_leg3;
-        let t369 = t359 * t359 + t364 * t364 + t367 * t367;
-        let t375 = t273 * c_rod_leg3 + 0.5 * s_rod_leg3;
-        let t376 = 0.56 * t375;
-        let t380 = t328 * t359 + t376 * t364 - t291 * t367;
-        let t383 = t347 * t367;
-        let t385 = t347 * t363;
-        let t389 = 0.12 * c_arm_leg3 * t324 - t328 * t369 + t359 * t380 + t291 * t383
-            - 0.7466666666666667 * (t375 * t385);
-        let t390 = acceleration[0] - t389;
-        let t400 = t361 * t367;
-        let t403 = 0.20784609690826528 * c_arm_leg3 * t324 + t376 * t369 - t364 * t380
-            - (0.7466666666666667 * (t327 * t385) + t291 * t400);
-        let t404 = acceleration[1] - t403;
-        let t412 = t376 * t400 + t328 * t383;
-        let t415 = acceleration[2] - (t290 * t324 + t291 * t369 + t412 + t412);
-        let rate_dot_arm_leg3 = garm_vx_leg3 * t390 - minus_garm_vy_leg3 * t404
-            - minus_garm_vz_leg3 * t415;
-        let t421 = 9.81 * c_arm_leg1;
-        let t425 = 9.81 * c_arm_leg2;
-        let t429 = 9.81 * c_arm_leg3;
-        let t433 = 9.81 * s_arm_leg1;
-        let t437 = 9.81 * s_arm_leg2;
-        let t441 = 9.81 * s_arm_leg3;
-        let rate_dot_cross_leg1 = gcross_vz_leg1 * t83
-            - (minus_gcross_vx_leg1 * t65 + minus_gcross_vy_leg1 * t71);
-        let t468 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t469 = c_rod_leg1 * rate_cross_leg1;
-        let t470 = rate_rod_leg1 * t469;
-        let t471 = t468 + t470;
-        let t473 = 1.7857142857142858 * t67;
-        let t474 = rate_rod_leg1 * t473;
-        let t475 = c_rod_leg1 * t474;
-        let t476 = s_rod_leg1 * t471 + t475;
-        let t479 = 3.188775510204082 * t68;
-        let rate_dot_cross_leg2 = gcross_vx_leg2 * t224 - minus_gcross_vy_leg2 * t238
-            - minus_gcross_vz_leg2 * t249;
-        let t487 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t488 = c_rod_leg2 * rate_cross_leg2;
-        let t489 = rate_rod_leg2 * t488;
-        let t490 = t487 + t489;
-        let t492 = 1.7857142857142858 * t214;
-        let t493 = rate_rod_leg2 * t492;
-        let t494 = c_rod_leg2 * t493;
-        let t495 = s_rod_leg2 * t490 + t494;
-        let t497 = t492 * t488;
-        let t498 = grod_vx_leg2 * t497;
-        let t500 = minus_grod_vy_leg2 * t497;
-        let rate_dot_cross_leg3 = gcross_vy_leg3 * t404 - minus_gcross_vx_leg3 * t390
-            + gcross_vz_leg3 * t415;
-        let t509 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t510 = c_rod_leg3 * rate_cross_leg3;
-        let t511 = rate_rod_leg3 * t510;
-        let t512 = t509 + t511;
-        let t514 = 1.7857142857142858 * t380;
-        let t515 = rate_rod_leg3 * t514;
-        let t516 = c_rod_leg3 * t515;
-        let t517 = s_rod_leg3 * t512 + t516;
-        let t519 = t514 * t510;
-        let t520 = grod_vx_leg3 * t519;
-        let t523 = grod_vy_leg3 * t519;
-        let t526 = t470 + t471;
-        let t528 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t529 = t528 - t474;
-        let t532 = c_rod_leg1 * t526 - s_rod_leg1 * (t474 - t529);
-        let t535 = 3.188775510204082 * (t67 * t67);
-        let t542 = t489 + t490;
-        let t544 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t545 = t544 - t493;
-        let t548 = c_rod_leg2 * t542 - s_rod_leg2 * (t493 - t545);
-        let t551 = 3.188775510204082 * (t214 * t214);
-        let t552 = t488 * t488;
-        let t553 = t551 - t552;
-        let t561 = 3.188775510204082 * (t380 * t380);
-        let t562 = t510 * t510;
-        let t563 = t561 - t562;
-        let t565 = t511 + t512;
-        let t567 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t568 = t567 - t515;
-        let t571 = c_rod_leg3 * t565 - s_rod_leg3 * (t515 - t568);
-        let t578 = t473 * t469;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t71;
-        let t582 = rate_rod_leg1 * rate_rod_leg1;
-        let t585 = s_rod_leg1 * (t578 + rate_dot_rod_leg1) + c_rod_leg1 * (t582 - t535);
-        let rate_dot_rod_leg2 = grod_vx_leg2 * t224 - minus_grod_vy_leg2 * t238;
-        let t596 = rate_rod_leg2 * rate_rod_leg2;
-        let t599 = s_rod_leg2 * (t497 + rate_dot_rod_leg2) + c_rod_leg2 * (t596 - t551);
-        let rate_dot_rod_leg3 = grod_vx_leg3 * t390 + grod_vy_leg3 * t404;
-        let t613 = rate_rod_leg3 * rate_rod_leg3;
-        let t616 = s_rod_leg3 * (t519 + rate_dot_rod_leg3) + c_rod_leg3 * (t613 - t561);
-        let t624 = c_rod_leg1 * t529 - t475;
-        let t630 = c_rod_leg2 * t545 - t494;
-        let t637 = c_rod_leg3 * t568 - t516;
-        let t643 = 1.7857142857142858 * acceleration[1];
-        let t651 = t497 - rate_dot_rod_leg2;
-        let t653 = s_rod_leg2 * (t552 - t596) - c_rod_leg2 * t651;
-        let t664 = t519 - rate_dot_rod_leg3;
-        let t666 = s_rod_leg3 * (t562 - t613) - c_rod_leg3 * t664;
-        let t678 = 0.24 * t17;
-        let t682 = s_rod_leg1 * (0.24 * s_cross_leg1);
-        let t686 = 0.24 * c_cross_leg1;
-        let t688 = t678 * (t578 - rate_dot_rod_leg1) + t682 * (t535 + t582)
-            - t686 * t526;
-        let t691 = t433 + 0.24 * t52;
-        let t694 = 0.24 * rate_dot_arm_leg1 - t421;
-        let t697 = s_rod_leg1 * (s_cross_leg1 * t691 + c_cross_leg1 * t694);
-        let t705 = s_cross_leg1 * t694 - c_cross_leg1 * t691;
-        let t712 = s_rod_leg2 * (0.24 * s_cross_leg2);
-        let t715 = 3.5714285714285716 * t140;
-        let t718 = 0.24 * c_cross_leg2;
-        let t720 = t712 * (t551 + t596) - t715 * t651 - t718 * t542;
-        let t723 = t437 + 0.24 * t158;
-        let t726 = 0.24 * rate_dot_arm_leg2 - t425;
-        let t729 = s_rod_leg2 * (s_cross_leg2 * t723 + c_cross_leg2 * t726);
-        let t734 = s_cross_leg2 * t726 - c_cross_leg2 * t723;
-        let t747 = s_rod_leg3 * (0.24 * s_cross_leg3);
-        let t750 = 3.5714285714285716 * t306;
-        let t753 = 0.24 * c_cross_leg3;
-        let t755 = t747 * (t561 + t613) - t750 * t664 - t753 * t565;
-        let t758 = t441 + 0.24 * t324;
-        let t761 = 0.24 * rate_dot_arm_leg3 - t429;
-        let t764 = s_rod_leg3 * (s_cross_leg3 * t758 + c_cross_leg3 * t761);
-        let t769 = s_cross_leg3 * t761 - c_cross_leg3 * t758;
-        let t785 = t528 * t678 + t468 * t682 + t56 * t686;
-        let t800 = t487 * t712 - t544 * t715 + rate_cross_leg2 * rate_cross_leg2 * t718;
-        let t815 = t509 * t747 - t567 * t750 + rate_cross_leg3 * rate_cross_leg3 * t753;
+        let t163 = 0.5 * c_armcross_leg3;
+        let garm_vx_leg3 = t149 * (0.8660254037844387 * t153 - t163);
+        let t166 = 0.24 * c_cross_leg3;
+        let t167 = t95 - t96;
+        let t170 = 0.8660254037844387 * c_armcross_leg3;
+        let t174 = t163 * twist[0] + t170 * twist[1] + s_armcross_leg3 * twist[2];
+        let rate_arm_leg3 = t149 * (t153 * t167 - t174);
+        let t177 = rate_arm_leg3 * rate_arm_leg3;
+        let t180 = 1.7857142857142858 * t152;
+        let rate_rod_leg3 = t180 * t167;
+        let t182 = rate_rod_leg3 * rate_rod_leg3;
+        let t183 = c_cross_leg3 * t148;
+        let t185 = 0.5 * s_armcross_leg3;
+        let t187 = 0.8660254037844387 * s_armcross_leg3;
+        let t194 = t166 * (t149 * t153);
+        let t196 = t183 * t174 + t185 * twist[0] + t187 * twist[1]
+            - c_armcross_leg3 * twist[2] - t194 * t167;
+        let rate_cross_leg3 = t180 * t196;
+        let t198 = rate_cross_leg3 * rate_cross_leg3;
+        let t199 = t182 + t198;
+        let t207 = t166 * t177 + 0.56 * c_rod_leg3 * t199
+            - (t163 * acceleration[0] + t170 * acceleration[1]
+                + s_armcross_leg3 * acceleration[2]);
+        let t208 = t127 - t128;
+        let t209 = 0.56 * s_rod_leg3;
+        let t210 = t209 * rate_cross_leg3;
+        let t211 = rate_cross_leg3 * t210;
+        let t214 = t208 - (t211 - t209 * t199);
+        let rate_dot_arm_leg3 = t149 * (t207 + t153 * t214);
+        let minus_garm_vy_leg3 = t149 * (t170 + 0.5 * t153);
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t149;
+        let t225 = 9.81 * c_arm_leg1;
+        let t229 = 9.81 * c_arm_leg2;
+        let t233 = 9.81 * c_arm_leg3;
+        let t237 = 9.81 * s_arm_leg1;
+        let t241 = 9.81 * s_arm_leg2;
+        let t245 = 9.81 * s_arm_leg3;
+        let minus_gcross_vx_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 * t32 + s_armcross_leg1);
+        let t276 = 0.24 * s_cross_leg1;
+        let t279 = t50 * (minus_rate_cross_leg1 * rate_rod_leg1);
+        let t283 = t32 * t49 + t35 * t55 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + t276 * t28 + t279 + t279;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t283;
+        let t285 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t287 = rate_rod_leg1 * (1.7857142857142858 * t41);
+        let t288 = t285 + t287;
+        let t291 = c_rod_leg1 * (1.7857142857142858 * t279);
+        let t292 = s_rod_leg1 * t288 + t291;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * t35;
+        let t296 = 3.188775510204082 * t52;
+        let minus_gcross_vz_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 - s_armcross_leg1 * t32);
+        let gcross_vx_leg2 = t104 * (t75 * t114 + t107 + 0.8660254037844387 * t118);
+        let t312 = 0.24 * s_cross_leg2;
+        let t315 = t130 * (rate_cross_leg2 * minus_rate_rod_leg2);
+        let t320 = t107 * acceleration[0] - t109 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (t312 * t101 + t315 + t315)
+            - t114 * t126;
+        let t322 = t320 + t118 * t135;
+        let rate_dot_cross_leg2 = t104 * t322;
+        let t324 = s_rod_leg2 * rate_dot_cross_leg2;
+        let t326 = minus_rate_rod_leg2 * (1.7857142857142858 * t120);
+        let t327 = t324 - t326;
+        let t330 = c_rod_leg2 * (1.7857142857142858 * t315);
+        let t331 = s_rod_leg2 * t327 - t330;
+        let t333 = 2.76156059880242 * t132;
+        let gcross_vy_leg2 = t104 * (0.5 * t118 - (t83 * t114 + t109));
+        let t341 = 1.594387755102041 * t132;
+        let gcross_vz_leg2 = t104 * (s_armcross_leg2 * t114 - c_armcross_leg2);
+        let gcross_vx_leg3 = t180 * (t163 * t183 + t185 - 0.8660254037844387 * t194);
+        let t357 = 0.24 * s_cross_leg3;
+        let t360 = t209 * (rate_cross_leg3 * rate_rod_leg3);
+        let t365 = t185 * acceleration[0] + t187 * acceleration[1]
+            - c_armcross_leg3 * acceleration[2] - (t357 * t177 - t360 - t360)
+            - t183 * t207;
+        let t367 = t365 - t194 * t214;
+        let rate_dot_cross_leg3 = t180 * t367;
+        let t369 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t371 = rate_rod_leg3 * (1.7857142857142858 * t196);
+        let t372 = t369 + t371;
+        let t375 = c_rod_leg3 * (1.7857142857142858 * t360);
+        let t376 = s_rod_leg3 * t372 + t375;
+        let t378 = 2.76156059880242 * t211;
+        let gcross_vy_leg3 = t180 * (t170 * t183 + t187 + 0.5 * t194);
+        let t386 = 1.594387755102041 * t211;
+        let gcross_vz_leg3 = t180 * (s_armcross_leg3 * t183 - c_armcross_leg3);
+        let t392 = t279 - t283;
+        let t396 = t287 + t288;
+        let t398 = s_rod_leg1 * (1.7857142857142858 * (t279 + t392)) - c_rod_leg1 * t396;
+        let t400 = t51 * t51;
+        let t408 = t322 + t315;
+        let t412 = t327 - t326;
+        let t414 = s_rod_leg2 * (1.7857142857142858 * (t315 + t408)) + c_rod_leg2 * t412;
+        let t416 = t131 * t131;
+        let t419 = t78 * (t416 - t120 * t120);
+        let t426 = t371 + t372;
+        let t428 = t367 - t360;
+        let t432 = c_rod_leg3 * t426 - s_rod_leg3 * (1.7857142857142858 * (t360 - t428));
+        let t434 = t210 * t210;
+        let t437 = t152 * (t434 - t196 * t196);
+        let t445 = 3.188775510204082 * (t41 * t51);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t55;
+        let t449 = 3.188775510204082 * t400;
+        let t452 = s_rod_leg1 * (t445 + rate_dot_rod_leg1) + c_rod_leg1 * (t45 - t449);
+        let t459 = 3.188775510204082 * (t120 * t131);
+        let minus_rate_dot_rod_leg2 = t104 * t135;
+        let t463 = 3.188775510204082 * t416;
+        let t466 = s_rod_leg2 * (t459 - minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t106 - t463);
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t78;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t78;
+        let t477 = 3.188775510204082 * (t196 * t210);
+        let rate_dot_rod_leg3 = t180 * t214;
+        let t481 = 3.188775510204082 * t434;
+        let t484 = s_rod_leg3 * (t477 + rate_dot_rod_leg3) + c_rod_leg3 * (t182 - t481);
+        let grod_vx_leg3 = 1.5464739353293548 * t152;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t152;
+        let t496 = t291 + c_rod_leg1 * (1.7857142857142858 * t392);
+        let t503 = t330 + c_rod_leg2 * (1.7857142857142858 * t408);
+        let t511 = c_rod_leg3 * (1.7857142857142858 * t428) - t375;
+        let t517 = 1.7857142857142858 * acceleration[1];
+        let t523 = 1.7857142857142858 * t129;
+        let t531 = 1.7857142857142858 * t208;
+        let t544 = s_cross_leg1 * c_rod_leg1;
+        let t548 = t276 * s_rod_leg1;
+        let t553 = 0.24 * t544 * (t445 - rate_dot_rod_leg1) + t548 * (t449 + t45)
+            + t17 * t396;
+        let t556 = t237 + 0.24 * t28;
+        let t559 = 0.24 * rate_dot_arm_leg1 - t225;
+        let t562 = s_rod_leg1 * (s_cross_leg1 * t556 + c_cross_leg1 * t559);
+        let t570 = s_cross_leg1 * t559 - c_cross_leg1 * t556;
+        let t577 = 0.24 * rate_dot_arm_leg2 - t229;
+        let t580 = t241 + 0.24 * t101;
+        let t582 = s_cross_leg2 * t577 - c_cross_leg2 * t580;
+        let t585 = s_cross_leg2 * c_rod_leg2;
+        let t589 = t312 * s_rod_leg2;
+        let t594 = 0.24 * t585 * (t459 + minus_rate_dot_rod_leg2) + t589 * (t463 + t106)
+            - t89 * t412;
+        let t599 = s_rod_leg2 * (s_cross_leg2 * t580 + c_cross_leg2 * t577);
+        let t611 = s_cross_leg3 * c_rod_leg3;
+        let t615 = t357 * s_rod_leg3;
+        let t620 = 0.24 * t611 * (t477 - rate_dot_rod_leg3) + t615 * (t481 + t182)
+            - t166 * t426;
+        let t623 = t245 + 0.24 * t177;
+        let t626 = 0.24 * rate_dot_arm_leg3 - t233;
+        let t629 = s_rod_leg3 * (s_cross_leg3 * t623 + c_cross_leg3 * t626);
+        let t634 = s_cross_leg3 * t626 - c_cross_leg3 * t623;
+        let t651 = t17 * t43 - (0.42857142857142855 * (t544 * t283) + t285 * t548);
+        let t667 = 0.42857142857142855 * (t585 * t322) + t324 * t589 + t89 * t122;
+        let t681 = 0.42857142857142855 * (t611 * t367) + t369 * t615 + t166 * t198;
         Ok([
             [
-                acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1, garm_vx_leg2 * rate_dot_arm_leg2,
-                garm_vx_leg3 * rate_dot_arm_leg3, -(garm_vx_leg1 * t421), -(garm_vx_leg2 * t425),
-                -(garm_vx_leg3 * t429), garm_vx_leg1 * t433, garm_vx_leg2 * t437,
-                garm_vx_leg3 * t441, garm_vx_leg1 * rate_arm_leg1, garm_vx_leg2 * rate_arm_leg2,
+                acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1,
+                -(minus_garm_vx_leg2 * rate_dot_arm_leg2), garm_vx_leg3 * rate_dot_arm_leg3,
+                -(garm_vx_leg1 * t225), minus_garm_vx_leg2 * t229, -(garm_vx_leg3 * t233),
+                garm_vx_leg1 * t237, -(minus_garm_vx_leg2 * t241), garm_vx_leg3 * t245,
+                garm_vx_leg1 * rate_arm_leg1, -(minus_garm_vx_leg2 * rate_arm_leg2),
                 garm_vx_leg3 * rate_arm_leg3, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
-                ::overact::math::signed(garm_vx_leg2, rate_arm_leg2),
-                ::overact::math::signed(garm_vx_leg3, rate_arm_leg3), garm_vx_leg1, garm_vx_leg2,
-                garm_vx_leg3, -(minus_gcross_vx_leg1 * t476), gcross_vx_leg2 * t495 - t498,
-                -(minus_gcross_vx_leg3 * t517 + t520), -(minus_gcross_vx_leg1 * t532),
-                gcross_vx_leg2 * t548 + grod_vx_leg2 * t553,
-                grod_vx_leg3 * t563 - minus_gcross_vx_leg3 * t571, -(minus_gcross_vx_leg1 * t585),
-                gcross_vx_leg2 * t599 + grod_vx_leg2 * t487,
-                grod_vx_leg3 * t509 - minus_gcross_vx_leg3 * t616, -(minus_gcross_vx_leg1 * t624),
-                gcross_vx_leg2 * t630 + t498, t520 - minus_gcross_vx_leg3 * t637,
-                -(minus_gcross_vx_leg1 * t643), gcross_vx_leg2 * t653 + grod_vx_leg2 * t544,
-                grod_vx_leg3 * t567 - minus_gcross_vx_leg3 * t666, 0.0,
-                grod_vx_leg2 * rate_dot_rod_leg2, grod_vx_leg3 * rate_dot_rod_leg3,
-                garm_vx_leg1 * t688 + minus_gcross_vx_leg1 * t697,
-                garm_vx_leg2 * t720 - gcross_vx_leg2 * t729
-                    - grod_vx_leg2 * (c_rod_leg2 * t734),
-                garm_vx_leg3 * t755 + minus_gcross_vx_leg3 * t764
-                    - grod_vx_leg3 * (c_rod_leg3 * t769),
-                garm_vx_leg1 * t785 - minus_gcross_vx_leg1 * t705,
-                garm_vx_leg2 * t800 + gcross_vx_leg2 * t734,
-                garm_vx_leg3 * t815 - minus_gcross_vx_leg3 * t769,
+                -::overact::math::signed(minus_garm_vx_leg2, rate_arm_leg2),
+                ::overact::math::signed(garm_vx_leg3, rate_arm_leg3), garm_vx_leg1,
+                -minus_garm_vx_leg2, garm_vx_leg3, minus_gcross_vx_leg1 * t292,
+                gcross_vx_leg2 * t331 + t333, gcross_vx_leg3 * t376 - t378,
+                -(minus_gcross_vx_leg1 * t398), gcross_vx_leg2 * t414 - 4.9313582121471775 * t419,
+                gcross_vx_leg3 * t432 + 4.9313582121471775 * t437, -(minus_gcross_vx_leg1 * t452),
+                gcross_vx_leg2 * t466 - minus_grod_vx_leg2 * t324,
+                gcross_vx_leg3 * t484 + grod_vx_leg3 * t369, -(minus_gcross_vx_leg1 * t496),
+                gcross_vx_leg2 * t503 - t333, gcross_vx_leg3 * t511 + t378,
+                -(minus_gcross_vx_leg1 * t517),
+                -(gcross_vx_leg2 * t523 + 1.5464739353293548 * rate_dot_cross_leg2),
+                gcross_vx_leg3 * t531 + 1.5464739353293548 * rate_dot_cross_leg3, 0.0,
+                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2, grod_vx_leg3 * rate_dot_rod_leg3,
+                garm_vx_leg1 * t553 + minus_gcross_vx_leg1 * t562,
+                minus_grod_vx_leg2 * (c_rod_leg2 * t582)
+                    - (minus_garm_vx_leg2 * t594 + gcross_vx_leg2 * t599),
+                garm_vx_leg3 * t620 - gcross_vx_leg3 * t629
+                    - grod_vx_leg3 * (c_rod_leg3 * t634),
+                garm_vx_leg1 * t651 - minus_gcross_vx_leg1 * t570,
+                gcross_vx_leg2 * t582 - minus_garm_vx_leg2 * t667,
+                garm_vx_leg3 * t681 + gcross_vx_leg3 * t634,
             ],
             [
                 acceleration[1], garm_vy_leg1 * rate_dot_arm_leg1, garm_vy_leg2 * rate_dot_arm_leg2,
-                -(minus_garm_vy_leg3 * rate_dot_arm_leg3), -(garm_vy_leg1 * t421),
-                -(garm_vy_leg2 * t425), minus_garm_vy_leg3 * t429, garm_vy_leg1 * t433,
-                garm_vy_leg2 * t437, -(minus_garm_vy_leg3 * t441), garm_vy_leg1 * rate_arm_leg1,
+                -(minus_garm_vy_leg3 * rate_dot_arm_leg3), -(garm_vy_leg1 * t225),
+                -(garm_vy_leg2 * t229), minus_garm_vy_leg3 * t233, garm_vy_leg1 * t237,
+                garm_vy_leg2 * t241, -(minus_garm_vy_leg3 * t245), garm_vy_leg1 * rate_arm_leg1,
                 garm_vy_leg2 * rate_arm_leg2, -(minus_garm_vy_leg3 * rate_arm_leg3),
                 ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vy_leg3, rate_arm_leg3), garm_vy_leg1,
-                garm_vy_leg2, -minus_garm_vy_leg3, -(minus_gcross_vy_leg1 * t476 + t479),
-                t500 - minus_gcross_vy_leg2 * t495, gcross_vy_leg3 * t517 - t523,
-                grod_vy_leg1 * (t535 - t469 * t469) - minus_gcross_vy_leg1 * t532,
-                -(minus_gcross_vy_leg2 * t548 + minus_grod_vy_leg2 * t553),
-                gcross_vy_leg3 * t571 + grod_vy_leg3 * t563,
-                grod_vy_leg1 * t468 - minus_gcross_vy_leg1 * t585,
-                -(minus_gcross_vy_leg2 * t599 + minus_grod_vy_leg2 * t487),
-                gcross_vy_leg3 * t616 + grod_vy_leg3 * t509, t479 - minus_gcross_vy_leg1 * t624,
-                -(minus_gcross_vy_leg2 * t630 + t500), gcross_vy_leg3 * t637 + t523,
-                1.7857142857142858 * rate_dot_cross_leg1 - minus_gcross_vy_leg1 * t643,
-                -(minus_gcross_vy_leg2 * t653
-                    + 0.8928571428571429 * rate_dot_cross_leg2),
-                gcross_vy_leg3 * t666 - 0.8928571428571429 * rate_dot_cross_leg3,
+                garm_vy_leg2, -minus_garm_vy_leg3, minus_gcross_vy_leg1 * t292 - t296,
+                gcross_vy_leg2 * t331 + t341, gcross_vy_leg3 * t376 + t386,
+                5.694241982507289 * (t23 * (t400 - t41 * t41))
+                    - minus_gcross_vy_leg1 * t398,
+                gcross_vy_leg2 * t414 - 2.8471209912536444 * t419,
+                gcross_vy_leg3 * t432 - 2.8471209912536444 * t437,
+                -(minus_gcross_vy_leg1 * t452 + grod_vy_leg1 * t285),
+                gcross_vy_leg2 * t466 - minus_grod_vy_leg2 * t324,
+                gcross_vy_leg3 * t484 - minus_grod_vy_leg3 * t369,
+                t296 - minus_gcross_vy_leg1 * t496,
+                gcross_vy_leg2 * t503 - t341,
+                gcross_vy_leg3 * t511 - t386,
+                -(minus_gcross_vy_leg1 * t517
+                    + 1.7857142857142858 * minus_rate_dot_cross_leg1),
+                -(gcross_vy_leg2 * t523 + 0.8928571428571429 * rate_dot_cross_leg2),
+                gcross_vy_leg3 * t531 - 0.8928571428571429 * rate_dot_cross_leg3,
                 grod_vy_leg1 * rate_dot_rod_leg1,
-                -(minus_grod_vy_leg2 * rate_dot_rod_leg2),
-                grod_vy_leg3 * rate_dot_rod_leg3,
-                garm_vy_leg1 * t688 + minus_gcross_vy_leg1 * t697
-                    - 1.7857142857142858 * t705,
-                garm_vy_leg2 * t720 + minus_gcross_vy_leg2 * t729
-                    + 0.8928571428571429 * t734,
-                0.8928571428571429 * t769
-                    - (minus_garm_vy_leg3 * t755 + gcross_vy_leg3 * t764),
-                garm_vy_leg1 * t785 - minus_gcross_vy_leg1 * t705,
-                garm_vy_leg2 * t800 - minus_gcross_vy_leg2 * t734,
-                gcross_vy_leg3 * t769 - minus_garm_vy_leg3 * t815,
+                minus_grod_vy_leg2 * minus_rate_dot_rod_leg2,
+                -(minus_grod_vy_leg3 * rate_dot_rod_leg3),
+                garm_vy_leg1 * t553 + minus_gcross_vy_leg1 * t562
+                    - 1.7857142857142858 * t570,
+                garm_vy_leg2 * t594 - gcross_vy_leg2 * t599 + 0.8928571428571429 * t582,
+                0.8928571428571429 * t634
+                    - (minus_garm_vy_leg3 * t620 + gcross_vy_leg3 * t629),
+                garm_vy_leg1 * t651 - minus_gcross_vy_leg1 * t570,
+                garm_vy_leg2 * t667 + gcross_vy_leg2 * t582,
+                gcross_vy_leg3 * t634 - minus_garm_vy_leg3 * t681,
             ],
             [
                 acceleration[2] + 9.81, -(minus_garm_vz_leg1 * rate_dot_arm_leg1),
-                garm_vz_leg2 * rate_dot_arm_leg2, -(minus_garm_vz_leg3 * rate_dot_arm_leg3),
-                minus_garm_vz_leg1 * t421, -(garm_vz_leg2 * t425), minus_garm_vz_leg3 * t429,
-                -(minus_garm_vz_leg1 * t433), garm_vz_leg2 * t437, -(minus_garm_vz_leg3 * t441),
-                -(minus_garm_vz_leg1 * rate_arm_leg1), garm_vz_leg2 * rate_arm_leg2,
+                -(minus_garm_vz_leg2 * rate_dot_arm_leg2),
+                -(minus_garm_vz_leg3 * rate_dot_arm_leg3), minus_garm_vz_leg1 * t225,
+                minus_garm_vz_leg2 * t229, minus_garm_vz_leg3 * t233, -(minus_garm_vz_leg1 * t237),
+                -(minus_garm_vz_leg2 * t241), -(minus_garm_vz_leg3 * t245),
+                -(minus_garm_vz_leg1 * rate_arm_leg1), -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -(minus_garm_vz_leg3 * rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1),
-                ::overact::math::signed(garm_vz_leg2, rate_arm_leg2),
+                -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3), -minus_garm_vz_leg1,
-                garm_vz_leg2, -minus_garm_vz_leg3, gcross_vz_leg1 * t476,
-                -(minus_gcross_vz_leg2 * t495), gcross_vz_leg3 * t517, gcross_vz_leg1 * t532,
-                -(minus_gcross_vz_leg2 * t548), gcross_vz_leg3 * t571, gcross_vz_leg1 * t585,
-                -(minus_gcross_vz_leg2 * t599), gcross_vz_leg3 * t616, gcross_vz_leg1 * t624,
-                -(minus_gcross_vz_leg2 * t630), gcross_vz_leg3 * t637, gcross_vz_leg1 * t643,
-                -(minus_gcross_vz_leg2 * t653), gcross_vz_leg3 * t666, 0.0, 0.0, 0.0,
-                -(minus_garm_vz_leg1 * t688 + gcross_vz_leg1 * t697),
-                garm_vz_leg2 * t720 + minus_gcross_vz_leg2 * t729,
-                -(minus_garm_vz_leg3 * t755 + gcross_vz_leg3 * t764),
-                gcross_vz_leg1 * t705 - minus_garm_vz_leg1 * t785,
-                garm_vz_leg2 * t800 - minus_gcross_vz_leg2 * t734,
-                gcross_vz_leg3 * t769 - minus_garm_vz_leg3 * t815,
+                -minus_garm_vz_leg2, -minus_garm_vz_leg3, minus_gcross_vz_leg1 * t292,
+                gcross_vz_leg2 * t331, gcross_vz_leg3 * t376, -(minus_gcross_vz_leg1 * t398),
+                gcross_vz_leg2 * t414, gcross_vz_leg3 * t432, -(minus_gcross_vz_leg1 * t452),
+                gcross_vz_leg2 * t466, gcross_vz_leg3 * t484, -(minus_gcross_vz_leg1 * t496),
+                gcross_vz_leg2 * t503, gcross_vz_leg3 * t511, -(minus_gcross_vz_leg1 * t517),
+                -(gcross_vz_leg2 * t523), gcross_vz_leg3 * t531, 0.0, 0.0, 0.0,
+                minus_gcross_vz_leg1 * t562 - minus_garm_vz_leg1 * t553,
+                -(minus_garm_vz_leg2 * t594 + gcross_vz_leg2 * t599),
+                -(minus_garm_vz_leg3 * t620 + gcross_vz_leg3 * t629),
+                -(minus_garm_vz_leg1 * t651 + minus_gcross_vz_leg1 * t570),
+                gcross_vz_leg2 * t582 - minus_garm_vz_leg2 * t667,
+                gcross_vz_leg3 * t634 - minus_garm_vz_leg3 * t681,
             ],
         ])
     }
@@ -6053,7 +5488,7 @@ impl Delta {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 965 operations (325 additions, 624 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 855 intermediates.
+    /// 866 operations (288 additions, 560 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 756 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6064,8 +5499,7 @@ impl Delta {
         start: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = pose[0] + 0.05;
-        let t1 = t0 - 0.2;
+        let t1 = pose[0] + 0.05 - 0.2;
         let t2 = t1 * t1;
         let t3 = pose[2] * pose[2];
         let t5 = 0.2304 * (t2 + t3);
@@ -6078,457 +5512,428 @@ impl Delta {
         let t16 = t5 - t12 * t12;
         ::overact::guard::reach(t16, "leg1")?;
         let t17 = ::overact::math::sqrt(t16);
-        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
         let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t21 = 0.24 * c_arm_leg1;
-        let t23 = t0 - (0.2 + t21);
-        let t24 = 1.0 / t17;
-        let t25 = 2.0 * t24;
-        let garm_vx_leg1 = t23 * t25;
-        let t28 = pose[1] + 0.04330127018922194;
-        let t29 = t28 - 0.17320508075688776;
-        let t31 = pose[0] - 0.025;
-        let t32 = t31 + 0.1;
-        let t33 = 0.5 * t32;
-        let t34 = 0.8660254037844387 * t29 - t33;
-        let t37 = 0.2304 * (t34 * t34 + t3);
-        let t38 = 1.0 / t37;
-        let t39 = 0.48 * t34;
-        let t40 = t32 * t32;
-        let t43 = t40 + t29 * t29 + t3;
-        let t45 = t43 - 0.3136 + 0.0576;
-        let t48 = t37 - t45 * t45;
-        ::overact::guard::reach(t48, "leg2")?;
-        let t49 = ::overact::math::sqrt(t48);
-        let c_arm_leg2 = t38 * (t39 * t45 - t14 * t49);
-        let t54 = t34 - 0.24 * c_arm_leg2;
-        let t55 = 0.8660254037844387 * t32;
-        let t57 = t55 + 0.5 * t29;
-        let t58 = t57 * t57;
-        let t62 = 1.0 - 3.188775510204082 * t58;
-        ::overact::guard::reach(t62, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t62);
-        let c_cross_leg2 = (t43 - (0.0576 + t58) - 0.3136 * t62) / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t38 * (t14 * t45 + t39 * t49);
-        let s_cross_leg2 = 2.0833333333333335 * t49 / (0.56 * c_rod_leg2);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
-            + minus_s_arm_leg2 * s_cross_leg2;
-        let t78 = t57 * c_armcross_leg2;
-        let t81 = 1.5464739353293548 * t78 - 0.5 * c_rod_leg2;
-        let t84 = 0.24 * minus_s_arm_leg2;
-        let t85 = pose[2] - t84;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t57;
-        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
-            - minus_s_arm_leg2 * c_cross_leg2;
-        let t90 = minus_s_rod_leg2 * s_armcross_leg2;
-        let t91 = t85 * t90;
-        let t94 = 0.20784609690826528 * minus_s_arm_leg2;
-        let t97 = 0.8928571428571429 * t78 + 0.8660254037844387 * c_rod_leg2;
-        let t101 = t54 * (0.56 * t97) - 0.28 * t91;
-        let t106 = minus_s_arm_leg2 * t90;
-        let t108 = 0.1344 * (c_arm_leg2 * t97) - 0.0672 * t106;
-        let t113 = t94 * t101 - 0.8660254037844387 * t85 * t108 - 0.14 * (t49 * t81);
-        ::overact::guard::leg(t113, 0.06758306237512474, "leg2")?;
-        let t114 = 1.0 / t113;
-        let garm_vx_leg2 = (t54 * (0.56 * t81) - 0.4849742261192857 * t91) * t114;
-        let t118 = pose[1] - 0.04330127018922194;
-        let t119 = t118 + 0.17320508075688776;
-        let t121 = t33 + 0.8660254037844387 * t119;
-        let t124 = 0.2304 * (t121 * t121 + t3);
-        let t125 = 1.0 / t124;
-        let t126 = 0.48 * t121;
-        let t129 = t40 + t119 * t119 + t3;
-        let t131 = t129 - 0.3136 + 0.0576;
-        let t134 = t124 - t131 * t131;
-        ::overact::guard::reach(t134, "leg3")?;
-        let t135 = ::overact::math::sqrt(t134);
-        let minus_c_arm_leg3 = t125 * (t126 * t131 + t14 * t135);
-        let t140 = t121 - 0.24 * minus_c_arm_leg3;
-        let t142 = t55 - 0.5 * t119;
-        let t143 = t142 * t142;
-        let t147 = 1.0 - 3.188775510204082 * t143;
-        ::overact::guard::reach(t147, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t147);
-        let c_cross_leg3 = (t129 - (0.0576 + t143) - 0.3136 * t147)
-            / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t125 * (t126 * t135 - t14 * t131);
-        let s_cross_leg3 = 2.0833333333333335 * t135 / (0.56 * c_rod_leg3);
-        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
-            + s_arm_leg3 * s_cross_leg3;
-        let t163 = t142 * minus_c_armcross_leg3;
-        let t166 = 1.5464739353293548 * t163 + 0.5 * c_rod_leg3;
-        let t169 = 0.24 * s_arm_leg3;
-        let t170 = pose[2] + t169;
-        let s_rod_leg3 = 1.7857142857142858 * t142;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
-            - minus_c_arm_leg3 * s_cross_leg3;
-        let t175 = s_rod_leg3 * s_armcross_leg3;
-        let t176 = t170 * t175;
-        let t179 = 0.20784609690826528 * s_arm_leg3;
-        let t182 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t163;
-        let t186 = t140 * (0.56 * t182) + 0.28 * t176;
-        let t191 = s_arm_leg3 * t175;
-        let t193 = 0.1344 * (minus_c_arm_leg3 * t182) - 0.0672 * t191;
-        let t198 = t179 * t186 + 0.8660254037844387 * t170 * t193 + 0.14 * (t135 * t166);
-        ::overact::guard::leg(t198, 0.06758306237512474, "leg3")?;
-        let t199 = 1.0 / t198;
-        let garm_vx_leg3 = (t140 * (0.56 * t166) - 0.4849742261192857 * t176) * t199;
-        let t202 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t202, 14.869730172882845, "actuators")?;
-        ::overact::guard::platform(t202, 14.869730172882845, "actuators")?;
-        let t203 = 1.0 / t202;
-        let t204 = 0.48 * t24;
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t212 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t212, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t212);
+        let t24 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t24, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t24);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t212) / (0.2688 * c_rod_leg1);
-        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
-            - minus_s_arm_leg1 * c_cross_leg1;
-        let t226 = 1.0 / c_rod_leg1;
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let t36 = 0.56 * c_rod_leg1;
+        let s_cross_leg1 = 2.0833333333333335 * t17 / t36;
+        ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let gcross_vy_leg1 = t204
-            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t226)
-                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t226));
-        let garm_vy_leg1 = pose[1] * t25;
-        let garm_vy_leg2 = t101 * t114;
-        let garm_vy_leg3 = t186 * t199;
-        let t249 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+        let t40 = 1.0 / s_cross_leg1;
+        let t41 = 4.166666666666667 * t40;
+        let garm_vx_leg1 = c_armcross_leg1 * t41;
+        let t45 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t48 = pose[0] - 0.025 + 0.1;
+        let t49 = 0.5 * t48;
+        let t50 = 0.8660254037844387 * t45 - t49;
+        let t53 = 0.2304 * (t50 * t50 + t3);
+        let t54 = t48 * t48;
+        let t57 = t54 + t45 * t45 + t3;
+        let t59 = t57 - 0.3136 + 0.0576;
+        let t61 = t53 - t59 * t59;
+        ::overact::guard::reach(t61, "leg2")?;
+        let t62 = ::overact::math::sqrt(t61);
+        let t64 = 0.8660254037844387 * t48;
+        let t66 = t64 + 0.5 * t45;
+        let t67 = t66 * t66;
+        let t69 = 1.0 - 3.188775510204082 * t67;
+        ::overact::guard::reach(t69, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t69);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t71 = 0.56 * c_rod_leg2;
+        let s_cross_leg2 = 2.0833333333333335 * t62 / t71;
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
+        let t73 = 1.0 / s_cross_leg2;
+        let t74 = 4.166666666666667 * t73;
+        let t75 = 1.0 / c_rod_leg2;
+        let t76 = 1.7857142857142858 * t75;
+        let t77 = t66 * t76;
+        let t79 = 1.0 / t53;
+        let t80 = 0.48 * t50;
+        let c_arm_leg2 = t79 * (t80 * t59 - t14 * t62);
+        let c_cross_leg2 = (t57 - (0.0576 + t67) - 0.3136 * t69) / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t79 * (t14 * t59 + t80 * t62);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t98 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t74 * (0.8660254037844387 * t77 - t98);
+        let t104 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t106 = t49 + 0.8660254037844387 * t104;
+        let t109 = 0.2304 * (t106 * t106 + t3);
+        let t112 = t54 + t104 * t104 + t3;
+        let t114 = t112 - 0.3136 + 0.0576;
+        let t116 = t109 - t114 * t114;
+        ::overact::guard::reach(t116, "leg3")?;
+        let t117 = ::overact::math::sqrt(t116);
+        let t120 = t64 - 0.5 * t104;
+        let t121 = t120 * t120;
+        let t123 = 1.0 - 3.188775510204082 * t121;
+        ::overact::guard::reach(t123, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t123);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let t125 = 0.56 * c_rod_leg3;
+        let s_cross_leg3 = 2.0833333333333335 * t117 / t125;
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
+        let t127 = 1.0 / s_cross_leg3;
+        let t128 = 4.166666666666667 * t127;
+        let t129 = 1.0 / t109;
+        let t130 = 0.48 * t106;
+        let minus_c_arm_leg3 = t129 * (t130 * t114 + t14 * t117);
+        let c_cross_leg3 = (t112 - (0.0576 + t121) - 0.3136 * t123)
+            / (0.2688 * c_rod_leg3);
+        let s_arm_leg3 = t129 * (t130 * t117 - t14 * t114);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t148 = 0.5 * minus_c_armcross_leg3;
+        let t149 = 1.0 / c_rod_leg3;
+        let t150 = 1.7857142857142858 * t149;
+        let t151 = t120 * t150;
+        let garm_vx_leg3 = t128 * (t148 + 0.8660254037844387 * t151);
+        let t156 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3;
+        ::overact::guard::platform(t156, 14.869730172882841, "actuators")?;
+        ::overact::guard::platform(t156, 14.869730172882841, "actuators")?;
+        let t157 = 1.0 / t156;
+        let t158 = 0.24 * c_cross_leg1;
+        let t159 = actuator_velocities[0] * actuator_velocities[0];
+        let t161 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7857142857142858 * t161;
+        let t163 = c_cross_leg1 * t40;
+        let t164 = garm_vx_leg1 * actuator_velocities[0];
+        let t165 = garm_vx_leg2 * actuator_velocities[1];
+        let t167 = garm_vx_leg3 * actuator_velocities[2];
+        let t168 = t164 + t165 + t167;
+        let t170 = pose[1] * grod_vy_leg1;
+        let garm_vy_leg1 = t41 * t170;
+        let t173 = 0.8660254037844387 * c_armcross_leg2;
+        let garm_vy_leg2 = t74 * (t173 + 0.5 * t77);
+        let t179 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let garm_vy_leg3 = t128 * (t179 - 0.5 * t151);
+        let t184 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vx_leg3 * garm_vy_leg3;
-        let t250 = t249 * t203;
-        let t252 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t249 * t250;
-        ::overact::guard::platform(t252, 14.869730172882843, "actuators")?;
-        ::overact::guard::platform(t252, 14.869730172882843, "actuators")?;
-        let t253 = 1.0 / t252;
-        let t254 = garm_vy_leg1 * actuator_velocities[0];
-        let t255 = garm_vy_leg2 * actuator_velocities[1];
-        let t257 = garm_vy_leg3 * actuator_velocities[2];
-        let t259 = garm_vx_leg1 * actuator_velocities[0];
-        let t260 = garm_vx_leg2 * actuator_velocities[1];
-        let t262 = garm_vx_leg3 * actuator_velocities[2];
-        let t263 = t259 + t260 + t262;
-        let t265 = t254 + t255 + t257 - t263 * t250;
-        let t267 = 0.24 * minus_s_arm_leg1;
-        let t268 = pose[2] - t267;
-        let garm_vz_leg1 = t268 * t25;
-        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t85) * t114;
-        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t170) * t199;
-        let t285 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
-            + garm_vx_leg3 * garm_vz_leg3;
-        let t286 = t285 * t203;
-        let t288 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
-            + garm_vy_leg3 * garm_vz_leg3 - t249 * t286;
-        let t289 = t288 * t253;
-        let t298 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + garm_vz_leg3 * garm_vz_leg3 - t285 * t286 - t288 * t289;
-        ::overact::guard::platform(t298, 34.855350201355726, "actuators")?;
-        ::overact::guard::platform(t298, 34.855350201355726, "actuators")?;
-        let t299 = 1.0 / t298;
-        let t300 = garm_vz_leg1 * actuator_velocities[0];
-        let t301 = garm_vz_leg2 * actuator_velocities[1];
-        let t303 = garm_vz_leg3 * actuator_velocities[2];
-        let t309 = t299 * (t300 + t301 + t303 - t263 * t286 - t289 * t265);
-        let t311 = t253 * t265 - t289 * t309;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t204;
-        let t318 = t263 * t203 - t250 * t311 - t286 * t309;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t204;
-        let rate_cross_leg1 = gcross_vy_leg1 * t311 - minus_gcross_vx_leg1 * t318
-            - minus_gcross_vz_leg1 * t309;
-        let grod_vy_leg1 = 1.7857142857142858 * t226;
-        let rate_rod_leg1 = grod_vy_leg1 * t311;
-        let t326 = s_armcross_leg1 * rate_rod_leg1;
-        let t328 = pose[1] * (rate_cross_leg1 * t326);
-        let t329 = actuator_velocities[0] * actuator_velocities[0];
-        let t332 = rate_cross_leg1 * rate_cross_leg1;
-        let t334 = c_armcross_leg1 * rate_rod_leg1;
-        let t336 = t326 * t326 + t332 + t334 * t334;
-        let t340 = t328 - (t21 * t329 + t23 * t336) + t328;
-        let t342 = pose[1] * rate_cross_leg1;
-        let t343 = rate_cross_leg1 * t342;
-        let t345 = t343 - pose[1] * t336;
-        let t349 = pose[1] * (rate_cross_leg1 * t334);
-        let t354 = t349 - (t267 * t329 + t268 * t336) + t349;
-        let minus_rate_dot_arm_leg1 = garm_vx_leg1 * t340 + garm_vy_leg1 * t345
-            + garm_vz_leg1 * t354;
-        let t357 = actuator_accelerations[0] + minus_rate_dot_arm_leg1;
-        let t359 = actuator_velocities[1] * actuator_velocities[1];
-        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t81)
-            - 0.11639381426862856 * (minus_s_arm_leg2 * t97)) * t114;
-        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t81)
-            - 0.11639381426862856 * t106) * t114;
-        let minus_gcross_vy_leg2 = t108 * t114;
-        let rate_cross_leg2 = gcross_vz_leg2 * t309
-            - (minus_gcross_vx_leg2 * t318 + minus_gcross_vy_leg2 * t311);
-        let t378 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t85) - t54 * t94) * t114;
-        let minus_grod_vy_leg2 = 0.25 * t49 * t114;
-        let rate_rod_leg2 = grod_vx_leg2 * t318 - minus_grod_vy_leg2 * t311;
-        let t391 = t378 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t394 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t395 = 0.5 * rate_cross_leg2;
-        let t396 = t394 - t395;
-        let t399 = c_armcross_leg2 * rate_rod_leg2;
-        let t401 = t391 * t391 + t396 * t396 + t399 * t399;
-        let t404 = 0.20784609690826528 * c_arm_leg2;
-        let t406 = t28 - (0.17320508075688776 + t404);
-        let t407 = t395 * t399;
-        let t409 = 0.12 * c_arm_leg2;
-        let t411 = t31 + 0.1 + t409;
-        let t412 = t378 * t399;
-        let t414 = t406 * t407 + t411 * t412;
-        let t416 = t84 * t359 + t85 * t401 + t414 + t414;
-        let t425 = t406 * t396 - t411 * t391 + t85 * t399;
-        let t430 = 1.3333333333333333 * (t378 * t394);
-        let t433 = t409 * t359 - t411 * t401 - t391 * t425 + t85 * t412 + t406 * t430;
-        let t443 = t396 * t425 - (t404 * t359 + t406 * t401) + t85 * t407 - t411 * t430;
-        let rate_dot_arm_leg2 = garm_vz_leg2 * t416
-            - (garm_vx_leg2 * t433 + garm_vy_leg2 * t443);
-        let t447 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t450 = 0.20784609690826528 * minus_c_arm_leg3;
-        let t451 = actuator_velocities[2] * actuator_velocities[2];
-        let t454 = t118 - (t450 - 0.17320508075688776);
-        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t182)
-            + 0.0672 * (s_arm_leg3 * t166)) * t199;
-        let minus_gcross_vx_leg3 = (0.11639381426862856 * t191
-            + 0.1344 * (minus_c_arm_leg3 * t166)) * t199;
-        let minus_gcross_vy_leg3 = t193 * t199;
-        let rate_cross_leg3 = gcross_vz_leg3 * t309
-            - (minus_gcross_vx_leg3 * t318 + minus_gcross_vy_leg3 * t311);
-        let t472 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (t140 * t179
-            + 0.20784609690826528 * (minus_c_arm_leg3 * t170)) * t199;
-        let minus_grod_vy_leg3 = 0.25 * t135 * t199;
-        let rate_rod_leg3 = grod_vx_leg3 * t318 - minus_grod_vy_leg3 * t311;
-        let t485 = t472 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t487 = 0.5 * rate_cross_leg3;
-        let t489 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t490 = t487 + t489;
-        let t493 = minus_c_armcross_leg3 * rate_rod_leg3;
-        let t495 = t485 * t485 + t490 * t490 + t493 * t493;
-        let t498 = 0.12 * minus_c_arm_leg3;
-        let t500 = t31 - (t498 - 0.1);
-        let t505 = t500 * t485 - t454 * t490 - t170 * t493;
-        let t509 = 1.3333333333333333 * (t472 * t489);
-        let t511 = t487 * t493;
-        let t514 = t450 * t451 + t454 * t495 + t490 * t505 + t500 * t509 + t170 * t511;
-        let t521 = t472 * t493;
-        let t525 = t485 * t505 - (t498 * t451 + t500 * t495) + t170 * t521 + t454 * t509;
-        let t533 = t454 * t511 - t500 * t521;
-        let t535 = t169 * t451 - t170 * t495 + t533 + t533;
-        let rate_dot_arm_leg3 = garm_vy_leg3 * t514 - garm_vx_leg3 * t525
-            - garm_vz_leg3 * t535;
-        let t538 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t540 = garm_vx_leg1 * t357 + garm_vx_leg2 * t447 + garm_vx_leg3 * t538;
-        let t548 = garm_vy_leg1 * t357 + garm_vy_leg2 * t447 + garm_vy_leg3 * t538
-            - t250 * t540;
-        let t559 = t299
-            * (garm_vz_leg1 * t357 + garm_vz_leg2 * t447 + garm_vz_leg3 * t538
-                - t286 * t540 - t289 * t548);
-        let t561 = t253 * t548 - t289 * t559;
-        let t565 = t203 * t540 - t250 * t561 - t286 * t559;
-        let t576 = 9.81 * c_arm_leg1;
-        let t580 = 9.81 * c_arm_leg2;
-        let t584 = 9.81 * minus_c_arm_leg3;
-        let t588 = 9.81 * minus_s_arm_leg1;
-        let t592 = 9.81 * minus_s_arm_leg2;
-        let t596 = 9.81 * s_arm_leg3;
-        let t609 = t561 - t345;
-        let rate_dot_cross_leg1 = gcross_vy_leg1 * t609
-            - minus_gcross_vx_leg1 * (t565 - t340)
-            - minus_gcross_vz_leg1 * (t559 - t354);
-        let t617 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t618 = c_rod_leg1 * rate_cross_leg1;
-        let t619 = rate_rod_leg1 * t618;
-        let t620 = t617 + t619;
-        let t622 = 1.7857142857142858 * t342;
-        let t623 = rate_rod_leg1 * t622;
-        let t624 = c_rod_leg1 * t623;
-        let t625 = s_rod_leg1 * t620 + t624;
-        let t628 = 3.188775510204082 * t343;
-        let t631 = 1.7857142857142858 * t425;
-        let t632 = rate_rod_leg2 * t631;
-        let t633 = c_rod_leg2 * t632;
-        let t634 = c_rod_leg2 * rate_cross_leg2;
-        let t635 = rate_rod_leg2 * t634;
-        let t638 = t565 - t433;
-        let t640 = t561 - t443;
-        let rate_dot_cross_leg2 = gcross_vz_leg2 * (t559 + t416)
-            - (minus_gcross_vx_leg2 * t638 + minus_gcross_vy_leg2 * t640);
-        let t644 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t645 = t635 - t644;
-        let t647 = t633 - minus_s_rod_leg2 * t645;
-        let t649 = t631 * t634;
-        let t650 = grod_vx_leg2 * t649;
-        let t652 = minus_grod_vy_leg2 * t649;
-        let t658 = t565 - t525;
-        let t660 = t561 + t514;
-        let rate_dot_cross_leg3 = gcross_vz_leg3 * (t559 - t535)
-            - (minus_gcross_vx_leg3 * t658 + minus_gcross_vy_leg3 * t660);
-        let t664 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t665 = c_rod_leg3 * rate_cross_leg3;
-        let t666 = rate_rod_leg3 * t665;
-        let t667 = t664 + t666;
-        let t669 = 1.7857142857142858 * t505;
-        let t670 = rate_rod_leg3 * t669;
-        let t671 = c_rod_leg3 * t670;
-        let t672 = s_rod_leg3 * t667 + t671;
-        let t674 = t669 * t665;
-        let t675 = grod_vx_leg3 * t674;
-        let t677 = minus_grod_vy_leg3 * t674;
-        let t681 = t619 + t620;
-        let t683 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t684 = t683 - t623;
-        let t687 = c_rod_leg1 * t681 - s_rod_leg1 * (t623 - t684);
-        let t691 = 3.188775510204082 * (t342 * t342);
-        let t698 = 3.188775510204082 * (t425 * t425);
-        let t699 = t634 * t634;
-        let t700 = t698 - t699;
-        let t702 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t703 = t702 - t632;
-        let t706 = t635 + t645;
-        let t708 = minus_s_rod_leg2 * (t632 - t703) + c_rod_leg2 * t706;
-        let t716 = 3.188775510204082 * (t505 * t505);
-        let t717 = t665 * t665;
-        let t718 = t716 - t717;
-        let t720 = t666 + t667;
-        let t722 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t723 = t722 - t670;
-        let t726 = c_rod_leg3 * t720 - s_rod_leg3 * (t670 - t723);
-        let t733 = t622 * t618;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t609;
-        let t737 = rate_rod_leg1 * rate_rod_leg1;
-        let t740 = s_rod_leg1 * (t733 + rate_dot_rod_leg1) + c_rod_leg1 * (t737 - t691);
-        let t746 = rate_rod_leg2 * rate_rod_leg2;
-        let rate_dot_rod_leg2 = grod_vx_leg2 * t638 - minus_grod_vy_leg2 * t640;
-        let t754 = c_rod_leg2 * (t746 - t698)
-            - minus_s_rod_leg2 * (t649 + rate_dot_rod_leg2);
-        let rate_dot_rod_leg3 = grod_vx_leg3 * t658 - minus_grod_vy_leg3 * t660;
-        let t768 = rate_rod_leg3 * rate_rod_leg3;
-        let t771 = s_rod_leg3 * (t674 + rate_dot_rod_leg3) + c_rod_leg3 * (t768 - t716);
-        let t779 = c_rod_leg1 * t684 - t624;
-        let t785 = c_rod_leg2 * t703 - t633;
-        let t792 = c_rod_leg3 * t723 - t671;
-        let t798 = 1.7857142857142858 * t561;
-        let t806 = t649 - rate_dot_rod_leg2;
-        let t808 = minus_s_rod_leg2 * (t699 - t746) + c_rod_leg2 * t806;
-        let t819 = t674 - rate_dot_rod_leg3;
-        let t821 = s_rod_leg3 * (t717 - t768) - c_rod_leg3 * t819;
-        let t833 = 0.8928571428571429 * t17;
-        let t837 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
-        let t841 = 0.24 * c_cross_leg1;
-        let t843 = t833 * (t733 - rate_dot_rod_leg1) + t837 * (t691 + t737)
-            - t841 * t681;
-        let t846 = 0.24 * actuator_accelerations[0] - t576;
-        let t849 = t588 - 0.24 * t329;
-        let t852 = s_rod_leg1 * (c_cross_leg1 * t846 - s_cross_leg1 * t849);
-        let t860 = c_cross_leg1 * t849 + s_cross_leg1 * t846;
-        let t866 = 0.8928571428571429 * t49;
-        let t869 = 0.42857142857142855 * (t57 * s_cross_leg2);
-        let t873 = 0.24 * c_cross_leg2;
-        let t875 = t866 * t806 - t869 * (t698 + t746) - t873 * t706;
-        let t878 = 0.24 * actuator_accelerations[1] - t580;
-        let t881 = t592 - 0.24 * t359;
-        let t884 = minus_s_rod_leg2 * (c_cross_leg2 * t878 - s_cross_leg2 * t881);
-        let t889 = c_cross_leg2 * t881 + s_cross_leg2 * t878;
-        let t901 = 0.8928571428571429 * t135;
-        let t904 = 0.42857142857142855 * (t142 * s_cross_leg3);
-        let t908 = 0.24 * c_cross_leg3;
-        let t910 = t901 * t819 + t904 * (t716 + t768) - t908 * t720;
-        let t913 = t596 + 0.24 * t451;
-        let t916 = t584 + 0.24 * actuator_accelerations[2];
-        let t919 = s_rod_leg3 * (s_cross_leg3 * t913 + c_cross_leg3 * t916);
-        let t924 = s_cross_leg3 * t916 - c_cross_leg3 * t913;
-        let t940 = t833 * t683 + t837 * t617 + t332 * t841;
-        let t955 = t866 * t702 + t869 * t644 + rate_cross_leg2 * rate_cross_leg2 * t873;
-        let t970 = t901 * t722 + t904 * t664 + rate_cross_leg3 * rate_cross_leg3 * t908;
+        let t185 = t184 * t157;
+        let t192 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t184 * t185;
+        ::overact::guard::platform(t192, 14.869730172882846, "actuators")?;
+        ::overact::guard::platform(t192, 14.869730172882846, "actuators")?;
+        let t193 = 1.0 / t192;
+        let t194 = garm_vy_leg1 * actuator_velocities[0];
+        let t195 = garm_vy_leg2 * actuator_velocities[1];
+        let t197 = garm_vy_leg3 * actuator_velocities[2];
+        let t200 = t194 + t195 + t197 - t168 * t185;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t41;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t74;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t128;
+        let t218 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+            + garm_vx_leg3 * minus_garm_vz_leg3;
+        let t219 = t218 * t157;
+        let t226 = t184 * t219
+            - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
+                + garm_vy_leg3 * minus_garm_vz_leg3);
+        let t227 = t226 * t193;
+        let t236 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+            + minus_garm_vz_leg2 * minus_garm_vz_leg2
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t218 * t219 - t226 * t227;
+        ::overact::guard::platform(t236, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t236, 34.855350201355726, "actuators")?;
+        let t237 = 1.0 / t236;
+        let t239 = minus_garm_vz_leg1 * actuator_velocities[0];
+        let t240 = minus_garm_vz_leg2 * actuator_velocities[1];
+        let t242 = minus_garm_vz_leg3 * actuator_velocities[2];
+        let t247 = t237 * (t168 * t219 - (t239 + t240 + t242) - t227 * t200);
+        let t249 = t193 * t200 - t227 * t247;
+        let t253 = t168 * t157 - t185 * t249 + t219 * t247;
+        let t258 = t158 * garm_vy_leg1;
+        let t264 = t163 * (c_armcross_leg1 * t253 - s_armcross_leg1 * t247) + t258 * t249
+            + s_armcross_leg1 * t253 + c_armcross_leg1 * t247;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t264;
+        let t266 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t249;
+        let t268 = rate_rod_leg1 * rate_rod_leg1;
+        let t269 = t266 + t268;
+        let t271 = t158 * t159 + t36 * t269;
+        let t272 = pose[1] * minus_rate_cross_leg1;
+        let t273 = minus_rate_cross_leg1 * t272;
+        let t275 = t273 - pose[1] * t269;
+        let rate_dot_arm_leg1 = t41 * (t271 - t170 * t275);
+        let t279 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t281 = 0.24 * c_cross_leg2;
+        let t282 = actuator_velocities[1] * actuator_velocities[1];
+        let t284 = 0.8660254037844387 * t253;
+        let t285 = 0.5 * t249;
+        let t286 = t284 + t285;
+        let minus_rate_rod_leg2 = t76 * t286;
+        let t288 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t289 = 0.5 * s_armcross_leg2;
+        let t291 = 0.8660254037844387 * s_armcross_leg2;
+        let t296 = c_cross_leg2 * t73;
+        let t303 = t289 * t253 - t291 * t249 - c_armcross_leg2 * t247
+            - t296 * (t173 * t249 - t98 * t253 - s_armcross_leg2 * t247);
+        let t305 = t281 * (t74 * t77);
+        let t307 = t303 - t305 * t286;
+        let rate_cross_leg2 = t76 * t307;
+        let t309 = rate_cross_leg2 * rate_cross_leg2;
+        let t310 = t288 + t309;
+        let t312 = t281 * t282 + t71 * t310;
+        let t314 = t66 * rate_cross_leg2;
+        let t315 = rate_cross_leg2 * t314;
+        let t316 = t66 * t310 - t315;
+        let rate_dot_arm_leg2 = t74 * (t312 + t77 * t316);
+        let t320 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t323 = 0.24 * c_cross_leg3;
+        let t324 = actuator_velocities[2] * actuator_velocities[2];
+        let t326 = t284 - t285;
+        let rate_rod_leg3 = t150 * t326;
+        let t328 = rate_rod_leg3 * rate_rod_leg3;
+        let t329 = 0.5 * s_armcross_leg3;
+        let t331 = 0.8660254037844387 * s_armcross_leg3;
+        let t336 = c_cross_leg3 * t127;
+        let t343 = t329 * t253 + t331 * t249 + minus_c_armcross_leg3 * t247
+            - t336 * (t148 * t253 + t179 * t249 - s_armcross_leg3 * t247);
+        let t345 = t323 * (t128 * t151);
+        let t347 = t343 - t345 * t326;
+        let rate_cross_leg3 = t150 * t347;
+        let t349 = rate_cross_leg3 * rate_cross_leg3;
+        let t350 = t328 + t349;
+        let t352 = t323 * t324 + t125 * t350;
+        let t353 = t120 * rate_cross_leg3;
+        let t354 = rate_cross_leg3 * t353;
+        let t356 = t354 - t120 * t350;
+        let rate_dot_arm_leg3 = t128 * (t352 - t151 * t356);
+        let t360 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t362 = garm_vx_leg1 * t279 + garm_vx_leg2 * t320 + garm_vx_leg3 * t360;
+        let t370 = garm_vy_leg1 * t279 + garm_vy_leg2 * t320 + garm_vy_leg3 * t360
+            - t185 * t362;
+        let t381 = t237
+            * (t219 * t362
+                - (minus_garm_vz_leg1 * t279 + minus_garm_vz_leg2 * t320
+                    + minus_garm_vz_leg3 * t360) - t227 * t370);
+        let t383 = t193 * t370 - t227 * t381;
+        let t387 = t157 * t362 - t185 * t383 + t219 * t381;
+        let t398 = 9.81 * c_arm_leg1;
+        let t402 = 9.81 * c_arm_leg2;
+        let t406 = 9.81 * minus_c_arm_leg3;
+        let t410 = 9.81 * minus_s_arm_leg1;
+        let t414 = 9.81 * minus_s_arm_leg2;
+        let t418 = 9.81 * s_arm_leg3;
+        let minus_gcross_vx_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 * t163 + s_armcross_leg1);
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t440 = t383 - t275;
+        let t449 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
+        let t453 = t163 * (c_armcross_leg1 * t387 - s_armcross_leg1 * t381 + t271)
+            + t258 * t440 + s_armcross_leg1 * t387 + c_armcross_leg1 * t381
+            + 0.24 * s_cross_leg1 * t159 + t449 + t449;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t453;
+        let t455 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t457 = rate_rod_leg1 * (1.7857142857142858 * t264);
+        let t458 = t455 + t457;
+        let t461 = c_rod_leg1 * (1.7857142857142858 * t449);
+        let t462 = s_rod_leg1 * t458 + t461;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * t258;
+        let t466 = 3.188775510204082 * t273;
+        let minus_gcross_vz_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 - s_armcross_leg1 * t163);
+        let gcross_vx_leg2 = t76 * (t98 * t296 + t289 - 0.8660254037844387 * t305);
+        let minus_s_rod_leg2 = 1.7857142857142858 * t66;
+        let t486 = t66 * (rate_cross_leg2 * minus_rate_rod_leg2);
+        let t489 = t289 * t387 - t291 * t383 - c_armcross_leg2 * t381
+            - (0.24 * s_cross_leg2 * t282 - t486 - t486);
+        let t498 = 0.8660254037844387 * t387;
+        let t499 = 0.5 * t383;
+        let t500 = t498 + t499;
+        let t501 = t500 + t316;
+        let t503 = t489
+            - t296 * (t173 * t383 - t98 * t387 - s_armcross_leg2 * t381 + t312)
+            - t305 * t501;
+        let rate_dot_cross_leg2 = t76 * t503;
+        let t505 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t507 = minus_rate_rod_leg2 * (1.7857142857142858 * t307);
+        let t508 = t505 + t507;
+        let t511 = c_rod_leg2 * (1.7857142857142858 * t486);
+        let t512 = minus_s_rod_leg2 * t508 + t511;
+        let t514 = 2.76156059880242 * t315;
+        let minus_gcross_vy_leg2 = t76 * (t173 * t296 + t291 + 0.5 * t305);
+        let t522 = 1.594387755102041 * t315;
+        let gcross_vz_leg2 = t76 * (s_armcross_leg2 * t296 - c_armcross_leg2);
+        let gcross_vx_leg3 = t150 * (t329 - t148 * t336 - 0.8660254037844387 * t345);
+        let s_rod_leg3 = 1.7857142857142858 * t120;
+        let t542 = t120 * (rate_cross_leg3 * rate_rod_leg3);
+        let t545 = t329 * t387 + t331 * t383 + minus_c_armcross_leg3 * t381
+            - (0.24 * s_cross_leg3 * t324 - t542 - t542);
+        let t554 = t498 - t499;
+        let t555 = t554 - t356;
+        let t557 = t545
+            - t336 * (t148 * t387 + t179 * t383 - s_armcross_leg3 * t381 + t352)
+            - t345 * t555;
+        let rate_dot_cross_leg3 = t150 * t557;
+        let t559 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t561 = rate_rod_leg3 * (1.7857142857142858 * t347);
+        let t562 = t559 + t561;
+        let t565 = c_rod_leg3 * (1.7857142857142858 * t542);
+        let t566 = s_rod_leg3 * t562 + t565;
+        let t568 = 2.76156059880242 * t354;
+        let gcross_vy_leg3 = t150 * (t331 - t179 * t336 + 0.5 * t345);
+        let t576 = 1.594387755102041 * t354;
+        let gcross_vz_leg3 = t150 * (s_armcross_leg3 * t336 + minus_c_armcross_leg3);
+        let t582 = t449 - t453;
+        let t586 = t457 + t458;
+        let t588 = 3.188775510204082 * (pose[1] * (t449 + t582)) - c_rod_leg1 * t586;
+        let t590 = t272 * t272;
+        let t598 = t503 - t486;
+        let t602 = t507 + t508;
+        let t604 = 3.188775510204082 * (t66 * (t486 - t598)) - c_rod_leg2 * t602;
+        let t606 = t314 * t314;
+        let t609 = t75 * (t606 - t307 * t307);
+        let t616 = t561 + t562;
+        let t618 = t557 - t542;
+        let t622 = c_rod_leg3 * t616 - 3.188775510204082 * (t120 * (t542 - t618));
+        let t624 = t353 * t353;
+        let t627 = t149 * (t624 - t347 * t347);
+        let t635 = 3.188775510204082 * (t264 * t272);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t440;
+        let t639 = 3.188775510204082 * t590;
+        let t642 = s_rod_leg1 * (t635 + rate_dot_rod_leg1) + c_rod_leg1 * (t268 - t639);
+        let t649 = 3.188775510204082 * (t307 * t314);
+        let minus_rate_dot_rod_leg2 = t76 * t501;
+        let t653 = 3.188775510204082 * t606;
+        let t656 = minus_s_rod_leg2 * (t649 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t288 - t653);
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t75;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t75;
+        let t667 = 3.188775510204082 * (t347 * t353);
+        let rate_dot_rod_leg3 = t150 * t555;
+        let t671 = 3.188775510204082 * t624;
+        let t674 = s_rod_leg3 * (t667 + rate_dot_rod_leg3) + c_rod_leg3 * (t328 - t671);
+        let grod_vx_leg3 = 1.5464739353293548 * t149;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t149;
+        let t686 = t461 + c_rod_leg1 * (1.7857142857142858 * t582);
+        let t693 = c_rod_leg2 * (1.7857142857142858 * t598) - t511;
+        let t701 = c_rod_leg3 * (1.7857142857142858 * t618) - t565;
+        let t707 = 1.7857142857142858 * t383;
+        let t713 = 1.7857142857142858 * t500;
+        let t721 = 1.7857142857142858 * t554;
+        let t738 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
+        let t743 = 0.8928571428571429 * t17 * (t635 - rate_dot_rod_leg1)
+            + t738 * (t639 + t268) + t158 * t586;
+        let t746 = 0.24 * actuator_accelerations[0] - t398;
+        let t749 = t410 - 0.24 * t159;
+        let t752 = s_rod_leg1 * (c_cross_leg1 * t746 - s_cross_leg1 * t749);
+        let t760 = c_cross_leg1 * t749 + s_cross_leg1 * t746;
+        let t770 = 0.42857142857142855 * (t66 * s_cross_leg2);
+        let t775 = 0.8928571428571429 * t62 * (minus_rate_dot_rod_leg2 - t649)
+            - t770 * (t653 + t288) + t281 * t602;
+        let t778 = 0.24 * actuator_accelerations[1] - t402;
+        let t781 = t414 - 0.24 * t282;
+        let t784 = minus_s_rod_leg2 * (c_cross_leg2 * t778 - s_cross_leg2 * t781);
+        let t789 = c_cross_leg2 * t781 + s_cross_leg2 * t778;
+        let t805 = 0.42857142857142855 * (t120 * s_cross_leg3);
+        let t810 = 0.8928571428571429 * t117 * (t667 - rate_dot_rod_leg3)
+            + t805 * (t671 + t328) - t323 * t616;
+        let t813 = t418 + 0.24 * t324;
+        let t816 = t406 + 0.24 * actuator_accelerations[2];
+        let t819 = s_rod_leg3 * (s_cross_leg3 * t813 + c_cross_leg3 * t816);
+        let t824 = s_cross_leg3 * t816 - c_cross_leg3 * t813;
+        let t841 = t158 * t266 - (1.594387755102041 * (t17 * t453) + t738 * t455);
+        let t856 = 1.594387755102041 * (t62 * t503) + t770 * t505 + t281 * t309;
+        let t871 = 1.594387755102041 * (t117 * t557) + t805 * t559 + t323 * t349;
         Ok([
             [
-                t565, garm_vx_leg1 * actuator_accelerations[0],
+                t387, garm_vx_leg1 * actuator_accelerations[0],
                 garm_vx_leg2 * actuator_accelerations[1], garm_vx_leg3 * actuator_accelerations[2],
-                -(garm_vx_leg1 * t576), -(garm_vx_leg2 * t580), garm_vx_leg3 * t584,
-                -(garm_vx_leg1 * t588), -(garm_vx_leg2 * t592), garm_vx_leg3 * t596, t259, t260,
-                t262, ::overact::math::signed(garm_vx_leg1, actuator_velocities[0]),
+                -(garm_vx_leg1 * t398), -(garm_vx_leg2 * t402), garm_vx_leg3 * t406,
+                -(garm_vx_leg1 * t410), -(garm_vx_leg2 * t414), garm_vx_leg3 * t418, t164, t165,
+                t167, ::overact::math::signed(garm_vx_leg1, actuator_velocities[0]),
                 ::overact::math::signed(garm_vx_leg2, actuator_velocities[1]),
                 ::overact::math::signed(garm_vx_leg3, actuator_velocities[2]), garm_vx_leg1,
-                garm_vx_leg2, garm_vx_leg3, -(minus_gcross_vx_leg1 * t625),
-                -(minus_gcross_vx_leg2 * t647 + t650), -(minus_gcross_vx_leg3 * t672 + t675),
-                -(minus_gcross_vx_leg1 * t687), grod_vx_leg2 * t700 - minus_gcross_vx_leg2 * t708,
-                grod_vx_leg3 * t718 - minus_gcross_vx_leg3 * t726, -(minus_gcross_vx_leg1 * t740),
-                -(minus_gcross_vx_leg2 * t754 + grod_vx_leg2 * t644),
-                grod_vx_leg3 * t664 - minus_gcross_vx_leg3 * t771, -(minus_gcross_vx_leg1 * t779),
-                t650 - minus_gcross_vx_leg2 * t785, t675 - minus_gcross_vx_leg3 * t792,
-                -(minus_gcross_vx_leg1 * t798), minus_gcross_vx_leg2 * t808 + grod_vx_leg2 * t702,
-                grod_vx_leg3 * t722 - minus_gcross_vx_leg3 * t821, 0.0,
-                grod_vx_leg2 * rate_dot_rod_leg2, grod_vx_leg3 * rate_dot_rod_leg3,
-                garm_vx_leg1 * t843 + minus_gcross_vx_leg1 * t852,
-                garm_vx_leg2 * t875 - minus_gcross_vx_leg2 * t884
-                    - grod_vx_leg2 * (c_rod_leg2 * t889),
-                garm_vx_leg3 * t910 + minus_gcross_vx_leg3 * t919
-                    - grod_vx_leg3 * (c_rod_leg3 * t924),
-                garm_vx_leg1 * t940 - minus_gcross_vx_leg1 * t860,
-                garm_vx_leg2 * t955 - minus_gcross_vx_leg2 * t889,
-                garm_vx_leg3 * t970 - minus_gcross_vx_leg3 * t924,
+                garm_vx_leg2, garm_vx_leg3, minus_gcross_vx_leg1 * t462,
+                gcross_vx_leg2 * t512 - t514, gcross_vx_leg3 * t566 - t568,
+                -(minus_gcross_vx_leg1 * t588), gcross_vx_leg2 * t604 - 4.9313582121471775 * t609,
+                gcross_vx_leg3 * t622 + 4.9313582121471775 * t627, -(minus_gcross_vx_leg1 * t642),
+                gcross_vx_leg2 * t656 + minus_grod_vx_leg2 * t505,
+                gcross_vx_leg3 * t674 + grod_vx_leg3 * t559, -(minus_gcross_vx_leg1 * t686),
+                gcross_vx_leg2 * t693 + t514, gcross_vx_leg3 * t701 + t568,
+                -(minus_gcross_vx_leg1 * t707),
+                -(gcross_vx_leg2 * t713 + 1.5464739353293548 * rate_dot_cross_leg2),
+                gcross_vx_leg3 * t721 + 1.5464739353293548 * rate_dot_cross_leg3, 0.0,
+                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2, grod_vx_leg3 * rate_dot_rod_leg3,
+                garm_vx_leg1 * t743 + minus_gcross_vx_leg1 * t752,
+                garm_vx_leg2 * t775 + gcross_vx_leg2 * t784
+                    + minus_grod_vx_leg2 * (c_rod_leg2 * t789),
+                garm_vx_leg3 * t810 - gcross_vx_leg3 * t819
+                    - grod_vx_leg3 * (c_rod_leg3 * t824),
+                garm_vx_leg1 * t841 - minus_gcross_vx_leg1 * t760,
+                garm_vx_leg2 * t856 + gcross_vx_leg2 * t789,
+                garm_vx_leg3 * t871 + gcross_vx_leg3 * t824,
             ],
             [
-                t561, garm_vy_leg1 * actuator_accelerations[0],
+                t383, garm_vy_leg1 * actuator_accelerations[0],
                 garm_vy_leg2 * actuator_accelerations[1], garm_vy_leg3 * actuator_accelerations[2],
-                -(garm_vy_leg1 * t576), -(garm_vy_leg2 * t580), garm_vy_leg3 * t584,
-                -(garm_vy_leg1 * t588), -(garm_vy_leg2 * t592), garm_vy_leg3 * t596, t254, t255,
-                t257, ::overact::math::signed(garm_vy_leg1, actuator_velocities[0]),
+                -(garm_vy_leg1 * t398), -(garm_vy_leg2 * t402), garm_vy_leg3 * t406,
+                -(garm_vy_leg1 * t410), -(garm_vy_leg2 * t414), garm_vy_leg3 * t418, t194, t195,
+                t197, ::overact::math::signed(garm_vy_leg1, actuator_velocities[0]),
                 ::overact::math::signed(garm_vy_leg2, actuator_velocities[1]),
                 ::overact::math::signed(garm_vy_leg3, actuator_velocities[2]), garm_vy_leg1,
-                garm_vy_leg2, garm_vy_leg3, gcross_vy_leg1 * t625 - t628,
-                t652 - minus_gcross_vy_leg2 * t647, t677 - minus_gcross_vy_leg3 * t672,
-                gcross_vy_leg1 * t687 + grod_vy_leg1 * (t691 - t618 * t618),
-                -(minus_gcross_vy_leg2 * t708 + minus_grod_vy_leg2 * t700),
-                -(minus_gcross_vy_leg3 * t726 + minus_grod_vy_leg3 * t718),
-                gcross_vy_leg1 * t740 + grod_vy_leg1 * t617,
-                minus_grod_vy_leg2 * t644 - minus_gcross_vy_leg2 * t754,
-                -(minus_gcross_vy_leg3 * t771 + minus_grod_vy_leg3 * t664),
-                gcross_vy_leg1 * t779 + t628, -(minus_gcross_vy_leg2 * t785 + t652),
-                -(minus_gcross_vy_leg3 * t792 + t677),
-                gcross_vy_leg1 * t798 + 1.7857142857142858 * rate_dot_cross_leg1,
-                minus_gcross_vy_leg2 * t808 - 0.8928571428571429 * rate_dot_cross_leg2,
-                -(minus_gcross_vy_leg3 * t821
-                    + 0.8928571428571429 * rate_dot_cross_leg3),
+                garm_vy_leg2, garm_vy_leg3, minus_gcross_vy_leg1 * t462 - t466,
+                -(minus_gcross_vy_leg2 * t512 + t522), gcross_vy_leg3 * t566 + t576,
+                5.694241982507289 * (t161 * (t590 - t264 * t264))
+                    - minus_gcross_vy_leg1 * t588,
+                -(minus_gcross_vy_leg2 * t604 + 2.8471209912536444 * t609),
+                gcross_vy_leg3 * t622 - 2.8471209912536444 * t627,
+                -(minus_gcross_vy_leg1 * t642 + grod_vy_leg1 * t455),
+                minus_grod_vy_leg2 * t505 - minus_gcross_vy_leg2 * t656,
+                gcross_vy_leg3 * t674 - minus_grod_vy_leg3 * t559,
+                t466 - minus_gcross_vy_leg1 * t686,
+                t522 - minus_gcross_vy_leg2 * t693,
+                gcross_vy_leg3 * t701 - t576,
+                -(minus_gcross_vy_leg1 * t707
+                    + 1.7857142857142858 * minus_rate_dot_cross_leg1),
+                minus_gcross_vy_leg2 * t713 - 0.8928571428571429 * rate_dot_cross_leg2,
+                gcross_vy_leg3 * t721 - 0.8928571428571429 * rate_dot_cross_leg3,
                 grod_vy_leg1 * rate_dot_rod_leg1,
-                -(minus_grod_vy_leg2 * rate_dot_rod_leg2),
+                minus_grod_vy_leg2 * minus_rate_dot_rod_leg2,
                 -(minus_grod_vy_leg3 * rate_dot_rod_leg3),
-                garm_vy_leg1 * t843 - gcross_vy_leg1 * t852 - 1.7857142857142858 * t860,
-                garm_vy_leg2 * t875 - minus_gcross_vy_leg2 * t884
-                    + 0.8928571428571429 * t889,
-                garm_vy_leg3 * t910 + minus_gcross_vy_leg3 * t919
-                    + 0.8928571428571429 * t924,
-                garm_vy_leg1 * t940 + gcross_vy_leg1 * t860,
-                garm_vy_leg2 * t955 - minus_gcross_vy_leg2 * t889,
-                garm_vy_leg3 * t970 - minus_gcross_vy_leg3 * t924,
+                garm_vy_leg1 * t743 + minus_gcross_vy_leg1 * t752
+                    - 1.7857142857142858 * t760,
+                garm_vy_leg2 * t775 - minus_gcross_vy_leg2 * t784
+                    + 0.8928571428571429 * t789,
+                garm_vy_leg3 * t810 - gcross_vy_leg3 * t819 + 0.8928571428571429 * t824,
+                garm_vy_leg1 * t841 - minus_gcross_vy_leg1 * t760,
+                garm_vy_leg2 * t856 - minus_gcross_vy_leg2 * t789,
+                garm_vy_leg3 * t871 + gcross_vy_leg3 * t824,
             ],
             [
-                t559 + 9.81, garm_vz_leg1 * actuator_accelerations[0],
-                garm_vz_leg2 * actuator_accelerations[1], garm_vz_leg3 * actuator_accelerations[2],
-                -(garm_vz_leg1 * t576), -(garm_vz_leg2 * t580), garm_vz_leg3 * t584,
-                -(garm_vz_leg1 * t588), -(garm_vz_leg2 * t592), garm_vz_leg3 * t596, t300, t301,
-                t303, ::overact::math::signed(garm_vz_leg1, actuator_velocities[0]),
-                ::overact::math::signed(garm_vz_leg2, actuator_velocities[1]),
-                ::overact::math::signed(garm_vz_leg3, actuator_velocities[2]), garm_vz_leg1,
-                garm_vz_leg2, garm_vz_leg3, -(minus_gcross_vz_leg1 * t625), gcross_vz_leg2 * t647,
-                gcross_vz_leg3 * t672, -(minus_gcross_vz_leg1 * t687), gcross_vz_leg2 * t708,
-                gcross_vz_leg3 * t726, -(minus_gcross_vz_leg1 * t740), gcross_vz_leg2 * t754,
-                gcross_vz_leg3 * t771, -(minus_gcross_vz_leg1 * t779), gcross_vz_leg2 * t785,
-                gcross_vz_leg3 * t792, -(minus_gcross_vz_leg1 * t798), -(gcross_vz_leg2 * t808),
-                gcross_vz_leg3 * t821, 0.0, 0.0, 0.0,
-                garm_vz_leg1 * t843 + minus_gcross_vz_leg1 * t852,
-                garm_vz_leg2 * t875 + gcross_vz_leg2 * t884,
-                garm_vz_leg3 * t910 - gcross_vz_leg3 * t919,
-                garm_vz_leg1 * t940 - minus_gcross_vz_leg1 * t860,
-                garm_vz_leg2 * t955 + gcross_vz_leg2 * t889,
-                garm_vz_leg3 * t970 + gcross_vz_leg3 * t924,
+                t381 + 9.81, -(minus_garm_vz_leg1 * actuator_accelerations[0]),
+                -(minus_garm_vz_leg2 * actuator_accelerations[1]),
+                -(minus_garm_vz_leg3 * actuator_accelerations[2]), minus_garm_vz_leg1 * t398,
+                minus_garm_vz_leg2 * t402, -(minus_garm_vz_leg3 * t406), minus_garm_vz_leg1 * t410,
+                minus_garm_vz_leg2 * t414, -(minus_garm_vz_leg3 * t418), -t239, -t240, -t242,
+                -::overact::math::signed(minus_garm_vz_leg1, actuator_velocities[0]),
+                -::overact::math::signed(minus_garm_vz_leg2, actuator_velocities[1]),
+                -::overact::math::signed(minus_garm_vz_leg3, actuator_velocities[2]),
+                -minus_garm_vz_leg1, -minus_garm_vz_leg2, -minus_garm_vz_leg3,
+                minus_gcross_vz_leg1 * t462, gcross_vz_leg2 * t512, gcross_vz_leg3 * t566,
+                -(minus_gcross_vz_leg1 * t588), gcross_vz_leg2 * t604, gcross_vz_leg3 * t622,
+                -(minus_gcross_vz_leg1 * t642), gcross_vz_leg2 * t656, gcross_vz_leg3 * t674,
+                -(minus_gcross_vz_leg1 * t686), gcross_vz_leg2 * t693, gcross_vz_leg3 * t701,
+                -(minus_gcross_vz_leg1 * t707), -(gcross_vz_leg2 * t713), gcross_vz_leg3 * t721,
+                0.0, 0.0, 0.0, minus_gcross_vz_leg1 * t752 - minus_garm_vz_leg1 * t743,
+                gcross_vz_leg2 * t784 - minus_garm_vz_leg2 * t775,
+                -(minus_garm_vz_leg3 * t810 + gcross_vz_leg3 * t819),
+                -(minus_garm_vz_leg1 * t841 + minus_gcross_vz_leg1 * t760),
+                gcross_vz_leg2 * t789 - minus_garm_vz_leg2 * t856,
+                gcross_vz_leg3 * t824 - minus_garm_vz_leg3 * t871,
             ],
         ])
     }
@@ -6542,7 +5947,7 @@ impl Delta {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 988 operations (341 additions, 633 multiplications, 14 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 907 intermediates.
+    /// 885 operations (301 additions, 568 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 804 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6551,10 +5956,8 @@ impl Delta {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
-        let t0 = pose[1] + 0.04330127018922194;
-        let t1 = t0 - 0.17320508075688776;
-        let t3 = pose[0] - 0.025;
-        let t4 = t3 + 0.1;
+        let t1 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t4 = pose[0] - 0.025 + 0.1;
         let t5 = 0.5 * t4;
         let t6 = 0.8660254037844387 * t1 - t5;
         let t8 = pose[2] * pose[2];
@@ -6569,421 +5972,386 @@ impl Delta {
         ::overact::guard::reach(t22, "leg2")?;
         let t23 = ::overact::math::sqrt(t22);
         let c_arm_leg2 = t11 * (t12 * t18 - t20 * t23);
-        let t28 = t6 - 0.24 * c_arm_leg2;
-        let t29 = 0.8660254037844387 * t4;
-        let t31 = t29 + 0.5 * t1;
-        let t32 = t31 * t31;
-        let t36 = 1.0 - 3.188775510204082 * t32;
-        ::overact::guard::reach(t36, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t36);
-        let c_cross_leg2 = (t16 - (0.0576 + t32) - 0.3136 * t36) / (0.2688 * c_rod_leg2);
+        let t28 = 0.8660254037844387 * t4;
+        let t30 = t28 + 0.5 * t1;
+        let t31 = t30 * t30;
+        let t33 = 1.0 - 3.188775510204082 * t31;
+        ::overact::guard::reach(t33, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t33);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t35 = 0.56 * c_rod_leg2;
+        let s_cross_leg2 = 2.0833333333333335 * t23 / t35;
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
         let minus_s_arm_leg2 = t11 * (t20 * t18 + t12 * t23);
-        let s_cross_leg2 = 2.0833333333333335 * t23 / (0.56 * c_rod_leg2);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
-            + minus_s_arm_leg2 * s_cross_leg2;
-        let t52 = t31 * c_armcross_leg2;
-        let t55 = 0.8928571428571429 * t52 + 0.8660254037844387 * c_rod_leg2;
-        let t58 = 0.24 * minus_s_arm_leg2;
-        let t59 = pose[2] - t58;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t31;
+        let c_cross_leg2 = (t16 - (0.0576 + t31) - 0.3136 * t33) / (0.2688 * c_rod_leg2);
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t64 = minus_s_rod_leg2 * s_armcross_leg2;
-        let t65 = t59 * t64;
-        let t67 = t28 * (0.56 * t55) - 0.28 * t65;
-        let t68 = 0.20784609690826528 * minus_s_arm_leg2;
-        let t73 = minus_s_arm_leg2 * t64;
-        let t75 = 0.1344 * (c_arm_leg2 * t55) - 0.0672 * t73;
-        let t80 = 1.5464739353293548 * t52 - 0.5 * c_rod_leg2;
-        let t83 = t68 * t67 - 0.8660254037844387 * t59 * t75 - 0.14 * (t23 * t80);
-        ::overact::guard::leg(t83, 0.06758306237512474, "leg2")?;
-        let t84 = 1.0 / t83;
-        let garm_vy_leg2 = t67 * t84;
-        let t86 = pose[1] - 0.04330127018922194;
-        let t87 = t86 + 0.17320508075688776;
-        let t89 = t29 - 0.5 * t87;
-        let t90 = t89 * t89;
-        let t92 = 1.0 - 3.188775510204082 * t90;
-        ::overact::guard::reach(t92, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t92);
-        let t95 = t5 + 0.8660254037844387 * t87;
-        let t98 = 0.2304 * (t95 * t95 + t8);
-        let t99 = 1.0 / t98;
-        let t100 = 0.48 * t95;
-        let t103 = t13 + t87 * t87 + t8;
-        let t105 = t103 - 0.3136 + 0.0576;
-        let t107 = t98 - t105 * t105;
-        ::overact::guard::reach(t107, "leg3")?;
-        let t108 = ::overact::math::sqrt(t107);
-        let s_arm_leg3 = t99 * (t100 * t108 - t20 * t105);
-        let t113 = 0.24 * s_arm_leg3;
-        let t114 = pose[2] + t113;
-        let t117 = 0.20784609690826528 * s_arm_leg3;
-        let minus_c_arm_leg3 = t99 * (t100 * t105 + t20 * t108);
-        let t123 = t95 - 0.24 * minus_c_arm_leg3;
-        let c_cross_leg3 = (t103 - (0.0576 + t90) - 0.3136 * t92)
-            / (0.2688 * c_rod_leg3);
-        let s_cross_leg3 = 2.0833333333333335 * t108 / (0.56 * c_rod_leg3);
+        let t50 = 1.0 / s_cross_leg2;
+        let t51 = 4.166666666666667 * t50;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t51;
+        let t54 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t56 = t5 + 0.8660254037844387 * t54;
+        let t59 = 0.2304 * (t56 * t56 + t8);
+        let t62 = t13 + t54 * t54 + t8;
+        let t64 = t62 - 0.3136 + 0.0576;
+        let t66 = t59 - t64 * t64;
+        ::overact::guard::reach(t66, "leg3")?;
+        let t67 = ::overact::math::sqrt(t66);
+        let t70 = t28 - 0.5 * t54;
+        let t71 = t70 * t70;
+        let t73 = 1.0 - 3.188775510204082 * t71;
+        ::overact::guard::reach(t73, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t73);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let t75 = 0.56 * c_rod_leg3;
+        let s_cross_leg3 = 2.0833333333333335 * t67 / t75;
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
+        let t77 = 1.0 / s_cross_leg3;
+        let t78 = 4.166666666666667 * t77;
+        let t79 = 1.0 / t59;
+        let t80 = 0.48 * t56;
+        let minus_c_arm_leg3 = t79 * (t80 * t64 + t20 * t67);
+        let c_cross_leg3 = (t62 - (0.0576 + t71) - 0.3136 * t73) / (0.2688 * c_rod_leg3);
+        let s_arm_leg3 = t79 * (t80 * t67 - t20 * t64);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t137 = t89 * minus_c_armcross_leg3;
-        let t139 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t137;
-        let s_rod_leg3 = 1.7857142857142858 * t89;
+        let t98 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let t99 = 1.0 / c_rod_leg3;
+        let t100 = 1.7857142857142858 * t99;
+        let t101 = t70 * t100;
+        let garm_vy_leg3 = t78 * (t98 - 0.5 * t101);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t109 = 0.8660254037844387 * c_armcross_leg2;
+        let t110 = 1.0 / c_rod_leg2;
+        let t111 = 1.7857142857142858 * t110;
+        let t112 = t30 * t111;
+        let garm_vy_leg2 = t51 * (t109 + 0.5 * t112);
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t146 = s_rod_leg3 * s_armcross_leg3;
-        let t147 = t114 * t146;
-        let t149 = t123 * (0.56 * t139) + 0.28 * t147;
-        let t154 = s_arm_leg3 * t146;
-        let t156 = 0.1344 * (minus_c_arm_leg3 * t139) - 0.0672 * t154;
-        let t161 = 1.5464739353293548 * t137 + 0.5 * c_rod_leg3;
-        let t164 = t117 * t149 + 0.8660254037844387 * t114 * t156 + 0.14 * (t108 * t161);
-        ::overact::guard::leg(t164, 0.06758306237512474, "leg3")?;
-        let t165 = 1.0 / t164;
-        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t114) * t165;
-        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t59) * t84;
-        let garm_vy_leg3 = t149 * t165;
-        let garm_vx_leg2 = (t28 * (0.56 * t80) - 0.4849742261192857 * t65) * t84;
-        let t179 = pose[0] + 0.05;
-        let t180 = t179 - 0.2;
-        let t181 = t180 * t180;
-        let t183 = 0.2304 * (t181 + t8);
-        let t184 = 1.0 / t183;
-        let t185 = pose[1] * pose[1];
-        let t187 = t181 + t185 + t8;
-        let t189 = t187 - 0.3136 + 0.0576;
-        let t191 = 0.48 * t180;
-        let t193 = t183 - t189 * t189;
-        ::overact::guard::reach(t193, "leg1")?;
-        let t194 = ::overact::math::sqrt(t193);
-        ::overact::guard::leg(t194, 0.24136807991115974, "leg1")?;
-        let minus_s_arm_leg1 = t184 * (t20 * t189 + t191 * t194);
-        let t198 = 0.24 * minus_s_arm_leg1;
-        let t199 = pose[2] - t198;
-        let t200 = 1.0 / t194;
-        let t201 = 2.0 * t200;
-        let garm_vz_leg1 = t199 * t201;
-        let garm_vy_leg1 = pose[1] * t201;
-        let t206 = garm_vz_leg1 * garm_vy_leg3 - garm_vy_leg1 * garm_vz_leg3;
-        let garm_vx_leg3 = (t123 * (0.56 * t161) - 0.4849742261192857 * t147) * t165;
-        let c_arm_leg1 = t184 * (t191 * t189 - t20 * t194);
-        let t218 = 0.24 * c_arm_leg1;
-        let t220 = t179 - (0.2 + t218);
-        let garm_vx_leg1 = t220 * t201;
-        let t223 = garm_vz_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vz_leg3;
-        let t228 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
-        let t230 = garm_vx_leg2 * t206 - garm_vy_leg2 * t223 + garm_vz_leg2 * t228;
-        ::overact::guard::platform(t230, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t230, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t230, 87.78853732233405, "kept actuators")?;
-        let t231 = 1.0 / t230;
-        let t232 = (garm_vy_leg2 * garm_vz_leg3 - garm_vz_leg2 * garm_vy_leg3) * t231;
-        let t237 = (garm_vx_leg2 * garm_vz_leg3 - garm_vz_leg2 * garm_vx_leg3) * t231;
-        let t243 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t231;
-        let t244 = acceleration[2] + 9.81;
-        let t247 = t206 * t231;
-        let t249 = t223 * t231;
-        let t252 = t228 * t231;
-        let t258 = (garm_vz_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vz_leg2) * t231;
-        let t263 = (garm_vz_leg1 * garm_vy_leg2 - garm_vy_leg1 * garm_vz_leg2) * t231;
-        let t269 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t231;
-        let t272 = 0.48 * t200;
-        let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t276 = 1.0 - 3.188775510204082 * t185;
-        ::overact::guard::reach(t276, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t276);
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t78;
+        let t123 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t51 * (0.8660254037844387 * t112 - t123);
+        let t127 = pose[0] + 0.05 - 0.2;
+        let t128 = t127 * t127;
+        let t130 = 0.2304 * (t128 + t8);
+        let t131 = pose[1] * pose[1];
+        let t133 = t128 + t131 + t8;
+        let t135 = t133 - 0.3136 + 0.0576;
+        let t137 = t130 - t135 * t135;
+        ::overact::guard::reach(t137, "leg1")?;
+        let t138 = ::overact::math::sqrt(t137);
+        let t141 = 1.0 - 3.188775510204082 * t131;
+        ::overact::guard::reach(t141, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t141);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let s_cross_leg1 = 2.0833333333333335 * t194 / (0.56 * c_rod_leg1);
-        let c_cross_leg1 = (t187 - (0.0576 + t185) - 0.3136 * t276)
+        let t143 = 0.56 * c_rod_leg1;
+        let s_cross_leg1 = 2.0833333333333335 * t138 / t143;
+        ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
+        let t145 = 1.0 / s_cross_leg1;
+        let t146 = 4.166666666666667 * t145;
+        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
+        let t148 = pose[1] * grod_vy_leg1;
+        let garm_vy_leg1 = t146 * t148;
+        let t151 = 1.0 / t130;
+        let t152 = 0.48 * t127;
+        let c_arm_leg1 = t151 * (t152 * t135 - t20 * t138);
+        let minus_s_arm_leg1 = t151 * (t20 * t135 + t152 * t138);
+        let c_cross_leg1 = (t133 - (0.0576 + t131) - 0.3136 * t141)
             / (0.2688 * c_rod_leg1);
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t290 = 1.0 / c_rod_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t146;
+        let t172 = garm_vy_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vy_leg3;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let gcross_vy_leg1 = t272
-            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t290)
-                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t290));
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t272;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t272;
-        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
-            - minus_gcross_vz_leg1 * twist[2];
-        let grod_vy_leg1 = 1.7857142857142858 * t290;
+        let garm_vx_leg1 = c_armcross_leg1 * t146;
+        let t179 = 0.5 * minus_c_armcross_leg3;
+        let garm_vx_leg3 = t78 * (t179 + 0.8660254037844387 * t101);
+        let t184 = garm_vx_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vx_leg3;
+        let t189 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
+        let t191 = garm_vx_leg2 * t172 - garm_vy_leg2 * t184 - minus_garm_vz_leg2 * t189;
+        ::overact::guard::platform(t191, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t191, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t191, 87.78853732233405, "kept actuators")?;
+        let t192 = 1.0 / t191;
+        let t193 = (minus_garm_vz_leg2 * garm_vy_leg3
+            - garm_vy_leg2 * minus_garm_vz_leg3) * t192;
+        let t198 = (minus_garm_vz_leg2 * garm_vx_leg3
+            - garm_vx_leg2 * minus_garm_vz_leg3) * t192;
+        let t204 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t192;
+        let t205 = acceleration[2] + 9.81;
+        let t208 = t172 * t192;
+        let t210 = t184 * t192;
+        let t213 = t189 * t192;
+        let t219 = (garm_vx_leg1 * minus_garm_vz_leg2
+            - minus_garm_vz_leg1 * garm_vx_leg2) * t192;
+        let t224 = (garm_vy_leg1 * minus_garm_vz_leg2
+            - minus_garm_vz_leg1 * garm_vy_leg2) * t192;
+        let t230 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t192;
+        let t236 = 0.24 * c_cross_leg1;
+        let t239 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
+        let rate_arm_leg1 = t146 * (t239 + t148 * twist[1]);
+        let t243 = rate_arm_leg1 * rate_arm_leg1;
+        let t245 = c_cross_leg1 * t145;
+        let t247 = t236 * garm_vy_leg1;
+        let t253 = t245 * t239 + t247 * twist[1] + s_armcross_leg1 * twist[0]
+            + c_armcross_leg1 * twist[2];
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t253;
+        let t255 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t310 = s_armcross_leg1 * rate_rod_leg1;
-        let t312 = pose[1] * (rate_cross_leg1 * t310);
-        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
-            + garm_vz_leg1 * twist[2];
-        let t318 = rate_arm_leg1 * rate_arm_leg1;
-        let t321 = rate_cross_leg1 * rate_cross_leg1;
-        let t323 = c_armcross_leg1 * rate_rod_leg1;
-        let t325 = t310 * t310 + t321 + t323 * t323;
-        let t330 = acceleration[0] - (t312 - (t218 * t318 + t220 * t325) + t312);
-        let t332 = pose[1] * rate_cross_leg1;
-        let t336 = acceleration[1] - (rate_cross_leg1 * t332 - pose[1] * t325);
-        let t340 = pose[1] * (rate_cross_leg1 * t323);
-        let t346 = acceleration[2] - (t340 - (t198 * t318 + t199 * t325) + t340);
-        let rate_dot_arm_leg1 = garm_vx_leg1 * t330 + garm_vy_leg1 * t336
-            + garm_vz_leg1 * t346;
-        let t349 = 0.12 * c_arm_leg2;
-        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
-            + garm_vz_leg2 * twist[2];
-        let t355 = rate_arm_leg2 * rate_arm_leg2;
-        let t358 = t3 + 0.1 + t349;
-        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t80)
-            - 0.11639381426862856 * (minus_s_arm_leg2 * t55)) * t84;
-        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t80)
-            - 0.11639381426862856 * t73) * t84;
-        let minus_gcross_vy_leg2 = t75 * t84;
-        let rate_cross_leg2 = gcross_vz_leg2 * twist[2]
-            - (minus_gcross_vx_leg2 * twist[0] + minus_gcross_vy_leg2 * twist[1]);
-        let t376 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t59) - t28 * t68) * t84;
-        let minus_grod_vy_leg2 = 0.25 * t23 * t84;
-        let rate_rod_leg2 = grod_vx_leg2 * twist[0] - minus_grod_vy_leg2 * twist[1];
-        let t389 = t376 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t392 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t393 = 0.5 * rate_cross_leg2;
-        let t394 = t392 - t393;
-        let t397 = c_armcross_leg2 * rate_rod_leg2;
-        let t399 = t389 * t389 + t394 * t394 + t397 * t397;
-        let t402 = 0.20784609690826528 * c_arm_leg2;
-        let t404 = t0 - (0.17320508075688776 + t402);
-        let t409 = t404 * t394 - t358 * t389 + t59 * t397;
-        let t412 = t376 * t397;
-        let t415 = 1.3333333333333333 * (t376 * t392);
-        let t419 = acceleration[0]
-            - (t349 * t355 - t358 * t399 - t389 * t409 + t59 * t412 + t404 * t415);
-        let t426 = t393 * t397;
-        let t431 = acceleration[1]
-            - (t394 * t409 - (t402 * t355 + t404 * t399) + t59 * t426 - t358 * t415);
-        let t439 = t404 * t426 + t358 * t412;
-        let t442 = acceleration[2] + t58 * t355 + t59 * t399 + t439 + t439;
-        let rate_dot_arm_leg2 = garm_vx_leg2 * t419 + garm_vy_leg2 * t431
-            + garm_vz_leg2 * t442;
-        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t139)
-            + 0.0672 * (s_arm_leg3 * t161)) * t165;
-        let minus_gcross_vx_leg3 = (0.11639381426862856 * t154
-            + 0.1344 * (minus_c_arm_leg3 * t161)) * t165;
-        let minus_gcross_vy_leg3 = t156 * t165;
-        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
-            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
-        let t462 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (t123 * t117
-            + 0.20784609690826528 * (minus_c_arm_leg3 * t114)) * t165;
-        let minus_grod_vy_leg3 = 0.25 * t108 * t165;
-        let rate_rod_leg3 = grod_vx_leg3 * twist[0] - minus_grod_vy_leg3 * twist[1];
-        let t475 = t462 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t476 = 0.12 * minus_c_arm_leg3;
-        let t478 = t3 - (t476 - 0.1);
-        let t480 = 0.20784609690826528 * minus_c_arm_leg3;
-        let t482 = t86 - (t480 - 0.17320508075688776);
-        let t483 = 0.5 * rate_cross_leg3;
-        let t485 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t486 = t483 + t485;
-        let t489 = minus_c_armcross_leg3 * rate_rod_leg3;
-        let t491 = t478 * t475 - t482 * t486 - t114 * t489;
-        let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
-            + garm_vz_leg3 * twist[2];
-        let t498 = rate_arm_leg3 * rate_arm_leg3;
-        let t504 = t475 * t475 + t486 * t486 + t489 * t489;
-        let t508 = t462 * t489;
-        let t511 = 1.3333333333333333 * (t462 * t485);
-        let t515 = acceleration[0]
-            - (t475 * t491 - (t476 * t498 + t478 * t504) + t114 * t508 + t482 * t511);
-        let t523 = t483 * t489;
-        let t527 = acceleration[1] + t480 * t498 + t482 * t504 + t486 * t491
-            + t478 * t511 + t114 * t523;
-        let t535 = t482 * t523 - t478 * t508;
-        let t538 = acceleration[2] - (t113 * t498 - t114 * t504 + t535 + t535);
-        let rate_dot_arm_leg3 = garm_vx_leg3 * t515 + garm_vy_leg3 * t527
-            + garm_vz_leg3 * t538;
-        let t541 = 9.81 * c_arm_leg1;
-        let t542 = 9.81 * c_arm_leg2;
-        let t543 = 9.81 * minus_c_arm_leg3;
-        let t544 = 9.81 * minus_s_arm_leg1;
-        let t545 = 9.81 * minus_s_arm_leg2;
-        let t546 = 9.81 * s_arm_leg3;
-        let t550 = grod_vy_leg1 * t237;
-        let t551 = 1.7857142857142858 * t332;
-        let t552 = c_rod_leg1 * rate_cross_leg1;
-        let t553 = t551 * t552;
-        let t554 = t550 * t553;
-        let t559 = minus_gcross_vx_leg1 * t232 + gcross_vy_leg1 * t237
-            + minus_gcross_vz_leg1 * t243;
-        let rate_dot_cross_leg1 = gcross_vy_leg1 * t336 - minus_gcross_vx_leg1 * t330
-            - minus_gcross_vz_leg1 * t346;
-        let t565 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t566 = rate_rod_leg1 * t552;
-        let t567 = t565 + t566;
-        let t569 = rate_rod_leg1 * t551;
-        let t570 = c_rod_leg1 * t569;
-        let t571 = s_rod_leg1 * t567 + t570;
-        let t574 = grod_vy_leg1 * t249;
-        let t575 = t574 * t553;
-        let t580 = minus_gcross_vx_leg1 * t247 + gcross_vy_leg1 * t249
-            + minus_gcross_vz_leg1 * t252;
-        let t587 = minus_gcross_vx_leg1 * t263 + gcross_vy_leg1 * t258
-            + minus_gcross_vz_leg1 * t269;
-        let t589 = grod_vy_leg1 * t258;
-        let t590 = t589 * t553;
-        let t596 = minus_gcross_vy_leg2 * t237 - minus_gcross_vx_leg2 * t232
-            + gcross_vz_leg2 * t243;
-        let t597 = 1.7857142857142858 * t409;
-        let t598 = rate_rod_leg2 * t597;
-        let t599 = c_rod_leg2 * t598;
-        let t600 = c_rod_leg2 * rate_cross_leg2;
-        let t601 = rate_rod_leg2 * t600;
-        let rate_dot_cross_leg2 = gcross_vz_leg2 * t442
-            - (minus_gcross_vx_leg2 * t419 + minus_gcross_vy_leg2 * t431);
-        let t607 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t608 = t601 - t607;
-        let t610 = t599 - minus_s_rod_leg2 * t608;
-        let t614 = grod_vx_leg2 * t232 + minus_grod_vy_leg2 * t237;
-        let t615 = t597 * t600;
-        let t616 = t614 * t615;
-        let t622 = minus_gcross_vy_leg2 * t249 - minus_gcross_vx_leg2 * t247
-            + gcross_vz_leg2 * t252;
-        let t626 = grod_vx_leg2 * t247 + minus_grod_vy_leg2 * t249;
-        let t627 = t626 * t615;
-        let t633 = minus_gcross_vx_leg2 * t263 - minus_gcross_vy_leg2 * t258
-            - gcross_vz_leg2 * t269;
-        let t637 = grod_vx_leg2 * t263 + minus_grod_vy_leg2 * t258;
-        let t638 = t637 * t615;
-        let t644 = minus_gcross_vy_leg3 * t237 - minus_gcross_vx_leg3 * t232
-            + gcross_vz_leg3 * t243;
-        let rate_dot_cross_leg3 = gcross_vz_leg3 * t538
-            - (minus_gcross_vx_leg3 * t515 + minus_gcross_vy_leg3 * t527);
-        let t650 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t651 = c_rod_leg3 * rate_cross_leg3;
-        let t652 = rate_rod_leg3 * t651;
-        let t653 = t650 + t652;
-        let t655 = 1.7857142857142858 * t491;
-        let t656 = rate_rod_leg3 * t655;
-        let t657 = c_rod_leg3 * t656;
-        let t658 = s_rod_leg3 * t653 + t657;
-        let t662 = grod_vx_leg3 * t232 + minus_grod_vy_leg3 * t237;
-        let t663 = t655 * t651;
-        let t664 = t662 * t663;
-        let t670 = minus_gcross_vy_leg3 * t249 - minus_gcross_vx_leg3 * t247
-            + gcross_vz_leg3 * t252;
-        let t674 = grod_vx_leg3 * t247 + minus_grod_vy_leg3 * t249;
-        let t675 = t674 * t663;
-        let t681 = minus_gcross_vx_leg3 * t263 - minus_gcross_vy_leg3 * t258
-            - gcross_vz_leg3 * t269;
-        let t685 = grod_vx_leg3 * t263 + minus_grod_vy_leg3 * t258;
-        let t686 = t685 * t663;
-        let t688 = t566 + t567;
-        let t690 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t691 = t690 - t569;
-        let t694 = c_rod_leg1 * t688 - s_rod_leg1 * (t569 - t691);
-        let t697 = 3.188775510204082 * (t332 * t332);
-        let t699 = t697 - t552 * t552;
-        let t708 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t709 = t708 - t598;
-        let t712 = t601 + t608;
-        let t714 = minus_s_rod_leg2 * (t598 - t709) + c_rod_leg2 * t712;
-        let t717 = 3.188775510204082 * (t409 * t409);
-        let t718 = t600 * t600;
-        let t719 = t717 - t718;
-        let t728 = t652 + t653;
-        let t730 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t731 = t730 - t656;
-        let t734 = c_rod_leg3 * t728 - s_rod_leg3 * (t656 - t731);
-        let t737 = 3.188775510204082 * (t491 * t491);
-        let t738 = t651 * t651;
-        let t739 = t737 - t738;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t336;
-        let t751 = rate_rod_leg1 * rate_rod_leg1;
-        let t754 = s_rod_leg1 * (t553 + rate_dot_rod_leg1) + c_rod_leg1 * (t751 - t697);
-        let t764 = rate_rod_leg2 * rate_rod_leg2;
-        let rate_dot_rod_leg2 = grod_vx_leg2 * t419 - minus_grod_vy_leg2 * t431;
-        let t772 = c_rod_leg2 * (t764 - t717)
-            - minus_s_rod_leg2 * (t615 + rate_dot_rod_leg2);
-        let rate_dot_rod_leg3 = grod_vx_leg3 * t515 - minus_grod_vy_leg3 * t527;
-        let t787 = rate_rod_leg3 * rate_rod_leg3;
-        let t790 = s_rod_leg3 * (t663 + rate_dot_rod_leg3) + c_rod_leg3 * (t787 - t737);
-        let t801 = c_rod_leg1 * t691 - t570;
-        let t809 = c_rod_leg2 * t709 - t599;
-        let t817 = c_rod_leg3 * t731 - t657;
-        let t824 = 1.7857142857142858 * acceleration[1];
-        let t837 = t615 - rate_dot_rod_leg2;
-        let t839 = minus_s_rod_leg2 * (t718 - t764) + c_rod_leg2 * t837;
-        let t850 = t663 - rate_dot_rod_leg3;
-        let t852 = s_rod_leg3 * (t738 - t787) - c_rod_leg3 * t850;
-        let t871 = 0.8928571428571429 * t194;
-        let t875 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
-        let t879 = 0.24 * c_cross_leg1;
-        let t883 = 0.24 * rate_dot_arm_leg1 - t541;
-        let t886 = t544 - 0.24 * t318;
-        let t889 = s_rod_leg1 * (c_cross_leg1 * t883 - s_cross_leg1 * t886);
-        let t894 = c_cross_leg1 * t886 + s_cross_leg1 * t883;
-        let t895 = c_rod_leg1 * t894;
-        let t897 = t871 * (t553 - rate_dot_rod_leg1) + t875 * (t697 + t751) - t879 * t688
-            + t559 * t889 + t550 * t895;
-        let t905 = 0.24 * rate_dot_arm_leg2 - t542;
-        let t908 = t545 - 0.24 * t355;
-        let t911 = minus_s_rod_leg2 * (c_cross_leg2 * t905 - s_cross_leg2 * t908);
-        let t915 = c_cross_leg2 * t908 + s_cross_leg2 * t905;
-        let t916 = c_rod_leg2 * t915;
-        let t919 = 0.8928571428571429 * t23;
-        let t922 = 0.42857142857142855 * (t31 * s_cross_leg2);
-        let t926 = 0.24 * c_cross_leg2;
-        let t932 = t919 * t837 - t922 * (t717 + t764) - t926 * t712 + t622 * t911
-            - t626 * t916;
-        let t937 = t546 + 0.24 * t498;
-        let t940 = t543 + 0.24 * rate_dot_arm_leg3;
-        let t943 = s_rod_leg3 * (s_cross_leg3 * t937 + c_cross_leg3 * t940);
-        let t947 = s_cross_leg3 * t940 - c_cross_leg3 * t937;
-        let t948 = c_rod_leg3 * t947;
-        let t954 = 0.8928571428571429 * t108;
-        let t957 = 0.42857142857142855 * (t89 * s_cross_leg3);
-        let t961 = 0.24 * c_cross_leg3;
-        let t967 = t954 * t850 + t957 * (t737 + t787) - t961 * t728 - t681 * t943
-            + t685 * t948;
+        let t257 = rate_rod_leg1 * rate_rod_leg1;
+        let t258 = t255 + t257;
+        let t261 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t236 * t243 + t143 * t258;
+        let t262 = pose[1] * minus_rate_cross_leg1;
+        let t266 = acceleration[1] - (minus_rate_cross_leg1 * t262 - pose[1] * t258);
+        let rate_dot_arm_leg1 = t146 * (t261 + t148 * t266);
+        let t275 = 0.24 * c_cross_leg2;
+        let t280 = t109 * twist[1] - t123 * twist[0] - s_armcross_leg2 * twist[2];
+        let t281 = 0.8660254037844387 * twist[0];
+        let t282 = 0.5 * twist[1];
+        let t283 = t281 + t282;
+        let rate_arm_leg2 = t51 * (t280 + t112 * t283);
+        let t287 = rate_arm_leg2 * rate_arm_leg2;
+        let minus_rate_rod_leg2 = t111 * t283;
+        let t290 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t291 = 0.5 * s_armcross_leg2;
+        let t293 = 0.8660254037844387 * s_armcross_leg2;
+        let t298 = c_cross_leg2 * t50;
+        let t302 = t275 * (t51 * t112);
+        let t304 = t291 * twist[0] - t293 * twist[1] - c_armcross_leg2 * twist[2]
+            - t298 * t280 - t302 * t283;
+        let rate_cross_leg2 = t111 * t304;
+        let t306 = rate_cross_leg2 * rate_cross_leg2;
+        let t307 = t290 + t306;
+        let t310 = t109 * acceleration[1] - t123 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t275 * t287 + t35 * t307;
+        let t311 = 0.8660254037844387 * acceleration[0];
+        let t312 = 0.5 * acceleration[1];
+        let t313 = t311 + t312;
+        let t315 = t30 * rate_cross_leg2;
+        let t318 = t313 + t30 * t307 - rate_cross_leg2 * t315;
+        let rate_dot_arm_leg2 = t51 * (t310 + t112 * t318);
+        let t327 = 0.24 * c_cross_leg3;
+        let t332 = t179 * twist[0] + t98 * twist[1] - s_armcross_leg3 * twist[2];
+        let t333 = t281 - t282;
+        let rate_arm_leg3 = t78 * (t332 + t101 * t333);
+        let t337 = rate_arm_leg3 * rate_arm_leg3;
+        let rate_rod_leg3 = t100 * t333;
+        let t340 = rate_rod_leg3 * rate_rod_leg3;
+        let t341 = 0.5 * s_armcross_leg3;
+        let t343 = 0.8660254037844387 * s_armcross_leg3;
+        let t348 = c_cross_leg3 * t77;
+        let t352 = t327 * (t78 * t101);
+        let t354 = t341 * twist[0] + t343 * twist[1] + minus_c_armcross_leg3 * twist[2]
+            - t348 * t332 - t352 * t333;
+        let rate_cross_leg3 = t100 * t354;
+        let t356 = rate_cross_leg3 * rate_cross_leg3;
+        let t357 = t340 + t356;
+        let t360 = t179 * acceleration[0] + t98 * acceleration[1]
+            - s_armcross_leg3 * acceleration[2] + t327 * t337 + t75 * t357;
+        let t361 = t311 - t312;
+        let t362 = t70 * rate_cross_leg3;
+        let t366 = t361 - (rate_cross_leg3 * t362 - t70 * t357);
+        let rate_dot_arm_leg3 = t78 * (t360 + t101 * t366);
+        let t370 = 9.81 * c_arm_leg1;
+        let t371 = 9.81 * c_arm_leg2;
+        let t372 = 9.81 * minus_c_arm_leg3;
+        let t373 = 9.81 * minus_s_arm_leg1;
+        let t374 = 9.81 * minus_s_arm_leg2;
+        let t375 = 9.81 * s_arm_leg3;
+        let t379 = grod_vy_leg1 * t198;
+        let t381 = 3.188775510204082 * (t253 * t262);
+        let t382 = t379 * t381;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * t247;
+        let minus_gcross_vx_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 * t245 + s_armcross_leg1);
+        let minus_gcross_vz_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 - s_armcross_leg1 * t245);
+        let t394 = minus_gcross_vy_leg1 * t198 - minus_gcross_vx_leg1 * t193
+            - minus_gcross_vz_leg1 * t204;
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t405 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
+        let t409 = t245 * t261 + t247 * t266 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + 0.24 * s_cross_leg1 * t243 + t405
+            + t405;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t409;
+        let t411 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t413 = rate_rod_leg1 * (1.7857142857142858 * t253);
+        let t414 = t411 + t413;
+        let t417 = c_rod_leg1 * (1.7857142857142858 * t405);
+        let t418 = s_rod_leg1 * t414 + t417;
+        let t421 = grod_vy_leg1 * t210;
+        let t422 = t421 * t381;
+        let t427 = minus_gcross_vy_leg1 * t210 - minus_gcross_vx_leg1 * t208
+            - minus_gcross_vz_leg1 * t213;
+        let t434 = minus_gcross_vx_leg1 * t224 - minus_gcross_vy_leg1 * t219
+            + minus_gcross_vz_leg1 * t230;
+        let t436 = grod_vy_leg1 * t219;
+        let t437 = t436 * t381;
+        let gcross_vx_leg2 = t111 * (t123 * t298 + t291 - 0.8660254037844387 * t302);
+        let minus_gcross_vy_leg2 = t111 * (t109 * t298 + t293 + 0.5 * t302);
+        let gcross_vz_leg2 = t111 * (s_armcross_leg2 * t298 - c_armcross_leg2);
+        let t456 = gcross_vx_leg2 * t193 + minus_gcross_vy_leg2 * t198
+            + gcross_vz_leg2 * t204;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t30;
+        let t466 = t30 * (rate_cross_leg2 * minus_rate_rod_leg2);
+        let t469 = t291 * acceleration[0] - t293 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2]
+            - (0.24 * s_cross_leg2 * t287 - t466 - t466);
+        let t473 = t469 - t298 * t310 - t302 * t318;
+        let rate_dot_cross_leg2 = t111 * t473;
+        let t475 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t477 = minus_rate_rod_leg2 * (1.7857142857142858 * t304);
+        let t478 = t475 + t477;
+        let t481 = c_rod_leg2 * (1.7857142857142858 * t466);
+        let t482 = minus_s_rod_leg2 * t478 + t481;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t110;
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t110;
+        let t488 = minus_grod_vy_leg2 * t198 - minus_grod_vx_leg2 * t193;
+        let t490 = 3.188775510204082 * (t304 * t315);
+        let t491 = t488 * t490;
+        let t497 = gcross_vx_leg2 * t208 + minus_gcross_vy_leg2 * t210
+            + gcross_vz_leg2 * t213;
+        let t501 = minus_grod_vy_leg2 * t210 - minus_grod_vx_leg2 * t208;
+        let t502 = t501 * t490;
+        let t506 = minus_grod_vx_leg2 * t224 - minus_grod_vy_leg2 * t219;
+        let t507 = t506 * t490;
+        let t512 = gcross_vx_leg2 * t224 + minus_gcross_vy_leg2 * t219
+            + gcross_vz_leg2 * t230;
+        let gcross_vx_leg3 = t100 * (t341 - t179 * t348 - 0.8660254037844387 * t352);
+        let gcross_vy_leg3 = t100 * (t343 - t98 * t348 + 0.5 * t352);
+        let gcross_vz_leg3 = t100 * (s_armcross_leg3 * t348 + minus_c_armcross_leg3);
+        let t532 = gcross_vx_leg3 * t193 - gcross_vy_leg3 * t198 + gcross_vz_leg3 * t204;
+        let s_rod_leg3 = 1.7857142857142858 * t70;
+        let t542 = t70 * (rate_cross_leg3 * rate_rod_leg3);
+        let t545 = t341 * acceleration[0] + t343 * acceleration[1]
+            + minus_c_armcross_leg3 * acceleration[2]
+            - (0.24 * s_cross_leg3 * t337 - t542 - t542);
+        let t549 = t545 - t348 * t360 - t352 * t366;
+        let rate_dot_cross_leg3 = t100 * t549;
+        let t551 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t553 = rate_rod_leg3 * (1.7857142857142858 * t354);
+        let t554 = t551 + t553;
+        let t557 = c_rod_leg3 * (1.7857142857142858 * t542);
+        let t558 = s_rod_leg3 * t554 + t557;
+        let grod_vx_leg3 = 1.5464739353293548 * t99;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t99;
+        let t564 = grod_vx_leg3 * t193 + minus_grod_vy_leg3 * t198;
+        let t566 = 3.188775510204082 * (t354 * t362);
+        let t567 = t564 * t566;
+        let t573 = gcross_vx_leg3 * t208 - gcross_vy_leg3 * t210 + gcross_vz_leg3 * t213;
+        let t577 = grod_vx_leg3 * t208 + minus_grod_vy_leg3 * t210;
+        let t578 = t577 * t566;
+        let t584 = gcross_vy_leg3 * t219 - gcross_vx_leg3 * t224 - gcross_vz_leg3 * t230;
+        let t588 = grod_vx_leg3 * t224 + minus_grod_vy_leg3 * t219;
+        let t589 = t588 * t566;
+        let t591 = t405 - t409;
+        let t595 = t413 + t414;
+        let t597 = 3.188775510204082 * (pose[1] * (t405 + t591)) - c_rod_leg1 * t595;
+        let t599 = t262 * t262;
+        let t602 = 3.188775510204082 * (t599 - t253 * t253);
+        let t611 = t473 - t466;
+        let t615 = t477 + t478;
+        let t617 = 3.188775510204082 * (t30 * (t466 - t611)) - c_rod_leg2 * t615;
+        let t619 = t315 * t315;
+        let t622 = 3.188775510204082 * (t619 - t304 * t304);
+        let t631 = t553 + t554;
+        let t633 = t549 - t542;
+        let t637 = c_rod_leg3 * t631 - 3.188775510204082 * (t70 * (t542 - t633));
+        let t639 = t362 * t362;
+        let t642 = 3.188775510204082 * (t639 - t354 * t354);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t266;
+        let t654 = 3.188775510204082 * t599;
+        let t657 = s_rod_leg1 * (t381 + rate_dot_rod_leg1) + c_rod_leg1 * (t257 - t654);
+        let minus_rate_dot_rod_leg2 = t111 * t318;
+        let t670 = 3.188775510204082 * t619;
+        let t673 = minus_s_rod_leg2 * (t490 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t290 - t670);
+        let rate_dot_rod_leg3 = t100 * t366;
+        let t686 = 3.188775510204082 * t639;
+        let t689 = s_rod_leg3 * (t566 + rate_dot_rod_leg3) + c_rod_leg3 * (t340 - t686);
+        let t701 = t417 + c_rod_leg1 * (1.7857142857142858 * t591);
+        let t710 = c_rod_leg2 * (1.7857142857142858 * t611) - t481;
+        let t719 = c_rod_leg3 * (1.7857142857142858 * t633) - t557;
+        let t726 = 1.7857142857142858 * acceleration[1];
+        let t728 = 1.7857142857142858 * t409;
+        let t737 = 1.7857142857142858 * t473;
+        let t739 = 1.7857142857142858 * t313;
+        let t748 = 1.7857142857142858 * t361;
+        let t750 = 1.7857142857142858 * t549;
+        let t772 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
+        let t779 = 0.24 * rate_dot_arm_leg1 - t370;
+        let t782 = t373 - 0.24 * t243;
+        let t785 = s_rod_leg1 * (c_cross_leg1 * t779 - s_cross_leg1 * t782);
+        let t787 = 0.8928571428571429 * t138 * (t381 - rate_dot_rod_leg1)
+            + t772 * (t654 + t257) + t236 * t595 - t394 * t785;
+        let t790 = c_cross_leg1 * t782 + s_cross_leg1 * t779;
+        let t791 = c_rod_leg1 * t790;
+        let t801 = 0.24 * rate_dot_arm_leg2 - t371;
+        let t804 = t374 - 0.24 * t287;
+        let t807 = minus_s_rod_leg2 * (c_cross_leg2 * t801 - s_cross_leg2 * t804);
+        let t811 = c_cross_leg2 * t804 + s_cross_leg2 * t801;
+        let t812 = c_rod_leg2 * t811;
+        let t819 = 0.42857142857142855 * (t30 * s_cross_leg2);
+        let t826 = 0.8928571428571429 * t23 * (minus_rate_dot_rod_leg2 - t490)
+            - t819 * (t670 + t290) + t275 * t615 + t497 * t807;
+        let t833 = t375 + 0.24 * t337;
+        let t836 = t372 + 0.24 * rate_dot_arm_leg3;
+        let t839 = s_rod_leg3 * (s_cross_leg3 * t833 + c_cross_leg3 * t836);
+        let t843 = s_cross_leg3 * t836 - c_cross_leg3 * t833;
+        let t844 = c_rod_leg3 * t843;
+        let t854 = 0.42857142857142855 * (t70 * s_cross_leg3);
+        let t861 = 0.8928571428571429 * t67 * (t566 - rate_dot_rod_leg3)
+            + t854 * (t686 + t340) - t327 * t631 - t584 * t839;
         Ok([
             [
-                t232 * acceleration[0] - t237 * acceleration[1] + t243 * t244, rate_dot_arm_leg1,
-                0.0, 0.0, -t541, 0.0, 0.0, -t544, 0.0, 0.0, rate_arm_leg1, 0.0, 0.0,
-                ::overact::math::sign(rate_arm_leg1), 0.0, 0.0, 1.0, 0.0, 0.0, t554 - t559 * t571,
-                t596 * t610 - t616, t644 * t658 - t664, -(t559 * t694 + t550 * t699),
-                t596 * t714 + t614 * t719, t644 * t734 + t662 * t739, -(t559 * t754 + t550 * t565),
-                t596 * t772 - t614 * t607, t644 * t790 + t662 * t650, -(t559 * t801 + t554),
-                t596 * t809 + t616, t644 * t817 + t664, -(t559 * t824 + t550 * t690),
-                t614 * t708 - t596 * t839, t644 * t852 + t662 * t730, -(t550 * rate_dot_rod_leg1),
-                t614 * rate_dot_rod_leg2, t662 * rate_dot_rod_leg3, t897, t596 * t911 - t614 * t916,
-                -(t644 * t943 + t662 * t948), t690 * t871 + t565 * t875 + t321 * t879 - t559 * t894,
-                t596 * t915, t644 * t947,
+                t193 * acceleration[0] - t198 * acceleration[1] + t204 * t205, rate_dot_arm_leg1,
+                0.0, 0.0, -t370, 0.0, 0.0, -t373, 0.0, 0.0, rate_arm_leg1, 0.0, 0.0,
+                ::overact::math::sign(rate_arm_leg1), 0.0, 0.0, 1.0, 0.0, 0.0, t382 - t394 * t418,
+                t456 * t482 + t491, t532 * t558 - t567, t394 * t597 - t379 * t602,
+                t456 * t617 + t488 * t622, t532 * t637 + t564 * t642, t394 * t657 + t379 * t411,
+                t456 * t673 - t488 * t475, t532 * t689 + t564 * t551, t394 * t701 - t382,
+                t456 * t710 - t491, t532 * t719 + t567, t394 * t726 + t379 * t728,
+                t488 * t737 - t456 * t739, t532 * t748 + t564 * t750, -(t379 * rate_dot_rod_leg1),
+                -(t488 * minus_rate_dot_rod_leg2), t564 * rate_dot_rod_leg3, t787 + t379 * t791,
+                t456 * t807 - t488 * t812, -(t532 * t839 + t564 * t844),
+                t236 * t255 - (1.594387755102041 * (t138 * t409) + t411 * t772)
+                    + t394 * t790,
+                t456 * t811,
+                t532 * t843,
             ],
             [
-                t247 * acceleration[0] - t249 * acceleration[1] + t252 * t244, 0.0,
-                rate_dot_arm_leg2, 0.0, 0.0, -t542, 0.0, 0.0, -t545, 0.0, 0.0, rate_arm_leg2, 0.0,
-                0.0, ::overact::math::sign(rate_arm_leg2), 0.0, 0.0, 1.0, 0.0, t575 - t580 * t571,
-                t622 * t610 - t627, t670 * t658 - t675, -(t580 * t694 + t574 * t699),
-                t622 * t714 + t626 * t719, t670 * t734 + t674 * t739, -(t580 * t754 + t574 * t565),
-                t622 * t772 - t626 * t607, t670 * t790 + t674 * t650, -(t580 * t801 + t575),
-                t622 * t809 + t627, t670 * t817 + t675, -(t580 * t824 + t574 * t690),
-                t626 * t708 - t622 * t839, t670 * t852 + t674 * t730, -(t574 * rate_dot_rod_leg1),
-                t626 * rate_dot_rod_leg2, t674 * rate_dot_rod_leg3, t580 * t889 + t574 * t895, t932,
-                -(t670 * t943 + t674 * t948), -(t580 * t894),
-                t708 * t919 + t607 * t922 + rate_cross_leg2 * rate_cross_leg2 * t926
-                    + t622 * t915,
-                t670 * t947,
+                t208 * acceleration[0] - t210 * acceleration[1] + t213 * t205, 0.0,
+                rate_dot_arm_leg2, 0.0, 0.0, -t371, 0.0, 0.0, -t374, 0.0, 0.0, rate_arm_leg2, 0.0,
+                0.0, ::overact::math::sign(rate_arm_leg2), 0.0, 0.0, 1.0, 0.0, t422 - t427 * t418,
+                t497 * t482 + t502, t573 * t558 - t578, t427 * t597 - t421 * t602,
+                t497 * t617 + t501 * t622, t573 * t637 + t577 * t642, t427 * t657 + t421 * t411,
+                t497 * t673 - t501 * t475, t573 * t689 + t577 * t551, t427 * t701 - t422,
+                t497 * t710 - t502, t573 * t719 + t578, t427 * t726 + t421 * t728,
+                t501 * t737 - t497 * t739, t573 * t748 + t577 * t750, -(t421 * rate_dot_rod_leg1),
+                -(t501 * minus_rate_dot_rod_leg2), t577 * rate_dot_rod_leg3,
+                t421 * t791 - t427 * t785, t826 - t501 * t812, -(t573 * t839 + t577 * t844),
+                t427 * t790,
+                1.594387755102041 * (t23 * t473) + t475 * t819 + t275 * t306
+                    + t497 * t811,
+                t573 * t843,
             ],
             [
-                t258 * acceleration[1] - t263 * acceleration[0] - t269 * t244, 0.0, 0.0,
-                rate_dot_arm_leg3, 0.0, 0.0, t543, 0.0, 0.0, t546, 0.0, 0.0, rate_arm_leg3, 0.0,
-                0.0, ::overact::math::sign(rate_arm_leg3), 0.0, 0.0, 1.0, t587 * t571 - t590,
-                t633 * t610 + t638, t681 * t658 + t686, t587 * t694 + t589 * t699,
-                t633 * t714 - t637 * t719, t681 * t734 - t685 * t739, t587 * t754 + t589 * t565,
-                t633 * t772 + t637 * t607, t681 * t790 - t685 * t650, t587 * t801 + t590,
-                t633 * t809 - t638, t681 * t817 - t686, t587 * t824 + t589 * t690,
-                -(t633 * t839 + t637 * t708), t681 * t852 - t685 * t730, t589 * rate_dot_rod_leg1,
-                -(t637 * rate_dot_rod_leg2), -(t685 * rate_dot_rod_leg3),
-                -(t587 * t889 + t589 * t895), t633 * t911 + t637 * t916, t967, t587 * t894,
-                t633 * t915,
-                t730 * t954 + t650 * t957 + rate_cross_leg3 * rate_cross_leg3 * t961
-                    + t681 * t947,
+                t219 * acceleration[1] - t224 * acceleration[0] - t230 * t205, 0.0, 0.0,
+                rate_dot_arm_leg3, 0.0, 0.0, t372, 0.0, 0.0, t375, 0.0, 0.0, rate_arm_leg3, 0.0,
+                0.0, ::overact::math::sign(rate_arm_leg3), 0.0, 0.0, 1.0, -(t434 * t418 + t437),
+                t507 - t512 * t482, t584 * t558 + t589, t434 * t597 + t436 * t602,
+                t506 * t622 - t512 * t617, t584 * t637 - t588 * t642, t434 * t657 - t436 * t411,
+                -(t512 * t673 + t506 * t475), t584 * t689 - t588 * t551, t434 * t701 + t437,
+                -(t512 * t710 + t507), t584 * t719 - t589, t434 * t726 - t436 * t728,
+                t512 * t739 + t506 * t737, t584 * t748 - t588 * t750, t436 * rate_dot_rod_leg1,
+                -(t506 * minus_rate_dot_rod_leg2), -(t588 * rate_dot_rod_leg3),
+                -(t434 * t785 + t436 * t791), -(t512 * t807 + t506 * t812), t861 + t588 * t844,
+                t434 * t790, -(t512 * t811),
+                1.594387755102041 * (t67 * t549) + t551 * t854 + t327 * t356
+                    + t584 * t843,
             ],
         ])
     }
@@ -6998,7 +6366,7 @@ impl Delta {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 904 operations (291 additions, 608 multiplications, 5 divisions), 0 square roots, 9 trigonometric pairs, 3 signs, 835 intermediates.
+    /// 773 operations (253 additions, 513 multiplications, 7 divisions), 0 square roots, 9 trigonometric pairs, 3 signs, 704 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7008,386 +6376,345 @@ impl Delta {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
+        let [(s_arm_leg2, c_arm_leg2), (s_cross_leg2, c_cross_leg2),
+        (s_cross_leg3, c_cross_leg3), (s_arm_leg3, c_arm_leg3), (s_rod_leg3, c_rod_leg3),
+        (s_rod_leg2, c_rod_leg2), (s_arm_leg1, c_arm_leg1), (s_cross_leg1, c_cross_leg1),
+        (s_rod_leg1, c_rod_leg1)] = ::overact::math::sin_cos_all([
+            joints[3], joints[4], joints[7], joints[6], joints[8], joints[5], joints[0], joints[1],
+            joints[2],
+        ]);
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258595101, "leg2")?;
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258595097, "leg3")?;
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        ::overact::guard::leg(s_cross_leg1, 0.89794672585951, "leg1")?;
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t10 = 0.5 * c_armcross_leg2;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t13 = t10 * c_rod_leg2;
-        let t16 = t10 * s_rod_leg2 - 0.8660254037844387 * c_rod_leg2;
-        let t19 = s_armcross_leg2 * c_rod_leg2;
-        let t20 = s_armcross_leg2 * s_rod_leg2;
-        let t21 = t19 * t20;
-        let t23 = 0.6272 * (t13 * t16) + 0.1568 * t21;
-        let t24 = 0.4849742261192857 * t19;
-        let t25 = 0.24 * s_arm_leg2;
-        let t26 = 0.56 * t19;
-        let t29 = t24 - 0.8660254037844387 * (t25 + t26);
-        let t35 = 0.1344 * (c_arm_leg2 * t16) + 0.0672 * (s_arm_leg2 * t20);
-        let t38 = 0.8660254037844387 * c_armcross_leg2;
-        let t41 = t38 * s_rod_leg2 + 0.5 * c_rod_leg2;
-        let t45 = c_arm_leg2 * t19;
-        let t47 = 0.1344 * (s_arm_leg2 * t13) - 0.0672 * t45;
-        let t49 = t29 * t23 + t24 * t35 + 0.56 * t41 * t47;
-        ::overact::guard::leg(t49, 0.06758306237509017, "leg2")?;
-        let t50 = 1.0 / t49;
-        let garm_vy_leg2 = t23 * t50;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
+        let t10 = 1.0 / s_cross_leg2;
+        let t11 = 4.166666666666667 * t10;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t11;
+        let t15 = 1.0 / s_cross_leg3;
+        let t16 = 4.166666666666667 * t15;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let t62 = 0.5 * c_armcross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t67 = t62 * s_rod_leg3 + 0.8660254037844387 * c_rod_leg3;
-        let t68 = s_armcross_leg3 * c_rod_leg3;
-        let t71 = 0.8660254037844387 * c_armcross_leg3;
-        let t74 = t71 * s_rod_leg3 - 0.5 * c_rod_leg3;
-        let t78 = 0.4849742261192857 * t68;
-        let t81 = s_armcross_leg3 * s_rod_leg3;
-        let t84 = 0.1344 * (c_arm_leg3 * t67) + 0.0672 * (s_arm_leg3 * t81);
-        let t86 = 0.24 * s_arm_leg3;
-        let t87 = 0.56 * t68;
-        let t90 = 0.8660254037844387 * (t86 + t87) - t78;
-        let t91 = t62 * c_rod_leg3;
-        let t94 = t68 * t81;
-        let t96 = 0.6272 * (t91 * t67) + 0.1568 * t94;
-        let t102 = c_arm_leg3 * t68;
-        let t104 = 0.1344 * (s_arm_leg3 * t91) - 0.0672 * t102;
-        let t106 = t78 * t84 - t90 * t96 + 0.56 * t74 * t104;
-        ::overact::guard::leg(t106, 0.06758306237509014, "leg3")?;
-        let t107 = 1.0 / t106;
-        let minus_garm_vz_leg3 = (0.2715855666268 * (t67 * t68) - 0.1568 * (t74 * t68))
-            * t107;
-        let garm_vz_leg2 = (0.1568 * (t41 * t19) - 0.2715855666268 * (t16 * t19)) * t50;
-        let minus_garm_vy_leg3 = t96 * t107;
-        let t118 = garm_vy_leg2 * minus_garm_vz_leg3 - garm_vz_leg2 * minus_garm_vy_leg3;
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
+        let t25 = 0.8660254037844387 * c_armcross_leg3;
+        let t28 = 1.0 / c_rod_leg3;
+        let t29 = s_rod_leg3 * t28;
+        let minus_garm_vy_leg3 = t16 * (t25 + 0.5 * t29);
+        let t34 = 0.8660254037844387 * c_armcross_leg2;
+        let t37 = 1.0 / c_rod_leg2;
+        let t38 = s_rod_leg2 * t37;
+        let garm_vy_leg2 = t11 * (t34 - 0.5 * t38);
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t16;
+        let t44 = minus_garm_vz_leg2 * minus_garm_vy_leg3
+            + garm_vy_leg2 * minus_garm_vz_leg3;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
         let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t131 = c_armcross_leg1 * c_rod_leg1;
-        let t132 = s_armcross_leg1 * c_rod_leg1;
-        let t135 = c_arm_leg1 * t132 - s_arm_leg1 * t131;
-        ::overact::guard::leg(t135, 0.89794672585951, "leg1")?;
-        let t136 = 1.0 / t135;
-        let t137 = 4.166666666666667 * t136;
-        let garm_vx_leg1 = t131 * t137;
-        let garm_vy_leg1 = s_rod_leg1 * t137;
-        let garm_vx_leg3 = (0.2715855666268 * t94 + 0.6272 * (t91 * t74)) * t107;
-        let garm_vx_leg2 = (0.2715855666268 * t21 + 0.6272 * (t13 * t41)) * t50;
-        let t153 = garm_vz_leg2 * garm_vx_leg3 + garm_vx_leg2 * minus_garm_vz_leg3;
-        let minus_garm_vz_leg1 = t132 * t137;
-        let t159 = garm_vy_leg2 * garm_vx_leg3 + garm_vx_leg2 * minus_garm_vy_leg3;
-        let t161 = garm_vx_leg1 * t118 - garm_vy_leg1 * t153 - minus_garm_vz_leg1 * t159;
-        ::overact::guard::platform(t161, 87.78853732246624, "kept actuators")?;
-        ::overact::guard::platform(t161, 87.78853732246624, "kept actuators")?;
-        ::overact::guard::platform(t161, 87.78853732246624, "kept actuators")?;
-        let t162 = 1.0 / t161;
-        let t163 = t118 * t162;
-        let t165 = t153 * t162;
-        let t168 = t159 * t162;
-        let t169 = acceleration[2] + 9.81;
-        let t175 = (garm_vy_leg1 * minus_garm_vz_leg3
-            + minus_garm_vz_leg1 * minus_garm_vy_leg3) * t162;
-        let t180 = (minus_garm_vz_leg1 * garm_vx_leg3
-            - garm_vx_leg1 * minus_garm_vz_leg3) * t162;
-        let t186 = (garm_vx_leg1 * minus_garm_vy_leg3 + garm_vy_leg1 * garm_vx_leg3)
-            * t162;
-        let t192 = (garm_vx_leg1 * garm_vz_leg2 + minus_garm_vz_leg1 * garm_vx_leg2)
-            * t162;
-        let t197 = (garm_vy_leg1 * garm_vz_leg2 + minus_garm_vz_leg1 * garm_vy_leg2)
-            * t162;
-        let t203 = (garm_vx_leg1 * garm_vy_leg2 - garm_vy_leg1 * garm_vx_leg2) * t162;
-        let t206 = 0.56 * s_rod_leg1;
-        let t207 = 1.7857142857142858 * t136;
-        let gcross_vz_leg1 = s_arm_leg1 * t207;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t207;
-        let t213 = 1.0 / c_rod_leg1;
-        let minus_gcross_vy_leg1 = t207
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t213)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t213));
-        let rate_cross_leg1 = gcross_vz_leg1 * twist[2]
-            - (minus_gcross_vx_leg1 * twist[0] + minus_gcross_vy_leg1 * twist[1]);
-        let grod_vy_leg1 = 1.7857142857142858 * t213;
+        let t55 = 1.0 / s_cross_leg1;
+        let t56 = 4.166666666666667 * t55;
+        let garm_vx_leg1 = c_armcross_leg1 * t56;
+        let t61 = 1.0 / c_rod_leg1;
+        let t62 = s_rod_leg1 * t61;
+        let garm_vy_leg1 = t56 * t62;
+        let t65 = 0.5 * c_armcross_leg3;
+        let garm_vx_leg3 = t16 * (0.8660254037844387 * t29 - t65);
+        let t69 = 0.5 * c_armcross_leg2;
+        let minus_garm_vx_leg2 = t11 * (t69 + 0.8660254037844387 * t38);
+        let t74 = minus_garm_vz_leg2 * garm_vx_leg3
+            + minus_garm_vx_leg2 * minus_garm_vz_leg3;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t56;
+        let t80 = garm_vy_leg2 * garm_vx_leg3 - minus_garm_vx_leg2 * minus_garm_vy_leg3;
+        let t82 = garm_vx_leg1 * t44 + garm_vy_leg1 * t74 - minus_garm_vz_leg1 * t80;
+        ::overact::guard::platform(t82, 87.78853732246625, "kept actuators")?;
+        ::overact::guard::platform(t82, 87.78853732246625, "kept actuators")?;
+        ::overact::guard::platform(t82, 87.78853732246625, "kept actuators")?;
+        let t83 = 1.0 / t82;
+        let t84 = t44 * t83;
+        let t86 = t74 * t83;
+        let t89 = t80 * t83;
+        let t90 = acceleration[2] + 9.81;
+        let t96 = (garm_vy_leg1 * minus_garm_vz_leg3
+            + minus_garm_vz_leg1 * minus_garm_vy_leg3) * t83;
+        let t101 = (minus_garm_vz_leg1 * garm_vx_leg3
+            - garm_vx_leg1 * minus_garm_vz_leg3) * t83;
+        let t107 = (garm_vx_leg1 * minus_garm_vy_leg3 + garm_vy_leg1 * garm_vx_leg3)
+            * t83;
+        let t113 = (minus_garm_vz_leg1 * garm_vy_leg2
+            - garm_vy_leg1 * minus_garm_vz_leg2) * t83;
+        let t118 = (garm_vx_leg1 * minus_garm_vz_leg2
+            + minus_garm_vz_leg1 * minus_garm_vx_leg2) * t83;
+        let t124 = (garm_vx_leg1 * garm_vy_leg2 + garm_vy_leg1 * minus_garm_vx_leg2)
+            * t83;
+        let t130 = 0.24 * c_cross_leg1;
+        let t133 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
+        let rate_arm_leg1 = t56 * (t133 + t62 * twist[1]);
+        let t137 = rate_arm_leg1 * rate_arm_leg1;
+        let grod_vy_leg1 = 1.7857142857142858 * t61;
+        let t141 = c_cross_leg1 * t55;
+        let t143 = t130 * garm_vy_leg1;
+        let t149 = t141 * t133 + t143 * twist[1] + s_armcross_leg1 * twist[0]
+            + c_armcross_leg1 * twist[2];
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t149;
+        let t151 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t226 = s_armcross_leg1 * rate_rod_leg1;
-        let t228 = t206 * (rate_cross_leg1 * t226);
-        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
-            - minus_garm_vz_leg1 * twist[2];
-        let t235 = rate_arm_leg1 * rate_arm_leg1;
-        let t239 = rate_cross_leg1 * rate_cross_leg1;
-        let t241 = c_armcross_leg1 * rate_rod_leg1;
-        let t243 = t226 * t226 + t239 + t241 * t241;
-        let t248 = acceleration[0]
-            - (t228 - (0.24 * c_arm_leg1 * t235 + 0.56 * t131 * t243) + t228);
-        let t250 = t206 * rate_cross_leg1;
-        let t254 = acceleration[1] - (rate_cross_leg1 * t250 - t206 * t243);
-        let t263 = t206 * (rate_cross_leg1 * t241);
-        let t266 = acceleration[2]
-            - (0.24 * s_arm_leg1 * t235 + 0.56 * t132 * t243 + t263 + t263);
-        let rate_dot_arm_leg1 = garm_vx_leg1 * t248 + garm_vy_leg1 * t254
-            - minus_garm_vz_leg1 * t266;
-        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
-            + garm_vz_leg2 * twist[2];
-        let t275 = rate_arm_leg2 * rate_arm_leg2;
-        let t278 = t13 + 0.8660254037844387 * s_rod_leg2;
-        let t279 = 0.56 * t278;
-        let gcross_vx_leg2 = (0.56 * t20 * t29 - 0.1344 * (c_arm_leg2 * t41)) * t50;
-        let minus_gcross_vy_leg2 = t35 * t50;
-        let minus_gcross_vz_leg2 = (0.56 * t16 * t29 + 0.0672 * (s_arm_leg2 * t41))
-            * t50;
-        let rate_cross_leg2 = gcross_vx_leg2 * twist[0] - minus_gcross_vy_leg2 * twist[1]
-            - minus_gcross_vz_leg2 * twist[2];
-        let t298 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (1.12 * t13 * t29 + 0.11639381426862856 * t45) * t50;
-        let minus_grod_vy_leg2 = t47 * t50;
-        let rate_rod_leg2 = grod_vx_leg2 * twist[0] - minus_grod_vy_leg2 * twist[1];
-        let t310 = t298 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t313 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t314 = 0.5 * rate_cross_leg2;
-        let t315 = t313 - t314;
-        let t318 = c_armcross_leg2 * rate_rod_leg2;
-        let t320 = t310 * t310 + t315 * t315 + t318 * t318;
-        let t326 = t38 * c_rod_leg2 - 0.5 * s_rod_leg2;
-        let t327 = 0.56 * t326;
-        let t331 = t279 * t310 + t327 * t315 - t26 * t318;
-        let t334 = t298 * t313;
-        let t337 = t298 * t318;
-        let t340 = 0.12 * c_arm_leg2 * t275 + t279 * t320 - t310 * t331
-            + 0.7466666666666667 * (t326 * t334) - t26 * t337;
-        let t341 = acceleration[0] - t340;
-        let t351 = t314 * t318;
-        let t354 = t315 * t331 - (0.20784609690826528 * c_arm_leg2 * t275 + t327 * t320)
-            + 0.7466666666666667 * (t278 * t334) - t26 * t351;
-        let t355 = acceleration[1] - t354;
-        let t363 = t279 * t337 - t327 * t351;
-        let t366 = acceleration[2] - (t25 * t275 + t26 * t320 + t363 + t363);
-        let rate_dot_arm_leg2 = garm_vx_leg2 * t341 + garm_vy_leg2 * t355
-            + garm_vz_leg2 * t366;
-        let rate_arm_leg3 = garm_vx_leg3 * twist[0] - minus_garm_vy_leg3 * twist[1]
-            - minus_garm_vz_leg3 * twist[2];
-        let t375 = rate_arm_leg3 * rate_arm_leg3;
-        let t378 = 0.8660254037844387 * s_rod_leg3 - t91;
-        let t379 = 0.56 * t378;
-        let gcross_vy_leg3 = t84 * t107;
-        let minus_gcross_vx_leg3 = (0.56 * t81 * t90 + 0.1344 * (c_arm_leg3 * t74))
-            * t107;
-        let gcross_vz_leg3 = (0.56 * t67 * t90 - 0.0672 * (s_arm_leg3 * t74)) * t107;
-        let rate_cross_leg3 = gcross_vy_leg3 * twist[1] - minus_gcross_vx_leg3 * twist[0]
-            + gcross_vz_leg3 * twist[2];
-        let t398 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (0.11639381426862856 * t102 - 1.12 * t91 * t90) * t107;
-        let grod_vy_leg3 = t104 * t107;
-        let rate_rod_leg3 = grod_vx_leg3 * twist[0] + grod_vy_leg3 * twist[1];
-        let t410 = t398 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t412 = 0.5 * rate_cross_leg3;
-        let t414 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t415 = t412 + t414;
-        let t418 = c_armcross_leg3 * rate_rod_leg3;
-        let t420 = t410 * t410 + t415 * t415 + t418 * t418;
-        let t426 = t71 * c_rod_leg3 + 0.5 * s_rod_leg3;
-        let t427 = 0.56 * t426;
-        let t431 = t379 * t410 + t427 * t415 - t87 * t418;
-        let t434 = t398 * t418;
-        let t436 = t398 * t414;
-        let t440 = 0.12 * c_arm_leg3 * t375 - t379 * t420 + t410 * t431 + t87 * t434
-            - 0.7466666666666667 * (t426 * t436);
-        let t441 = acceleration[0] - t440;
-        let t451 = t412 * t418;
-        let t454 = 0.20784609690826528 * c_arm_leg3 * t375 + t427 * t420 - t415 * t431
-            - (0.7466666666666667 * (t378 * t436) + t87 * t451);
-        let t455 = acceleration[1] - t454;
-        let t463 = t427 * t451 + t379 * t434;
-        let t466 = acceleration[2] - (t86 * t375 + t87 * t420 + t463 + t463);
-        let rate_dot_arm_leg3 = garm_vx_leg3 * t441 - minus_garm_vy_leg3 * t455
-            - minus_garm_vz_leg3 * t466;
-        let t469 = 9.81 * c_arm_leg1;
-        let t470 = 9.81 * c_arm_leg2;
-        let t471 = 9.81 * c_arm_leg3;
-        let t472 = 9.81 * s_arm_leg1;
-        let t473 = 9.81 * s_arm_leg2;
-        let t474 = 9.81 * s_arm_leg3;
-        let t482 = minus_gcross_vy_leg1 * t165 - minus_gcross_vx_leg1 * t163
-            + gcross_vz_leg1 * t168;
-        let rate_dot_cross_leg1 = gcross_vz_leg1 * t266
-            - (minus_gcross_vx_leg1 * t248 + minus_gcross_vy_leg1 * t254);
-        let t488 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t489 = c_rod_leg1 * rate_cross_leg1;
-        let t490 = rate_rod_leg1 * t489;
-        let t491 = t488 + t490;
-        let t493 = 1.7857142857142858 * t250;
-        let t494 = rate_rod_leg1 * t493;
-        let t495 = c_rod_leg1 * t494;
-        let t496 = s_rod_leg1 * t491 + t495;
-        let t498 = grod_vy_leg1 * t165;
-        let t499 = t493 * t489;
-        let t500 = t498 * t499;
-        let t506 = minus_gcross_vx_leg1 * t175 + minus_gcross_vy_leg1 * t180
-            - gcross_vz_leg1 * t186;
-        let t508 = grod_vy_leg1 * t180;
-        let t509 = t508 * t499;
-        let t515 = minus_gcross_vx_leg1 * t197 - minus_gcross_vy_leg1 * t192
-            - gcross_vz_leg1 * t203;
-        let t517 = grod_vy_leg1 * t192;
-        let t518 = t517 * t499;
-        let t524 = gcross_vx_leg2 * t163 + minus_gcross_vy_leg2 * t165
-            - minus_gcross_vz_leg2 * t168;
-        let rate_dot_cross_leg2 = gcross_vx_leg2 * t341 - minus_gcross_vy_leg2 * t355
-            - minus_gcross_vz_leg2 * t366;
-        let t530 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t531 = c_rod_leg2 * rate_cross_leg2;
-        let t532 = rate_rod_leg2 * t531;
-        let t533 = t530 + t532;
-        let t535 = 1.7857142857142858 * t331;
-        let t536 = rate_rod_leg2 * t535;
-        let t537 = c_rod_leg2 * t536;
-        let t538 = s_rod_leg2 * t533 + t537;
-        let t542 = grod_vx_leg2 * t163 + minus_grod_vy_leg2 * t165;
-        let t543 = t535 * t531;
-        let t544 = t542 * t543;
-        let t550 = minus_gcross_vy_leg2 * t180 - gcross_vx_leg2 * t175
-            + minus_gcross_vz_leg2 * t186;
-        let t554 = minus_grod_vy_leg2 * t180 - grod_vx_leg2 * t175;
-        let t555 = t554 * t543;
-        let t561 = minus_gcross_vz_leg2 * t203
-            - (gcross_vx_leg2 * t197 + minus_gcross_vy_leg2 * t192);
-        let t565 = grod_vx_leg2 * t197 + minus_grod_vy_leg2 * t192;
-        let t566 = t565 * t543;
-        let t572 = gcross_vz_leg3 * t168
-            - (minus_gcross_vx_leg3 * t163 + gcross_vy_leg3 * t165);
-        let rate_dot_cross_leg3 = gcross_vy_leg3 * t455 - minus_gcross_vx_leg3 * t441
-            + gcross_vz_leg3 * t466;
-        let t578 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t579 = c_rod_leg3 * rate_cross_leg3;
-        let t580 = rate_rod_leg3 * t579;
-        let t581 = t578 + t580;
-        let t583 = 1.7857142857142858 * t431;
-        let t584 = rate_rod_leg3 * t583;
-        let t585 = c_rod_leg3 * t584;
-        let t586 = s_rod_leg3 * t581 + t585;
-        let t590 = grod_vx_leg3 * t163 - grod_vy_leg3 * t165;
-        let t591 = t583 * t579;
-        let t592 = t590 * t591;
-        let t598 = minus_gcross_vx_leg3 * t175 - gcross_vy_leg3 * t180
-            - gcross_vz_leg3 * t186;
-        let t602 = grod_vx_leg3 * t175 + grod_vy_leg3 * t180;
-        let t603 = t602 * t591;
-        let t609 = minus_gcross_vx_leg3 * t197 + gcross_vy_leg3 * t192
-            - gcross_vz_leg3 * t203;
-        let t613 = grod_vy_leg3 * t192 - grod_vx_leg3 * t197;
-        let t614 = t613 * t591;
-        let t616 = t490 + t491;
-        let t618 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t619 = t618 - t494;
-        let t622 = c_rod_leg1 * t616 - s_rod_leg1 * (t494 - t619);
-        let t625 = 3.188775510204082 * (t250 * t250);
-        let t627 = t625 - t489 * t489;
-        let t636 = t532 + t533;
-        let t638 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t639 = t638 - t536;
-        let t642 = c_rod_leg2 * t636 - s_rod_leg2 * (t536 - t639);
-        let t645 = 3.188775510204082 * (t331 * t331);
-        let t646 = t531 * t531;
-        let t647 = t645 - t646;
-        let t656 = t580 + t581;
-        let t658 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t659 = t658 - t584;
-        let t662 = c_rod_leg3 * t656 - s_rod_leg3 * (t584 - t659);
-        let t665 = 3.188775510204082 * (t431 * t431);
-        let t666 = t579 * t579;
-        let t667 = t665 - t666;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t254;
-        let t679 = rate_rod_leg1 * rate_rod_leg1;
-        let t682 = s_rod_leg1 * (t499 + rate_dot_rod_leg1) + c_rod_leg1 * (t679 - t625);
-        let rate_dot_rod_leg2 = grod_vx_leg2 * t341 - minus_grod_vy_leg2 * t355;
-        let t697 = rate_rod_leg2 * rate_rod_leg2;
-        let t700 = s_rod_leg2 * (t543 + rate_dot_rod_leg2) + c_rod_leg2 * (t697 - t645);
-        let rate_dot_rod_leg3 = grod_vx_leg3 * t441 + grod_vy_leg3 * t455;
-        let t715 = rate_rod_leg3 * rate_rod_leg3;
-        let t718 = s_rod_leg3 * (t591 + rate_dot_rod_leg3) + c_rod_leg3 * (t715 - t665);
-        let t729 = c_rod_leg1 * t619 - t495;
-        let t737 = c_rod_leg2 * t639 - t537;
-        let t745 = c_rod_leg3 * t659 - t585;
-        let t752 = 1.7857142857142858 * acceleration[1];
-        let t764 = t543 - rate_dot_rod_leg2;
-        let t766 = s_rod_leg2 * (t646 - t697) - c_rod_leg2 * t764;
-        let t778 = t591 - rate_dot_rod_leg3;
-        let t780 = s_rod_leg3 * (t666 - t715) - c_rod_leg3 * t778;
-        let t799 = 0.24 * t135;
-        let t803 = s_rod_leg1 * (0.24 * s_cross_leg1);
-        let t807 = 0.24 * c_cross_leg1;
-        let t811 = t472 + 0.24 * t235;
-        let t814 = 0.24 * rate_dot_arm_leg1 - t469;
-        let t817 = s_rod_leg1 * (s_cross_leg1 * t811 + c_cross_leg1 * t814);
-        let t822 = s_cross_leg1 * t814 - c_cross_leg1 * t811;
-        let t823 = c_rod_leg1 * t822;
-        let t825 = t799 * (t499 - rate_dot_rod_leg1) + t803 * (t625 + t679) - t807 * t616
-            - t482 * t817 + t498 * t823;
-        let t833 = t473 + 0.24 * t275;
-        let t836 = 0.24 * rate_dot_arm_leg2 - t470;
-        let t839 = s_rod_leg2 * (s_cross_leg2 * t833 + c_cross_leg2 * t836);
-        let t843 = s_cross_leg2 * t836 - c_cross_leg2 * t833;
-        let t844 = c_rod_leg2 * t843;
-        let t848 = s_rod_leg2 * (0.24 * s_cross_leg2);
-        let t851 = 3.5714285714285716 * t47;
-        let t854 = 0.24 * c_cross_leg2;
-        let t860 = t848 * (t645 + t697) - t851 * t764 - t854 * t636 - t550 * t839
-            - t554 * t844;
-        let t865 = t474 + 0.24 * t375;
-        let t868 = 0.24 * rate_dot_arm_leg3 - t471;
-        let t871 = s_rod_leg3 * (s_cross_leg3 * t865 + c_cross_leg3 * t868);
-        let t875 = s_cross_leg3 * t868 - c_cross_leg3 * t865;
-        let t876 = c_rod_leg3 * t875;
-        let t883 = s_rod_leg3 * (0.24 * s_cross_leg3);
-        let t886 = 3.5714285714285716 * t104;
-        let t889 = 0.24 * c_cross_leg3;
-        let t895 = t883 * (t665 + t715) - t886 * t778 - t889 * t656 - t609 * t871
-            - t613 * t876;
+        let t153 = rate_rod_leg1 * rate_rod_leg1;
+        let t154 = t151 + t153;
+        let t157 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t130 * t137 + 0.56 * c_rod_leg1 * t154;
+        let t158 = 0.56 * s_rod_leg1;
+        let t159 = t158 * minus_rate_cross_leg1;
+        let t163 = acceleration[1] - (minus_rate_cross_leg1 * t159 - t158 * t154);
+        let rate_dot_arm_leg1 = t56 * (t157 + t62 * t163);
+        let t172 = 0.24 * c_cross_leg2;
+        let t177 = t34 * twist[1] - t69 * twist[0] - s_armcross_leg2 * twist[2];
+        let t178 = 0.8660254037844387 * twist[0];
+        let t179 = 0.5 * twist[1];
+        let t180 = t178 + t179;
+        let rate_arm_leg2 = t11 * (t177 - t38 * t180);
+        let t184 = rate_arm_leg2 * rate_arm_leg2;
+        let t187 = 1.7857142857142858 * t37;
+        let minus_rate_rod_leg2 = t187 * t180;
+        let t189 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t190 = 0.5 * s_armcross_leg2;
+        let t192 = 0.8660254037844387 * s_armcross_leg2;
+        let t197 = c_cross_leg2 * t10;
+        let t201 = t172 * (t11 * t38);
+        let t203 = t190 * twist[0] - t192 * twist[1] - c_armcross_leg2 * twist[2]
+            - t197 * t177 + t201 * t180;
+        let rate_cross_leg2 = t187 * t203;
+        let t205 = rate_cross_leg2 * rate_cross_leg2;
+        let t206 = t189 + t205;
+        let t209 = t34 * acceleration[1] - t69 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t172 * t184 + 0.56 * c_rod_leg2 * t206;
+        let t210 = 0.8660254037844387 * acceleration[0];
+        let t211 = 0.5 * acceleration[1];
+        let t212 = t210 + t211;
+        let t213 = 0.56 * s_rod_leg2;
+        let t214 = t213 * rate_cross_leg2;
+        let t218 = t212 + rate_cross_leg2 * t214 - t213 * t206;
+        let rate_dot_arm_leg2 = t11 * (t209 - t38 * t218);
+        let t222 = 0.24 * c_cross_leg3;
+        let t223 = t178 - t179;
+        let t229 = t65 * twist[0] + t25 * twist[1] + s_armcross_leg3 * twist[2];
+        let rate_arm_leg3 = t16 * (t29 * t223 - t229);
+        let t232 = rate_arm_leg3 * rate_arm_leg3;
+        let t235 = 1.7857142857142858 * t28;
+        let rate_rod_leg3 = t235 * t223;
+        let t237 = rate_rod_leg3 * rate_rod_leg3;
+        let t238 = c_cross_leg3 * t15;
+        let t240 = 0.5 * s_armcross_leg3;
+        let t242 = 0.8660254037844387 * s_armcross_leg3;
+        let t249 = t222 * (t16 * t29);
+        let t251 = t238 * t229 + t240 * twist[0] + t242 * twist[1]
+            - c_armcross_leg3 * twist[2] - t249 * t223;
+        let rate_cross_leg3 = t235 * t251;
+        let t253 = rate_cross_leg3 * rate_cross_leg3;
+        let t254 = t237 + t253;
+        let t262 = t222 * t232 + 0.56 * c_rod_leg3 * t254
+            - (t65 * acceleration[0] + t25 * acceleration[1]
+                + s_armcross_leg3 * acceleration[2]);
+        let t263 = t210 - t211;
+        let t264 = 0.56 * s_rod_leg3;
+        let t265 = t264 * rate_cross_leg3;
+        let t269 = t263 - (rate_cross_leg3 * t265 - t264 * t254);
+        let rate_dot_arm_leg3 = t16 * (t262 + t29 * t269);
+        let t273 = 9.81 * c_arm_leg1;
+        let t274 = 9.81 * c_arm_leg2;
+        let t275 = 9.81 * c_arm_leg3;
+        let t276 = 9.81 * s_arm_leg1;
+        let t277 = 9.81 * s_arm_leg2;
+        let t278 = 9.81 * s_arm_leg3;
+        let minus_gcross_vx_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 * t141 + s_armcross_leg1);
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * t143;
+        let minus_gcross_vz_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 - s_armcross_leg1 * t141);
+        let t293 = minus_gcross_vx_leg1 * t84 + minus_gcross_vy_leg1 * t86
+            + minus_gcross_vz_leg1 * t89;
+        let t300 = 0.24 * s_cross_leg1;
+        let t303 = t158 * (minus_rate_cross_leg1 * rate_rod_leg1);
+        let t307 = t141 * t157 + t143 * t163 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + t300 * t137 + t303 + t303;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t307;
+        let t309 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t311 = rate_rod_leg1 * (1.7857142857142858 * t149);
+        let t312 = t309 + t311;
+        let t315 = c_rod_leg1 * (1.7857142857142858 * t303);
+        let t316 = s_rod_leg1 * t312 + t315;
+        let t318 = grod_vy_leg1 * t86;
+        let t320 = 3.188775510204082 * (t149 * t159);
+        let t321 = t318 * t320;
+        let t323 = grod_vy_leg1 * t101;
+        let t324 = t323 * t320;
+        let t329 = minus_gcross_vx_leg1 * t96 + minus_gcross_vy_leg1 * t101
+            + minus_gcross_vz_leg1 * t107;
+        let t332 = grod_vy_leg1 * t118;
+        let t333 = t332 * t320;
+        let t338 = minus_gcross_vx_leg1 * t113 + minus_gcross_vy_leg1 * t118
+            + minus_gcross_vz_leg1 * t124;
+        let gcross_vx_leg2 = t187 * (t69 * t197 + t190 + 0.8660254037844387 * t201);
+        let gcross_vy_leg2 = t187 * (0.5 * t201 - (t34 * t197 + t192));
+        let gcross_vz_leg2 = t187 * (s_armcross_leg2 * t197 - c_armcross_leg2);
+        let t358 = gcross_vx_leg2 * t84 + gcross_vy_leg2 * t86 + gcross_vz_leg2 * t89;
+        let t364 = 0.24 * s_cross_leg2;
+        let t367 = t213 * (rate_cross_leg2 * minus_rate_rod_leg2);
+        let t372 = t190 * acceleration[0] - t192 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (t364 * t184 + t367 + t367)
+            - t197 * t209;
+        let t374 = t372 + t201 * t218;
+        let rate_dot_cross_leg2 = t187 * t374;
+        let t376 = s_rod_leg2 * rate_dot_cross_leg2;
+        let t378 = minus_rate_rod_leg2 * (1.7857142857142858 * t203);
+        let t379 = t376 - t378;
+        let t382 = c_rod_leg2 * (1.7857142857142858 * t367);
+        let t383 = s_rod_leg2 * t379 - t382;
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t37;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t37;
+        let t389 = minus_grod_vx_leg2 * t84 + minus_grod_vy_leg2 * t86;
+        let t391 = 3.188775510204082 * (t203 * t214);
+        let t392 = t389 * t391;
+        let t398 = gcross_vx_leg2 * t96 + gcross_vy_leg2 * t101 + gcross_vz_leg2 * t107;
+        let t402 = minus_grod_vx_leg2 * t96 + minus_grod_vy_leg2 * t101;
+        let t403 = t402 * t391;
+        let t409 = gcross_vx_leg2 * t113 + gcross_vy_leg2 * t118 + gcross_vz_leg2 * t124;
+        let t413 = minus_grod_vx_leg2 * t113 + minus_grod_vy_leg2 * t118;
+        let t414 = t413 * t391;
+        let gcross_vx_leg3 = t235 * (t65 * t238 + t240 - 0.8660254037844387 * t249);
+        let gcross_vy_leg3 = t235 * (t25 * t238 + t242 + 0.5 * t249);
+        let gcross_vz_leg3 = t235 * (s_armcross_leg3 * t238 - c_armcross_leg3);
+        let t433 = gcross_vx_leg3 * t84 + gcross_vy_leg3 * t86 + gcross_vz_leg3 * t89;
+        let t439 = 0.24 * s_cross_leg3;
+        let t442 = t264 * (rate_cross_leg3 * rate_rod_leg3);
+        let t447 = t240 * acceleration[0] + t242 * acceleration[1]
+            - c_armcross_leg3 * acceleration[2] - (t439 * t232 - t442 - t442)
+            - t238 * t262;
+        let t449 = t447 - t249 * t269;
+        let rate_dot_cross_leg3 = t235 * t449;
+        let t451 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t453 = rate_rod_leg3 * (1.7857142857142858 * t251);
+        let t454 = t451 + t453;
+        let t457 = c_rod_leg3 * (1.7857142857142858 * t442);
+        let t458 = s_rod_leg3 * t454 + t457;
+        let grod_vx_leg3 = 1.5464739353293548 * t28;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t28;
+        let t464 = grod_vx_leg3 * t84 - minus_grod_vy_leg3 * t86;
+        let t466 = 3.188775510204082 * (t251 * t265);
+        let t467 = t464 * t466;
+        let t473 = gcross_vx_leg3 * t96 + gcross_vy_leg3 * t101 + gcross_vz_leg3 * t107;
+        let t477 = minus_grod_vy_leg3 * t101 - grod_vx_leg3 * t96;
+        let t478 = t477 * t466;
+        let t484 = gcross_vx_leg3 * t113 + gcross_vy_leg3 * t118 + gcross_vz_leg3 * t124;
+        let t488 = minus_grod_vy_leg3 * t118 - grod_vx_leg3 * t113;
+        let t489 = t488 * t466;
+        let t491 = t159 * t159;
+        let t494 = 3.188775510204082 * (t491 - t149 * t149);
+        let t496 = t303 - t307;
+        let t500 = t311 + t312;
+        let t502 = s_rod_leg1 * (1.7857142857142858 * (t303 + t496)) - c_rod_leg1 * t500;
+        let t511 = t374 + t367;
+        let t515 = t379 - t378;
+        let t517 = s_rod_leg2 * (1.7857142857142858 * (t367 + t511)) + c_rod_leg2 * t515;
+        let t519 = t214 * t214;
+        let t522 = 3.188775510204082 * (t519 - t203 * t203);
+        let t531 = t453 + t454;
+        let t533 = t449 - t442;
+        let t537 = c_rod_leg3 * t531 - s_rod_leg3 * (1.7857142857142858 * (t442 - t533));
+        let t539 = t265 * t265;
+        let t542 = 3.188775510204082 * (t539 - t251 * t251);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t163;
+        let t554 = 3.188775510204082 * t491;
+        let t557 = s_rod_leg1 * (t320 + rate_dot_rod_leg1) + c_rod_leg1 * (t153 - t554);
+        let minus_rate_dot_rod_leg2 = t187 * t218;
+        let t570 = 3.188775510204082 * t519;
+        let t573 = s_rod_leg2 * (t391 - minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t189 - t570);
+        let rate_dot_rod_leg3 = t235 * t269;
+        let t586 = 3.188775510204082 * t539;
+        let t589 = s_rod_leg3 * (t466 + rate_dot_rod_leg3) + c_rod_leg3 * (t237 - t586);
+        let t601 = t315 + c_rod_leg1 * (1.7857142857142858 * t496);
+        let t610 = t382 + c_rod_leg2 * (1.7857142857142858 * t511);
+        let t619 = c_rod_leg3 * (1.7857142857142858 * t533) - t457;
+        let t626 = 1.7857142857142858 * acceleration[1];
+        let t628 = 1.7857142857142858 * t307;
+        let t637 = 1.7857142857142858 * t212;
+        let t639 = 1.7857142857142858 * t374;
+        let t648 = 1.7857142857142858 * t263;
+        let t650 = 1.7857142857142858 * t449;
+        let t668 = s_cross_leg1 * c_rod_leg1;
+        let t672 = t300 * s_rod_leg1;
+        let t679 = t276 + 0.24 * t137;
+        let t682 = 0.24 * rate_dot_arm_leg1 - t273;
+        let t685 = s_rod_leg1 * (s_cross_leg1 * t679 + c_cross_leg1 * t682);
+        let t687 = 0.24 * t668 * (t320 - rate_dot_rod_leg1) + t672 * (t554 + t153)
+            + t130 * t500 + t293 * t685;
+        let t690 = s_cross_leg1 * t682 - c_cross_leg1 * t679;
+        let t691 = c_rod_leg1 * t690;
+        let t701 = 0.24 * rate_dot_arm_leg2 - t274;
+        let t704 = t277 + 0.24 * t184;
+        let t706 = s_cross_leg2 * t701 - c_cross_leg2 * t704;
+        let t707 = c_rod_leg2 * t706;
+        let t712 = s_rod_leg2 * (s_cross_leg2 * t704 + c_cross_leg2 * t701);
+        let t715 = s_cross_leg2 * c_rod_leg2;
+        let t719 = t364 * s_rod_leg2;
+        let t726 = 0.24 * t715 * (t391 + minus_rate_dot_rod_leg2) + t719 * (t570 + t189)
+            - t172 * t515 + t398 * t712;
+        let t733 = t278 + 0.24 * t232;
+        let t736 = 0.24 * rate_dot_arm_leg3 - t275;
+        let t739 = s_rod_leg3 * (s_cross_leg3 * t733 + c_cross_leg3 * t736);
+        let t743 = s_cross_leg3 * t736 - c_cross_leg3 * t733;
+        let t744 = c_rod_leg3 * t743;
+        let t750 = s_cross_leg3 * c_rod_leg3;
+        let t754 = t439 * s_rod_leg3;
+        let t761 = 0.24 * t750 * (t466 - rate_dot_rod_leg3) + t754 * (t586 + t237)
+            - t222 * t531 + t484 * t739;
         Ok([
             [
-                t163 * acceleration[0] - t165 * acceleration[1] + t168 * t169, rate_dot_arm_leg1,
-                0.0, 0.0, -t469, 0.0, 0.0, t472, 0.0, 0.0, rate_arm_leg1, 0.0, 0.0,
-                ::overact::math::sign(rate_arm_leg1), 0.0, 0.0, 1.0, 0.0, 0.0, t482 * t496 + t500,
-                t524 * t538 - t544, t572 * t586 - t592, t482 * t622 - t498 * t627,
-                t524 * t642 + t542 * t647, t572 * t662 + t590 * t667, t482 * t682 - t498 * t488,
-                t524 * t700 + t542 * t530, t572 * t718 + t590 * t578, t482 * t729 - t500,
-                t524 * t737 + t544, t572 * t745 + t592, t482 * t752 - t498 * t618,
-                t524 * t766 + t542 * t638, t572 * t780 + t590 * t658, -(t498 * rate_dot_rod_leg1),
-                t542 * rate_dot_rod_leg2, t590 * rate_dot_rod_leg3, t825,
-                -(t524 * t839 + t542 * t844), -(t572 * t871 + t590 * t876),
-                t618 * t799 + t488 * t803 + t239 * t807 + t482 * t822, t524 * t843, t572 * t875,
+                t84 * acceleration[0] + t86 * acceleration[1] + t89 * t90, rate_dot_arm_leg1, 0.0,
+                0.0, -t273, 0.0, 0.0, t276, 0.0, 0.0, rate_arm_leg1, 0.0, 0.0,
+                ::overact::math::sign(rate_arm_leg1), 0.0, 0.0, 1.0, 0.0, 0.0, t293 * t316 - t321,
+                t358 * t383 + t392, t433 * t458 - t467, t318 * t494 - t293 * t502,
+                t358 * t517 - t389 * t522, t433 * t537 + t464 * t542, -(t293 * t557 + t318 * t309),
+                t358 * t573 - t389 * t376, t433 * t589 + t464 * t451, t321 - t293 * t601,
+                t358 * t610 - t392, t433 * t619 + t467, -(t293 * t626 + t318 * t628),
+                -(t358 * t637 + t389 * t639), t433 * t648 + t464 * t650, t318 * rate_dot_rod_leg1,
+                t389 * minus_rate_dot_rod_leg2, t464 * rate_dot_rod_leg3, t687 - t318 * t691,
+                t389 * t707 - t358 * t712, -(t433 * t739 + t464 * t744),
+                t130 * t151 - (0.42857142857142855 * (t668 * t307) + t309 * t672)
+                    - t293 * t690,
+                t358 * t706,
+                t433 * t743,
             ],
             [
-                -(t175 * acceleration[0] + t180 * acceleration[1] + t186 * t169), 0.0,
-                rate_dot_arm_leg2, 0.0, 0.0, -t470, 0.0, 0.0, t473, 0.0, 0.0, rate_arm_leg2, 0.0,
-                0.0, ::overact::math::sign(rate_arm_leg2), 0.0, 0.0, 1.0, 0.0, t506 * t496 + t509,
-                t550 * t538 - t555, t598 * t586 + t603, t506 * t622 - t508 * t627,
-                t550 * t642 + t554 * t647, t598 * t662 - t602 * t667, t506 * t682 - t508 * t488,
-                t550 * t700 + t554 * t530, t598 * t718 - t602 * t578, t506 * t729 - t509,
-                t550 * t737 + t555, t598 * t745 - t603, t506 * t752 - t508 * t618,
-                t550 * t766 + t554 * t638, t598 * t780 - t602 * t658, -(t508 * rate_dot_rod_leg1),
-                t554 * rate_dot_rod_leg2, -(t602 * rate_dot_rod_leg3), t508 * t823 - t506 * t817,
-                t860, t602 * t876 - t598 * t871, t506 * t822,
-                t530 * t848 - t638 * t851 + rate_cross_leg2 * rate_cross_leg2 * t854
-                    + t550 * t843,
-                t598 * t875,
+                -(t96 * acceleration[0] + t101 * acceleration[1] + t107 * t90), 0.0,
+                rate_dot_arm_leg2, 0.0, 0.0, -t274, 0.0, 0.0, t277, 0.0, 0.0, rate_arm_leg2, 0.0,
+                0.0, ::overact::math::sign(rate_arm_leg2), 0.0, 0.0, 1.0, 0.0, t324 - t329 * t316,
+                -(t398 * t383 + t403), -(t473 * t458 + t478), t329 * t502 - t323 * t494,
+                t402 * t522 - t398 * t517, t477 * t542 - t473 * t537, t329 * t557 + t323 * t309,
+                t402 * t376 - t398 * t573, t477 * t451 - t473 * t589, t329 * t601 - t324,
+                t403 - t398 * t610, t478 - t473 * t619, t329 * t626 + t323 * t628,
+                t398 * t637 + t402 * t639, t477 * t650 - t473 * t648, -(t323 * rate_dot_rod_leg1),
+                -(t402 * minus_rate_dot_rod_leg2), t477 * rate_dot_rod_leg3,
+                t323 * t691 - t329 * t685, t726 - t402 * t707, t473 * t739 - t477 * t744,
+                t329 * t690,
+                0.42857142857142855 * (t715 * t374) + t376 * t719 + t172 * t205
+                    - t398 * t706,
+                -(t473 * t743),
             ],
             [
-                t192 * acceleration[1] - t197 * acceleration[0] - t203 * t169, 0.0, 0.0,
-                rate_dot_arm_leg3, 0.0, 0.0, -t471, 0.0, 0.0, t474, 0.0, 0.0, rate_arm_leg3, 0.0,
-                0.0, ::overact::math::sign(rate_arm_leg3), 0.0, 0.0, 1.0, t515 * t496 - t518,
-                t561 * t538 + t566, t609 * t586 - t614, t515 * t622 + t517 * t627,
-                t561 * t642 - t565 * t647, t609 * t662 + t613 * t667, t515 * t682 + t517 * t488,
-                t561 * t700 - t565 * t530, t609 * t718 + t613 * t578, t515 * t729 + t518,
-                t561 * t737 - t566, t609 * t745 + t614, t515 * t752 + t517 * t618,
-                t561 * t766 - t565 * t638, t609 * t780 + t613 * t658, t517 * rate_dot_rod_leg1,
-                -(t565 * rate_dot_rod_leg2), t613 * rate_dot_rod_leg3, -(t515 * t817 + t517 * t823),
-                t565 * t844 - t561 * t839, t895, t515 * t822, t561 * t843,
-                t578 * t883 - t658 * t886 + rate_cross_leg3 * rate_cross_leg3 * t889
-                    + t609 * t875,
+                -(t113 * acceleration[0] + t118 * acceleration[1] + t124 * t90), 0.0, 0.0,
+                rate_dot_arm_leg3, 0.0, 0.0, -t275, 0.0, 0.0, t278, 0.0, 0.0, rate_arm_leg3, 0.0,
+                0.0, ::overact::math::sign(rate_arm_leg3), 0.0, 0.0, 1.0, t333 - t338 * t316,
+                -(t409 * t383 + t414), -(t484 * t458 + t489), t338 * t502 - t332 * t494,
+                t413 * t522 - t409 * t517, t488 * t542 - t484 * t537, t338 * t557 + t332 * t309,
+                t413 * t376 - t409 * t573, t488 * t451 - t484 * t589, t338 * t601 - t333,
+                t414 - t409 * t610, t489 - t484 * t619, t338 * t626 + t332 * t628,
+                t409 * t637 + t413 * t639, t488 * t650 - t484 * t648, -(t332 * rate_dot_rod_leg1),
+                -(t413 * minus_rate_dot_rod_leg2), t488 * rate_dot_rod_leg3,
+                t332 * t691 - t338 * t685, t409 * t712 - t413 * t707, t761 - t488 * t744,
+                t338 * t690, -(t409 * t706),
+                0.42857142857142855 * (t750 * t449) + t451 * t754 + t222 * t253
+                    - t484 * t743,
             ],
         ])
     }
@@ -7402,7 +6729,7 @@ impl Delta {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 1080 operations (378 additions, 685 multiplications, 17 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 1005 intermediates.
+    /// 983 operations (341 additions, 623 multiplications, 19 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 908 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7413,10 +6740,8 @@ impl Delta {
         start: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = pose[1] + 0.04330127018922194;
-        let t1 = t0 - 0.17320508075688776;
-        let t3 = pose[0] - 0.025;
-        let t4 = t3 + 0.1;
+        let t1 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t4 = pose[0] - 0.025 + 0.1;
         let t5 = 0.5 * t4;
         let t6 = 0.8660254037844387 * t1 - t5;
         let t8 = pose[2] * pose[2];
@@ -7431,464 +6756,436 @@ impl Delta {
         ::overact::guard::reach(t22, "leg2")?;
         let t23 = ::overact::math::sqrt(t22);
         let c_arm_leg2 = t11 * (t12 * t18 - t20 * t23);
-        let t28 = t6 - 0.24 * c_arm_leg2;
-        let t29 = 0.8660254037844387 * t4;
-        let t31 = t29 + 0.5 * t1;
-        let t32 = t31 * t31;
-        let t36 = 1.0 - 3.188775510204082 * t32;
-        ::overact::guard::reach(t36, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t36);
-        let c_cross_leg2 = (t16 - (0.0576 + t32) - 0.3136 * t36) / (0.2688 * c_rod_leg2);
+        let t28 = 0.8660254037844387 * t4;
+        let t30 = t28 + 0.5 * t1;
+        let t31 = t30 * t30;
+        let t33 = 1.0 - 3.188775510204082 * t31;
+        ::overact::guard::reach(t33, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t33);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t35 = 0.56 * c_rod_leg2;
+        let s_cross_leg2 = 2.0833333333333335 * t23 / t35;
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
         let minus_s_arm_leg2 = t11 * (t20 * t18 + t12 * t23);
-        let s_cross_leg2 = 2.0833333333333335 * t23 / (0.56 * c_rod_leg2);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
-            + minus_s_arm_leg2 * s_cross_leg2;
-        let t52 = t31 * c_armcross_leg2;
-        let t55 = 0.8928571428571429 * t52 + 0.8660254037844387 * c_rod_leg2;
-        let t58 = 0.24 * minus_s_arm_leg2;
-        let t59 = pose[2] - t58;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t31;
+        let c_cross_leg2 = (t16 - (0.0576 + t31) - 0.3136 * t33) / (0.2688 * c_rod_leg2);
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t64 = minus_s_rod_leg2 * s_armcross_leg2;
-        let t65 = t59 * t64;
-        let t67 = t28 * (0.56 * t55) - 0.28 * t65;
-        let t68 = 0.20784609690826528 * minus_s_arm_leg2;
-        let t73 = minus_s_arm_leg2 * t64;
-        let t75 = 0.1344 * (c_arm_leg2 * t55) - 0.0672 * t73;
-        let t80 = 1.5464739353293548 * t52 - 0.5 * c_rod_leg2;
-        let t83 = t68 * t67 - 0.8660254037844387 * t59 * t75 - 0.14 * (t23 * t80);
-        ::overact::guard::leg(t83, 0.06758306237512474, "leg2")?;
-        let t84 = 1.0 / t83;
-        let garm_vy_leg2 = t67 * t84;
-        let t86 = pose[1] - 0.04330127018922194;
-        let t87 = t86 + 0.17320508075688776;
-        let t89 = t29 - 0.5 * t87;
-        let t90 = t89 * t89;
-        let t92 = 1.0 - 3.188775510204082 * t90;
-        ::overact::guard::reach(t92, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t92);
-        let t95 = t5 + 0.8660254037844387 * t87;
-        let t98 = 0.2304 * (t95 * t95 + t8);
-        let t99 = 1.0 / t98;
-        let t100 = 0.48 * t95;
-        let t103 = t13 + t87 * t87 + t8;
-        let t105 = t103 - 0.3136 + 0.0576;
-        let t107 = t98 - t105 * t105;
-        ::overact::guard::reach(t107, "leg3")?;
-        let t108 = ::overact::math::sqrt(t107);
-        let s_arm_leg3 = t99 * (t100 * t108 - t20 * t105);
-        let t113 = 0.24 * s_arm_leg3;
-        let t114 = pose[2] + t113;
-        let t117 = 0.20784609690826528 * s_arm_leg3;
-        let minus_c_arm_leg3 = t99 * (t100 * t105 + t20 * t108);
-        let t123 = t95 - 0.24 * minus_c_arm_leg3;
-        let c_cross_leg3 = (t103 - (0.0576 + t90) - 0.3136 * t92)
-            / (0.2688 * c_rod_leg3);
-        let s_cross_leg3 = 2.0833333333333335 * t108 / (0.56 * c_rod_leg3);
+        let t50 = 1.0 / s_cross_leg2;
+        let t51 = 4.166666666666667 * t50;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t51;
+        let t54 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t56 = t5 + 0.8660254037844387 * t54;
+        let t59 = 0.2304 * (t56 * t56 + t8);
+        let t62 = t13 + t54 * t54 + t8;
+        let t64 = t62 - 0.3136 + 0.0576;
+        let t66 = t59 - t64 * t64;
+        ::overact::guard::reach(t66, "leg3")?;
+        let t67 = ::overact::math::sqrt(t66);
+        let t70 = t28 - 0.5 * t54;
+        let t71 = t70 * t70;
+        let t73 = 1.0 - 3.188775510204082 * t71;
+        ::overact::guard::reach(t73, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t73);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let t75 = 0.56 * c_rod_leg3;
+        let s_cross_leg3 = 2.0833333333333335 * t67 / t75;
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
+        let t77 = 1.0 / s_cross_leg3;
+        let t78 = 4.166666666666667 * t77;
+        let t79 = 1.0 / t59;
+        let t80 = 0.48 * t56;
+        let minus_c_arm_leg3 = t79 * (t80 * t64 + t20 * t67);
+        let c_cross_leg3 = (t62 - (0.0576 + t71) - 0.3136 * t73) / (0.2688 * c_rod_leg3);
+        let s_arm_leg3 = t79 * (t80 * t67 - t20 * t64);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t137 = t89 * minus_c_armcross_leg3;
-        let t139 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t137;
-        let s_rod_leg3 = 1.7857142857142858 * t89;
+        let t98 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let t99 = 1.0 / c_rod_leg3;
+        let t100 = 1.7857142857142858 * t99;
+        let t101 = t70 * t100;
+        let garm_vy_leg3 = t78 * (t98 - 0.5 * t101);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t109 = 0.8660254037844387 * c_armcross_leg2;
+        let t110 = 1.0 / c_rod_leg2;
+        let t111 = 1.7857142857142858 * t110;
+        let t112 = t30 * t111;
+        let garm_vy_leg2 = t51 * (t109 + 0.5 * t112);
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t146 = s_rod_leg3 * s_armcross_leg3;
-        let t147 = t114 * t146;
-        let t149 = t123 * (0.56 * t139) + 0.28 * t147;
-        let t154 = s_arm_leg3 * t146;
-        let t156 = 0.1344 * (minus_c_arm_leg3 * t139) - 0.0672 * t154;
-        let t161 = 1.5464739353293548 * t137 + 0.5 * c_rod_leg3;
-        let t164 = t117 * t149 + 0.8660254037844387 * t114 * t156 + 0.14 * (t108 * t161);
-        ::overact::guard::leg(t164, 0.06758306237512474, "leg3")?;
-        let t165 = 1.0 / t164;
-        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t114) * t165;
-        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t59) * t84;
-        let garm_vy_leg3 = t149 * t165;
-        let garm_vx_leg2 = (t28 * (0.56 * t80) - 0.4849742261192857 * t65) * t84;
-        let t179 = pose[0] + 0.05;
-        let t180 = t179 - 0.2;
-        let t181 = t180 * t180;
-        let t183 = 0.2304 * (t181 + t8);
-        let t184 = 1.0 / t183;
-        let t185 = pose[1] * pose[1];
-        let t187 = t181 + t185 + t8;
-        let t189 = t187 - 0.3136 + 0.0576;
-        let t191 = 0.48 * t180;
-        let t193 = t183 - t189 * t189;
-        ::overact::guard::reach(t193, "leg1")?;
-        let t194 = ::overact::math::sqrt(t193);
-        ::overact::guard::leg(t194, 0.24136807991115974, "leg1")?;
-        let minus_s_arm_leg1 = t184 * (t20 * t189 + t191 * t194);
-        let t198 = 0.24 * minus_s_arm_leg1;
-        let t199 = pose[2] - t198;
-        let t200 = 1.0 / t194;
-        let t201 = 2.0 * t200;
-        let garm_vz_leg1 = t199 * t201;
-        let garm_vy_leg1 = pose[1] * t201;
-        let t206 = garm_vz_leg1 * garm_vy_leg3 - garm_vy_leg1 * garm_vz_leg3;
-        let garm_vx_leg3 = (t123 * (0.56 * t161) - 0.4849742261192857 * t147) * t165;
-        let c_arm_leg1 = t184 * (t191 * t189 - t20 * t194);
-        let t218 = 0.24 * c_arm_leg1;
-        let t220 = t179 - (0.2 + t218);
-        let garm_vx_leg1 = t220 * t201;
-        let t223 = garm_vz_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vz_leg3;
-        let t228 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
-        let t230 = garm_vx_leg2 * t206 - garm_vy_leg2 * t223 + garm_vz_leg2 * t228;
-        ::overact::guard::platform(t230, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t230, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t230, 87.78853732233405, "kept actuators")?;
-        let t231 = 1.0 / t230;
-        let t232 = (garm_vy_leg2 * garm_vz_leg3 - garm_vz_leg2 * garm_vy_leg3) * t231;
-        let t237 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t237, 14.869730172882845, "actuators")?;
-        ::overact::guard::platform(t237, 14.869730172882845, "actuators")?;
-        let t238 = 1.0 / t237;
-        let t239 = 0.48 * t200;
-        let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t243 = 1.0 - 3.188775510204082 * t185;
-        ::overact::guard::reach(t243, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t243);
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t78;
+        let t123 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t51 * (0.8660254037844387 * t112 - t123);
+        let t127 = pose[0] + 0.05 - 0.2;
+        let t128 = t127 * t127;
+        let t130 = 0.2304 * (t128 + t8);
+        let t131 = pose[1] * pose[1];
+        let t133 = t128 + t131 + t8;
+        let t135 = t133 - 0.3136 + 0.0576;
+        let t137 = t130 - t135 * t135;
+        ::overact::guard::reach(t137, "leg1")?;
+        let t138 = ::overact::math::sqrt(t137);
+        let t141 = 1.0 - 3.188775510204082 * t131;
+        ::overact::guard::reach(t141, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t141);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let s_cross_leg1 = 2.0833333333333335 * t194 / (0.56 * c_rod_leg1);
-        let c_cross_leg1 = (t187 - (0.0576 + t185) - 0.3136 * t243)
+        let t143 = 0.56 * c_rod_leg1;
+        let s_cross_leg1 = 2.0833333333333335 * t138 / t143;
+        ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
+        let t145 = 1.0 / s_cross_leg1;
+        let t146 = 4.166666666666667 * t145;
+        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
+        let t148 = pose[1] * grod_vy_leg1;
+        let garm_vy_leg1 = t146 * t148;
+        let t151 = 1.0 / t130;
+        let t152 = 0.48 * t127;
+        let c_arm_leg1 = t151 * (t152 * t135 - t20 * t138);
+        let minus_s_arm_leg1 = t151 * (t20 * t135 + t152 * t138);
+        let c_cross_leg1 = (t133 - (0.0576 + t131) - 0.3136 * t141)
             / (0.2688 * c_rod_leg1);
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t257 = 1.0 / c_rod_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t146;
+        let t172 = garm_vy_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vy_leg3;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let gcross_vy_leg1 = t239
-            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t257)
-                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t257));
-        let t277 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
-            + garm_vx_leg3 * garm_vy_leg3;
-        let t278 = t277 * t238;
-        let t280 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t277 * t278;
-        ::overact::guard::platform(t280, 14.869730172882843, "actuators")?;
-        ::overact::guard::platform(t280, 14.869730172882843, "actuators")?;
-        let t281 = 1.0 / t280;
-        let t291 = garm_vx_leg1 * actuator_velocities[0]
+        let garm_vx_leg1 = c_armcross_leg1 * t146;
+        let t179 = 0.5 * minus_c_armcross_leg3;
+        let garm_vx_leg3 = t78 * (t179 + 0.8660254037844387 * t101);
+        let t184 = garm_vx_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vx_leg3;
+        let t189 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
+        let t191 = garm_vx_leg2 * t172 - garm_vy_leg2 * t184 - minus_garm_vz_leg2 * t189;
+        ::overact::guard::platform(t191, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t191, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t191, 87.78853732233405, "kept actuators")?;
+        let t192 = 1.0 / t191;
+        let t193 = (minus_garm_vz_leg2 * garm_vy_leg3
+            - garm_vy_leg2 * minus_garm_vz_leg3) * t192;
+        let t198 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3;
+        ::overact::guard::platform(t198, 14.869730172882841, "actuators")?;
+        ::overact::guard::platform(t198, 14.869730172882841, "actuators")?;
+        let t199 = 1.0 / t198;
+        let t200 = 0.24 * c_cross_leg1;
+        let t201 = actuator_velocities[0] * actuator_velocities[0];
+        let t203 = c_cross_leg1 * t145;
+        let t208 = garm_vx_leg1 * actuator_velocities[0]
             + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2];
-        let t293 = garm_vy_leg1 * actuator_velocities[0]
+        let t214 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3;
+        let t215 = t214 * t199;
+        let t222 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t214 * t215;
+        ::overact::guard::platform(t222, 14.869730172882846, "actuators")?;
+        ::overact::guard::platform(t222, 14.869730172882846, "actuators")?;
+        let t223 = 1.0 / t222;
+        let t230 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
-            + garm_vy_leg3 * actuator_velocities[2] - t291 * t278;
-        let t304 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
-            + garm_vx_leg3 * garm_vz_leg3;
-        let t305 = t304 * t238;
-        let t307 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
-            + garm_vy_leg3 * garm_vz_leg3 - t277 * t305;
-        let t308 = t307 * t281;
-        let t317 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + garm_vz_leg3 * garm_vz_leg3 - t304 * t305 - t307 * t308;
-        ::overact::guard::platform(t317, 34.855350201355726, "actuators")?;
-        ::overact::guard::platform(t317, 34.855350201355726, "actuators")?;
-        let t318 = 1.0 / t317;
-        let t328 = t318
-            * (garm_vz_leg1 * actuator_velocities[0]
-                + garm_vz_leg2 * actuator_velocities[1]
-                + garm_vz_leg3 * actuator_velocities[2] - t291 * t305 - t308 * t293);
-        let t330 = t281 * t293 - t308 * t328;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t239;
-        let t337 = t291 * t238 - t278 * t330 - t305 * t328;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t239;
-        let rate_cross_leg1 = gcross_vy_leg1 * t330 - minus_gcross_vx_leg1 * t337
-            - minus_gcross_vz_leg1 * t328;
-        let grod_vy_leg1 = 1.7857142857142858 * t257;
-        let rate_rod_leg1 = grod_vy_leg1 * t330;
-        let t345 = s_armcross_leg1 * rate_rod_leg1;
-        let t347 = pose[1] * (rate_cross_leg1 * t345);
-        let t348 = actuator_velocities[0] * actuator_velocities[0];
-        let t351 = rate_cross_leg1 * rate_cross_leg1;
-        let t353 = c_armcross_leg1 * rate_rod_leg1;
-        let t355 = t345 * t345 + t351 + t353 * t353;
-        let t359 = t347 - (t218 * t348 + t220 * t355) + t347;
-        let t361 = pose[1] * rate_cross_leg1;
-        let t364 = rate_cross_leg1 * t361 - pose[1] * t355;
-        let t368 = pose[1] * (rate_cross_leg1 * t353);
-        let t373 = t368 - (t198 * t348 + t199 * t355) + t368;
-        let minus_rate_dot_arm_leg1 = garm_vx_leg1 * t359 + garm_vy_leg1 * t364
-            + garm_vz_leg1 * t373;
-        let t376 = actuator_accelerations[0] + minus_rate_dot_arm_leg1;
-        let t378 = actuator_velocities[1] * actuator_velocities[1];
-        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t80)
-            - 0.11639381426862856 * (minus_s_arm_leg2 * t55)) * t84;
-        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t80)
-            - 0.11639381426862856 * t73) * t84;
-        let minus_gcross_vy_leg2 = t75 * t84;
-        let rate_cross_leg2 = gcross_vz_leg2 * t328
-            - (minus_gcross_vx_leg2 * t337 + minus_gcross_vy_leg2 * t330);
-        let t397 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t59) - t28 * t68) * t84;
-        let minus_grod_vy_leg2 = 0.25 * t23 * t84;
-        let rate_rod_leg2 = grod_vx_leg2 * t337 - minus_grod_vy_leg2 * t330;
-        let t410 = t397 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t413 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t414 = 0.5 * rate_cross_leg2;
-        let t415 = t413 - t414;
-        let t418 = c_armcross_leg2 * rate_rod_leg2;
-        let t420 = t410 * t410 + t415 * t415 + t418 * t418;
-        let t423 = 0.20784609690826528 * c_arm_leg2;
-        let t425 = t0 - (0.17320508075688776 + t423);
-        let t426 = t414 * t418;
-        let t428 = 0.12 * c_arm_leg2;
-        let t430 = t3 + 0.1 + t428;
-        let t431 = t397 * t418;
-        let t433 = t425 * t426 + t430 * t431;
-        let t435 = t58 * t378 + t59 * t420 + t433 + t433;
-        let t444 = t425 * t415 - t430 * t410 + t59 * t418;
-        let t449 = 1.3333333333333333 * (t397 * t413);
-        let t452 = t428 * t378 - t430 * t420 - t410 * t444 + t59 * t431 + t425 * t449;
-        let t462 = t415 * t444 - (t423 * t378 + t425 * t420) + t59 * t426 - t430 * t449;
-        let rate_dot_arm_leg2 = garm_vz_leg2 * t435
-            - (garm_vx_leg2 * t452 + garm_vy_leg2 * t462);
-        let t466 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t469 = 0.20784609690826528 * minus_c_arm_leg3;
-        let t470 = actuator_velocities[2] * actuator_velocities[2];
-        let t473 = t86 - (t469 - 0.17320508075688776);
-        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t139)
-            + 0.0672 * (s_arm_leg3 * t161)) * t165;
-        let minus_gcross_vx_leg3 = (0.11639381426862856 * t154
-            + 0.1344 * (minus_c_arm_leg3 * t161)) * t165;
-        let minus_gcross_vy_leg3 = t156 * t165;
-        let rate_cross_leg3 = gcross_vz_leg3 * t328
-            - (minus_gcross_vx_leg3 * t337 + minus_gcross_vy_leg3 * t330);
-        let t491 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (t123 * t117
-            + 0.20784609690826528 * (minus_c_arm_leg3 * t114)) * t165;
-        let minus_grod_vy_leg3 = 0.25 * t108 * t165;
-        let rate_rod_leg3 = grod_vx_leg3 * t337 - minus_grod_vy_leg3 * t330;
-        let t504 = t491 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t506 = 0.5 * rate_cross_leg3;
-        let t508 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t509 = t506 + t508;
-        let t512 = minus_c_armcross_leg3 * rate_rod_leg3;
-        let t514 = t504 * t504 + t509 * t509 + t512 * t512;
-        let t517 = 0.12 * minus_c_arm_leg3;
-        let t519 = t3 - (t517 - 0.1);
-        let t524 = t519 * t504 - t473 * t509 - t114 * t512;
-        let t528 = 1.3333333333333333 * (t491 * t508);
-        let t530 = t506 * t512;
-        let t533 = t469 * t470 + t473 * t514 + t509 * t524 + t519 * t528 + t114 * t530;
-        let t540 = t491 * t512;
-        let t544 = t504 * t524 - (t517 * t470 + t519 * t514) + t114 * t540 + t473 * t528;
-        let t552 = t473 * t530 - t519 * t540;
-        let t554 = t113 * t470 - t114 * t514 + t552 + t552;
-        let rate_dot_arm_leg3 = garm_vy_leg3 * t533 - garm_vx_leg3 * t544
-            - garm_vz_leg3 * t554;
-        let t557 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t559 = garm_vx_leg1 * t376 + garm_vx_leg2 * t466 + garm_vx_leg3 * t557;
-        let t567 = garm_vy_leg1 * t376 + garm_vy_leg2 * t466 + garm_vy_leg3 * t557
-            - t278 * t559;
-        let t578 = t318
-            * (garm_vz_leg1 * t376 + garm_vz_leg2 * t466 + garm_vz_leg3 * t557
-                - t305 * t559 - t308 * t567);
-        let t580 = t281 * t567 - t308 * t578;
-        let t584 = t238 * t559 - t278 * t580 - t305 * t578;
-        let t589 = (garm_vx_leg2 * garm_vz_leg3 - garm_vz_leg2 * garm_vx_leg3) * t231;
-        let t595 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t231;
-        let t596 = t578 + 9.81;
-        let t599 = t206 * t231;
-        let t601 = t223 * t231;
-        let t604 = t228 * t231;
-        let t610 = (garm_vz_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vz_leg2) * t231;
-        let t615 = (garm_vz_leg1 * garm_vy_leg2 - garm_vy_leg1 * garm_vz_leg2) * t231;
-        let t621 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t231;
-        let t624 = 9.81 * c_arm_leg1;
-        let t625 = 9.81 * c_arm_leg2;
-        let t626 = 9.81 * minus_c_arm_leg3;
-        let t627 = 9.81 * minus_s_arm_leg1;
-        let t628 = 9.81 * minus_s_arm_leg2;
-        let t629 = 9.81 * s_arm_leg3;
-        let t633 = grod_vy_leg1 * t589;
-        let t634 = 1.7857142857142858 * t361;
-        let t635 = c_rod_leg1 * rate_cross_leg1;
-        let t636 = t634 * t635;
-        let t637 = t633 * t636;
-        let t642 = minus_gcross_vx_leg1 * t232 + gcross_vy_leg1 * t589
-            + minus_gcross_vz_leg1 * t595;
-        let t643 = t580 - t364;
-        let rate_dot_cross_leg1 = gcross_vy_leg1 * t643
-            - minus_gcross_vx_leg1 * (t584 - t359)
-            - minus_gcross_vz_leg1 * (t578 - t373);
-        let t651 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t652 = rate_rod_leg1 * t635;
-        let t653 = t651 + t652;
-        let t655 = rate_rod_leg1 * t634;
-        let t656 = c_rod_leg1 * t655;
-        let t657 = s_rod_leg1 * t653 + t656;
-        let t660 = grod_vy_leg1 * t601;
-        let t661 = t660 * t636;
-        let t666 = minus_gcross_vx_leg1 * t599 + gcross_vy_leg1 * t601
-            + minus_gcross_vz_leg1 * t604;
-        let t673 = minus_gcross_vx_leg1 * t615 + gcross_vy_leg1 * t610
-            + minus_gcross_vz_leg1 * t621;
-        let t675 = grod_vy_leg1 * t610;
-        let t676 = t675 * t636;
-        let t682 = minus_gcross_vy_leg2 * t589 - minus_gcross_vx_leg2 * t232
-            + gcross_vz_leg2 * t595;
-        let t683 = 1.7857142857142858 * t444;
-        let t684 = rate_rod_leg2 * t683;
-        let t685 = c_rod_leg2 * t684;
-        let t686 = c_rod_leg2 * rate_cross_leg2;
-        let t687 = rate_rod_leg2 * t686;
-        let t690 = t584 - t452;
-        let t692 = t580 - t462;
-        let rate_dot_cross_leg2 = gcross_vz_leg2 * (t578 + t435)
-            - (minus_gcross_vx_leg2 * t690 + minus_gcross_vy_leg2 * t692);
-        let t696 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t697 = t687 - t696;
-        let t699 = t685 - minus_s_rod_leg2 * t697;
-        let t703 = grod_vx_leg2 * t232 + minus_grod_vy_leg2 * t589;
-        let t704 = t683 * t686;
-        let t705 = t703 * t704;
-        let t711 = minus_gcross_vy_leg2 * t601 - minus_gcross_vx_leg2 * t599
-            + gcross_vz_leg2 * t604;
-        let t715 = grod_vx_leg2 * t599 + minus_grod_vy_leg2 * t601;
-        let t716 = t715 * t704;
-        let t722 = minus_gcross_vx_leg2 * t615 - minus_gcross_vy_leg2 * t610
-            - gcross_vz_leg2 * t621;
-        let t726 = grod_vx_leg2 * t615 + minus_grod_vy_leg2 * t610;
-        let t727 = t726 * t704;
-        let t733 = minus_gcross_vy_leg3 * t589 - minus_gcross_vx_leg3 * t232
-            + gcross_vz_leg3 * t595;
-        let t736 = t584 - t544;
-        let t738 = t580 + t533;
-        let rate_dot_cross_leg3 = gcross_vz_leg3 * (t578 - t554)
-            - (minus_gcross_vx_leg3 * t736 + minus_gcross_vy_leg3 * t738);
-        let t742 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t743 = c_rod_leg3 * rate_cross_leg3;
-        let t744 = rate_rod_leg3 * t743;
-        let t745 = t742 + t744;
-        let t747 = 1.7857142857142858 * t524;
-        let t748 = rate_rod_leg3 * t747;
-        let t749 = c_rod_leg3 * t748;
-        let t750 = s_rod_leg3 * t745 + t749;
-        let t754 = grod_vx_leg3 * t232 + minus_grod_vy_leg3 * t589;
-        let t755 = t747 * t743;
-        let t756 = t754 * t755;
-        let t762 = minus_gcross_vy_leg3 * t601 - minus_gcross_vx_leg3 * t599
-            + gcross_vz_leg3 * t604;
-        let t766 = grod_vx_leg3 * t599 + minus_grod_vy_leg3 * t601;
-        let t767 = t766 * t755;
-        let t773 = minus_gcross_vx_leg3 * t615 - minus_gcross_vy_leg3 * t610
-            - gcross_vz_leg3 * t621;
-        let t777 = grod_vx_leg3 * t615 + minus_grod_vy_leg3 * t610;
-        let t778 = t777 * t755;
-        let t780 = t652 + t653;
-        let t782 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t783 = t782 - t655;
-        let t786 = c_rod_leg1 * t780 - s_rod_leg1 * (t655 - t783);
-        let t789 = 3.188775510204082 * (t361 * t361);
-        let t791 = t789 - t635 * t635;
-        let t800 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t801 = t800 - t684;
-        let t804 = t687 + t697;
-        let t806 = minus_s_rod_leg2 * (t684 - t801) + c_rod_leg2 * t804;
-        let t809 = 3.188775510204082 * (t444 * t444);
-        let t810 = t686 * t686;
-        let t811 = t809 - t810;
-        let t820 = t744 + t745;
-        let t822 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t823 = t822 - t748;
-        let t826 = c_rod_leg3 * t820 - s_rod_leg3 * (t748 - t823);
-        let t829 = 3.188775510204082 * (t524 * t524);
-        let t830 = t743 * t743;
-        let t831 = t829 - t830;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t643;
-        let t843 = rate_rod_leg1 * rate_rod_leg1;
-        let t846 = s_rod_leg1 * (t636 + rate_dot_rod_leg1) + c_rod_leg1 * (t843 - t789);
-        let t856 = rate_rod_leg2 * rate_rod_leg2;
-        let rate_dot_rod_leg2 = grod_vx_leg2 * t690 - minus_grod_vy_leg2 * t692;
-        let t864 = c_rod_leg2 * (t856 - t809)
-            - minus_s_rod_leg2 * (t704 + rate_dot_rod_leg2);
-        let rate_dot_rod_leg3 = grod_vx_leg3 * t736 - minus_grod_vy_leg3 * t738;
-        let t879 = rate_rod_leg3 * rate_rod_leg3;
-        let t882 = s_rod_leg3 * (t755 + rate_dot_rod_leg3) + c_rod_leg3 * (t879 - t829);
-        let t893 = c_rod_leg1 * t783 - t656;
-        let t901 = c_rod_leg2 * t801 - t685;
-        let t909 = c_rod_leg3 * t823 - t749;
-        let t916 = 1.7857142857142858 * t580;
-        let t929 = t704 - rate_dot_rod_leg2;
-        let t931 = minus_s_rod_leg2 * (t810 - t856) + c_rod_leg2 * t929;
-        let t942 = t755 - rate_dot_rod_leg3;
-        let t944 = s_rod_leg3 * (t830 - t879) - c_rod_leg3 * t942;
-        let t963 = 0.8928571428571429 * t194;
-        let t967 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
-        let t971 = 0.24 * c_cross_leg1;
-        let t975 = 0.24 * actuator_accelerations[0] - t624;
-        let t978 = t627 - 0.24 * t348;
-        let t981 = s_rod_leg1 * (c_cross_leg1 * t975 - s_cross_leg1 * t978);
-        let t986 = c_cross_leg1 * t978 + s_cross_leg1 * t975;
-        let t987 = c_rod_leg1 * t986;
-        let t989 = t963 * (t636 - rate_dot_rod_leg1) + t967 * (t789 + t843) - t971 * t780
-            + t642 * t981 + t633 * t987;
-        let t997 = 0.24 * actuator_accelerations[1] - t625;
-        let t1000 = t628 - 0.24 * t378;
-        let t1003 = minus_s_rod_leg2 * (c_cross_leg2 * t997 - s_cross_leg2 * t1000);
-        let t1007 = c_cross_leg2 * t1000 + s_cross_leg2 * t997;
-        let t1008 = c_rod_leg2 * t1007;
-        let t1011 = 0.8928571428571429 * t23;
-        let t1014 = 0.42857142857142855 * (t31 * s_cross_leg2);
-        let t1018 = 0.24 * c_cross_leg2;
-        let t1024 = t1011 * t929 - t1014 * (t809 + t856) - t1018 * t804 + t711 * t1003
-            - t715 * t1008;
-        let t1029 = t629 + 0.24 * t470;
-        let t1032 = t626 + 0.24 * actuator_accelerations[2];
-        let t1035 = s_rod_leg3 * (s_cross_leg3 * t1029 + c_cross_leg3 * t1032);
-        let t1039 = s_cross_leg3 * t1032 - c_cross_leg3 * t1029;
-        let t1040 = c_rod_leg3 * t1039;
-        let t1046 = 0.8928571428571429 * t108;
-        let t1049 = 0.42857142857142855 * (t89 * s_cross_leg3);
-        let t1053 = 0.24 * c_cross_leg3;
-        let t1059 = t1046 * t942 + t1049 * (t829 + t879) - t1053 * t820 - t773 * t1035
-            + t777 * t1040;
+            + garm_vy_leg3 * actuator_velocities[2] - t208 * t215;
+        let t236 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+            + garm_vx_leg3 * minus_garm_vz_leg3;
+        let t237 = t236 * t199;
+        let t244 = t214 * t237
+            - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
+                + garm_vy_leg3 * minus_garm_vz_leg3);
+        let t245 = t244 * t223;
+        let t254 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+            + minus_garm_vz_leg2 * minus_garm_vz_leg2
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t236 * t237 - t244 * t245;
+        ::overact::guard::platform(t254, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t254, 34.855350201355726, "actuators")?;
+        let t255 = 1.0 / t254;
+        let t265 = t255
+            * (t208 * t237
+                - (minus_garm_vz_leg1 * actuator_velocities[0]
+                    + minus_garm_vz_leg2 * actuator_velocities[1]
+                    + minus_garm_vz_leg3 * actuator_velocities[2]) - t245 * t230);
+        let t267 = t223 * t230 - t245 * t265;
+        let t271 = t208 * t199 - t215 * t267 + t237 * t265;
+        let t276 = t200 * garm_vy_leg1;
+        let t282 = t203 * (c_armcross_leg1 * t271 - s_armcross_leg1 * t265) + t276 * t267
+            + s_armcross_leg1 * t271 + c_armcross_leg1 * t265;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t282;
+        let t284 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t267;
+        let t286 = rate_rod_leg1 * rate_rod_leg1;
+        let t287 = t284 + t286;
+        let t289 = t200 * t201 + t143 * t287;
+        let t290 = pose[1] * minus_rate_cross_leg1;
+        let t293 = minus_rate_cross_leg1 * t290 - pose[1] * t287;
+        let rate_dot_arm_leg1 = t146 * (t289 - t148 * t293);
+        let t297 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t299 = 0.24 * c_cross_leg2;
+        let t300 = actuator_velocities[1] * actuator_velocities[1];
+        let t302 = 0.8660254037844387 * t271;
+        let t303 = 0.5 * t267;
+        let t304 = t302 + t303;
+        let minus_rate_rod_leg2 = t111 * t304;
+        let t306 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t307 = 0.5 * s_armcross_leg2;
+        let t309 = 0.8660254037844387 * s_armcross_leg2;
+        let t314 = c_cross_leg2 * t50;
+        let t321 = t307 * t271 - t309 * t267 - c_armcross_leg2 * t265
+            - t314 * (t109 * t267 - t123 * t271 - s_armcross_leg2 * t265);
+        let t323 = t299 * (t51 * t112);
+        let t325 = t321 - t323 * t304;
+        let rate_cross_leg2 = t111 * t325;
+        let t327 = rate_cross_leg2 * rate_cross_leg2;
+        let t328 = t306 + t327;
+        let t330 = t299 * t300 + t35 * t328;
+        let t332 = t30 * rate_cross_leg2;
+        let t334 = t30 * t328 - rate_cross_leg2 * t332;
+        let rate_dot_arm_leg2 = t51 * (t330 + t112 * t334);
+        let t338 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t341 = 0.24 * c_cross_leg3;
+        let t342 = actuator_velocities[2] * actuator_velocities[2];
+        let t344 = t302 - t303;
+        let rate_rod_leg3 = t100 * t344;
+        let t346 = rate_rod_leg3 * rate_rod_leg3;
+        let t347 = 0.5 * s_armcross_leg3;
+        let t349 = 0.8660254037844387 * s_armcross_leg3;
+        let t354 = c_cross_leg3 * t77;
+        let t361 = t347 * t271 + t349 * t267 + minus_c_armcross_leg3 * t265
+            - t354 * (t179 * t271 + t98 * t267 - s_armcross_leg3 * t265);
+        let t363 = t341 * (t78 * t101);
+        let t365 = t361 - t363 * t344;
+        let rate_cross_leg3 = t100 * t365;
+        let t367 = rate_cross_leg3 * rate_cross_leg3;
+        let t368 = t346 + t367;
+        let t370 = t341 * t342 + t75 * t368;
+        let t371 = t70 * rate_cross_leg3;
+        let t374 = rate_cross_leg3 * t371 - t70 * t368;
+        let rate_dot_arm_leg3 = t78 * (t370 - t101 * t374);
+        let t378 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t380 = garm_vx_leg1 * t297 + garm_vx_leg2 * t338 + garm_vx_leg3 * t378;
+        let t388 = garm_vy_leg1 * t297 + garm_vy_leg2 * t338 + garm_vy_leg3 * t378
+            - t215 * t380;
+        let t399 = t255
+            * (t237 * t380
+                - (minus_garm_vz_leg1 * t297 + minus_garm_vz_leg2 * t338
+                    + minus_garm_vz_leg3 * t378) - t245 * t388);
+        let t401 = t223 * t388 - t245 * t399;
+        let t405 = t199 * t380 - t215 * t401 + t237 * t399;
+        let t410 = (minus_garm_vz_leg2 * garm_vx_leg3
+            - garm_vx_leg2 * minus_garm_vz_leg3) * t192;
+        let t416 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t192;
+        let t417 = t399 + 9.81;
+        let t420 = t172 * t192;
+        let t422 = t184 * t192;
+        let t425 = t189 * t192;
+        let t431 = (garm_vx_leg1 * minus_garm_vz_leg2
+            - minus_garm_vz_leg1 * garm_vx_leg2) * t192;
+        let t436 = (garm_vy_leg1 * minus_garm_vz_leg2
+            - minus_garm_vz_leg1 * garm_vy_leg2) * t192;
+        let t442 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t192;
+        let t445 = 9.81 * c_arm_leg1;
+        let t446 = 9.81 * c_arm_leg2;
+        let t447 = 9.81 * minus_c_arm_leg3;
+        let t448 = 9.81 * minus_s_arm_leg1;
+        let t449 = 9.81 * minus_s_arm_leg2;
+        let t450 = 9.81 * s_arm_leg3;
+        let t454 = grod_vy_leg1 * t410;
+        let t456 = 3.188775510204082 * (t282 * t290);
+        let t457 = t454 * t456;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * t276;
+        let minus_gcross_vx_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 * t203 + s_armcross_leg1);
+        let minus_gcross_vz_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 - s_armcross_leg1 * t203);
+        let t469 = minus_gcross_vy_leg1 * t410 - minus_gcross_vx_leg1 * t193
+            - minus_gcross_vz_leg1 * t416;
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t476 = t401 - t293;
+        let t485 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
+        let t489 = t203 * (c_armcross_leg1 * t405 - s_armcross_leg1 * t399 + t289)
+            + t276 * t476 + s_armcross_leg1 * t405 + c_armcross_leg1 * t399
+            + 0.24 * s_cross_leg1 * t201 + t485 + t485;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t489;
+        let t491 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t493 = rate_rod_leg1 * (1.7857142857142858 * t282);
+        let t494 = t491 + t493;
+        let t497 = c_rod_leg1 * (1.7857142857142858 * t485);
+        let t498 = s_rod_leg1 * t494 + t497;
+        let t501 = grod_vy_leg1 * t422;
+        let t502 = t501 * t456;
+        let t507 = minus_gcross_vy_leg1 * t422 - minus_gcross_vx_leg1 * t420
+            - minus_gcross_vz_leg1 * t425;
+        let t514 = minus_gcross_vx_leg1 * t436 - minus_gcross_vy_leg1 * t431
+            + minus_gcross_vz_leg1 * t442;
+        let t516 = grod_vy_leg1 * t431;
+        let t517 = t516 * t456;
+        let gcross_vx_leg2 = t111 * (t123 * t314 + t307 - 0.8660254037844387 * t323);
+        let minus_gcross_vy_leg2 = t111 * (t109 * t314 + t309 + 0.5 * t323);
+        let gcross_vz_leg2 = t111 * (s_armcross_leg2 * t314 - c_armcross_leg2);
+        let t536 = gcross_vx_leg2 * t193 + minus_gcross_vy_leg2 * t410
+            + gcross_vz_leg2 * t416;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t30;
+        let t546 = t30 * (rate_cross_leg2 * minus_rate_rod_leg2);
+        let t549 = t307 * t405 - t309 * t401 - c_armcross_leg2 * t399
+            - (0.24 * s_cross_leg2 * t300 - t546 - t546);
+        let t558 = 0.8660254037844387 * t405;
+        let t559 = 0.5 * t401;
+        let t560 = t558 + t559;
+        let t561 = t560 + t334;
+        let t563 = t549
+            - t314 * (t109 * t401 - t123 * t405 - s_armcross_leg2 * t399 + t330)
+            - t323 * t561;
+        let rate_dot_cross_leg2 = t111 * t563;
+        let t565 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t567 = minus_rate_rod_leg2 * (1.7857142857142858 * t325);
+        let t568 = t565 + t567;
+        let t571 = c_rod_leg2 * (1.7857142857142858 * t546);
+        let t572 = minus_s_rod_leg2 * t568 + t571;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t110;
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t110;
+        let t578 = minus_grod_vy_leg2 * t410 - minus_grod_vx_leg2 * t193;
+        let t580 = 3.188775510204082 * (t325 * t332);
+        let t581 = t578 * t580;
+        let t587 = gcross_vx_leg2 * t420 + minus_gcross_vy_leg2 * t422
+            + gcross_vz_leg2 * t425;
+        let t591 = minus_grod_vy_leg2 * t422 - minus_grod_vx_leg2 * t420;
+        let t592 = t591 * t580;
+        let t596 = minus_grod_vx_leg2 * t436 - minus_grod_vy_leg2 * t431;
+        let t597 = t596 * t580;
+        let t602 = gcross_vx_leg2 * t436 + minus_gcross_vy_leg2 * t431
+            + gcross_vz_leg2 * t442;
+        let gcross_vx_leg3 = t100 * (t347 - t179 * t354 - 0.8660254037844387 * t363);
+        let gcross_vy_leg3 = t100 * (t349 - t98 * t354 + 0.5 * t363);
+        let gcross_vz_leg3 = t100 * (s_armcross_leg3 * t354 + minus_c_armcross_leg3);
+        let t622 = gcross_vx_leg3 * t193 - gcross_vy_leg3 * t410 + gcross_vz_leg3 * t416;
+        let s_rod_leg3 = 1.7857142857142858 * t70;
+        let t632 = t70 * (rate_cross_leg3 * rate_rod_leg3);
+        let t635 = t347 * t405 + t349 * t401 + minus_c_armcross_leg3 * t399
+            - (0.24 * s_cross_leg3 * t342 - t632 - t632);
+        let t644 = t558 - t559;
+        let t645 = t644 - t374;
+        let t647 = t635
+            - t354 * (t179 * t405 + t98 * t401 - s_armcross_leg3 * t399 + t370)
+            - t363 * t645;
+        let rate_dot_cross_leg3 = t100 * t647;
+        let t649 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t651 = rate_rod_leg3 * (1.7857142857142858 * t365);
+        let t652 = t649 + t651;
+        let t655 = c_rod_leg3 * (1.7857142857142858 * t632);
+        let t656 = s_rod_leg3 * t652 + t655;
+        let grod_vx_leg3 = 1.5464739353293548 * t99;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t99;
+        let t662 = grod_vx_leg3 * t193 + minus_grod_vy_leg3 * t410;
+        let t664 = 3.188775510204082 * (t365 * t371);
+        let t665 = t662 * t664;
+        let t671 = gcross_vx_leg3 * t420 - gcross_vy_leg3 * t422 + gcross_vz_leg3 * t425;
+        let t675 = grod_vx_leg3 * t420 + minus_grod_vy_leg3 * t422;
+        let t676 = t675 * t664;
+        let t682 = gcross_vy_leg3 * t431 - gcross_vx_leg3 * t436 - gcross_vz_leg3 * t442;
+        let t686 = grod_vx_leg3 * t436 + minus_grod_vy_leg3 * t431;
+        let t687 = t686 * t664;
+        let t689 = t485 - t489;
+        let t693 = t493 + t494;
+        let t695 = 3.188775510204082 * (pose[1] * (t485 + t689)) - c_rod_leg1 * t693;
+        let t697 = t290 * t290;
+        let t700 = 3.188775510204082 * (t697 - t282 * t282);
+        let t709 = t563 - t546;
+        let t713 = t567 + t568;
+        let t715 = 3.188775510204082 * (t30 * (t546 - t709)) - c_rod_leg2 * t713;
+        let t717 = t332 * t332;
+        let t720 = 3.188775510204082 * (t717 - t325 * t325);
+        let t729 = t651 + t652;
+        let t731 = t647 - t632;
+        let t735 = c_rod_leg3 * t729 - 3.188775510204082 * (t70 * (t632 - t731));
+        let t737 = t371 * t371;
+        let t740 = 3.188775510204082 * (t737 - t365 * t365);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t476;
+        let t752 = 3.188775510204082 * t697;
+        let t755 = s_rod_leg1 * (t456 + rate_dot_rod_leg1) + c_rod_leg1 * (t286 - t752);
+        let minus_rate_dot_rod_leg2 = t111 * t561;
+        let t768 = 3.188775510204082 * t717;
+        let t771 = minus_s_rod_leg2 * (t580 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t306 - t768);
+        let rate_dot_rod_leg3 = t100 * t645;
+        let t784 = 3.188775510204082 * t737;
+        let t787 = s_rod_leg3 * (t664 + rate_dot_rod_leg3) + c_rod_leg3 * (t346 - t784);
+        let t799 = t497 + c_rod_leg1 * (1.7857142857142858 * t689);
+        let t808 = c_rod_leg2 * (1.7857142857142858 * t709) - t571;
+        let t817 = c_rod_leg3 * (1.7857142857142858 * t731) - t655;
+        let t824 = 1.7857142857142858 * t401;
+        let t826 = 1.7857142857142858 * t489;
+        let t835 = 1.7857142857142858 * t563;
+        let t837 = 1.7857142857142858 * t560;
+        let t846 = 1.7857142857142858 * t644;
+        let t848 = 1.7857142857142858 * t647;
+        let t870 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
+        let t877 = 0.24 * actuator_accelerations[0] - t445;
+        let t880 = t448 - 0.24 * t201;
+        let t883 = s_rod_leg1 * (c_cross_leg1 * t877 - s_cross_leg1 * t880);
+        let t885 = 0.8928571428571429 * t138 * (t456 - rate_dot_rod_leg1)
+            + t870 * (t752 + t286) + t200 * t693 - t469 * t883;
+        let t888 = c_cross_leg1 * t880 + s_cross_leg1 * t877;
+        let t889 = c_rod_leg1 * t888;
+        let t899 = 0.24 * actuator_accelerations[1] - t446;
+        let t902 = t449 - 0.24 * t300;
+        let t905 = minus_s_rod_leg2 * (c_cross_leg2 * t899 - s_cross_leg2 * t902);
+        let t909 = c_cross_leg2 * t902 + s_cross_leg2 * t899;
+        let t910 = c_rod_leg2 * t909;
+        let t917 = 0.42857142857142855 * (t30 * s_cross_leg2);
+        let t924 = 0.8928571428571429 * t23 * (minus_rate_dot_rod_leg2 - t580)
+            - t917 * (t768 + t306) + t299 * t713 + t587 * t905;
+        let t931 = t450 + 0.24 * t342;
+        let t934 = t447 + 0.24 * actuator_accelerations[2];
+        let t937 = s_rod_leg3 * (s_cross_leg3 * t931 + c_cross_leg3 * t934);
+        let t941 = s_cross_leg3 * t934 - c_cross_leg3 * t931;
+        let t942 = c_rod_leg3 * t941;
+        let t952 = 0.42857142857142855 * (t70 * s_cross_leg3);
+        let t959 = 0.8928571428571429 * t67 * (t664 - rate_dot_rod_leg3)
+            + t952 * (t784 + t346) - t341 * t729 - t682 * t937;
         Ok([
             [
-                t232 * t584 - t589 * t580 + t595 * t596, actuator_accelerations[0], 0.0, 0.0, -t624,
-                0.0, 0.0, -t627, 0.0, 0.0, actuator_velocities[0], 0.0, 0.0,
+                t193 * t405 - t410 * t401 + t416 * t417, actuator_accelerations[0], 0.0, 0.0, -t445,
+                0.0, 0.0, -t448, 0.0, 0.0, actuator_velocities[0], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[0]), 0.0, 0.0, 1.0, 0.0, 0.0,
-                t637 - t642 * t657, t682 * t699 - t705, t733 * t750 - t756,
-                -(t642 * t786 + t633 * t791), t682 * t806 + t703 * t811, t733 * t826 + t754 * t831,
-                -(t642 * t846 + t633 * t651), t682 * t864 - t703 * t696, t733 * t882 + t754 * t742,
-                -(t642 * t893 + t637), t682 * t901 + t705, t733 * t909 + t756,
-                -(t642 * t916 + t633 * t782), t703 * t800 - t682 * t931, t733 * t944 + t754 * t822,
-                -(t633 * rate_dot_rod_leg1), t703 * rate_dot_rod_leg2, t754 * rate_dot_rod_leg3,
-                t989, t682 * t1003 - t703 * t1008, -(t733 * t1035 + t754 * t1040),
-                t963 * t782 + t967 * t651 + t351 * t971 - t642 * t986, t682 * t1007, t733 * t1039,
+                t457 - t469 * t498, t536 * t572 + t581, t622 * t656 - t665,
+                t469 * t695 - t454 * t700, t536 * t715 + t578 * t720, t622 * t735 + t662 * t740,
+                t469 * t755 + t454 * t491, t536 * t771 - t578 * t565, t622 * t787 + t662 * t649,
+                t469 * t799 - t457, t536 * t808 - t581, t622 * t817 + t665,
+                t469 * t824 + t454 * t826, t578 * t835 - t536 * t837, t622 * t846 + t662 * t848,
+                -(t454 * rate_dot_rod_leg1), -(t578 * minus_rate_dot_rod_leg2),
+                t662 * rate_dot_rod_leg3, t885 + t454 * t889, t536 * t905 - t578 * t910,
+                -(t622 * t937 + t662 * t942),
+                t200 * t284 - (1.594387755102041 * (t138 * t489) + t870 * t491)
+                    + t469 * t888,
+                t536 * t909,
+                t622 * t941,
             ],
             [
-                t599 * t584 - t601 * t580 + t604 * t596, 0.0, actuator_accelerations[1], 0.0, 0.0,
-                -t625, 0.0, 0.0, -t628, 0.0, 0.0, actuator_velocities[1], 0.0, 0.0,
+                t420 * t405 - t422 * t401 + t425 * t417, 0.0, actuator_accelerations[1], 0.0, 0.0,
+                -t446, 0.0, 0.0, -t449, 0.0, 0.0, actuator_velocities[1], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[1]), 0.0, 0.0, 1.0, 0.0,
-                t661 - t666 * t657, t711 * t699 - t716, t762 * t750 - t767,
-                -(t666 * t786 + t660 * t791), t711 * t806 + t715 * t811, t762 * t826 + t766 * t831,
-                -(t666 * t846 + t660 * t651), t711 * t864 - t715 * t696, t762 * t882 + t766 * t742,
-                -(t666 * t893 + t661), t711 * t901 + t716, t762 * t909 + t767,
-                -(t666 * t916 + t660 * t782), t715 * t800 - t711 * t931, t762 * t944 + t766 * t822,
-                -(t660 * rate_dot_rod_leg1), t715 * rate_dot_rod_leg2, t766 * rate_dot_rod_leg3,
-                t666 * t981 + t660 * t987, t1024, -(t762 * t1035 + t766 * t1040), -(t666 * t986),
-                t1011 * t800 + t1014 * t696 + rate_cross_leg2 * rate_cross_leg2 * t1018
-                    + t711 * t1007,
-                t762 * t1039,
+                t502 - t507 * t498, t587 * t572 + t592, t671 * t656 - t676,
+                t507 * t695 - t501 * t700, t587 * t715 + t591 * t720, t671 * t735 + t675 * t740,
+                t507 * t755 + t501 * t491, t587 * t771 - t591 * t565, t671 * t787 + t675 * t649,
+                t507 * t799 - t502, t587 * t808 - t592, t671 * t817 + t676,
+                t507 * t824 + t501 * t826, t591 * t835 - t587 * t837, t671 * t846 + t675 * t848,
+                -(t501 * rate_dot_rod_leg1), -(t591 * minus_rate_dot_rod_leg2),
+                t675 * rate_dot_rod_leg3, t501 * t889 - t507 * t883, t924 - t591 * t910,
+                -(t671 * t937 + t675 * t942), t507 * t888,
+                1.594387755102041 * (t23 * t563) + t917 * t565 + t299 * t327
+                    + t587 * t909,
+                t671 * t941,
             ],
             [
-                t610 * t580 - t615 * t584 - t621 * t596, 0.0, 0.0, actuator_accelerations[2], 0.0,
-                0.0, t626, 0.0, 0.0, t629, 0.0, 0.0, actuator_velocities[2], 0.0, 0.0,
-                ::overact::math::sign(actuator_velocities[2]), 0.0, 0.0, 1.0, t673 * t657 - t676,
-                t722 * t699 + t727, t773 * t750 + t778, t673 * t786 + t675 * t791,
-                t722 * t806 - t726 * t811, t773 * t826 - t777 * t831, t673 * t846 + t675 * t651,
-                t722 * t864 + t726 * t696, t773 * t882 - t777 * t742, t673 * t893 + t676,
-                t722 * t901 - t727, t773 * t909 - t778, t673 * t916 + t675 * t782,
-                -(t722 * t931 + t726 * t800), t773 * t944 - t777 * t822, t675 * rate_dot_rod_leg1,
-                -(t726 * rate_dot_rod_leg2), -(t777 * rate_dot_rod_leg3),
-                -(t673 * t981 + t675 * t987), t722 * t1003 + t726 * t1008, t1059, t673 * t986,
-                t722 * t1007,
-                t1046 * t822 + t1049 * t742 + rate_cross_leg3 * rate_cross_leg3 * t1053
-                    + t773 * t1039,
+                t431 * t401 - t436 * t405 - t442 * t417, 0.0, 0.0, actuator_accelerations[2], 0.0,
+                0.0, t447, 0.0, 0.0, t450, 0.0, 0.0, actuator_velocities[2], 0.0, 0.0,
+                ::overact::math::sign(actuator_velocities[2]), 0.0, 0.0, 1.0, -(t514 * t498 + t517),
+                t597 - t602 * t572, t682 * t656 + t687, t514 * t695 + t516 * t700,
+                t596 * t720 - t602 * t715, t682 * t735 - t686 * t740, t514 * t755 - t516 * t491,
+                -(t602 * t771 + t596 * t565), t682 * t787 - t686 * t649, t514 * t799 + t517,
+                -(t602 * t808 + t597), t682 * t817 - t687, t514 * t824 - t516 * t826,
+                t602 * t837 + t596 * t835, t682 * t846 - t686 * t848, t516 * rate_dot_rod_leg1,
+                -(t596 * minus_rate_dot_rod_leg2), -(t686 * rate_dot_rod_leg3),
+                -(t514 * t883 + t516 * t889), -(t602 * t905 + t596 * t910), t959 + t686 * t942,
+                t514 * t888, -(t602 * t909),
+                1.594387755102041 * (t67 * t647) + t952 * t649 + t341 * t367
+                    + t682 * t941,
             ],
         ])
     }
@@ -7943,7 +7240,7 @@ impl Delta {
     /// Output: 3 x 1.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 561 operations (193 additions, 352 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 564 intermediates.
+    /// 380 operations (132 additions, 230 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 383 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7954,8 +7251,7 @@ impl Delta {
         start: &[f64; 3],
     ) -> Result<[[f64; 1]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = pose[0] + 0.05;
-        let t1 = t0 - 0.2;
+        let t1 = pose[0] + 0.05 - 0.2;
         let t2 = t1 * t1;
         let t3 = pose[2] * pose[2];
         let t5 = 0.2304 * (t2 + t3);
@@ -7968,257 +7264,191 @@ impl Delta {
         let t16 = t5 - t12 * t12;
         ::overact::guard::reach(t16, "leg1")?;
         let t17 = ::overact::math::sqrt(t16);
-        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
         let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t21 = 0.24 * c_arm_leg1;
-        let t23 = t0 - (0.2 + t21);
-        let t24 = 1.0 / t17;
-        let t25 = 2.0 * t24;
-        let garm_vx_leg1 = t23 * t25;
-        let t28 = pose[1] + 0.04330127018922194;
-        let t29 = t28 - 0.17320508075688776;
-        let t31 = pose[0] - 0.025;
-        let t32 = t31 + 0.1;
-        let t33 = 0.5 * t32;
-        let t34 = 0.8660254037844387 * t29 - t33;
-        let t37 = 0.2304 * (t34 * t34 + t3);
-        let t38 = 1.0 / t37;
-        let t39 = 0.48 * t34;
-        let t40 = t32 * t32;
-        let t43 = t40 + t29 * t29 + t3;
-        let t45 = t43 - 0.3136 + 0.0576;
-        let t48 = t37 - t45 * t45;
-        ::overact::guard::reach(t48, "leg2")?;
-        let t49 = ::overact::math::sqrt(t48);
-        let c_arm_leg2 = t38 * (t39 * t45 - t14 * t49);
-        let t54 = t34 - 0.24 * c_arm_leg2;
-        let t55 = 0.8660254037844387 * t32;
-        let t57 = t55 + 0.5 * t29;
-        let t58 = t57 * t57;
-        let t62 = 1.0 - 3.188775510204082 * t58;
-        ::overact::guard::reach(t62, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t62);
-        let c_cross_leg2 = (t43 - (0.0576 + t58) - 0.3136 * t62) / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t38 * (t14 * t45 + t39 * t49);
-        let s_cross_leg2 = 2.0833333333333335 * t49 / (0.56 * c_rod_leg2);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
-            + minus_s_arm_leg2 * s_cross_leg2;
-        let t78 = t57 * c_armcross_leg2;
-        let t81 = 1.5464739353293548 * t78 - 0.5 * c_rod_leg2;
-        let t84 = 0.24 * minus_s_arm_leg2;
-        let t85 = pose[2] - t84;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t57;
-        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
-            - minus_s_arm_leg2 * c_cross_leg2;
-        let t90 = minus_s_rod_leg2 * s_armcross_leg2;
-        let t91 = t85 * t90;
-        let t94 = 0.20784609690826528 * minus_s_arm_leg2;
-        let t97 = 0.8928571428571429 * t78 + 0.8660254037844387 * c_rod_leg2;
-        let t101 = t54 * (0.56 * t97) - 0.28 * t91;
-        let t106 = minus_s_arm_leg2 * t90;
-        let t108 = 0.1344 * (c_arm_leg2 * t97) - 0.0672 * t106;
-        let t113 = t94 * t101 - 0.8660254037844387 * t85 * t108 - 0.14 * (t49 * t81);
-        ::overact::guard::leg(t113, 0.06758306237512474, "leg2")?;
-        let t114 = 1.0 / t113;
-        let garm_vx_leg2 = (t54 * (0.56 * t81) - 0.4849742261192857 * t91) * t114;
-        let t118 = pose[1] - 0.04330127018922194;
-        let t119 = t118 + 0.17320508075688776;
-        let t121 = t33 + 0.8660254037844387 * t119;
-        let t124 = 0.2304 * (t121 * t121 + t3);
-        let t125 = 1.0 / t124;
-        let t126 = 0.48 * t121;
-        let t129 = t40 + t119 * t119 + t3;
-        let t131 = t129 - 0.3136 + 0.0576;
-        let t134 = t124 - t131 * t131;
-        ::overact::guard::reach(t134, "leg3")?;
-        let t135 = ::overact::math::sqrt(t134);
-        let minus_c_arm_leg3 = t125 * (t126 * t131 + t14 * t135);
-        let t140 = t121 - 0.24 * minus_c_arm_leg3;
-        let t142 = t55 - 0.5 * t119;
-        let t143 = t142 * t142;
-        let t147 = 1.0 - 3.188775510204082 * t143;
-        ::overact::guard::reach(t147, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t147);
-        let c_cross_leg3 = (t129 - (0.0576 + t143) - 0.3136 * t147)
-            / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t125 * (t126 * t135 - t14 * t131);
-        let s_cross_leg3 = 2.0833333333333335 * t135 / (0.56 * c_rod_leg3);
-        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
-            + s_arm_leg3 * s_cross_leg3;
-        let t163 = t142 * minus_c_armcross_leg3;
-        let t166 = 1.5464739353293548 * t163 + 0.5 * c_rod_leg3;
-        let t169 = 0.24 * s_arm_leg3;
-        let t170 = pose[2] + t169;
-        let s_rod_leg3 = 1.7857142857142858 * t142;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
-            - minus_c_arm_leg3 * s_cross_leg3;
-        let t175 = s_rod_leg3 * s_armcross_leg3;
-        let t176 = t170 * t175;
-        let t179 = 0.20784609690826528 * s_arm_leg3;
-        let t182 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t163;
-        let t186 = t140 * (0.56 * t182) + 0.28 * t176;
-        let t191 = s_arm_leg3 * t175;
-        let t193 = 0.1344 * (minus_c_arm_leg3 * t182) - 0.0672 * t191;
-        let t198 = t179 * t186 + 0.8660254037844387 * t170 * t193 + 0.14 * (t135 * t166);
-        ::overact::guard::leg(t198, 0.06758306237512474, "leg3")?;
-        let t199 = 1.0 / t198;
-        let garm_vx_leg3 = (t140 * (0.56 * t166) - 0.4849742261192857 * t176) * t199;
-        let t202 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t202, 14.869730172882845, "actuators")?;
-        ::overact::guard::platform(t202, 14.869730172882845, "actuators")?;
-        let t203 = 1.0 / t202;
-        let t204 = 0.48 * t24;
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t212 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t212, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t212);
+        let t24 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t24, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t24);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t212) / (0.2688 * c_rod_leg1);
-        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
-            - minus_s_arm_leg1 * c_cross_leg1;
-        let t226 = 1.0 / c_rod_leg1;
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let t36 = 0.56 * c_rod_leg1;
+        let s_cross_leg1 = 2.0833333333333335 * t17 / t36;
+        ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let gcross_vy_leg1 = t204
-            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t226)
-                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t226));
-        let garm_vy_leg1 = pose[1] * t25;
-        let garm_vy_leg2 = t101 * t114;
-        let garm_vy_leg3 = t186 * t199;
-        let t249 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
-            + garm_vx_leg3 * garm_vy_leg3;
-        let t250 = t249 * t203;
-        let t252 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t249 * t250;
-        ::overact::guard::platform(t252, 14.869730172882843, "actuators")?;
-        ::overact::guard::platform(t252, 14.869730172882843, "actuators")?;
-        let t253 = 1.0 / t252;
-        let t263 = garm_vx_leg1 * actuator_velocities[0]
+        let t40 = 1.0 / s_cross_leg1;
+        let t41 = 4.166666666666667 * t40;
+        let garm_vx_leg1 = c_armcross_leg1 * t41;
+        let t45 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t48 = pose[0] - 0.025 + 0.1;
+        let t49 = 0.5 * t48;
+        let t50 = 0.8660254037844387 * t45 - t49;
+        let t53 = 0.2304 * (t50 * t50 + t3);
+        let t54 = t48 * t48;
+        let t57 = t54 + t45 * t45 + t3;
+        let t59 = t57 - 0.3136 + 0.0576;
+        let t61 = t53 - t59 * t59;
+        ::overact::guard::reach(t61, "leg2")?;
+        let t62 = ::overact::math::sqrt(t61);
+        let t64 = 0.8660254037844387 * t48;
+        let t66 = t64 + 0.5 * t45;
+        let t67 = t66 * t66;
+        let t69 = 1.0 - 3.188775510204082 * t67;
+        ::overact::guard::reach(t69, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t69);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t71 = 0.56 * c_rod_leg2;
+        let s_cross_leg2 = 2.0833333333333335 * t62 / t71;
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
+        let t73 = 1.0 / s_cross_leg2;
+        let t74 = 4.166666666666667 * t73;
+        let t75 = 1.7857142857142858 / c_rod_leg2;
+        let t76 = t66 * t75;
+        let t78 = 1.0 / t53;
+        let t79 = 0.48 * t50;
+        let c_arm_leg2 = t78 * (t79 * t59 - t14 * t62);
+        let c_cross_leg2 = (t57 - (0.0576 + t67) - 0.3136 * t69) / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t78 * (t14 * t59 + t79 * t62);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t97 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t74 * (0.8660254037844387 * t76 - t97);
+        let t103 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t105 = t49 + 0.8660254037844387 * t103;
+        let t108 = 0.2304 * (t105 * t105 + t3);
+        let t111 = t54 + t103 * t103 + t3;
+        let t113 = t111 - 0.3136 + 0.0576;
+        let t115 = t108 - t113 * t113;
+        ::overact::guard::reach(t115, "leg3")?;
+        let t116 = ::overact::math::sqrt(t115);
+        let t119 = t64 - 0.5 * t103;
+        let t120 = t119 * t119;
+        let t122 = 1.0 - 3.188775510204082 * t120;
+        ::overact::guard::reach(t122, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t122);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let t124 = 0.56 * c_rod_leg3;
+        let s_cross_leg3 = 2.0833333333333335 * t116 / t124;
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
+        let t126 = 1.0 / s_cross_leg3;
+        let t127 = 4.166666666666667 * t126;
+        let t128 = 1.0 / t108;
+        let t129 = 0.48 * t105;
+        let minus_c_arm_leg3 = t128 * (t129 * t113 + t14 * t116);
+        let c_cross_leg3 = (t111 - (0.0576 + t120) - 0.3136 * t122)
+            / (0.2688 * c_rod_leg3);
+        let s_arm_leg3 = t128 * (t129 * t116 - t14 * t113);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t147 = 0.5 * minus_c_armcross_leg3;
+        let t148 = 1.7857142857142858 / c_rod_leg3;
+        let t149 = t119 * t148;
+        let garm_vx_leg3 = t127 * (t147 + 0.8660254037844387 * t149);
+        let t154 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3;
+        ::overact::guard::platform(t154, 14.869730172882841, "actuators")?;
+        ::overact::guard::platform(t154, 14.869730172882841, "actuators")?;
+        let t155 = 1.0 / t154;
+        let t156 = 0.24 * c_cross_leg1;
+        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
+        let t165 = garm_vx_leg1 * actuator_velocities[0]
             + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2];
-        let t265 = garm_vy_leg1 * actuator_velocities[0]
+        let t167 = pose[1] * grod_vy_leg1;
+        let garm_vy_leg1 = t41 * t167;
+        let t170 = 0.8660254037844387 * c_armcross_leg2;
+        let garm_vy_leg2 = t74 * (t170 + 0.5 * t76);
+        let t176 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let garm_vy_leg3 = t127 * (t176 - 0.5 * t149);
+        let t181 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3;
+        let t182 = t181 * t155;
+        let t189 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t181 * t182;
+        ::overact::guard::platform(t189, 14.869730172882846, "actuators")?;
+        ::overact::guard::platform(t189, 14.869730172882846, "actuators")?;
+        let t190 = 1.0 / t189;
+        let t197 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
-            + garm_vy_leg3 * actuator_velocities[2] - t263 * t250;
-        let t267 = 0.24 * minus_s_arm_leg1;
-        let t268 = pose[2] - t267;
-        let garm_vz_leg1 = t268 * t25;
-        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t85) * t114;
-        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t170) * t199;
-        let t285 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
-            + garm_vx_leg3 * garm_vz_leg3;
-        let t286 = t285 * t203;
-        let t288 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
-            + garm_vy_leg3 * garm_vz_leg3 - t249 * t286;
-        let t289 = t288 * t253;
-        let t298 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + garm_vz_leg3 * garm_vz_leg3 - t285 * t286 - t288 * t289;
-        ::overact::guard::platform(t298, 34.855350201355726, "actuators")?;
-        ::overact::guard::platform(t298, 34.855350201355726, "actuators")?;
-        let t299 = 1.0 / t298;
-        let t309 = t299
-            * (garm_vz_leg1 * actuator_velocities[0]
-                + garm_vz_leg2 * actuator_velocities[1]
-                + garm_vz_leg3 * actuator_velocities[2] - t263 * t286 - t289 * t265);
-        let t311 = t253 * t265 - t289 * t309;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t204;
-        let t318 = t263 * t203 - t250 * t311 - t286 * t309;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t204;
-        let rate_cross_leg1 = gcross_vy_leg1 * t311 - minus_gcross_vx_leg1 * t318
-            - minus_gcross_vz_leg1 * t309;
-        let grod_vy_leg1 = 1.7857142857142858 * t226;
-        let rate_rod_leg1 = grod_vy_leg1 * t311;
-        let t326 = s_armcross_leg1 * rate_rod_leg1;
-        let t328 = pose[1] * (rate_cross_leg1 * t326);
-        let t329 = actuator_velocities[0] * actuator_velocities[0];
-        let t334 = c_armcross_leg1 * rate_rod_leg1;
-        let t336 = t326 * t326 + rate_cross_leg1 * rate_cross_leg1 + t334 * t334;
-        let t347 = garm_vx_leg1 * (t328 - (t21 * t329 + t23 * t336) + t328)
-            + garm_vy_leg1
-                * (rate_cross_leg1 * (pose[1] * rate_cross_leg1) - pose[1] * t336);
-        let t349 = pose[1] * (rate_cross_leg1 * t334);
-        let minus_rate_dot_arm_leg1 = t347
-            + garm_vz_leg1 * (t349 - (t267 * t329 + t268 * t336) + t349);
-        let t357 = actuator_accelerations[0] + minus_rate_dot_arm_leg1;
-        let t359 = actuator_velocities[1] * actuator_velocities[1];
-        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t81)
-            - 0.11639381426862856 * (minus_s_arm_leg2 * t97)) * t114;
-        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t81)
-            - 0.11639381426862856 * t106) * t114;
-        let minus_gcross_vy_leg2 = t108 * t114;
-        let rate_cross_leg2 = gcross_vz_leg2 * t309
-            - (minus_gcross_vx_leg2 * t318 + minus_gcross_vy_leg2 * t311);
-        let t378 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t85) - t54 * t94) * t114;
-        let minus_grod_vy_leg2 = 0.25 * t49 * t114;
-        let rate_rod_leg2 = grod_vx_leg2 * t318 - minus_grod_vy_leg2 * t311;
-        let t391 = t378 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t394 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t395 = 0.5 * rate_cross_leg2;
-        let t396 = t394 - t395;
-        let t399 = c_armcross_leg2 * rate_rod_leg2;
-        let t401 = t391 * t391 + t396 * t396 + t399 * t399;
-        let t404 = 0.20784609690826528 * c_arm_leg2;
-        let t406 = t28 - (0.17320508075688776 + t404);
-        let t407 = t395 * t399;
-        let t409 = 0.12 * c_arm_leg2;
-        let t411 = t31 + 0.1 + t409;
-        let t412 = t378 * t399;
-        let t414 = t406 * t407 + t411 * t412;
-        let t425 = t406 * t396 - t411 * t391 + t85 * t399;
-        let t430 = 1.3333333333333333 * (t378 * t394);
-        let t434 = garm_vx_leg2
-            * (t409 * t359 - t411 * t401 - t391 * t425 + t85 * t412 + t406 * t430);
-        let t444 = garm_vy_leg2
-            * (t396 * t425 - (t404 * t359 + t406 * t401) + t85 * t407 - t411 * t430);
-        let rate_dot_arm_leg2 = garm_vz_leg2 * (t84 * t359 + t85 * t401 + t414 + t414)
-            - (t434 + t444);
-        let t447 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t450 = 0.20784609690826528 * minus_c_arm_leg3;
-        let t451 = actuator_velocities[2] * actuator_velocities[2];
-        let t454 = t118 - (t450 - 0.17320508075688776);
-        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t182)
-            + 0.0672 * (s_arm_leg3 * t166)) * t199;
-        let minus_gcross_vx_leg3 = (0.11639381426862856 * t191
-            + 0.1344 * (minus_c_arm_leg3 * t166)) * t199;
-        let minus_gcross_vy_leg3 = t193 * t199;
-        let rate_cross_leg3 = gcross_vz_leg3 * t309
-            - (minus_gcross_vx_leg3 * t318 + minus_gcross_vy_leg3 * t311);
-        let t472 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (t140 * t179
-            + 0.20784609690826528 * (minus_c_arm_leg3 * t170)) * t199;
-        let minus_grod_vy_leg3 = 0.25 * t135 * t199;
-        let rate_rod_leg3 = grod_vx_leg3 * t318 - minus_grod_vy_leg3 * t311;
-        let t485 = t472 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t487 = 0.5 * rate_cross_leg3;
-        let t489 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t490 = t487 + t489;
-        let t493 = minus_c_armcross_leg3 * rate_rod_leg3;
-        let t495 = t485 * t485 + t490 * t490 + t493 * t493;
-        let t498 = 0.12 * minus_c_arm_leg3;
-        let t500 = t31 - (t498 - 0.1);
-        let t505 = t500 * t485 - t454 * t490 - t170 * t493;
-        let t509 = 1.3333333333333333 * (t472 * t489);
-        let t511 = t487 * t493;
-        let t515 = garm_vy_leg3
-            * (t450 * t451 + t454 * t495 + t490 * t505 + t500 * t509 + t170 * t511);
-        let t521 = t472 * t493;
-        let t526 = garm_vx_leg3
-            * (t485 * t505 - (t498 * t451 + t500 * t495) + t170 * t521 + t454 * t509);
-        let t533 = t454 * t511 - t500 * t521;
-        let rate_dot_arm_leg3 = t515 - t526
-            - garm_vz_leg3 * (t169 * t451 - t170 * t495 + t533 + t533);
-        let t538 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t540 = garm_vx_leg1 * t357 + garm_vx_leg2 * t447 + garm_vx_leg3 * t538;
-        let t548 = garm_vy_leg1 * t357 + garm_vy_leg2 * t447 + garm_vy_leg3 * t538
-            - t250 * t540;
-        let t559 = t299
-            * (garm_vz_leg1 * t357 + garm_vz_leg2 * t447 + garm_vz_leg3 * t538
-                - t286 * t540 - t289 * t548);
-        let t561 = t253 * t548 - t289 * t559;
-        Ok([[t203 * t540 - t250 * t561 - t286 * t559], [t561], [t559 + 9.81]])
+            + garm_vy_leg3 * actuator_velocities[2] - t165 * t182;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t41;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t74;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t127;
+        let t215 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+            + garm_vx_leg3 * minus_garm_vz_leg3;
+        let t216 = t215 * t155;
+        let t223 = t181 * t216
+            - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
+                + garm_vy_leg3 * minus_garm_vz_leg3);
+        let t224 = t223 * t190;
+        let t233 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+            + minus_garm_vz_leg2 * minus_garm_vz_leg2
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t215 * t216 - t223 * t224;
+        ::overact::guard::platform(t233, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t233, 34.855350201355726, "actuators")?;
+        let t234 = 1.0 / t233;
+        let t244 = t234
+            * (t165 * t216
+                - (minus_garm_vz_leg1 * actuator_velocities[0]
+                    + minus_garm_vz_leg2 * actuator_velocities[1]
+                    + minus_garm_vz_leg3 * actuator_velocities[2]) - t224 * t197);
+        let t246 = t190 * t197 - t224 * t244;
+        let t250 = t165 * t155 - t182 * t246 + t216 * t244;
+        let t261 = c_cross_leg1 * t40 * (c_armcross_leg1 * t250 - s_armcross_leg1 * t244)
+            + t156 * garm_vy_leg1 * t246 + s_armcross_leg1 * t250
+            + c_armcross_leg1 * t244;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t261;
+        let rate_rod_leg1 = grod_vy_leg1 * t246;
+        let t266 = minus_rate_cross_leg1 * minus_rate_cross_leg1
+            + rate_rod_leg1 * rate_rod_leg1;
+        let t274 = t156 * (actuator_velocities[0] * actuator_velocities[0]) + t36 * t266
+            - t167
+                * (minus_rate_cross_leg1 * (pose[1] * minus_rate_cross_leg1)
+                    - pose[1] * t266);
+        let rate_dot_arm_leg1 = t41 * t274;
+        let t276 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t278 = 0.24 * c_cross_leg2;
+        let t281 = 0.8660254037844387 * t250;
+        let t282 = 0.5 * t246;
+        let t283 = t281 + t282;
+        let minus_rate_rod_leg2 = t75 * t283;
+        let t300 = 0.5 * s_armcross_leg2 * t250
+            - 0.8660254037844387 * s_armcross_leg2 * t246 - c_armcross_leg2 * t244
+            - c_cross_leg2 * t73 * (t170 * t246 - t97 * t250 - s_armcross_leg2 * t244);
+        let rate_cross_leg2 = t75 * (t300 - t278 * (t74 * t76) * t283);
+        let t307 = minus_rate_rod_leg2 * minus_rate_rod_leg2
+            + rate_cross_leg2 * rate_cross_leg2;
+        let t315 = t278 * (actuator_velocities[1] * actuator_velocities[1]) + t71 * t307
+            + t76 * (t66 * t307 - rate_cross_leg2 * (t66 * rate_cross_leg2));
+        let rate_dot_arm_leg2 = t74 * t315;
+        let t317 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t320 = 0.24 * c_cross_leg3;
+        let t323 = t281 - t282;
+        let rate_rod_leg3 = t148 * t323;
+        let t340 = 0.5 * s_armcross_leg3 * t250
+            + 0.8660254037844387 * s_armcross_leg3 * t246 + minus_c_armcross_leg3 * t244
+            - c_cross_leg3 * t126 * (t147 * t250 + t176 * t246 - s_armcross_leg3 * t244);
+        let rate_cross_leg3 = t148 * (t340 - t320 * (t127 * t149) * t323);
+        let t347 = rate_rod_leg3 * rate_rod_leg3 + rate_cross_leg3 * rate_cross_leg3;
+        let t355 = t320 * (actuator_velocities[2] * actuator_velocities[2]) + t124 * t347
+            - t149 * (rate_cross_leg3 * (t119 * rate_cross_leg3) - t119 * t347);
+        let rate_dot_arm_leg3 = t127 * t355;
+        let t357 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t359 = garm_vx_leg1 * t276 + garm_vx_leg2 * t317 + garm_vx_leg3 * t357;
+        let t367 = garm_vy_leg1 * t276 + garm_vy_leg2 * t317 + garm_vy_leg3 * t357
+            - t182 * t359;
+        let t378 = t234
+            * (t216 * t359
+                - (minus_garm_vz_leg1 * t276 + minus_garm_vz_leg2 * t317
+                    + minus_garm_vz_leg3 * t357) - t224 * t367);
+        let t380 = t190 * t367 - t224 * t378;
+        Ok([[t155 * t359 - t182 * t380 + t216 * t378], [t380], [t378 + 9.81]])
     }
     /// The payload's columns of case 2, eq. (38).
     ///
@@ -8230,7 +7460,7 @@ impl Delta {
     /// Output: 3 x 1.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 266 operations (87 additions, 168 multiplications, 11 divisions), 5 square roots, 0 trigonometric pairs, 0 signs, 268 intermediates.
+    /// 222 operations (76 additions, 130 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 225 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -8255,127 +7485,119 @@ impl Delta {
         ::overact::guard::reach(t22, "leg2")?;
         let t23 = ::overact::math::sqrt(t22);
         let c_arm_leg2 = t11 * (t12 * t18 - t20 * t23);
-        let t28 = t6 - 0.24 * c_arm_leg2;
-        let t29 = 0.8660254037844387 * t4;
-        let t31 = t29 + 0.5 * t1;
-        let t32 = t31 * t31;
-        let t36 = 1.0 - 3.188775510204082 * t32;
-        ::overact::guard::reach(t36, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t36);
-        let c_cross_leg2 = (t16 - (0.0576 + t32) - 0.3136 * t36) / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t11 * (t20 * t18 + t12 * t23);
+        let t28 = 0.8660254037844387 * t4;
+        let t30 = t28 + 0.5 * t1;
+        let t31 = t30 * t30;
+        let t33 = 1.0 - 3.188775510204082 * t31;
+        ::overact::guard::reach(t33, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t33);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
         let s_cross_leg2 = 2.0833333333333335 * t23 / (0.56 * c_rod_leg2);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
-            + minus_s_arm_leg2 * s_cross_leg2;
-        let t52 = t31 * c_armcross_leg2;
-        let t55 = 0.8928571428571429 * t52 + 0.8660254037844387 * c_rod_leg2;
-        let t59 = pose[2] - 0.24 * minus_s_arm_leg2;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t31;
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
+        let minus_s_arm_leg2 = t11 * (t20 * t18 + t12 * t23);
+        let c_cross_leg2 = (t16 - (0.0576 + t31) - 0.3136 * t33) / (0.2688 * c_rod_leg2);
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t64 = minus_s_rod_leg2 * s_armcross_leg2;
-        let t65 = t59 * t64;
-        let t67 = t28 * (0.56 * t55) - 0.28 * t65;
-        let t77 = 0.20784609690826528 * minus_s_arm_leg2 * t67
-            - 0.8660254037844387 * t59
-                * (0.1344 * (c_arm_leg2 * t55) - 0.0672 * (minus_s_arm_leg2 * t64));
-        let t80 = 1.5464739353293548 * t52 - 0.5 * c_rod_leg2;
-        let t83 = t77 - 0.14 * (t23 * t80);
-        ::overact::guard::leg(t83, 0.06758306237512474, "leg2")?;
-        let t84 = 1.0 / t83;
-        let garm_vy_leg2 = t67 * t84;
-        let t87 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t89 = t29 - 0.5 * t87;
-        let t90 = t89 * t89;
-        let t92 = 1.0 - 3.188775510204082 * t90;
-        ::overact::guard::reach(t92, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t92);
-        let t95 = t5 + 0.8660254037844387 * t87;
-        let t98 = 0.2304 * (t95 * t95 + t8);
-        let t99 = 1.0 / t98;
-        let t100 = 0.48 * t95;
-        let t103 = t13 + t87 * t87 + t8;
-        let t105 = t103 - 0.3136 + 0.0576;
-        let t107 = t98 - t105 * t105;
-        ::overact::guard::reach(t107, "leg3")?;
-        let t108 = ::overact::math::sqrt(t107);
-        let s_arm_leg3 = t99 * (t100 * t108 - t20 * t105);
-        let t114 = pose[2] + 0.24 * s_arm_leg3;
-        let minus_c_arm_leg3 = t99 * (t100 * t105 + t20 * t108);
-        let t123 = t95 - 0.24 * minus_c_arm_leg3;
-        let c_cross_leg3 = (t103 - (0.0576 + t90) - 0.3136 * t92)
-            / (0.2688 * c_rod_leg3);
-        let s_cross_leg3 = 2.0833333333333335 * t108 / (0.56 * c_rod_leg3);
+        let t50 = 4.166666666666667 / s_cross_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t50;
+        let t53 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t55 = t5 + 0.8660254037844387 * t53;
+        let t58 = 0.2304 * (t55 * t55 + t8);
+        let t61 = t13 + t53 * t53 + t8;
+        let t63 = t61 - 0.3136 + 0.0576;
+        let t65 = t58 - t63 * t63;
+        ::overact::guard::reach(t65, "leg3")?;
+        let t66 = ::overact::math::sqrt(t65);
+        let t69 = t28 - 0.5 * t53;
+        let t70 = t69 * t69;
+        let t72 = 1.0 - 3.188775510204082 * t70;
+        ::overact::guard::reach(t72, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t72);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let s_cross_leg3 = 2.0833333333333335 * t66 / (0.56 * c_rod_leg3);
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
+        let t76 = 4.166666666666667 / s_cross_leg3;
+        let t77 = 1.0 / t58;
+        let t78 = 0.48 * t55;
+        let minus_c_arm_leg3 = t77 * (t78 * t63 + t20 * t66);
+        let c_cross_leg3 = (t61 - (0.0576 + t70) - 0.3136 * t72) / (0.2688 * c_rod_leg3);
+        let s_arm_leg3 = t77 * (t78 * t66 - t20 * t63);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t137 = t89 * minus_c_armcross_leg3;
-        let t139 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t137;
-        let s_rod_leg3 = 1.7857142857142858 * t89;
+        let t98 = t69 * (1.7857142857142858 / c_rod_leg3);
+        let garm_vy_leg3 = t76
+            * (0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t98);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t108 = t30 * (1.7857142857142858 / c_rod_leg2);
+        let garm_vy_leg2 = t50 * (0.8660254037844387 * c_armcross_leg2 + 0.5 * t108);
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t146 = s_rod_leg3 * s_armcross_leg3;
-        let t147 = t114 * t146;
-        let t149 = t123 * (0.56 * t139) + 0.28 * t147;
-        let t158 = 0.20784609690826528 * s_arm_leg3 * t149
-            + 0.8660254037844387 * t114
-                * (0.1344 * (minus_c_arm_leg3 * t139) - 0.0672 * (s_arm_leg3 * t146));
-        let t161 = 1.5464739353293548 * t137 + 0.5 * c_rod_leg3;
-        let t164 = t158 + 0.14 * (t108 * t161);
-        ::overact::guard::leg(t164, 0.06758306237512474, "leg3")?;
-        let t165 = 1.0 / t164;
-        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t114) * t165;
-        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t59) * t84;
-        let garm_vy_leg3 = t149 * t165;
-        let garm_vx_leg2 = (t28 * (0.56 * t80) - 0.4849742261192857 * t65) * t84;
-        let t179 = pose[0] + 0.05;
-        let t180 = t179 - 0.2;
-        let t181 = t180 * t180;
-        let t183 = 0.2304 * (t181 + t8);
-        let t184 = 1.0 / t183;
-        let t189 = t181 + pose[1] * pose[1] + t8 - 0.3136 + 0.0576;
-        let t191 = 0.48 * t180;
-        let t193 = t183 - t189 * t189;
-        ::overact::guard::reach(t193, "leg1")?;
-        let t194 = ::overact::math::sqrt(t193);
-        ::overact::guard::leg(t194, 0.24136807991115974, "leg1")?;
-        let minus_s_arm_leg1 = t184 * (t20 * t189 + t191 * t194);
-        let t200 = 2.0 / t194;
-        let garm_vz_leg1 = (pose[2] - 0.24 * minus_s_arm_leg1) * t200;
-        let garm_vy_leg1 = pose[1] * t200;
-        let t205 = garm_vz_leg1 * garm_vy_leg3 - garm_vy_leg1 * garm_vz_leg3;
-        let garm_vx_leg3 = (t123 * (0.56 * t161) - 0.4849742261192857 * t147) * t165;
-        let c_arm_leg1 = t184 * (t191 * t189 - t20 * t194);
-        let garm_vx_leg1 = (t179 - (0.2 + 0.24 * c_arm_leg1)) * t200;
-        let t222 = garm_vz_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vz_leg3;
-        let t227 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
-        let t229 = garm_vx_leg2 * t205 - garm_vy_leg2 * t222 + garm_vz_leg2 * t227;
-        ::overact::guard::platform(t229, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t229, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t229, 87.78853732233405, "kept actuators")?;
-        let t230 = 1.0 / t229;
-        let t238 = (garm_vy_leg2 * garm_vz_leg3 - garm_vz_leg2 * garm_vy_leg3) * t230
-            * acceleration[0]
-            - (garm_vx_leg2 * garm_vz_leg3 - garm_vz_leg2 * garm_vx_leg3) * t230
-                * acceleration[1];
-        let t243 = acceleration[2] + 9.81;
-        let t264 = (garm_vz_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vz_leg2) * t230
-            * acceleration[1]
-            - (garm_vz_leg1 * garm_vy_leg2 - garm_vy_leg1 * garm_vz_leg2) * t230
-                * acceleration[0];
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t76;
+        let garm_vx_leg2 = t50 * (0.8660254037844387 * t108 - 0.5 * c_armcross_leg2);
+        let t123 = pose[0] + 0.05 - 0.2;
+        let t124 = t123 * t123;
+        let t126 = 0.2304 * (t124 + t8);
+        let t127 = pose[1] * pose[1];
+        let t129 = t124 + t127 + t8;
+        let t131 = t129 - 0.3136 + 0.0576;
+        let t133 = t126 - t131 * t131;
+        ::overact::guard::reach(t133, "leg1")?;
+        let t134 = ::overact::math::sqrt(t133);
+        let t137 = 1.0 - 3.188775510204082 * t127;
+        ::overact::guard::reach(t137, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t137);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let s_cross_leg1 = 2.0833333333333335 * t134 / (0.56 * c_rod_leg1);
+        ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
+        let t141 = 4.166666666666667 / s_cross_leg1;
+        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
+        let garm_vy_leg1 = t141 * (pose[1] * grod_vy_leg1);
+        let t146 = 1.0 / t126;
+        let t147 = 0.48 * t123;
+        let c_arm_leg1 = t146 * (t147 * t131 - t20 * t134);
+        let minus_s_arm_leg1 = t146 * (t20 * t131 + t147 * t134);
+        let c_cross_leg1 = (t129 - (0.0576 + t127) - 0.3136 * t137)
+            / (0.2688 * c_rod_leg1);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t141;
+        let t167 = garm_vy_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vy_leg3;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t141;
+        let garm_vx_leg3 = t76
+            * (0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t98);
+        let t179 = garm_vx_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vx_leg3;
+        let t184 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
+        let t186 = garm_vx_leg2 * t167 - garm_vy_leg2 * t179 - minus_garm_vz_leg2 * t184;
+        ::overact::guard::platform(t186, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t186, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t186, 87.78853732233405, "kept actuators")?;
+        let t187 = 1.0 / t186;
+        let t195 = (minus_garm_vz_leg2 * garm_vy_leg3
+            - garm_vy_leg2 * minus_garm_vz_leg3) * t187 * acceleration[0]
+            - (minus_garm_vz_leg2 * garm_vx_leg3 - garm_vx_leg2 * minus_garm_vz_leg3)
+                * t187 * acceleration[1];
+        let t200 = acceleration[2] + 9.81;
+        let t221 = (garm_vx_leg1 * minus_garm_vz_leg2
+            - minus_garm_vz_leg1 * garm_vx_leg2) * t187 * acceleration[1]
+            - (garm_vy_leg1 * minus_garm_vz_leg2 - minus_garm_vz_leg1 * garm_vy_leg2)
+                * t187 * acceleration[0];
         Ok([
             [
-                t238
-                    + (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t230
-                        * t243,
+                t195
+                    + (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t187
+                        * t200,
             ],
             [
-                t205 * t230 * acceleration[0] - t222 * t230 * acceleration[1]
-                    + t227 * t230 * t243,
+                t167 * t187 * acceleration[0] - t179 * t187 * acceleration[1]
+                    + t184 * t187 * t200,
             ],
             [
-                t264
-                    - (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t230
-                        * t243,
+                t221
+                    - (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t187
+                        * t200,
             ],
         ])
     }
@@ -8387,7 +7609,7 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 223 operations (75 additions, 138 multiplications, 10 divisions), 5 square roots, 0 trigonometric pairs, 0 signs, 225 intermediates.
+    /// 179 operations (64 additions, 100 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 182 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -8395,119 +7617,111 @@ impl Delta {
         pose: &[f64; 3],
         torques: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let t0 = pose[0] + 0.05;
-        let t1 = t0 - 0.2;
+        let t1 = pose[0] + 0.05 - 0.2;
         let t2 = t1 * t1;
         let t3 = pose[2] * pose[2];
         let t5 = 0.2304 * (t2 + t3);
         let t6 = 1.0 / t5;
         let t7 = 0.48 * t1;
-        let t12 = t2 + pose[1] * pose[1] + t3 - 0.3136 + 0.0576;
+        let t8 = pose[1] * pose[1];
+        let t10 = t2 + t8 + t3;
+        let t12 = t10 - 0.3136 + 0.0576;
         let t14 = 0.48 * pose[2];
         let t16 = t5 - t12 * t12;
         ::overact::guard::reach(t16, "leg1")?;
         let t17 = ::overact::math::sqrt(t16);
-        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
         let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t24 = 2.0 / t17;
-        let garm_vx_leg1 = (t0 - (0.2 + 0.24 * c_arm_leg1)) * t24;
-        let t28 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t31 = pose[0] - 0.025 + 0.1;
-        let t32 = 0.5 * t31;
-        let t33 = 0.8660254037844387 * t28 - t32;
-        let t36 = 0.2304 * (t33 * t33 + t3);
-        let t37 = 1.0 / t36;
-        let t38 = 0.48 * t33;
-        let t39 = t31 * t31;
-        let t42 = t39 + t28 * t28 + t3;
-        let t44 = t42 - 0.3136 + 0.0576;
-        let t47 = t36 - t44 * t44;
-        ::overact::guard::reach(t47, "leg2")?;
-        let t48 = ::overact::math::sqrt(t47);
-        let c_arm_leg2 = t37 * (t38 * t44 - t14 * t48);
-        let t53 = t33 - 0.24 * c_arm_leg2;
-        let t54 = 0.8660254037844387 * t31;
-        let t56 = t54 + 0.5 * t28;
-        let t57 = t56 * t56;
-        let t61 = 1.0 - 3.188775510204082 * t57;
-        ::overact::guard::reach(t61, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t61);
-        let c_cross_leg2 = (t42 - (0.0576 + t57) - 0.3136 * t61) / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t37 * (t14 * t44 + t38 * t48);
-        let s_cross_leg2 = 2.0833333333333335 * t48 / (0.56 * c_rod_leg2);
+        let t24 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t24, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t24);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let t40 = 4.166666666666667 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t40;
+        let t44 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t47 = pose[0] - 0.025 + 0.1;
+        let t48 = 0.5 * t47;
+        let t49 = 0.8660254037844387 * t44 - t48;
+        let t52 = 0.2304 * (t49 * t49 + t3);
+        let t53 = t47 * t47;
+        let t56 = t53 + t44 * t44 + t3;
+        let t58 = t56 - 0.3136 + 0.0576;
+        let t60 = t52 - t58 * t58;
+        ::overact::guard::reach(t60, "leg2")?;
+        let t61 = ::overact::math::sqrt(t60);
+        let t63 = 0.8660254037844387 * t47;
+        let t65 = t63 + 0.5 * t44;
+        let t66 = t65 * t65;
+        let t68 = 1.0 - 3.188775510204082 * t66;
+        ::overact::guard::reach(t68, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t68);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let s_cross_leg2 = 2.0833333333333335 * t61 / (0.56 * c_rod_leg2);
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
+        let t72 = 4.166666666666667 / s_cross_leg2;
+        let t74 = t65 * (1.7857142857142858 / c_rod_leg2);
+        let t76 = 1.0 / t52;
+        let t77 = 0.48 * t49;
+        let c_arm_leg2 = t76 * (t77 * t58 - t14 * t61);
+        let c_cross_leg2 = (t56 - (0.0576 + t66) - 0.3136 * t68) / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t76 * (t14 * t58 + t77 * t61);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t77 = t56 * c_armcross_leg2;
-        let t80 = 1.5464739353293548 * t77 - 0.5 * c_rod_leg2;
-        let t84 = pose[2] - 0.24 * minus_s_arm_leg2;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t56;
-        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
-            - minus_s_arm_leg2 * c_cross_leg2;
-        let t89 = minus_s_rod_leg2 * s_armcross_leg2;
-        let t90 = t84 * t89;
-        let t96 = 0.8928571428571429 * t77 + 0.8660254037844387 * c_rod_leg2;
-        let t100 = t53 * (0.56 * t96) - 0.28 * t90;
-        let t109 = 0.20784609690826528 * minus_s_arm_leg2 * t100
-            - 0.8660254037844387 * t84
-                * (0.1344 * (c_arm_leg2 * t96) - 0.0672 * (minus_s_arm_leg2 * t89));
-        let t112 = t109 - 0.14 * (t48 * t80);
-        ::overact::guard::leg(t112, 0.06758306237512474, "leg2")?;
-        let t113 = 1.0 / t112;
-        let garm_vx_leg2 = (t53 * (0.56 * t80) - 0.4849742261192857 * t90) * t113;
-        let t118 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t120 = t32 + 0.8660254037844387 * t118;
-        let t123 = 0.2304 * (t120 * t120 + t3);
-        let t124 = 1.0 / t123;
-        let t125 = 0.48 * t120;
-        let t128 = t39 + t118 * t118 + t3;
-        let t130 = t128 - 0.3136 + 0.0576;
-        let t133 = t123 - t130 * t130;
-        ::overact::guard::reach(t133, "leg3")?;
-        let t134 = ::overact::math::sqrt(t133);
-        let minus_c_arm_leg3 = t124 * (t125 * t130 + t14 * t134);
-        let t139 = t120 - 0.24 * minus_c_arm_leg3;
-        let t141 = t54 - 0.5 * t118;
-        let t142 = t141 * t141;
-        let t146 = 1.0 - 3.188775510204082 * t142;
-        ::overact::guard::reach(t146, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t146);
-        let c_cross_leg3 = (t128 - (0.0576 + t142) - 0.3136 * t146)
+        let garm_vx_leg2 = t72 * (0.8660254037844387 * t74 - 0.5 * c_armcross_leg2);
+        let t101 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t103 = t48 + 0.8660254037844387 * t101;
+        let t106 = 0.2304 * (t103 * t103 + t3);
+        let t109 = t53 + t101 * t101 + t3;
+        let t111 = t109 - 0.3136 + 0.0576;
+        let t113 = t106 - t111 * t111;
+        ::overact::guard::reach(t113, "leg3")?;
+        let t114 = ::overact::math::sqrt(t113);
+        let t117 = t63 - 0.5 * t101;
+        let t118 = t117 * t117;
+        let t120 = 1.0 - 3.188775510204082 * t118;
+        ::overact::guard::reach(t120, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t120);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let s_cross_leg3 = 2.0833333333333335 * t114 / (0.56 * c_rod_leg3);
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
+        let t124 = 4.166666666666667 / s_cross_leg3;
+        let t125 = 1.0 / t106;
+        let t126 = 0.48 * t103;
+        let minus_c_arm_leg3 = t125 * (t126 * t111 + t14 * t114);
+        let c_cross_leg3 = (t109 - (0.0576 + t118) - 0.3136 * t120)
             / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t124 * (t125 * t134 - t14 * t130);
-        let s_cross_leg3 = 2.0833333333333335 * t134 / (0.56 * c_rod_leg3);
+        let s_arm_leg3 = t125 * (t126 * t114 - t14 * t111);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t162 = t141 * minus_c_armcross_leg3;
-        let t165 = 1.5464739353293548 * t162 + 0.5 * c_rod_leg3;
-        let t169 = pose[2] + 0.24 * s_arm_leg3;
-        let s_rod_leg3 = 1.7857142857142858 * t141;
+        let t146 = t117 * (1.7857142857142858 / c_rod_leg3);
+        let garm_vx_leg3 = t124
+            * (0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t146);
+        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
+        let garm_vy_leg1 = t40 * (pose[1] * grod_vy_leg1);
+        let garm_vy_leg2 = t72 * (0.8660254037844387 * c_armcross_leg2 + 0.5 * t74);
+        let garm_vy_leg3 = t124
+            * (0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t146);
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t40;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t72;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t174 = s_rod_leg3 * s_armcross_leg3;
-        let t175 = t169 * t174;
-        let t181 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t162;
-        let t185 = t139 * (0.56 * t181) + 0.28 * t175;
-        let t194 = 0.20784609690826528 * s_arm_leg3 * t185
-            + 0.8660254037844387 * t169
-                * (0.1344 * (minus_c_arm_leg3 * t181) - 0.0672 * (s_arm_leg3 * t174));
-        let t197 = t194 + 0.14 * (t134 * t165);
-        ::overact::guard::leg(t197, 0.06758306237512474, "leg3")?;
-        let t198 = 1.0 / t197;
-        let garm_vx_leg3 = (t139 * (0.56 * t165) - 0.4849742261192857 * t175) * t198;
-        let garm_vy_leg1 = pose[1] * t24;
-        let garm_vy_leg2 = t100 * t113;
-        let garm_vy_leg3 = t185 * t198;
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let garm_vz_leg1 = (pose[2] - 0.24 * minus_s_arm_leg1) * t24;
-        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t84) * t113;
-        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t169) * t198;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t124;
         Ok([
             garm_vx_leg1 * torques[0] + garm_vx_leg2 * torques[1]
                 + garm_vx_leg3 * torques[2],
             garm_vy_leg1 * torques[0] + garm_vy_leg2 * torques[1]
                 + garm_vy_leg3 * torques[2],
-            garm_vz_leg1 * torques[0] + garm_vz_leg2 * torques[1]
-                + garm_vz_leg3 * torques[2],
+            -(minus_garm_vz_leg1 * torques[0] + minus_garm_vz_leg2 * torques[1]
+                + minus_garm_vz_leg3 * torques[2]),
         ])
     }
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
@@ -8533,7 +7747,7 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 1008 operations (392 additions, 600 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 1014 intermediates.
+    /// 911 operations (356 additions, 537 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 917 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -8543,8 +7757,7 @@ impl Delta {
         acceleration: &[f64; 3],
         parameters: &[f64; 53],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let t0 = pose[0] + 0.05;
-        let t1 = t0 - 0.2;
+        let t1 = pose[0] + 0.05 - 0.2;
         let t2 = t1 * t1;
         let t3 = pose[2] * pose[2];
         let t5 = 0.2304 * (t2 + t3);
@@ -8557,437 +7770,417 @@ impl Delta {
         let t16 = t5 - t12 * t12;
         ::overact::guard::reach(t16, "leg1")?;
         let t17 = ::overact::math::sqrt(t16);
-        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
         let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t21 = 0.24 * c_arm_leg1;
-        let t23 = t0 - (0.2 + t21);
-        let t24 = 1.0 / t17;
-        let t25 = 2.0 * t24;
-        let garm_vx_leg1 = t23 * t25;
-        let t27 = 0.48 * t24;
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t35 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t35, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t35);
+        let t24 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t24, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t24);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t35) / (0.2688 * c_rod_leg1);
-        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
-            - minus_s_arm_leg1 * c_cross_leg1;
-        let t49 = 1.0 / c_rod_leg1;
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let t36 = 0.56 * c_rod_leg1;
+        let s_cross_leg1 = 2.0833333333333335 * t17 / t36;
+        ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let gcross_vy_leg1 = t27
-            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t49)
-                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t49));
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t27;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t27;
-        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
-            - minus_gcross_vz_leg1 * twist[2];
-        let grod_vy_leg1 = 1.7857142857142858 * t49;
+        let t40 = 1.0 / s_cross_leg1;
+        let t41 = 4.166666666666667 * t40;
+        let garm_vx_leg1 = c_armcross_leg1 * t41;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t49 = 0.24 * c_cross_leg1;
+        let t52 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
+        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
+        let t54 = pose[1] * grod_vy_leg1;
+        let rate_arm_leg1 = t41 * (t52 + t54 * twist[1]);
+        let t58 = rate_arm_leg1 * rate_arm_leg1;
+        let t60 = c_cross_leg1 * t40;
+        let garm_vy_leg1 = t41 * t54;
+        let t63 = t49 * garm_vy_leg1;
+        let t69 = t60 * t52 + t63 * twist[1] + s_armcross_leg1 * twist[0]
+            + c_armcross_leg1 * twist[2];
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t69;
+        let t71 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t69 = s_armcross_leg1 * rate_rod_leg1;
-        let t71 = pose[1] * (rate_cross_leg1 * t69);
-        let garm_vy_leg1 = pose[1] * t25;
-        let t76 = 0.24 * minus_s_arm_leg1;
-        let t77 = pose[2] - t76;
-        let garm_vz_leg1 = t77 * t25;
-        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
-            + garm_vz_leg1 * twist[2];
-        let t81 = rate_arm_leg1 * rate_arm_leg1;
-        let t84 = rate_cross_leg1 * rate_cross_leg1;
-        let t86 = c_armcross_leg1 * rate_rod_leg1;
-        let t88 = t69 * t69 + t84 + t86 * t86;
-        let t93 = acceleration[0] - (t71 - (t21 * t81 + t23 * t88) + t71);
-        let t95 = pose[1] * rate_cross_leg1;
-        let t99 = acceleration[1] - (rate_cross_leg1 * t95 - pose[1] * t88);
-        let t103 = pose[1] * (rate_cross_leg1 * t86);
-        let t109 = acceleration[2] - (t103 - (t76 * t81 + t77 * t88) + t103);
-        let rate_dot_arm_leg1 = garm_vx_leg1 * t93 + garm_vy_leg1 * t99
-            + garm_vz_leg1 * t109;
-        let t113 = 9.81 * c_arm_leg1;
-        let t116 = 9.81 * minus_s_arm_leg1;
-        let t125 = parameters[0] * rate_dot_arm_leg1 - parameters[1] * t113
-            - parameters[2] * t116 + parameters[3] * rate_dot_arm_leg1
+        let t73 = rate_rod_leg1 * rate_rod_leg1;
+        let t74 = t71 + t73;
+        let t77 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t49 * t58 + t36 * t74;
+        let t78 = pose[1] * minus_rate_cross_leg1;
+        let t82 = acceleration[1] - (minus_rate_cross_leg1 * t78 - pose[1] * t74);
+        let rate_dot_arm_leg1 = t41 * (t77 + t54 * t82);
+        let t87 = 9.81 * c_arm_leg1;
+        let t90 = 9.81 * minus_s_arm_leg1;
+        let t99 = parameters[0] * rate_dot_arm_leg1 - parameters[1] * t87
+            - parameters[2] * t90 + parameters[3] * rate_dot_arm_leg1
             + parameters[4] * rate_arm_leg1
             + ::overact::math::signed(parameters[5], rate_arm_leg1) + parameters[6];
-        let t127 = 1.7857142857142858 * t95;
-        let t128 = c_rod_leg1 * rate_cross_leg1;
-        let t129 = t127 * t128;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t99;
-        let t131 = t129 - rate_dot_rod_leg1;
-        let t133 = t128 * t128;
-        let t134 = rate_rod_leg1 * rate_rod_leg1;
-        let rate_dot_cross_leg1 = gcross_vy_leg1 * t99 - minus_gcross_vx_leg1 * t93
-            - minus_gcross_vz_leg1 * t109;
-        let t143 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t147 = t116 - 0.24 * t81;
-        let t150 = 0.24 * rate_dot_arm_leg1 - t113;
-        let t152 = c_cross_leg1 * t147 + s_cross_leg1 * t150;
-        let t153 = c_rod_leg1 * t152;
-        let t156 = 0.8928571428571429 * t17
-            * (parameters[14] * t131 - parameters[13] * (t133 + t134)
-                + parameters[15] * t143 + parameters[16] * t153);
-        let t159 = t129 + rate_dot_rod_leg1;
-        let t162 = 3.188775510204082 * (t95 * t95);
-        let t166 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t169 = s_rod_leg1 * t152;
-        let t172 = 0.42857142857142855 * (pose[1] * s_cross_leg1)
-            * (parameters[13] * t159 - parameters[14] * (t162 + t134)
-                - parameters[15] * t166 - parameters[16] * t169);
-        let t175 = rate_rod_leg1 * t127;
-        let t176 = t143 - t175;
-        let t177 = t175 - t176;
-        let t179 = rate_rod_leg1 * t128;
-        let t180 = t166 + t179;
-        let t181 = t179 + t180;
-        let t188 = c_cross_leg1 * t150 - s_cross_leg1 * t147;
-        let t192 = t156 - t172
-            - 0.24 * c_cross_leg1
-                * (parameters[13] * t177 + parameters[14] * t181 - parameters[15] * t84
-                    - parameters[16] * t188);
-        let t193 = t125 + t192;
-        let t204 = parameters[7] * t180 - parameters[8] * t177 + parameters[9] * t159
-            - parameters[10] * t179 + parameters[11] * (t133 - t134);
-        let t221 = parameters[7] * t175 + parameters[8] * t181
-            + parameters[9] * (t134 - t162) + parameters[10] * t176
-            - parameters[11] * t131;
-        let t229 = s_rod_leg1
-            * (t204 + parameters[12] * t179 - parameters[14] * t188
-                + parameters[15] * t169)
+        let t102 = 3.188775510204082 * (t69 * t78);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t82;
+        let t104 = t102 - rate_dot_rod_leg1;
+        let t106 = t69 * t69;
+        let t107 = 3.188775510204082 * t106;
+        let t120 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
+        let t124 = t60 * t77 + t63 * t82 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + 0.24 * s_cross_leg1 * t58 + t120
+            + t120;
+        let t125 = 1.7857142857142858 * t124;
+        let t129 = t90 - 0.24 * t58;
+        let t132 = 0.24 * rate_dot_arm_leg1 - t87;
+        let t134 = c_cross_leg1 * t129 + s_cross_leg1 * t132;
+        let t135 = c_rod_leg1 * t134;
+        let t138 = 0.8928571428571429 * t17
+            * (parameters[14] * t104 - parameters[13] * (t107 + t73)
+                - parameters[15] * t125 + parameters[16] * t135);
+        let t141 = t102 + rate_dot_rod_leg1;
+        let t143 = t78 * t78;
+        let t144 = 3.188775510204082 * t143;
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t124;
+        let t150 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t153 = s_rod_leg1 * t134;
+        let t156 = 0.42857142857142855 * (pose[1] * s_cross_leg1)
+            * (parameters[13] * t141 - parameters[14] * (t144 + t73)
+                + parameters[15] * t150 - parameters[16] * t153);
+        let t158 = t120 - t124;
+        let t160 = 1.7857142857142858 * (t120 + t158);
+        let t163 = rate_rod_leg1 * (1.7857142857142858 * t69);
+        let t164 = t150 + t163;
+        let t165 = t163 + t164;
+        let t172 = c_cross_leg1 * t132 - s_cross_leg1 * t129;
+        let t176 = t138 - t156
+            + t49
+                * (parameters[13] * t160 + parameters[14] * t165 + parameters[15] * t71
+                    + parameters[16] * t172);
+        let t177 = t99 + t176;
+        let minus_gcross_vx_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 * t60 + s_armcross_leg1);
+        let t191 = parameters[8] * t160 - parameters[7] * t164 + parameters[9] * t141
+            + parameters[10] * t163 + parameters[11] * (t107 - t73);
+        let t201 = 1.7857142857142858 * t120;
+        let t210 = parameters[9] * (t73 - t144)
+            - (parameters[7] * t201 + parameters[8] * t165)
+            + parameters[10] * (1.7857142857142858 * t158) - parameters[11] * t104;
+        let t218 = s_rod_leg1
+            * (t191 - parameters[12] * t163 - parameters[14] * t172
+                + parameters[15] * t153)
             + c_rod_leg1
-                * (t221 - parameters[12] * t175 + parameters[13] * t188
-                    + parameters[15] * t153);
-        let t232 = pose[1] + 0.04330127018922194;
-        let t233 = t232 - 0.17320508075688776;
-        let t235 = pose[0] - 0.025;
-        let t236 = t235 + 0.1;
-        let t237 = 0.5 * t236;
-        let t238 = 0.8660254037844387 * t233 - t237;
-        let t241 = 0.2304 * (t238 * t238 + t3);
-        let t242 = 1.0 / t241;
-        let t243 = 0.48 * t238;
-        let t244 = t236 * t236;
-        let t247 = t244 + t233 * t233 + t3;
-        let t249 = t247 - 0.3136 + 0.0576;
-        let t252 = t241 - t249 * t249;
-        ::overact::guard::reach(t252, "leg2")?;
-        let t253 = ::overact::math::sqrt(t252);
-        let c_arm_leg2 = t242 * (t243 * t249 - t14 * t253);
-        let t258 = t238 - 0.24 * c_arm_leg2;
-        let t259 = 0.8660254037844387 * t236;
-        let t261 = t259 + 0.5 * t233;
-        let t262 = t261 * t261;
-        let t266 = 1.0 - 3.188775510204082 * t262;
-        ::overact::guard::reach(t266, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t266);
-        let c_cross_leg2 = (t247 - (0.0576 + t262) - 0.3136 * t266)
+                * (t210 + parameters[12] * t201 + parameters[13] * t172
+                    + parameters[15] * t135);
+        let t222 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t225 = pose[0] - 0.025 + 0.1;
+        let t226 = 0.5 * t225;
+        let t227 = 0.8660254037844387 * t222 - t226;
+        let t230 = 0.2304 * (t227 * t227 + t3);
+        let t231 = t225 * t225;
+        let t234 = t231 + t222 * t222 + t3;
+        let t236 = t234 - 0.3136 + 0.0576;
+        let t238 = t230 - t236 * t236;
+        ::overact::guard::reach(t238, "leg2")?;
+        let t239 = ::overact::math::sqrt(t238);
+        let t241 = 0.8660254037844387 * t225;
+        let t243 = t241 + 0.5 * t222;
+        let t244 = t243 * t243;
+        let t246 = 1.0 - 3.188775510204082 * t244;
+        ::overact::guard::reach(t246, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t246);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t248 = 0.56 * c_rod_leg2;
+        let s_cross_leg2 = 2.0833333333333335 * t239 / t248;
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
+        let t250 = 1.0 / s_cross_leg2;
+        let t251 = 4.166666666666667 * t250;
+        let t252 = 1.0 / c_rod_leg2;
+        let t253 = 1.7857142857142858 * t252;
+        let t254 = t243 * t253;
+        let t256 = 1.0 / t230;
+        let t257 = 0.48 * t227;
+        let c_arm_leg2 = t256 * (t257 * t236 - t14 * t239);
+        let c_cross_leg2 = (t234 - (0.0576 + t244) - 0.3136 * t246)
             / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t242 * (t14 * t249 + t243 * t253);
-        let s_cross_leg2 = 2.0833333333333335 * t253 / (0.56 * c_rod_leg2);
+        let minus_s_arm_leg2 = t256 * (t14 * t236 + t257 * t239);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t282 = t261 * c_armcross_leg2;
-        let t285 = 1.5464739353293548 * t282 - 0.5 * c_rod_leg2;
-        let t288 = 0.24 * minus_s_arm_leg2;
-        let t289 = pose[2] - t288;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t261;
+        let t275 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t251 * (0.8660254037844387 * t254 - t275);
+        let t278 = 0.8660254037844387 * c_armcross_leg2;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t294 = minus_s_rod_leg2 * s_armcross_leg2;
-        let t295 = t289 * t294;
-        let t298 = 0.20784609690826528 * minus_s_arm_leg2;
-        let t301 = 0.8928571428571429 * t282 + 0.8660254037844387 * c_rod_leg2;
-        let t305 = t258 * (0.56 * t301) - 0.28 * t295;
-        let t310 = minus_s_arm_leg2 * t294;
-        let t312 = 0.1344 * (c_arm_leg2 * t301) - 0.0672 * t310;
-        let t317 = t298 * t305 - 0.8660254037844387 * t289 * t312 - 0.14 * (t253 * t285);
-        ::overact::guard::leg(t317, 0.06758306237512474, "leg2")?;
-        let t318 = 1.0 / t317;
-        let garm_vx_leg2 = (t258 * (0.56 * t285) - 0.4849742261192857 * t295) * t318;
-        let t320 = 0.12 * c_arm_leg2;
-        let garm_vy_leg2 = t305 * t318;
-        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t289) * t318;
-        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
-            + garm_vz_leg2 * twist[2];
-        let t330 = rate_arm_leg2 * rate_arm_leg2;
-        let t333 = t235 + 0.1 + t320;
-        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t285)
-            - 0.11639381426862856 * (minus_s_arm_leg2 * t301)) * t318;
-        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t285)
-            - 0.11639381426862856 * t310) * t318;
-        let minus_gcross_vy_leg2 = t312 * t318;
-        let rate_cross_leg2 = gcross_vz_leg2 * twist[2]
-            - (minus_gcross_vx_leg2 * twist[0] + minus_gcross_vy_leg2 * twist[1]);
-        let t351 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t289) - t258 * t298)
-            * t318;
-        let minus_grod_vy_leg2 = 0.25 * t253 * t318;
-        let rate_rod_leg2 = grod_vx_leg2 * twist[0] - minus_grod_vy_leg2 * twist[1];
-        let t364 = t351 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t367 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t368 = 0.5 * rate_cross_leg2;
-        let t369 = t367 - t368;
-        let t372 = c_armcross_leg2 * rate_rod_leg2;
-        let t374 = t364 * t364 + t369 * t369 + t372 * t372;
-        let t377 = 0.20784609690826528 * c_arm_leg2;
-        let t379 = t232 - (0.17320508075688776 + t377);
-        let t384 = t379 * t369 - t333 * t364 + t289 * t372;
-        let t387 = t351 * t372;
-        let t390 = 1.3333333333333333 * (t351 * t367);
-        let t394 = acceleration[0]
-            - (t320 * t330 - t333 * t374 - t364 * t384 + t289 * t387 + t379 * t390);
-        let t401 = t368 * t372;
-        let t406 = acceleration[1]
-            - (t369 * t384 - (t377 * t330 + t379 * t374) + t289 * t401 - t333 * t390);
-        let t414 = t379 * t401 + t333 * t387;
-        let t417 = acceleration[2] + t288 * t330 + t289 * t374 + t414 + t414;
-        let rate_dot_arm_leg2 = garm_vx_leg2 * t394 + garm_vy_leg2 * t406
-            + garm_vz_leg2 * t417;
-        let t421 = 9.81 * c_arm_leg2;
-        let t424 = 9.81 * minus_s_arm_leg2;
-        let t433 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t421
-            - parameters[19] * t424 + parameters[20] * rate_dot_arm_leg2
+        let t287 = 0.24 * c_cross_leg2;
+        let t292 = t278 * twist[1] - t275 * twist[0] - s_armcross_leg2 * twist[2];
+        let t293 = 0.8660254037844387 * twist[0];
+        let t294 = 0.5 * twist[1];
+        let t295 = t293 + t294;
+        let rate_arm_leg2 = t251 * (t292 + t254 * t295);
+        let t299 = rate_arm_leg2 * rate_arm_leg2;
+        let minus_rate_rod_leg2 = t253 * t295;
+        let t302 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t303 = 0.5 * s_armcross_leg2;
+        let t305 = 0.8660254037844387 * s_armcross_leg2;
+        let t310 = c_cross_leg2 * t250;
+        let t314 = t287 * (t251 * t254);
+        let t316 = t303 * twist[0] - t305 * twist[1] - c_armcross_leg2 * twist[2]
+            - t310 * t292 - t314 * t295;
+        let rate_cross_leg2 = t253 * t316;
+        let t318 = rate_cross_leg2 * rate_cross_leg2;
+        let t319 = t302 + t318;
+        let t322 = t278 * acceleration[1] - t275 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t287 * t299 + t248 * t319;
+        let t323 = 0.8660254037844387 * acceleration[0];
+        let t324 = 0.5 * acceleration[1];
+        let t327 = t243 * rate_cross_leg2;
+        let t330 = t323 + t324 + t243 * t319 - rate_cross_leg2 * t327;
+        let rate_dot_arm_leg2 = t251 * (t322 + t254 * t330);
+        let t335 = 9.81 * c_arm_leg2;
+        let t338 = 9.81 * minus_s_arm_leg2;
+        let t347 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t335
+            - parameters[19] * t338 + parameters[20] * rate_dot_arm_leg2
             + parameters[21] * rate_arm_leg2
             + ::overact::math::signed(parameters[22], rate_arm_leg2) + parameters[23];
-        let t435 = 1.7857142857142858 * t384;
-        let t436 = c_rod_leg2 * rate_cross_leg2;
-        let t437 = t435 * t436;
-        let rate_dot_rod_leg2 = grod_vx_leg2 * t394 - minus_grod_vy_leg2 * t406;
-        let t441 = t437 - rate_dot_rod_leg2;
-        let t443 = t436 * t436;
-        let t444 = rate_rod_leg2 * rate_rod_leg2;
-        let rate_dot_cross_leg2 = gcross_vz_leg2 * t417
-            - (minus_gcross_vx_leg2 * t394 + minus_gcross_vy_leg2 * t406);
-        let t453 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t457 = t424 - 0.24 * t330;
-        let t460 = 0.24 * rate_dot_arm_leg2 - t421;
-        let t462 = c_cross_leg2 * t457 + s_cross_leg2 * t460;
-        let t463 = c_rod_leg2 * t462;
-        let t466 = 0.8928571428571429 * t253
-            * (parameters[31] * t441 - parameters[30] * (t443 + t444)
-                + parameters[32] * t453 + parameters[33] * t463);
-        let t469 = t437 + rate_dot_rod_leg2;
-        let t472 = 3.188775510204082 * (t384 * t384);
-        let t476 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t479 = minus_s_rod_leg2 * t462;
-        let t482 = 0.42857142857142855 * (t261 * s_cross_leg2)
-            * (parameters[30] * t469 - parameters[31] * (t472 + t444)
-                + parameters[32] * t476 + parameters[33] * t479);
-        let t485 = rate_rod_leg2 * t435;
-        let t486 = t453 - t485;
-        let t487 = t485 - t486;
-        let t489 = rate_rod_leg2 * t436;
-        let t490 = t489 - t476;
-        let t491 = t489 + t490;
-        let t499 = c_cross_leg2 * t460 - s_cross_leg2 * t457;
-        let t502 = 0.24 * c_cross_leg2
-            * (parameters[30] * t487 + parameters[31] * t491
-                - parameters[32] * (rate_cross_leg2 * rate_cross_leg2)
-                - parameters[33] * t499);
-        let t504 = t433 + t466 + t482 - t502;
-        let t515 = parameters[24] * t485 + parameters[25] * t491
-            + parameters[26] * (t444 - t472) + parameters[27] * t486
-            - parameters[28] * t441;
-        let t532 = parameters[24] * t490 - parameters[25] * t487 + parameters[26] * t469
-            - parameters[27] * t489 + parameters[28] * (t443 - t444);
-        let t540 = c_rod_leg2
-            * (t515 - parameters[29] * t485 + parameters[30] * t499
-                + parameters[32] * t463)
+        let minus_rate_dot_rod_leg2 = t253 * t330;
+        let t351 = 3.188775510204082 * (t316 * t327);
+        let t352 = minus_rate_dot_rod_leg2 - t351;
+        let t354 = t316 * t316;
+        let t355 = 3.188775510204082 * t354;
+        let t367 = t243 * (rate_cross_leg2 * minus_rate_rod_leg2);
+        let t370 = t303 * acceleration[0] - t305 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2]
+            - (0.24 * s_cross_leg2 * t299 - t367 - t367);
+        let t374 = t370 - t310 * t322 - t314 * t330;
+        let t375 = 1.7857142857142858 * t374;
+        let t379 = t338 - 0.24 * t299;
+        let t382 = 0.24 * rate_dot_arm_leg2 - t335;
+        let t384 = c_cross_leg2 * t379 + s_cross_leg2 * t382;
+        let t385 = c_rod_leg2 * t384;
+        let t388 = 0.8928571428571429 * t239
+            * (parameters[31] * t352 - parameters[30] * (t355 + t302)
+                + parameters[32] * t375 + parameters[33] * t385);
+        let minus_s_rod_leg2 = 1.7857142857142858 * t243;
+        let rate_dot_cross_leg2 = t253 * t374;
+        let t393 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t395 = t351 + minus_rate_dot_rod_leg2;
+        let t397 = t327 * t327;
+        let t398 = 3.188775510204082 * t397;
+        let t403 = minus_s_rod_leg2 * t384;
+        let t406 = 0.42857142857142855 * (t243 * s_cross_leg2)
+            * (parameters[32] * t393
+                - (parameters[30] * t395 + parameters[31] * (t398 + t302))
+                + parameters[33] * t403);
+        let t408 = t374 - t367;
+        let t410 = 1.7857142857142858 * (t367 - t408);
+        let t413 = minus_rate_rod_leg2 * (1.7857142857142858 * t316);
+        let t414 = t393 + t413;
+        let t415 = t413 + t414;
+        let t422 = c_cross_leg2 * t382 - s_cross_leg2 * t379;
+        let t426 = t388 + t406
+            - t287
+                * (parameters[30] * t410 - parameters[31] * t415 - parameters[32] * t318
+                    - parameters[33] * t422);
+        let t427 = t347 + t426;
+        let gcross_vx_leg2 = t253 * (t275 * t310 + t303 - 0.8660254037844387 * t314);
+        let t434 = 1.7857142857142858 * t367;
+        let t445 = parameters[24] * t434 - parameters[25] * t415
+            + parameters[26] * (t302 - t398)
+            + parameters[27] * (1.7857142857142858 * t408) - parameters[28] * t352;
+        let t462 = parameters[27] * t413
+            - (parameters[24] * t414 + parameters[25] * t410 + parameters[26] * t395)
+            + parameters[28] * (t355 - t302);
+        let t470 = c_rod_leg2
+            * (t445 - parameters[29] * t434 + parameters[30] * t422
+                + parameters[32] * t385)
             - minus_s_rod_leg2
-                * (t532 + parameters[29] * t489 - parameters[31] * t499
-                    - parameters[32] * t479);
-        let t552 = parameters[25] * (t472 - t443) - parameters[24] * t437
-            - parameters[26] * t476 + parameters[27] * t437 + parameters[28] * t453;
-        let t558 = t552 + parameters[29] * rate_dot_rod_leg2 + parameters[30] * t479
-            - parameters[31] * t463;
-        let t562 = pose[1] - 0.04330127018922194;
-        let t563 = t562 + 0.17320508075688776;
-        let t565 = t237 + 0.8660254037844387 * t563;
-        let t568 = 0.2304 * (t565 * t565 + t3);
-        let t569 = 1.0 / t568;
-        let t570 = 0.48 * t565;
-        let t573 = t244 + t563 * t563 + t3;
-        let t575 = t573 - 0.3136 + 0.0576;
-        let t578 = t568 - t575 * t575;
-        ::overact::guard::reach(t578, "leg3")?;
-        let t579 = ::overact::math::sqrt(t578);
-        let minus_c_arm_leg3 = t569 * (t570 * t575 + t14 * t579);
-        let t584 = t565 - 0.24 * minus_c_arm_leg3;
-        let t586 = t259 - 0.5 * t563;
-        let t587 = t586 * t586;
-        let t591 = 1.0 - 3.188775510204082 * t587;
-        ::overact::guard::reach(t591, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t591);
-        let c_cross_leg3 = (t573 - (0.0576 + t587) - 0.3136 * t591)
+                * (t462 - parameters[29] * t413 - parameters[31] * t422
+                    - parameters[32] * t403);
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t252;
+        let t484 = parameters[24] * t351
+            + parameters[25] * (3.188775510204082 * (t397 - t354))
+            - parameters[26] * t393 - parameters[27] * t351 + parameters[28] * t375;
+        let t490 = t484 - parameters[29] * minus_rate_dot_rod_leg2
+            + parameters[30] * t403 - parameters[31] * t385;
+        let t495 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t497 = t226 + 0.8660254037844387 * t495;
+        let t500 = 0.2304 * (t497 * t497 + t3);
+        let t503 = t231 + t495 * t495 + t3;
+        let t505 = t503 - 0.3136 + 0.0576;
+        let t507 = t500 - t505 * t505;
+        ::overact::guard::reach(t507, "leg3")?;
+        let t508 = ::overact::math::sqrt(t507);
+        let t511 = t241 - 0.5 * t495;
+        let t512 = t511 * t511;
+        let t514 = 1.0 - 3.188775510204082 * t512;
+        ::overact::guard::reach(t514, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t514);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let t516 = 0.56 * c_rod_leg3;
+        let s_cross_leg3 = 2.0833333333333335 * t508 / t516;
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
+        let t518 = 1.0 / s_cross_leg3;
+        let t519 = 4.166666666666667 * t518;
+        let t520 = 1.0 / t500;
+        let t521 = 0.48 * t497;
+        let minus_c_arm_leg3 = t520 * (t521 * t505 + t14 * t508);
+        let c_cross_leg3 = (t503 - (0.0576 + t512) - 0.3136 * t514)
             / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t569 * (t570 * t579 - t14 * t575);
-        let s_cross_leg3 = 2.0833333333333335 * t579 / (0.56 * c_rod_leg3);
+        let s_arm_leg3 = t520 * (t521 * t508 - t14 * t505);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t607 = t586 * minus_c_armcross_leg3;
-        let t610 = 1.5464739353293548 * t607 + 0.5 * c_rod_leg3;
-        let t613 = 0.24 * s_arm_leg3;
-        let t614 = pose[2] + t613;
-        let s_rod_leg3 = 1.7857142857142858 * t586;
+        let t539 = 0.5 * minus_c_armcross_leg3;
+        let t540 = 1.0 / c_rod_leg3;
+        let t541 = 1.7857142857142858 * t540;
+        let t542 = t511 * t541;
+        let garm_vx_leg3 = t519 * (t539 + 0.8660254037844387 * t542);
+        let t547 = 0.8660254037844387 * minus_c_armcross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t619 = s_rod_leg3 * s_armcross_leg3;
-        let t620 = t614 * t619;
-        let t623 = 0.20784609690826528 * s_arm_leg3;
-        let t626 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t607;
-        let t630 = t584 * (0.56 * t626) + 0.28 * t620;
-        let t635 = s_arm_leg3 * t619;
-        let t637 = 0.1344 * (minus_c_arm_leg3 * t626) - 0.0672 * t635;
-        let t642 = t623 * t630 + 0.8660254037844387 * t614 * t637 + 0.14 * (t579 * t610);
-        ::overact::guard::leg(t642, 0.06758306237512474, "leg3")?;
-        let t643 = 1.0 / t642;
-        let garm_vx_leg3 = (t584 * (0.56 * t610) - 0.4849742261192857 * t620) * t643;
-        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t626)
-            + 0.0672 * (s_arm_leg3 * t610)) * t643;
-        let minus_gcross_vx_leg3 = (0.11639381426862856 * t635
-            + 0.1344 * (minus_c_arm_leg3 * t610)) * t643;
-        let minus_gcross_vy_leg3 = t637 * t643;
-        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
-            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
-        let t662 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (t584 * t623
-            + 0.20784609690826528 * (minus_c_arm_leg3 * t614)) * t643;
-        let minus_grod_vy_leg3 = 0.25 * t579 * t643;
-        let rate_rod_leg3 = grod_vx_leg3 * twist[0] - minus_grod_vy_leg3 * twist[1];
-        let t675 = t662 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t676 = 0.12 * minus_c_arm_leg3;
-        let t678 = t235 - (t676 - 0.1);
-        let t680 = 0.20784609690826528 * minus_c_arm_leg3;
-        let t682 = t562 - (t680 - 0.17320508075688776);
-        let t683 = 0.5 * rate_cross_leg3;
-        let t685 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t686 = t683 + t685;
-        let t689 = minus_c_armcross_leg3 * rate_rod_leg3;
-        let t691 = t678 * t675 - t682 * t686 - t614 * t689;
-        let garm_vy_leg3 = t630 * t643;
-        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t614) * t643;
-        let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
-            + garm_vz_leg3 * twist[2];
-        let t702 = rate_arm_leg3 * rate_arm_leg3;
-        let t708 = t675 * t675 + t686 * t686 + t689 * t689;
-        let t712 = t662 * t689;
-        let t715 = 1.3333333333333333 * (t662 * t685);
-        let t719 = acceleration[0]
-            - (t675 * t691 - (t676 * t702 + t678 * t708) + t614 * t712 + t682 * t715);
-        let t727 = t683 * t689;
-        let t731 = acceleration[1] + t680 * t702 + t682 * t708 + t686 * t691
-            + t678 * t715 + t614 * t727;
-        let t739 = t682 * t727 - t678 * t712;
-        let t742 = acceleration[2] - (t613 * t702 - t614 * t708 + t739 + t739);
-        let rate_dot_arm_leg3 = garm_vx_leg3 * t719 + garm_vy_leg3 * t731
-            + garm_vz_leg3 * t742;
-        let t746 = 9.81 * minus_c_arm_leg3;
-        let t749 = 9.81 * s_arm_leg3;
-        let t758 = parameters[34] * rate_dot_arm_leg3 + parameters[35] * t746
-            + parameters[36] * t749 + parameters[37] * rate_dot_arm_leg3
+        let t555 = 0.24 * c_cross_leg3;
+        let t560 = t539 * twist[0] + t547 * twist[1] - s_armcross_leg3 * twist[2];
+        let t561 = t293 - t294;
+        let rate_arm_leg3 = t519 * (t560 + t542 * t561);
+        let t565 = rate_arm_leg3 * rate_arm_leg3;
+        let rate_rod_leg3 = t541 * t561;
+        let t568 = rate_rod_leg3 * rate_rod_leg3;
+        let t569 = 0.5 * s_armcross_leg3;
+        let t571 = 0.8660254037844387 * s_armcross_leg3;
+        let t576 = c_cross_leg3 * t518;
+        let t580 = t555 * (t519 * t542);
+        let t582 = t569 * twist[0] + t571 * twist[1] + minus_c_armcross_leg3 * twist[2]
+            - t576 * t560 - t580 * t561;
+        let rate_cross_leg3 = t541 * t582;
+        let t584 = rate_cross_leg3 * rate_cross_leg3;
+        let t585 = t568 + t584;
+        let t588 = t539 * acceleration[0] + t547 * acceleration[1]
+            - s_armcross_leg3 * acceleration[2] + t555 * t565 + t516 * t585;
+        let t590 = t511 * rate_cross_leg3;
+        let t594 = t323 - t324 - (rate_cross_leg3 * t590 - t511 * t585);
+        let rate_dot_arm_leg3 = t519 * (t588 + t542 * t594);
+        let t599 = 9.81 * minus_c_arm_leg3;
+        let t602 = 9.81 * s_arm_leg3;
+        let t611 = parameters[34] * rate_dot_arm_leg3 + parameters[35] * t599
+            + parameters[36] * t602 + parameters[37] * rate_dot_arm_leg3
             + parameters[38] * rate_arm_leg3
             + ::overact::math::signed(parameters[39], rate_arm_leg3) + parameters[40];
-        let t760 = 1.7857142857142858 * t691;
-        let t761 = c_rod_leg3 * rate_cross_leg3;
-        let t762 = t760 * t761;
-        let rate_dot_rod_leg3 = grod_vx_leg3 * t719 - minus_grod_vy_leg3 * t731;
-        let t766 = t762 - rate_dot_rod_leg3;
-        let t768 = t761 * t761;
-        let t769 = rate_rod_leg3 * rate_rod_leg3;
-        let rate_dot_cross_leg3 = gcross_vz_leg3 * t742
-            - (minus_gcross_vx_leg3 * t719 + minus_gcross_vy_leg3 * t731);
-        let t778 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t782 = t746 + 0.24 * rate_dot_arm_leg3;
-        let t785 = t749 + 0.24 * t702;
-        let t787 = s_cross_leg3 * t782 - c_cross_leg3 * t785;
-        let t788 = c_rod_leg3 * t787;
-        let t791 = 0.8928571428571429 * t579
-            * (parameters[48] * t766 - parameters[47] * (t768 + t769)
-                + parameters[49] * t778 + parameters[50] * t788);
-        let t794 = t762 + rate_dot_rod_leg3;
-        let t797 = 3.188775510204082 * (t691 * t691);
-        let t801 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t804 = s_rod_leg3 * t787;
-        let t807 = 0.42857142857142855 * (t586 * s_cross_leg3)
-            * (parameters[47] * t794 - parameters[48] * (t797 + t769)
-                - parameters[49] * t801 - parameters[50] * t804);
-        let t810 = rate_rod_leg3 * t760;
-        let t811 = t778 - t810;
-        let t812 = t810 - t811;
-        let t814 = rate_rod_leg3 * t761;
-        let t815 = t801 + t814;
-        let t816 = t814 + t815;
-        let t824 = s_cross_leg3 * t785 + c_cross_leg3 * t782;
-        let t827 = 0.24 * c_cross_leg3
-            * (parameters[47] * t812 + parameters[48] * t816
-                - parameters[49] * (rate_cross_leg3 * rate_cross_leg3)
-                - parameters[50] * t824);
-        let t829 = t758 + t791 - t807 - t827;
-        let t840 = parameters[41] * t815 - parameters[42] * t812 + parameters[43] * t794
-            - parameters[44] * t814 + parameters[45] * (t768 - t769);
-        let t857 = parameters[41] * t810 + parameters[42] * t816
-            + parameters[43] * (t769 - t797) + parameters[44] * t811
-            - parameters[45] * t766;
-        let t865 = s_rod_leg3
-            * (t840 + parameters[46] * t814 - parameters[48] * t824
-                + parameters[49] * t804)
+        let t614 = 3.188775510204082 * (t582 * t590);
+        let rate_dot_rod_leg3 = t541 * t594;
+        let t616 = t614 - rate_dot_rod_leg3;
+        let t618 = t582 * t582;
+        let t619 = 3.188775510204082 * t618;
+        let t631 = t511 * (rate_cross_leg3 * rate_rod_leg3);
+        let t634 = t569 * acceleration[0] + t571 * acceleration[1]
+            + minus_c_armcross_leg3 * acceleration[2]
+            - (0.24 * s_cross_leg3 * t565 - t631 - t631);
+        let t638 = t634 - t576 * t588 - t580 * t594;
+        let t639 = 1.7857142857142858 * t638;
+        let t643 = t599 + 0.24 * rate_dot_arm_leg3;
+        let t646 = t602 + 0.24 * t565;
+        let t648 = s_cross_leg3 * t643 - c_cross_leg3 * t646;
+        let t649 = c_rod_leg3 * t648;
+        let t652 = 0.8928571428571429 * t508
+            * (parameters[48] * t616 - parameters[47] * (t619 + t568)
+                + parameters[49] * t639 + parameters[50] * t649);
+        let t655 = t614 + rate_dot_rod_leg3;
+        let t657 = t590 * t590;
+        let t658 = 3.188775510204082 * t657;
+        let s_rod_leg3 = 1.7857142857142858 * t511;
+        let rate_dot_cross_leg3 = t541 * t638;
+        let t664 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t667 = s_rod_leg3 * t648;
+        let t670 = 0.42857142857142855 * (t511 * s_cross_leg3)
+            * (parameters[47] * t655 - parameters[48] * (t658 + t568)
+                - parameters[49] * t664 - parameters[50] * t667);
+        let t672 = t638 - t631;
+        let t674 = 1.7857142857142858 * (t631 - t672);
+        let t677 = rate_rod_leg3 * (1.7857142857142858 * t582);
+        let t678 = t664 + t677;
+        let t679 = t677 + t678;
+        let t686 = s_cross_leg3 * t646 + c_cross_leg3 * t643;
+        let t690 = t652 - t670
+            - t555
+                * (parameters[47] * t674 + parameters[48] * t679 - parameters[49] * t584
+                    - parameters[50] * t686);
+        let t691 = t611 + t690;
+        let gcross_vx_leg3 = t541 * (t569 - t539 * t576 - 0.8660254037844387 * t580);
+        let t707 = parameters[41] * t678 - parameters[42] * t674 + parameters[43] * t655
+            - parameters[44] * t677 + parameters[45] * (t619 - t568);
+        let t715 = 1.7857142857142858 * t631;
+        let t726 = parameters[41] * t715 + parameters[42] * t679
+            + parameters[43] * (t568 - t658)
+            + parameters[44] * (1.7857142857142858 * t672) - parameters[45] * t616;
+        let t734 = s_rod_leg3
+            * (t707 + parameters[46] * t677 - parameters[48] * t686
+                + parameters[49] * t667)
             + c_rod_leg3
-                * (t857 - parameters[46] * t810 + parameters[47] * t824
-                    + parameters[49] * t788);
-        let t877 = parameters[42] * (t797 - t768) - parameters[41] * t762
-            + parameters[43] * t801 + parameters[44] * t762 + parameters[45] * t778;
-        let t883 = t877 + parameters[46] * rate_dot_rod_leg3 - parameters[47] * t804
-            - parameters[48] * t788;
-        let t886 = garm_vx_leg1 * t193 - minus_gcross_vx_leg1 * t229
-            + garm_vx_leg2 * t504 - minus_gcross_vx_leg2 * t540 + grod_vx_leg2 * t558
-            + garm_vx_leg3 * t829 - minus_gcross_vx_leg3 * t865 + grod_vx_leg3 * t883;
-        let t890 = t886 + acceleration[0] * parameters[51]
+                * (t726 - parameters[46] * t715 + parameters[47] * t686
+                    + parameters[49] * t649);
+        let grod_vx_leg3 = 1.5464739353293548 * t540;
+        let t748 = parameters[42] * (3.188775510204082 * (t657 - t618))
+            - parameters[41] * t614 + parameters[43] * t664 + parameters[44] * t614
+            + parameters[45] * t639;
+        let t754 = t748 + parameters[46] * rate_dot_rod_leg3 - parameters[47] * t667
+            - parameters[48] * t649;
+        let t757 = garm_vx_leg1 * t177 - minus_gcross_vx_leg1 * t218
+            + garm_vx_leg2 * t427 + gcross_vx_leg2 * t470 - minus_grod_vx_leg2 * t490
+            + garm_vx_leg3 * t691 + gcross_vx_leg3 * t734 + grod_vx_leg3 * t754;
+        let t761 = t757 + acceleration[0] * parameters[51]
             + acceleration[0] * parameters[52];
-        let t895 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t766 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t895, 14.869730172882845, "actuators")?;
-        let t896 = 1.0 / t895;
-        let t902 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+        ::overact::guard::platform(t766, 14.869730172882841, "actuators")?;
+        let t767 = 1.0 / t766;
+        let garm_vy_leg2 = t251 * (t278 + 0.5 * t254);
+        let garm_vy_leg3 = t519 * (t547 - 0.5 * t542);
+        let t779 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vx_leg3 * garm_vy_leg3;
-        let t903 = t902 * t896;
-        let t910 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t902 * t903;
-        ::overact::guard::platform(t910, 14.869730172882843, "actuators")?;
-        let t911 = 1.0 / t910;
-        let t924 = parameters[8] * (t162 - t133) - parameters[7] * t129
-            + parameters[9] * t166 + parameters[10] * t129 + parameters[11] * t143;
-        let t932 = garm_vy_leg1 * t193 + gcross_vy_leg1 * t229
+        let t780 = t779 * t767;
+        let t787 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t779 * t780;
+        ::overact::guard::platform(t787, 14.869730172882846, "actuators")?;
+        let t788 = 1.0 / t787;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * t63;
+        let t803 = parameters[8] * (3.188775510204082 * (t143 - t106))
+            - parameters[7] * t102 - parameters[9] * t150 + parameters[10] * t102
+            - parameters[11] * t125;
+        let t811 = garm_vy_leg1 * t177 - minus_gcross_vy_leg1 * t218
             + grod_vy_leg1
-                * (t924 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t169
-                    - parameters[14] * t153);
-        let t944 = t932 + garm_vy_leg2 * t504 - minus_gcross_vy_leg2 * t540
-            - minus_grod_vy_leg2 * t558 + garm_vy_leg3 * t829
-            - minus_gcross_vy_leg3 * t865 - minus_grod_vy_leg3 * t883;
-        let t950 = t944 + acceleration[1] * parameters[51]
-            + acceleration[1] * parameters[52] - t890 * t903;
-        let t961 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
-            + garm_vx_leg3 * garm_vz_leg3;
-        let t962 = t961 * t896;
-        let t964 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
-            + garm_vy_leg3 * garm_vz_leg3 - t902 * t962;
-        let t965 = t964 * t911;
-        let t974 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + garm_vz_leg3 * garm_vz_leg3 - t961 * t962 - t964 * t965;
-        ::overact::guard::platform(t974, 34.855350201355726, "actuators")?;
-        let t985 = garm_vz_leg1 * t193 - minus_gcross_vz_leg1 * t229
-            + garm_vz_leg2 * t504 + gcross_vz_leg2 * t540 + garm_vz_leg3 * t829
-            + gcross_vz_leg3 * t865;
-        let t986 = acceleration[2] + 9.81;
-        let t995 = (t985 + parameters[51] * t986 + parameters[52] * t986 - t890 * t962
-            - t965 * t950) / t974;
-        let t997 = t911 * t950 - t965 * t995;
-        let t1001 = t890 * t896 - t903 * t997 - t962 * t995;
+                * (t803 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t153
+                    - parameters[14] * t135);
+        let minus_gcross_vy_leg2 = t253 * (t278 * t310 + t305 + 0.5 * t314);
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t252;
+        let gcross_vy_leg3 = t541 * (t571 - t547 * t576 + 0.5 * t580);
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t540;
+        let t835 = t811 + garm_vy_leg2 * t427 - minus_gcross_vy_leg2 * t470
+            - minus_grod_vy_leg2 * t490 + garm_vy_leg3 * t691 + gcross_vy_leg3 * t734
+            - minus_grod_vy_leg3 * t754;
+        let t841 = t835 + acceleration[1] * parameters[51]
+            + acceleration[1] * parameters[52] - t761 * t780;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t41;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t251;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t519;
+        let t850 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+            + garm_vx_leg3 * minus_garm_vz_leg3;
+        let t851 = t850 * t767;
+        let t858 = t779 * t851
+            - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
+                + garm_vy_leg3 * minus_garm_vz_leg3);
+        let t859 = t858 * t788;
+        let t868 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+            + minus_garm_vz_leg2 * minus_garm_vz_leg2
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t850 * t851 - t858 * t859;
+        ::overact::guard::platform(t868, 34.855350201355726, "actuators")?;
+        let gcross_vz_leg2 = t253 * (s_armcross_leg2 * t310 - c_armcross_leg2);
+        let minus_gcross_vz_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 - s_armcross_leg1 * t60);
+        let gcross_vz_leg3 = t541 * (s_armcross_leg3 * t576 + minus_c_armcross_leg3);
+        let t888 = gcross_vz_leg2 * t470 - minus_garm_vz_leg2 * t427
+            - (minus_garm_vz_leg1 * t177 + minus_gcross_vz_leg1 * t218)
+            + gcross_vz_leg3 * t734 - minus_garm_vz_leg3 * t691;
+        let t889 = acceleration[2] + 9.81;
+        let t898 = (t888 + parameters[51] * t889 + parameters[52] * t889 + t761 * t851
+            - t859 * t841) / t868;
+        let t900 = t788 * t841 - t859 * t898;
+        let t904 = t761 * t767 - t780 * t900 + t851 * t898;
         Ok([
-            garm_vx_leg1 * t1001 + garm_vy_leg1 * t997 + garm_vz_leg1 * t995,
-            garm_vx_leg2 * t1001 + garm_vy_leg2 * t997 + garm_vz_leg2 * t995,
-            garm_vx_leg3 * t1001 + garm_vy_leg3 * t997 + garm_vz_leg3 * t995,
+            garm_vx_leg1 * t904 + garm_vy_leg1 * t900 - minus_garm_vz_leg1 * t898,
+            garm_vx_leg2 * t904 + garm_vy_leg2 * t900 - minus_garm_vz_leg2 * t898,
+            garm_vx_leg3 * t904 + garm_vy_leg3 * t900 - minus_garm_vz_leg3 * t898,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -9001,7 +8194,7 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 924 operations (342 additions, 575 multiplications, 7 divisions), 0 square roots, 9 trigonometric pairs, 3 signs, 942 intermediates.
+    /// 799 operations (308 additions, 482 multiplications, 9 divisions), 0 square roots, 9 trigonometric pairs, 3 signs, 817 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -9012,395 +8205,367 @@ impl Delta {
         acceleration: &[f64; 3],
         parameters: &[f64; 53],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let (s_arm_leg1, c_arm_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s_cross_leg1, c_cross_leg1) = ::overact::math::sin_cos(joints[1]);
+        let [(s_arm_leg1, c_arm_leg1), (s_cross_leg1, c_cross_leg1),
+        (s_rod_leg1, c_rod_leg1), (s_rod_leg2, c_rod_leg2), (s_arm_leg2, c_arm_leg2),
+        (s_cross_leg2, c_cross_leg2), (s_cross_leg3, c_cross_leg3),
+        (s_rod_leg3, c_rod_leg3), (s_arm_leg3, c_arm_leg3)] = ::overact::math::sin_cos_all([
+            joints[0], joints[1], joints[2], joints[5], joints[3], joints[4], joints[7], joints[8],
+            joints[6],
+        ]);
+        ::overact::guard::leg(s_cross_leg1, 0.89794672585951, "leg1")?;
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258595101, "leg2")?;
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258595097, "leg3")?;
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
         let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let (s_rod_leg1, c_rod_leg1) = ::overact::math::sin_cos(joints[2]);
-        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t12 = c_armcross_leg1 * c_rod_leg1;
-        let t13 = s_armcross_leg1 * c_rod_leg1;
-        let t16 = c_arm_leg1 * t13 - s_arm_leg1 * t12;
-        ::overact::guard::leg(t16, 0.89794672585951, "leg1")?;
-        let t17 = 1.0 / t16;
-        let t18 = 4.166666666666667 * t17;
-        let garm_vx_leg1 = t12 * t18;
-        let t20 = 0.56 * s_rod_leg1;
-        let t21 = 1.7857142857142858 * t17;
-        let gcross_vz_leg1 = s_arm_leg1 * t21;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t21;
-        let t27 = 1.0 / c_rod_leg1;
-        let minus_gcross_vy_leg1 = t21
-            * (s_arm_leg1 * (s_armcross_leg1 * s_rod_leg1 * t27)
-                + c_arm_leg1 * (c_armcross_leg1 * s_rod_leg1 * t27));
-        let rate_cross_leg1 = gcross_vz_leg1 * twist[2]
-            - (minus_gcross_vx_leg1 * twist[0] + minus_gcross_vy_leg1 * twist[1]);
-        let grod_vy_leg1 = 1.7857142857142858 * t27;
+        let t10 = 1.0 / s_cross_leg1;
+        let t11 = 4.166666666666667 * t10;
+        let garm_vx_leg1 = c_armcross_leg1 * t11;
+        let t16 = 0.24 * c_cross_leg1;
+        let t19 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
+        let t22 = 1.0 / c_rod_leg1;
+        let t23 = s_rod_leg1 * t22;
+        let rate_arm_leg1 = t11 * (t19 + t23 * twist[1]);
+        let t27 = rate_arm_leg1 * rate_arm_leg1;
+        let grod_vy_leg1 = 1.7857142857142858 * t22;
+        let t31 = c_cross_leg1 * t10;
+        let garm_vy_leg1 = t11 * t23;
+        let t34 = t16 * garm_vy_leg1;
+        let t40 = t31 * t19 + t34 * twist[1] + s_armcross_leg1 * twist[0]
+            + c_armcross_leg1 * twist[2];
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t40;
+        let t42 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t40 = s_armcross_leg1 * rate_rod_leg1;
-        let t42 = t20 * (rate_cross_leg1 * t40);
-        let garm_vy_leg1 = s_rod_leg1 * t18;
-        let minus_garm_vz_leg1 = t13 * t18;
-        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
-            - minus_garm_vz_leg1 * twist[2];
-        let t51 = rate_arm_leg1 * rate_arm_leg1;
-        let t55 = rate_cross_leg1 * rate_cross_leg1;
-        let t57 = c_armcross_leg1 * rate_rod_leg1;
-        let t59 = t40 * t40 + t55 + t57 * t57;
-        let t64 = acceleration[0]
-            - (t42 - (0.24 * c_arm_leg1 * t51 + 0.56 * t12 * t59) + t42);
-        let t66 = t20 * rate_cross_leg1;
-        let t70 = acceleration[1] - (rate_cross_leg1 * t66 - t20 * t59);
-        let t79 = t20 * (rate_cross_leg1 * t57);
-        let t82 = acceleration[2]
-            - (0.24 * s_arm_leg1 * t51 + 0.56 * t13 * t59 + t79 + t79);
-        let rate_dot_arm_leg1 = garm_vx_leg1 * t64 + garm_vy_leg1 * t70
-            - minus_garm_vz_leg1 * t82;
-        let t86 = 9.81 * c_arm_leg1;
-        let t89 = 9.81 * s_arm_leg1;
-        let t98 = parameters[0] * rate_dot_arm_leg1 - parameters[1] * t86
-            + parameters[2] * t89 + parameters[3] * rate_dot_arm_leg1
+        let t44 = rate_rod_leg1 * rate_rod_leg1;
+        let t45 = t42 + t44;
+        let t48 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t16 * t27 + 0.56 * c_rod_leg1 * t45;
+        let t49 = 0.56 * s_rod_leg1;
+        let t50 = t49 * minus_rate_cross_leg1;
+        let t54 = acceleration[1] - (minus_rate_cross_leg1 * t50 - t49 * t45);
+        let rate_dot_arm_leg1 = t11 * (t48 + t23 * t54);
+        let t59 = 9.81 * c_arm_leg1;
+        let t62 = 9.81 * s_arm_leg1;
+        let t71 = parameters[0] * rate_dot_arm_leg1 - parameters[1] * t59
+            + parameters[2] * t62 + parameters[3] * rate_dot_arm_leg1
             + parameters[4] * rate_arm_leg1
             + ::overact::math::signed(parameters[5], rate_arm_leg1) + parameters[6];
-        let t100 = 1.7857142857142858 * t66;
-        let t101 = c_rod_leg1 * rate_cross_leg1;
-        let t102 = t100 * t101;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t70;
-        let t104 = t102 - rate_dot_rod_leg1;
-        let t106 = t101 * t101;
-        let t107 = rate_rod_leg1 * rate_rod_leg1;
-        let rate_dot_cross_leg1 = gcross_vz_leg1 * t82
-            - (minus_gcross_vx_leg1 * t64 + minus_gcross_vy_leg1 * t70);
-        let t116 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t120 = 0.24 * rate_dot_arm_leg1 - t86;
-        let t123 = t89 + 0.24 * t51;
-        let t125 = s_cross_leg1 * t120 - c_cross_leg1 * t123;
-        let t126 = c_rod_leg1 * t125;
-        let t129 = 0.24 * t16
-            * (parameters[14] * t104 - parameters[13] * (t106 + t107)
-                + parameters[15] * t116 + parameters[16] * t126);
-        let t132 = t102 + rate_dot_rod_leg1;
-        let t135 = 3.188775510204082 * (t66 * t66);
-        let t139 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t142 = s_rod_leg1 * t125;
-        let t145 = s_rod_leg1 * (0.24 * s_cross_leg1)
-            * (parameters[13] * t132 - parameters[14] * (t135 + t107)
-                - parameters[15] * t139 - parameters[16] * t142);
-        let t148 = rate_rod_leg1 * t100;
-        let t149 = t116 - t148;
-        let t150 = t148 - t149;
-        let t152 = rate_rod_leg1 * t101;
-        let t153 = t139 + t152;
-        let t154 = t152 + t153;
-        let t161 = s_cross_leg1 * t123 + c_cross_leg1 * t120;
-        let t165 = t129 - t145
-            - 0.24 * c_cross_leg1
-                * (parameters[13] * t150 + parameters[14] * t154 - parameters[15] * t55
-                    - parameters[16] * t161);
-        let t166 = t98 + t165;
-        let t177 = parameters[7] * t153 - parameters[8] * t150 + parameters[9] * t132
-            - parameters[10] * t152 + parameters[11] * (t106 - t107);
-        let t194 = parameters[7] * t148 + parameters[8] * t154
-            + parameters[9] * (t107 - t135) + parameters[10] * t149
-            - parameters[11] * t104;
-        let t202 = s_rod_leg1
-            * (t177 + parameters[12] * t152 - parameters[14] * t161
-                + parameters[15] * t142)
+        let t75 = 3.188775510204082 * (t40 * t50);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t54;
+        let t77 = t75 - rate_dot_rod_leg1;
+        let t79 = t40 * t40;
+        let t80 = 3.188775510204082 * t79;
+        let t90 = 0.24 * s_cross_leg1;
+        let t93 = t49 * (minus_rate_cross_leg1 * rate_rod_leg1);
+        let t97 = t31 * t48 + t34 * t54 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + t90 * t27 + t93 + t93;
+        let t98 = 1.7857142857142858 * t97;
+        let t102 = 0.24 * rate_dot_arm_leg1 - t59;
+        let t105 = t62 + 0.24 * t27;
+        let t107 = s_cross_leg1 * t102 - c_cross_leg1 * t105;
+        let t108 = c_rod_leg1 * t107;
+        let t111 = 0.24 * (s_cross_leg1 * c_rod_leg1)
+            * (parameters[14] * t77 - parameters[13] * (t80 + t44) - parameters[15] * t98
+                + parameters[16] * t108);
+        let t113 = t75 + rate_dot_rod_leg1;
+        let t115 = t50 * t50;
+        let t116 = 3.188775510204082 * t115;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t97;
+        let t121 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t124 = s_rod_leg1 * t107;
+        let t127 = t90 * s_rod_leg1
+            * (parameters[13] * t113 - parameters[14] * (t116 + t44)
+                + parameters[15] * t121 - parameters[16] * t124);
+        let t129 = t93 - t97;
+        let t131 = 1.7857142857142858 * (t93 + t129);
+        let t134 = rate_rod_leg1 * (1.7857142857142858 * t40);
+        let t135 = t121 + t134;
+        let t136 = t134 + t135;
+        let t143 = s_cross_leg1 * t105 + c_cross_leg1 * t102;
+        let t147 = t111 - t127
+            + t16
+                * (parameters[13] * t131 + parameters[14] * t136 + parameters[15] * t42
+                    + parameters[16] * t143);
+        let t148 = t71 + t147;
+        let minus_gcross_vx_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 * t31 + s_armcross_leg1);
+        let t162 = parameters[8] * t131 - parameters[7] * t135 + parameters[9] * t113
+            + parameters[10] * t134 + parameters[11] * (t80 - t44);
+        let t172 = 1.7857142857142858 * t93;
+        let t181 = parameters[9] * (t44 - t116)
+            - (parameters[7] * t172 + parameters[8] * t136)
+            + parameters[10] * (1.7857142857142858 * t129) - parameters[11] * t77;
+        let t189 = s_rod_leg1
+            * (t162 - parameters[12] * t134 - parameters[14] * t143
+                + parameters[15] * t124)
             + c_rod_leg1
-                * (t194 - parameters[12] * t148 + parameters[13] * t161
-                    + parameters[15] * t126);
-        let (s_arm_leg2, c_arm_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s_cross_leg2, c_cross_leg2) = ::overact::math::sin_cos(joints[4]);
+                * (t181 + parameters[12] * t172 + parameters[13] * t143
+                    + parameters[15] * t108);
+        let t194 = 1.0 / c_rod_leg2;
+        let t195 = 1.7857142857142858 * t194;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let (s_rod_leg2, c_rod_leg2) = ::overact::math::sin_cos(joints[5]);
-        let t217 = s_armcross_leg2 * c_rod_leg2;
-        let t218 = s_armcross_leg2 * s_rod_leg2;
-        let t219 = t217 * t218;
-        let t221 = 0.5 * c_armcross_leg2;
-        let t222 = t221 * c_rod_leg2;
-        let t223 = 0.8660254037844387 * c_armcross_leg2;
-        let t226 = t223 * s_rod_leg2 + 0.5 * c_rod_leg2;
-        let t230 = 0.4849742261192857 * t217;
-        let t231 = 0.24 * s_arm_leg2;
-        let t232 = 0.56 * t217;
-        let t235 = t230 - 0.8660254037844387 * (t231 + t232);
-        let t238 = t221 * s_rod_leg2 - 0.8660254037844387 * c_rod_leg2;
-        let t242 = 0.6272 * (t222 * t238) + 0.1568 * t219;
-        let t248 = 0.1344 * (c_arm_leg2 * t238) + 0.0672 * (s_arm_leg2 * t218);
-        let t254 = c_arm_leg2 * t217;
-        let t256 = 0.1344 * (s_arm_leg2 * t222) - 0.0672 * t254;
-        let t258 = t235 * t242 + t230 * t248 + 0.56 * t226 * t256;
-        ::overact::guard::leg(t258, 0.06758306237509017, "leg2")?;
-        let t259 = 1.0 / t258;
-        let garm_vx_leg2 = (0.2715855666268 * t219 + 0.6272 * (t222 * t226)) * t259;
-        let garm_vy_leg2 = t242 * t259;
-        let garm_vz_leg2 = (0.1568 * (t226 * t217) - 0.2715855666268 * (t238 * t217))
-            * t259;
-        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
-            + garm_vz_leg2 * twist[2];
-        let t274 = rate_arm_leg2 * rate_arm_leg2;
-        let t277 = t222 + 0.8660254037844387 * s_rod_leg2;
-        let t278 = 0.56 * t277;
-        let gcross_vx_leg2 = (0.56 * t218 * t235 - 0.1344 * (c_arm_leg2 * t226)) * t259;
-        let minus_gcross_vy_leg2 = t248 * t259;
-        let minus_gcross_vz_leg2 = (0.56 * t238 * t235 + 0.0672 * (s_arm_leg2 * t226))
-            * t259;
-        let rate_cross_leg2 = gcross_vx_leg2 * twist[0] - minus_gcross_vy_leg2 * twist[1]
-            - minus_gcross_vz_leg2 * twist[2];
-        let t297 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (1.12 * t222 * t235 + 0.11639381426862856 * t254) * t259;
-        let minus_grod_vy_leg2 = t256 * t259;
-        let rate_rod_leg2 = grod_vx_leg2 * twist[0] - minus_grod_vy_leg2 * twist[1];
-        let t309 = t297 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t312 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t313 = 0.5 * rate_cross_leg2;
-        let t314 = t312 - t313;
-        let t317 = c_armcross_leg2 * rate_rod_leg2;
-        let t319 = t309 * t309 + t314 * t314 + t317 * t317;
-        let t325 = t223 * c_rod_leg2 - 0.5 * s_rod_leg2;
-        let t326 = 0.56 * t325;
-        let t330 = t278 * t309 + t326 * t314 - t232 * t317;
-        let t333 = t297 * t312;
-        let t336 = t297 * t317;
-        let t339 = 0.12 * c_arm_leg2 * t274 + t278 * t319 - t309 * t330
-            + 0.7466666666666667 * (t325 * t333) - t232 * t336;
-        let t340 = acceleration[0] - t339;
-        let t350 = t313 * t317;
-        let t353 = t314 * t330 - (0.20784609690826528 * c_arm_leg2 * t274 + t326 * t319)
-            + 0.7466666666666667 * (t277 * t333) - t232 * t350;
-        let t354 = acceleration[1] - t353;
-        let t362 = t278 * t336 - t326 * t350;
-        let t365 = acceleration[2] - (t231 * t274 + t232 * t319 + t362 + t362);
-        let rate_dot_arm_leg2 = garm_vx_leg2 * t340 + garm_vy_leg2 * t354
-            + garm_vz_leg2 * t365;
-        let t369 = 9.81 * c_arm_leg2;
-        let t372 = 9.81 * s_arm_leg2;
-        let t381 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t369
-            + parameters[19] * t372 + parameters[20] * rate_dot_arm_leg2
+        let t206 = 0.5 * c_armcross_leg2;
+        let t207 = 1.0 / s_cross_leg2;
+        let t208 = c_cross_leg2 * t207;
+        let t210 = 0.5 * s_armcross_leg2;
+        let t212 = 0.24 * c_cross_leg2;
+        let t213 = 4.166666666666667 * t207;
+        let t214 = s_rod_leg2 * t194;
+        let t216 = t212 * (t213 * t214);
+        let gcross_vx_leg2 = t195 * (t206 * t208 + t210 + 0.8660254037844387 * t216);
+        let t221 = 0.8660254037844387 * s_armcross_leg2;
+        let t226 = 0.24 * s_cross_leg2;
+        let t227 = 0.8660254037844387 * c_armcross_leg2;
+        let t232 = t227 * twist[1] - t206 * twist[0] - s_armcross_leg2 * twist[2];
+        let t233 = 0.8660254037844387 * twist[0];
+        let t234 = 0.5 * twist[1];
+        let t235 = t233 + t234;
+        let rate_arm_leg2 = t213 * (t232 - t214 * t235);
+        let t239 = rate_arm_leg2 * rate_arm_leg2;
+        let t241 = 0.56 * s_rod_leg2;
+        let t250 = t210 * twist[0] - t221 * twist[1] - c_armcross_leg2 * twist[2]
+            - t208 * t232 + t216 * t235;
+        let rate_cross_leg2 = t195 * t250;
+        let minus_rate_rod_leg2 = t195 * t235;
+        let t254 = t241 * (rate_cross_leg2 * minus_rate_rod_leg2);
+        let t265 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t266 = rate_cross_leg2 * rate_cross_leg2;
+        let t267 = t265 + t266;
+        let t270 = t227 * acceleration[1] - t206 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t212 * t239 + 0.56 * c_rod_leg2 * t267;
+        let t272 = t210 * acceleration[0] - t221 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (t226 * t239 + t254 + t254)
+            - t208 * t270;
+        let t273 = 0.8660254037844387 * acceleration[0];
+        let t274 = 0.5 * acceleration[1];
+        let t276 = t241 * rate_cross_leg2;
+        let t280 = t273 + t274 + rate_cross_leg2 * t276 - t241 * t267;
+        let t282 = t272 + t216 * t280;
+        let rate_dot_cross_leg2 = t195 * t282;
+        let t284 = s_rod_leg2 * rate_dot_cross_leg2;
+        let t286 = minus_rate_rod_leg2 * (1.7857142857142858 * t250);
+        let t287 = t284 - t286;
+        let t289 = t282 + t254;
+        let t291 = 1.7857142857142858 * (t254 + t289);
+        let t295 = 3.188775510204082 * (t250 * t276);
+        let minus_rate_dot_rod_leg2 = t195 * t280;
+        let t297 = t295 - minus_rate_dot_rod_leg2;
+        let t302 = t250 * t250;
+        let t303 = 3.188775510204082 * t302;
+        let t306 = parameters[24] * t287 + parameters[25] * t291 + parameters[26] * t297
+            + parameters[27] * t286 + parameters[28] * (t303 - t265);
+        let t309 = 9.81 * s_arm_leg2;
+        let t311 = t309 + 0.24 * t239;
+        let rate_dot_arm_leg2 = t213 * (t270 - t214 * t280);
+        let t317 = 9.81 * c_arm_leg2;
+        let t318 = 0.24 * rate_dot_arm_leg2 - t317;
+        let t320 = s_cross_leg2 * t311 + c_cross_leg2 * t318;
+        let t325 = s_cross_leg2 * t318 - c_cross_leg2 * t311;
+        let t326 = s_rod_leg2 * t325;
+        let t330 = t287 - t286;
+        let t332 = 1.7857142857142858 * t254;
+        let t335 = t276 * t276;
+        let t336 = 3.188775510204082 * t335;
+        let t343 = t295 + minus_rate_dot_rod_leg2;
+        let t345 = parameters[25] * t330 - parameters[24] * t332
+            + parameters[26] * (t265 - t336)
+            + parameters[27] * (1.7857142857142858 * t289) - parameters[28] * t343;
+        let t350 = c_rod_leg2 * t325;
+        let t354 = s_rod_leg2
+            * (t306 - parameters[29] * t286 - parameters[31] * t320
+                + parameters[32] * t326)
+            + c_rod_leg2
+                * (t345 + parameters[29] * t332 + parameters[30] * t320
+                    + parameters[32] * t350);
+        let minus_garm_vx_leg2 = t213 * (t206 + 0.8660254037844387 * t214);
+        let t370 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t317
+            + parameters[19] * t309 + parameters[20] * rate_dot_arm_leg2
             + parameters[21] * rate_arm_leg2
             + ::overact::math::signed(parameters[22], rate_arm_leg2) + parameters[23];
-        let t383 = 1.7857142857142858 * t330;
-        let t384 = c_rod_leg2 * rate_cross_leg2;
-        let t385 = t383 * t384;
-        let rate_dot_rod_leg2 = grod_vx_leg2 * t340 - minus_grod_vy_leg2 * t354;
-        let t389 = t385 - rate_dot_rod_leg2;
-        let t391 = t384 * t384;
-        let t392 = rate_rod_leg2 * rate_rod_leg2;
-        let rate_dot_cross_leg2 = gcross_vx_leg2 * t340 - minus_gcross_vy_leg2 * t354
-            - minus_gcross_vz_leg2 * t365;
-        let t401 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t405 = 0.24 * rate_dot_arm_leg2 - t369;
-        let t408 = t372 + 0.24 * t274;
-        let t410 = s_cross_leg2 * t405 - c_cross_leg2 * t408;
-        let t411 = c_rod_leg2 * t410;
-        let t414 = 3.5714285714285716 * t256
-            * (parameters[31] * t389 - parameters[30] * (t391 + t392)
-                + parameters[32] * t401 + parameters[33] * t411);
-        let t417 = t385 + rate_dot_rod_leg2;
-        let t420 = 3.188775510204082 * (t330 * t330);
-        let t424 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t427 = s_rod_leg2 * t410;
-        let t430 = s_rod_leg2 * (0.24 * s_cross_leg2)
-            * (parameters[30] * t417 - parameters[31] * (t420 + t392)
-                - parameters[32] * t424 - parameters[33] * t427);
-        let t433 = rate_rod_leg2 * t383;
-        let t434 = t401 - t433;
-        let t435 = t433 - t434;
-        let t437 = rate_rod_leg2 * t384;
-        let t438 = t424 + t437;
-        let t439 = t437 + t438;
-        let t447 = s_cross_leg2 * t408 + c_cross_leg2 * t405;
-        let t450 = 0.24 * c_cross_leg2
-            * (parameters[30] * t435 + parameters[31] * t439
-                - parameters[32] * (rate_cross_leg2 * rate_cross_leg2)
-                - parameters[33] * t447);
-        let t452 = t381 - (t414 + t430 + t450);
-        let t463 = parameters[24] * t438 - parameters[25] * t435 + parameters[26] * t417
-            - parameters[27] * t437 + parameters[28] * (t391 - t392);
-        let t480 = parameters[24] * t433 + parameters[25] * t439
-            + parameters[26] * (t392 - t420) + parameters[27] * t434
-            - parameters[28] * t389;
-        let t488 = s_rod_leg2
-            * (t463 + parameters[29] * t437 - parameters[31] * t447
-                + parameters[32] * t427)
-            + c_rod_leg2
-                * (t480 - parameters[29] * t433 + parameters[30] * t447
-                    + parameters[32] * t411);
-        let t500 = parameters[25] * (t420 - t391) - parameters[24] * t385
-            + parameters[26] * t424 + parameters[27] * t385 + parameters[28] * t401;
-        let t506 = t500 + parameters[29] * rate_dot_rod_leg2 - parameters[30] * t427
-            - parameters[31] * t411;
-        let (s_arm_leg3, c_arm_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s_cross_leg3, c_cross_leg3) = ::overact::math::sin_cos(joints[7]);
+        let t377 = 1.7857142857142858 * t282;
+        let t382 = 0.24 * (s_cross_leg2 * c_rod_leg2)
+            * (parameters[31] * t343 - parameters[30] * (t303 + t265)
+                + parameters[32] * t377 + parameters[33] * t350);
+        let t392 = t226 * s_rod_leg2
+            * (parameters[30] * t297 - parameters[31] * (t336 + t265)
+                - parameters[32] * t284 - parameters[33] * t326);
+        let t402 = t382 - t392
+            - t212
+                * (parameters[31] * t330 - parameters[30] * t291 - parameters[32] * t266
+                    - parameters[33] * t320);
+        let t403 = t370 + t402;
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t194;
+        let t417 = parameters[25] * (3.188775510204082 * (t335 - t302))
+            - parameters[24] * t295 + parameters[26] * t284 + parameters[27] * t295
+            + parameters[28] * t377;
+        let t423 = t417 - parameters[29] * minus_rate_dot_rod_leg2
+            - parameters[30] * t326 - parameters[31] * t350;
+        let t429 = 1.0 / s_cross_leg3;
+        let t430 = 4.166666666666667 * t429;
+        let t433 = 1.0 / c_rod_leg3;
+        let t434 = s_rod_leg3 * t433;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let (s_rod_leg3, c_rod_leg3) = ::overact::math::sin_cos(joints[8]);
-        let t522 = s_armcross_leg3 * c_rod_leg3;
-        let t523 = s_armcross_leg3 * s_rod_leg3;
-        let t524 = t522 * t523;
-        let t526 = 0.5 * c_armcross_leg3;
-        let t527 = t526 * c_rod_leg3;
-        let t528 = 0.8660254037844387 * c_armcross_leg3;
-        let t531 = t528 * s_rod_leg3 - 0.5 * c_rod_leg3;
-        let t535 = 0.4849742261192857 * t522;
-        let t538 = t526 * s_rod_leg3 + 0.8660254037844387 * c_rod_leg3;
-        let t543 = 0.1344 * (c_arm_leg3 * t538) + 0.0672 * (s_arm_leg3 * t523);
-        let t545 = 0.24 * s_arm_leg3;
-        let t546 = 0.56 * t522;
-        let t549 = 0.8660254037844387 * (t545 + t546) - t535;
-        let t553 = 0.6272 * (t527 * t538) + 0.1568 * t524;
-        let t559 = c_arm_leg3 * t522;
-        let t561 = 0.1344 * (s_arm_leg3 * t527) - 0.0672 * t559;
-        let t563 = t535 * t543 - t549 * t553 + 0.56 * t531 * t561;
-        ::overact::guard::leg(t563, 0.06758306237509014, "leg3")?;
-        let t564 = 1.0 / t563;
-        let garm_vx_leg3 = (0.2715855666268 * t524 + 0.6272 * (t527 * t531)) * t564;
-        let minus_garm_vy_leg3 = t553 * t564;
-        let minus_garm_vz_leg3 = (0.2715855666268 * (t538 * t522)
-            - 0.1568 * (t531 * t522)) * t564;
-        let rate_arm_leg3 = garm_vx_leg3 * twist[0] - minus_garm_vy_leg3 * twist[1]
-            - minus_garm_vz_leg3 * twist[2];
-        let t579 = rate_arm_leg3 * rate_arm_leg3;
-        let t582 = 0.8660254037844387 * s_rod_leg3 - t527;
-        let t583 = 0.56 * t582;
-        let gcross_vy_leg3 = t543 * t564;
-        let minus_gcross_vx_leg3 = (0.56 * t523 * t549 + 0.1344 * (c_arm_leg3 * t531))
-            * t564;
-        let gcross_vz_leg3 = (0.56 * t538 * t549 - 0.0672 * (s_arm_leg3 * t531)) * t564;
-        let rate_cross_leg3 = gcross_vy_leg3 * twist[1] - minus_gcross_vx_leg3 * twist[0]
-            + gcross_vz_leg3 * twist[2];
-        let t602 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (0.11639381426862856 * t559 - 1.12 * t527 * t549) * t564;
-        let grod_vy_leg3 = t561 * t564;
-        let rate_rod_leg3 = grod_vx_leg3 * twist[0] + grod_vy_leg3 * twist[1];
-        let t614 = t602 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t616 = 0.5 * rate_cross_leg3;
-        let t618 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t619 = t616 + t618;
-        let t622 = c_armcross_leg3 * rate_rod_leg3;
-        let t624 = t614 * t614 + t619 * t619 + t622 * t622;
-        let t630 = t528 * c_rod_leg3 + 0.5 * s_rod_leg3;
-        let t631 = 0.56 * t630;
-        let t635 = t583 * t614 + t631 * t619 - t546 * t622;
-        let t638 = t602 * t622;
-        let t640 = t602 * t618;
-        let t644 = 0.12 * c_arm_leg3 * t579 - t583 * t624 + t614 * t635 + t546 * t638
-            - 0.7466666666666667 * (t630 * t640);
-        let t645 = acceleration[0] - t644;
-        let t655 = t616 * t622;
-        let t658 = 0.20784609690826528 * c_arm_leg3 * t579 + t631 * t624 - t619 * t635
-            - (0.7466666666666667 * (t582 * t640) + t546 * t655);
-        let t659 = acceleration[1] - t658;
-        let t667 = t631 * t655 + t583 * t638;
-        let t670 = acceleration[2] - (t545 * t579 + t546 * t624 + t667 + t667);
-        let rate_dot_arm_leg3 = garm_vx_leg3 * t645 - minus_garm_vy_leg3 * t659
-            - minus_garm_vz_leg3 * t670;
-        let t674 = 9.81 * c_arm_leg3;
-        let t677 = 9.81 * s_arm_leg3;
-        let t686 = parameters[34] * rate_dot_arm_leg3 - parameters[35] * t674
-            + parameters[36] * t677 + parameters[37] * rate_dot_arm_leg3
+        let t444 = 0.5 * c_armcross_leg3;
+        let garm_vx_leg3 = t430 * (0.8660254037844387 * t434 - t444);
+        let t447 = 0.24 * c_cross_leg3;
+        let t448 = t233 - t234;
+        let t451 = 0.8660254037844387 * c_armcross_leg3;
+        let t455 = t444 * twist[0] + t451 * twist[1] + s_armcross_leg3 * twist[2];
+        let rate_arm_leg3 = t430 * (t434 * t448 - t455);
+        let t458 = rate_arm_leg3 * rate_arm_leg3;
+        let t461 = 1.7857142857142858 * t433;
+        let rate_rod_leg3 = t461 * t448;
+        let t463 = rate_rod_leg3 * rate_rod_leg3;
+        let t464 = c_cross_leg3 * t429;
+        let t466 = 0.5 * s_armcross_leg3;
+        let t468 = 0.8660254037844387 * s_armcross_leg3;
+        let t475 = t447 * (t430 * t434);
+        let t477 = t464 * t455 + t466 * twist[0] + t468 * twist[1]
+            - c_armcross_leg3 * twist[2] - t475 * t448;
+        let rate_cross_leg3 = t461 * t477;
+        let t479 = rate_cross_leg3 * rate_cross_leg3;
+        let t480 = t463 + t479;
+        let t488 = t447 * t458 + 0.56 * c_rod_leg3 * t480
+            - (t444 * acceleration[0] + t451 * acceleration[1]
+                + s_armcross_leg3 * acceleration[2]);
+        let t490 = 0.56 * s_rod_leg3;
+        let t491 = t490 * rate_cross_leg3;
+        let t495 = t273 - t274 - (rate_cross_leg3 * t491 - t490 * t480);
+        let rate_dot_arm_leg3 = t430 * (t488 + t434 * t495);
+        let t500 = 9.81 * c_arm_leg3;
+        let t503 = 9.81 * s_arm_leg3;
+        let t512 = parameters[34] * rate_dot_arm_leg3 - parameters[35] * t500
+            + parameters[36] * t503 + parameters[37] * rate_dot_arm_leg3
             + parameters[38] * rate_arm_leg3
             + ::overact::math::signed(parameters[39], rate_arm_leg3) + parameters[40];
-        let t688 = 1.7857142857142858 * t635;
-        let t689 = c_rod_leg3 * rate_cross_leg3;
-        let t690 = t688 * t689;
-        let rate_dot_rod_leg3 = grod_vx_leg3 * t645 + grod_vy_leg3 * t659;
-        let t694 = t690 - rate_dot_rod_leg3;
-        let t696 = t689 * t689;
-        let t697 = rate_rod_leg3 * rate_rod_leg3;
-        let rate_dot_cross_leg3 = gcross_vy_leg3 * t659 - minus_gcross_vx_leg3 * t645
-            + gcross_vz_leg3 * t670;
-        let t706 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t710 = 0.24 * rate_dot_arm_leg3 - t674;
-        let t713 = t677 + 0.24 * t579;
-        let t715 = s_cross_leg3 * t710 - c_cross_leg3 * t713;
-        let t716 = c_rod_leg3 * t715;
-        let t719 = 3.5714285714285716 * t561
-            * (parameters[48] * t694 - parameters[47] * (t696 + t697)
-                + parameters[49] * t706 + parameters[50] * t716);
-        let t722 = t690 + rate_dot_rod_leg3;
-        let t725 = 3.188775510204082 * (t635 * t635);
-        let t729 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t732 = s_rod_leg3 * t715;
-        let t735 = s_rod_leg3 * (0.24 * s_cross_leg3)
-            * (parameters[47] * t722 - parameters[48] * (t725 + t697)
-                - parameters[49] * t729 - parameters[50] * t732);
-        let t738 = rate_rod_leg3 * t688;
-        let t739 = t706 - t738;
-        let t740 = t738 - t739;
-        let t742 = rate_rod_leg3 * t689;
-        let t743 = t729 + t742;
-        let t744 = t742 + t743;
-        let t752 = s_cross_leg3 * t713 + c_cross_leg3 * t710;
-        let t755 = 0.24 * c_cross_leg3
-            * (parameters[47] * t740 + parameters[48] * t744
-                - parameters[49] * (rate_cross_leg3 * rate_cross_leg3)
-                - parameters[50] * t752);
-        let t757 = t686 - (t719 + t735 + t755);
-        let t768 = parameters[41] * t743 - parameters[42] * t740 + parameters[43] * t722
-            - parameters[44] * t742 + parameters[45] * (t696 - t697);
-        let t785 = parameters[41] * t738 + parameters[42] * t744
-            + parameters[43] * (t697 - t725) + parameters[44] * t739
-            - parameters[45] * t694;
-        let t793 = s_rod_leg3
-            * (t768 + parameters[46] * t742 - parameters[48] * t752
-                + parameters[49] * t732)
+        let t516 = 3.188775510204082 * (t477 * t491);
+        let rate_dot_rod_leg3 = t461 * t495;
+        let t518 = t516 - rate_dot_rod_leg3;
+        let t520 = t477 * t477;
+        let t521 = 3.188775510204082 * t520;
+        let t530 = 0.24 * s_cross_leg3;
+        let t533 = t490 * (rate_cross_leg3 * rate_rod_leg3);
+        let t538 = t466 * acceleration[0] + t468 * acceleration[1]
+            - c_armcross_leg3 * acceleration[2] - (t530 * t458 - t533 - t533)
+            - t464 * t488;
+        let t540 = t538 - t475 * t495;
+        let t541 = 1.7857142857142858 * t540;
+        let t545 = 0.24 * rate_dot_arm_leg3 - t500;
+        let t548 = t503 + 0.24 * t458;
+        let t550 = s_cross_leg3 * t545 - c_cross_leg3 * t548;
+        let t551 = c_rod_leg3 * t550;
+        let t554 = 0.24 * (s_cross_leg3 * c_rod_leg3)
+            * (parameters[48] * t518 - parameters[47] * (t521 + t463)
+                + parameters[49] * t541 + parameters[50] * t551);
+        let t556 = t516 + rate_dot_rod_leg3;
+        let t558 = t491 * t491;
+        let t559 = 3.188775510204082 * t558;
+        let rate_dot_cross_leg3 = t461 * t540;
+        let t564 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t567 = s_rod_leg3 * t550;
+        let t570 = t530 * s_rod_leg3
+            * (parameters[47] * t556 - parameters[48] * (t559 + t463)
+                - parameters[49] * t564 - parameters[50] * t567);
+        let t572 = t540 - t533;
+        let t574 = 1.7857142857142858 * (t533 - t572);
+        let t577 = rate_rod_leg3 * (1.7857142857142858 * t477);
+        let t578 = t564 + t577;
+        let t579 = t577 + t578;
+        let t586 = s_cross_leg3 * t548 + c_cross_leg3 * t545;
+        let t590 = t554 - t570
+            - t447
+                * (parameters[47] * t574 + parameters[48] * t579 - parameters[49] * t479
+                    - parameters[50] * t586);
+        let t591 = t512 + t590;
+        let gcross_vx_leg3 = t461 * (t444 * t464 + t466 - 0.8660254037844387 * t475);
+        let t607 = parameters[41] * t578 - parameters[42] * t574 + parameters[43] * t556
+            - parameters[44] * t577 + parameters[45] * (t521 - t463);
+        let t615 = 1.7857142857142858 * t533;
+        let t626 = parameters[41] * t615 + parameters[42] * t579
+            + parameters[43] * (t463 - t559)
+            + parameters[44] * (1.7857142857142858 * t572) - parameters[45] * t518;
+        let t634 = s_rod_leg3
+            * (t607 + parameters[46] * t577 - parameters[48] * t586
+                + parameters[49] * t567)
             + c_rod_leg3
-                * (t785 - parameters[46] * t738 + parameters[47] * t752
-                    + parameters[49] * t716);
-        let t805 = parameters[42] * (t725 - t696) - parameters[41] * t690
-            + parameters[43] * t729 + parameters[44] * t690 + parameters[45] * t706;
-        let t811 = t805 + parameters[46] * rate_dot_rod_leg3 - parameters[47] * t732
-            - parameters[48] * t716;
-        let t814 = garm_vx_leg1 * t166 - minus_gcross_vx_leg1 * t202
-            + garm_vx_leg2 * t452 + gcross_vx_leg2 * t488 + grod_vx_leg2 * t506
-            + garm_vx_leg3 * t757 - minus_gcross_vx_leg3 * t793 + grod_vx_leg3 * t811;
-        let t818 = t814 + acceleration[0] * parameters[51]
+                * (t626 - parameters[46] * t615 + parameters[47] * t586
+                    + parameters[49] * t551);
+        let grod_vx_leg3 = 1.5464739353293548 * t433;
+        let t648 = parameters[42] * (3.188775510204082 * (t558 - t520))
+            - parameters[41] * t516 + parameters[43] * t564 + parameters[44] * t516
+            + parameters[45] * t541;
+        let t654 = t648 + parameters[46] * rate_dot_rod_leg3 - parameters[47] * t567
+            - parameters[48] * t551;
+        let t657 = garm_vx_leg1 * t148 - minus_gcross_vx_leg1 * t189
+            + gcross_vx_leg2 * t354 - minus_garm_vx_leg2 * t403
+            - minus_grod_vx_leg2 * t423 + garm_vx_leg3 * t591 + gcross_vx_leg3 * t634
+            + grod_vx_leg3 * t654;
+        let t661 = t657 + acceleration[0] * parameters[51]
             + acceleration[0] * parameters[52];
-        let t823 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t666 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t823, 14.8697301728973, "actuators")?;
-        let t824 = 1.0 / t823;
-        let t830 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
+        ::overact::guard::platform(t666, 14.869730172897302, "actuators")?;
+        let t667 = 1.0 / t666;
+        let garm_vy_leg2 = t213 * (t227 - 0.5 * t214);
+        let minus_garm_vy_leg3 = t430 * (t451 + 0.5 * t434);
+        let t679 = garm_vy_leg1 * garm_vx_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
             - garm_vx_leg3 * minus_garm_vy_leg3;
-        let t831 = t830 * t824;
-        let t838 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + minus_garm_vy_leg3 * minus_garm_vy_leg3 - t830 * t831;
-        ::overact::guard::platform(t838, 14.869730172897306, "actuators")?;
-        let t839 = 1.0 / t838;
-        let t852 = parameters[8] * (t135 - t106) - parameters[7] * t102
-            + parameters[9] * t139 + parameters[10] * t102 + parameters[11] * t116;
-        let t860 = garm_vy_leg1 * t166 - minus_gcross_vy_leg1 * t202
+        let t680 = t679 * t667;
+        let t687 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + minus_garm_vy_leg3 * minus_garm_vy_leg3 - t679 * t680;
+        ::overact::guard::platform(t687, 14.869730172897306, "actuators")?;
+        let t688 = 1.0 / t687;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * t34;
+        let t703 = parameters[8] * (3.188775510204082 * (t115 - t79))
+            - parameters[7] * t75 - parameters[9] * t121 + parameters[10] * t75
+            - parameters[11] * t98;
+        let t711 = garm_vy_leg1 * t148 - minus_gcross_vy_leg1 * t189
             + grod_vy_leg1
-                * (t852 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t142
-                    - parameters[14] * t126);
-        let t872 = t860 + garm_vy_leg2 * t452 - minus_gcross_vy_leg2 * t488
-            - minus_grod_vy_leg2 * t506 + gcross_vy_leg3 * t793
-            - minus_garm_vy_leg3 * t757 + grod_vy_leg3 * t811;
-        let t878 = t872 + acceleration[1] * parameters[51]
-            + acceleration[1] * parameters[52] - t818 * t831;
-        let t889 = garm_vx_leg2 * garm_vz_leg2 - garm_vx_leg1 * minus_garm_vz_leg1
-            - garm_vx_leg3 * minus_garm_vz_leg3;
-        let t890 = t889 * t824;
-        let t892 = garm_vy_leg2 * garm_vz_leg2 - garm_vy_leg1 * minus_garm_vz_leg1
-            + minus_garm_vy_leg3 * minus_garm_vz_leg3 - t830 * t890;
-        let t893 = t892 * t839;
-        let t902 = minus_garm_vz_leg1 * minus_garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t889 * t890 - t892 * t893;
-        ::overact::guard::platform(t902, 34.85535020139291, "actuators")?;
-        let t913 = gcross_vz_leg1 * t202 - minus_garm_vz_leg1 * t166
-            + garm_vz_leg2 * t452 - minus_gcross_vz_leg2 * t488 + gcross_vz_leg3 * t793
-            - minus_garm_vz_leg3 * t757;
-        let t914 = acceleration[2] + 9.81;
-        let t923 = (t913 + parameters[51] * t914 + parameters[52] * t914 - t818 * t890
-            - t893 * t878) / t902;
-        let t925 = t839 * t878 - t893 * t923;
-        let t929 = t818 * t824 - t831 * t925 - t890 * t923;
+                * (t703 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t124
+                    - parameters[14] * t108);
+        let gcross_vy_leg2 = t195 * (0.5 * t216 - (t227 * t208 + t221));
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t194;
+        let gcross_vy_leg3 = t461 * (t451 * t464 + t468 + 0.5 * t475);
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t433;
+        let t735 = t711 + garm_vy_leg2 * t403 + gcross_vy_leg2 * t354
+            - minus_grod_vy_leg2 * t423 + gcross_vy_leg3 * t634
+            - minus_garm_vy_leg3 * t591 - minus_grod_vy_leg3 * t654;
+        let t741 = t735 + acceleration[1] * parameters[51]
+            + acceleration[1] * parameters[52] - t661 * t680;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t430;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t11;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t213;
+        let t755 = minus_garm_vx_leg2 * minus_garm_vz_leg2
+            - garm_vx_leg1 * minus_garm_vz_leg1 - garm_vx_leg3 * minus_garm_vz_leg3;
+        let t756 = t755 * t667;
+        let t758 = minus_garm_vy_leg3 * minus_garm_vz_leg3
+            - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2)
+            - t679 * t756;
+        let t759 = t758 * t688;
+        let t768 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+            + minus_garm_vz_leg2 * minus_garm_vz_leg2
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t755 * t756 - t758 * t759;
+        ::overact::guard::platform(t768, 34.8553502013929, "actuators")?;
+        let gcross_vz_leg2 = t195 * (s_armcross_leg2 * t208 - c_armcross_leg2);
+        let minus_gcross_vz_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 - s_armcross_leg1 * t31);
+        let gcross_vz_leg3 = t461 * (s_armcross_leg3 * t464 - c_armcross_leg3);
+        let t788 = gcross_vz_leg2 * t354 - minus_garm_vz_leg2 * t403
+            - (minus_garm_vz_leg1 * t148 + minus_gcross_vz_leg1 * t189)
+            + gcross_vz_leg3 * t634 - minus_garm_vz_leg3 * t591;
+        let t789 = acceleration[2] + 9.81;
+        let t798 = (t788 + parameters[51] * t789 + parameters[52] * t789 - t661 * t756
+            - t759 * t741) / t768;
+        let t800 = t688 * t741 - t759 * t798;
+        let t804 = t661 * t667 - t680 * t800 - t756 * t798;
         Ok([
-            garm_vx_leg1 * t929 + garm_vy_leg1 * t925 - minus_garm_vz_leg1 * t923,
-            garm_vx_leg2 * t929 + garm_vy_leg2 * t925 + garm_vz_leg2 * t923,
-            garm_vx_leg3 * t929 - minus_garm_vy_leg3 * t925 - minus_garm_vz_leg3 * t923,
+            garm_vx_leg1 * t804 + garm_vy_leg1 * t800 - minus_garm_vz_leg1 * t798,
+            garm_vy_leg2 * t800 - minus_garm_vx_leg2 * t804 - minus_garm_vz_leg2 * t798,
+            garm_vx_leg3 * t804 - minus_garm_vy_leg3 * t800 - minus_garm_vz_leg3 * t798,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -9414,7 +8579,7 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 1057 operations (413 additions, 628 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 1063 intermediates.
+    /// 966 operations (380 additions, 568 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 972 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -9426,8 +8591,7 @@ impl Delta {
         start: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = pose[0] + 0.05;
-        let t1 = t0 - 0.2;
+        let t1 = pose[0] + 0.05 - 0.2;
         let t2 = t1 * t1;
         let t3 = pose[2] * pose[2];
         let t5 = 0.2304 * (t2 + t3);
@@ -9440,463 +8604,448 @@ impl Delta {
         let t16 = t5 - t12 * t12;
         ::overact::guard::reach(t16, "leg1")?;
         let t17 = ::overact::math::sqrt(t16);
-        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
         let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t21 = 0.24 * c_arm_leg1;
-        let t23 = t0 - (0.2 + t21);
-        let t24 = 1.0 / t17;
-        let t25 = 2.0 * t24;
-        let garm_vx_leg1 = t23 * t25;
-        let t28 = pose[1] + 0.04330127018922194;
-        let t29 = t28 - 0.17320508075688776;
-        let t31 = pose[0] - 0.025;
-        let t32 = t31 + 0.1;
-        let t33 = 0.5 * t32;
-        let t34 = 0.8660254037844387 * t29 - t33;
-        let t37 = 0.2304 * (t34 * t34 + t3);
-        let t38 = 1.0 / t37;
-        let t39 = 0.48 * t34;
-        let t40 = t32 * t32;
-        let t43 = t40 + t29 * t29 + t3;
-        let t45 = t43 - 0.3136 + 0.0576;
-        let t48 = t37 - t45 * t45;
-        ::overact::guard::reach(t48, "leg2")?;
-        let t49 = ::overact::math::sqrt(t48);
-        let c_arm_leg2 = t38 * (t39 * t45 - t14 * t49);
-        let t54 = t34 - 0.24 * c_arm_leg2;
-        let t55 = 0.8660254037844387 * t32;
-        let t57 = t55 + 0.5 * t29;
-        let t58 = t57 * t57;
-        let t62 = 1.0 - 3.188775510204082 * t58;
-        ::overact::guard::reach(t62, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t62);
-        let c_cross_leg2 = (t43 - (0.0576 + t58) - 0.3136 * t62) / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t38 * (t14 * t45 + t39 * t49);
-        let s_cross_leg2 = 2.0833333333333335 * t49 / (0.56 * c_rod_leg2);
+        let t24 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t24, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t24);
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let t36 = 0.56 * c_rod_leg1;
+        let s_cross_leg1 = 2.0833333333333335 * t17 / t36;
+        ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
+        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
+            + minus_s_arm_leg1 * s_cross_leg1;
+        let t40 = 1.0 / s_cross_leg1;
+        let t41 = 4.166666666666667 * t40;
+        let garm_vx_leg1 = c_armcross_leg1 * t41;
+        let t45 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t48 = pose[0] - 0.025 + 0.1;
+        let t49 = 0.5 * t48;
+        let t50 = 0.8660254037844387 * t45 - t49;
+        let t53 = 0.2304 * (t50 * t50 + t3);
+        let t54 = t48 * t48;
+        let t57 = t54 + t45 * t45 + t3;
+        let t59 = t57 - 0.3136 + 0.0576;
+        let t61 = t53 - t59 * t59;
+        ::overact::guard::reach(t61, "leg2")?;
+        let t62 = ::overact::math::sqrt(t61);
+        let t64 = 0.8660254037844387 * t48;
+        let t66 = t64 + 0.5 * t45;
+        let t67 = t66 * t66;
+        let t69 = 1.0 - 3.188775510204082 * t67;
+        ::overact::guard::reach(t69, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t69);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t71 = 0.56 * c_rod_leg2;
+        let s_cross_leg2 = 2.0833333333333335 * t62 / t71;
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
+        let t73 = 1.0 / s_cross_leg2;
+        let t74 = 4.166666666666667 * t73;
+        let t75 = 1.0 / c_rod_leg2;
+        let t76 = 1.7857142857142858 * t75;
+        let t77 = t66 * t76;
+        let t79 = 1.0 / t53;
+        let t80 = 0.48 * t50;
+        let c_arm_leg2 = t79 * (t80 * t59 - t14 * t62);
+        let c_cross_leg2 = (t57 - (0.0576 + t67) - 0.3136 * t69) / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t79 * (t14 * t59 + t80 * t62);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t78 = t57 * c_armcross_leg2;
-        let t81 = 1.5464739353293548 * t78 - 0.5 * c_rod_leg2;
-        let t84 = 0.24 * minus_s_arm_leg2;
-        let t85 = pose[2] - t84;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t57;
-        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
-            - minus_s_arm_leg2 * c_cross_leg2;
-        let t90 = minus_s_rod_leg2 * s_armcross_leg2;
-        let t91 = t85 * t90;
-        let t94 = 0.20784609690826528 * minus_s_arm_leg2;
-        let t97 = 0.8928571428571429 * t78 + 0.8660254037844387 * c_rod_leg2;
-        let t101 = t54 * (0.56 * t97) - 0.28 * t91;
-        let t106 = minus_s_arm_leg2 * t90;
-        let t108 = 0.1344 * (c_arm_leg2 * t97) - 0.0672 * t106;
-        let t113 = t94 * t101 - 0.8660254037844387 * t85 * t108 - 0.14 * (t49 * t81);
-        ::overact::guard::leg(t113, 0.06758306237512474, "leg2")?;
-        let t114 = 1.0 / t113;
-        let garm_vx_leg2 = (t54 * (0.56 * t81) - 0.4849742261192857 * t91) * t114;
-        let t118 = pose[1] - 0.04330127018922194;
-        let t119 = t118 + 0.17320508075688776;
-        let t121 = t33 + 0.8660254037844387 * t119;
-        let t124 = 0.2304 * (t121 * t121 + t3);
-        let t125 = 1.0 / t124;
-        let t126 = 0.48 * t121;
-        let t129 = t40 + t119 * t119 + t3;
-        let t131 = t129 - 0.3136 + 0.0576;
-        let t134 = t124 - t131 * t131;
-        ::overact::guard::reach(t134, "leg3")?;
-        let t135 = ::overact::math::sqrt(t134);
-        let minus_c_arm_leg3 = t125 * (t126 * t131 + t14 * t135);
-        let t140 = t121 - 0.24 * minus_c_arm_leg3;
-        let t142 = t55 - 0.5 * t119;
-        let t143 = t142 * t142;
-        let t147 = 1.0 - 3.188775510204082 * t143;
-        ::overact::guard::reach(t147, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t147);
-        let c_cross_leg3 = (t129 - (0.0576 + t143) - 0.3136 * t147)
+        let t98 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t74 * (0.8660254037844387 * t77 - t98);
+        let t104 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t106 = t49 + 0.8660254037844387 * t104;
+        let t109 = 0.2304 * (t106 * t106 + t3);
+        let t112 = t54 + t104 * t104 + t3;
+        let t114 = t112 - 0.3136 + 0.0576;
+        let t116 = t109 - t114 * t114;
+        ::overact::guard::reach(t116, "leg3")?;
+        let t117 = ::overact::math::sqrt(t116);
+        let t120 = t64 - 0.5 * t104;
+        let t121 = t120 * t120;
+        let t123 = 1.0 - 3.188775510204082 * t121;
+        ::overact::guard::reach(t123, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t123);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let t125 = 0.56 * c_rod_leg3;
+        let s_cross_leg3 = 2.0833333333333335 * t117 / t125;
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
+        let t127 = 1.0 / s_cross_leg3;
+        let t128 = 4.166666666666667 * t127;
+        let t129 = 1.0 / t109;
+        let t130 = 0.48 * t106;
+        let minus_c_arm_leg3 = t129 * (t130 * t114 + t14 * t117);
+        let c_cross_leg3 = (t112 - (0.0576 + t121) - 0.3136 * t123)
             / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t125 * (t126 * t135 - t14 * t131);
-        let s_cross_leg3 = 2.0833333333333335 * t135 / (0.56 * c_rod_leg3);
+        let s_arm_leg3 = t129 * (t130 * t117 - t14 * t114);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t163 = t142 * minus_c_armcross_leg3;
-        let t166 = 1.5464739353293548 * t163 + 0.5 * c_rod_leg3;
-        let t169 = 0.24 * s_arm_leg3;
-        let t170 = pose[2] + t169;
-        let s_rod_leg3 = 1.7857142857142858 * t142;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
-            - minus_c_arm_leg3 * s_cross_leg3;
-        let t175 = s_rod_leg3 * s_armcross_leg3;
-        let t176 = t170 * t175;
-        let t179 = 0.20784609690826528 * s_arm_leg3;
-        let t182 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t163;
-        let t186 = t140 * (0.56 * t182) + 0.28 * t176;
-        let t191 = s_arm_leg3 * t175;
-        let t193 = 0.1344 * (minus_c_arm_leg3 * t182) - 0.0672 * t191;
-        let t198 = t179 * t186 + 0.8660254037844387 * t170 * t193 + 0.14 * (t135 * t166);
-        ::overact::guard::leg(t198, 0.06758306237512474, "leg3")?;
-        let t199 = 1.0 / t198;
-        let garm_vx_leg3 = (t140 * (0.56 * t166) - 0.4849742261192857 * t176) * t199;
-        let t202 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t148 = 0.5 * minus_c_armcross_leg3;
+        let t149 = 1.0 / c_rod_leg3;
+        let t150 = 1.7857142857142858 * t149;
+        let t151 = t120 * t150;
+        let garm_vx_leg3 = t128 * (t148 + 0.8660254037844387 * t151);
+        let t156 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t202, 14.869730172882845, "actuators")?;
-        ::overact::guard::platform(t202, 14.869730172882845, "actuators")?;
-        ::overact::guard::platform(t202, 14.869730172882845, "actuators")?;
-        let t203 = 1.0 / t202;
-        let t205 = 9.81 * c_arm_leg1;
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let t212 = 9.81 * minus_s_arm_leg1;
-        let t221 = actuator_accelerations[0] * parameters[0] - t205 * parameters[1]
-            - t212 * parameters[2] + actuator_accelerations[0] * parameters[3]
+        ::overact::guard::platform(t156, 14.869730172882841, "actuators")?;
+        ::overact::guard::platform(t156, 14.869730172882841, "actuators")?;
+        ::overact::guard::platform(t156, 14.869730172882841, "actuators")?;
+        let t157 = 1.0 / t156;
+        let t159 = 9.81 * c_arm_leg1;
+        let t162 = 9.81 * minus_s_arm_leg1;
+        let t171 = actuator_accelerations[0] * parameters[0] - t159 * parameters[1]
+            - t162 * parameters[2] + actuator_accelerations[0] * parameters[3]
             + actuator_velocities[0] * parameters[4]
             + ::overact::math::signed(parameters[5], actuator_velocities[0])
             + parameters[6];
-        let t223 = 0.48 * t24;
-        let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t227 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t227, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t227);
-        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t227) / (0.2688 * c_rod_leg1);
-        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
-            - minus_s_arm_leg1 * c_cross_leg1;
-        let t241 = 1.0 / c_rod_leg1;
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
-            + minus_s_arm_leg1 * s_cross_leg1;
-        let gcross_vy_leg1 = t223
-            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t241)
-                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t241));
-        let garm_vy_leg1 = pose[1] * t25;
-        let garm_vy_leg2 = t101 * t114;
-        let garm_vy_leg3 = t186 * t199;
-        let t264 = garm_vx_leg1 * garm_vy_leg1 + garm_vx_leg2 * garm_vy_leg2
-            + garm_vx_leg3 * garm_vy_leg3;
-        let t265 = t264 * t203;
-        let t267 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t264 * t265;
-        ::overact::guard::platform(t267, 14.869730172882843, "actuators")?;
-        ::overact::guard::platform(t267, 14.869730172882843, "actuators")?;
-        ::overact::guard::platform(t267, 14.869730172882843, "actuators")?;
-        let t268 = 1.0 / t267;
-        let t278 = garm_vx_leg1 * actuator_velocities[0]
+        let t173 = c_cross_leg1 * t40;
+        let t178 = garm_vx_leg1 * actuator_velocities[0]
             + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2];
-        let t280 = garm_vy_leg1 * actuator_velocities[0]
+        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
+        let t181 = pose[1] * grod_vy_leg1;
+        let garm_vy_leg1 = t41 * t181;
+        let t184 = 0.8660254037844387 * c_armcross_leg2;
+        let garm_vy_leg2 = t74 * (t184 + 0.5 * t77);
+        let t190 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let garm_vy_leg3 = t128 * (t190 - 0.5 * t151);
+        let t195 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3;
+        let t196 = t195 * t157;
+        let t203 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t195 * t196;
+        ::overact::guard::platform(t203, 14.869730172882846, "actuators")?;
+        ::overact::guard::platform(t203, 14.869730172882846, "actuators")?;
+        ::overact::guard::platform(t203, 14.869730172882846, "actuators")?;
+        let t204 = 1.0 / t203;
+        let t211 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
-            + garm_vy_leg3 * actuator_velocities[2] - t278 * t265;
-        let t282 = 0.24 * minus_s_arm_leg1;
-        let t283 = pose[2] - t282;
-        let garm_vz_leg1 = t283 * t25;
-        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t85) * t114;
-        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t170) * t199;
-        let t300 = garm_vx_leg1 * garm_vz_leg1 + garm_vx_leg2 * garm_vz_leg2
-            + garm_vx_leg3 * garm_vz_leg3;
-        let t301 = t300 * t203;
-        let t303 = garm_vy_leg1 * garm_vz_leg1 + garm_vy_leg2 * garm_vz_leg2
-            + garm_vy_leg3 * garm_vz_leg3 - t264 * t301;
-        let t304 = t303 * t268;
-        let t313 = garm_vz_leg1 * garm_vz_leg1 + garm_vz_leg2 * garm_vz_leg2
-            + garm_vz_leg3 * garm_vz_leg3 - t300 * t301 - t303 * t304;
-        ::overact::guard::platform(t313, 34.855350201355726, "actuators")?;
-        ::overact::guard::platform(t313, 34.855350201355726, "actuators")?;
-        ::overact::guard::platform(t313, 34.855350201355726, "actuators")?;
-        let t314 = 1.0 / t313;
-        let t324 = t314
-            * (garm_vz_leg1 * actuator_velocities[0]
-                + garm_vz_leg2 * actuator_velocities[1]
-                + garm_vz_leg3 * actuator_velocities[2] - t278 * t301 - t304 * t280);
-        let t326 = t268 * t280 - t304 * t324;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t223;
-        let t333 = t278 * t203 - t265 * t326 - t301 * t324;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t223;
-        let rate_cross_leg1 = gcross_vy_leg1 * t326 - minus_gcross_vx_leg1 * t333
-            - minus_gcross_vz_leg1 * t324;
-        let t339 = pose[1] * rate_cross_leg1;
-        let t340 = 1.7857142857142858 * t339;
-        let t341 = c_rod_leg1 * rate_cross_leg1;
-        let t342 = t340 * t341;
-        let grod_vy_leg1 = 1.7857142857142858 * t241;
-        let rate_rod_leg1 = grod_vy_leg1 * t326;
-        let t345 = s_armcross_leg1 * rate_rod_leg1;
-        let t347 = pose[1] * (rate_cross_leg1 * t345);
-        let t348 = actuator_velocities[0] * actuator_velocities[0];
-        let t351 = rate_cross_leg1 * rate_cross_leg1;
-        let t353 = c_armcross_leg1 * rate_rod_leg1;
-        let t355 = t345 * t345 + t351 + t353 * t353;
-        let t359 = t347 - (t21 * t348 + t23 * t355) + t347;
-        let t363 = rate_cross_leg1 * t339 - pose[1] * t355;
-        let t367 = pose[1] * (rate_cross_leg1 * t353);
-        let t372 = t367 - (t282 * t348 + t283 * t355) + t367;
-        let minus_rate_dot_arm_leg1 = garm_vx_leg1 * t359 + garm_vy_leg1 * t363
-            + garm_vz_leg1 * t372;
-        let t375 = actuator_accelerations[0] + minus_rate_dot_arm_leg1;
-        let t377 = actuator_velocities[1] * actuator_velocities[1];
-        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t81)
-            - 0.11639381426862856 * (minus_s_arm_leg2 * t97)) * t114;
-        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t81)
-            - 0.11639381426862856 * t106) * t114;
-        let minus_gcross_vy_leg2 = t108 * t114;
-        let rate_cross_leg2 = gcross_vz_leg2 * t324
-            - (minus_gcross_vx_leg2 * t333 + minus_gcross_vy_leg2 * t326);
-        let t396 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t85) - t54 * t94) * t114;
-        let minus_grod_vy_leg2 = 0.25 * t49 * t114;
-        let rate_rod_leg2 = grod_vx_leg2 * t333 - minus_grod_vy_leg2 * t326;
-        let t409 = t396 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t412 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t413 = 0.5 * rate_cross_leg2;
-        let t414 = t412 - t413;
-        let t417 = c_armcross_leg2 * rate_rod_leg2;
-        let t419 = t409 * t409 + t414 * t414 + t417 * t417;
-        let t422 = 0.20784609690826528 * c_arm_leg2;
-        let t424 = t28 - (0.17320508075688776 + t422);
-        let t425 = t413 * t417;
-        let t427 = 0.12 * c_arm_leg2;
-        let t429 = t31 + 0.1 + t427;
-        let t430 = t396 * t417;
-        let t432 = t424 * t425 + t429 * t430;
-        let t434 = t84 * t377 + t85 * t419 + t432 + t432;
-        let t443 = t424 * t414 - t429 * t409 + t85 * t417;
-        let t448 = 1.3333333333333333 * (t396 * t412);
-        let t451 = t427 * t377 - t429 * t419 - t409 * t443 + t85 * t430 + t424 * t448;
-        let t461 = t414 * t443 - (t422 * t377 + t424 * t419) + t85 * t425 - t429 * t448;
-        let rate_dot_arm_leg2 = garm_vz_leg2 * t434
-            - (garm_vx_leg2 * t451 + garm_vy_leg2 * t461);
-        let t465 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t468 = 0.20784609690826528 * minus_c_arm_leg3;
-        let t469 = actuator_velocities[2] * actuator_velocities[2];
-        let t472 = t118 - (t468 - 0.17320508075688776);
-        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t182)
-            + 0.0672 * (s_arm_leg3 * t166)) * t199;
-        let minus_gcross_vx_leg3 = (0.11639381426862856 * t191
-            + 0.1344 * (minus_c_arm_leg3 * t166)) * t199;
-        let minus_gcross_vy_leg3 = t193 * t199;
-        let rate_cross_leg3 = gcross_vz_leg3 * t324
-            - (minus_gcross_vx_leg3 * t333 + minus_gcross_vy_leg3 * t326);
-        let t490 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (t140 * t179
-            + 0.20784609690826528 * (minus_c_arm_leg3 * t170)) * t199;
-        let minus_grod_vy_leg3 = 0.25 * t135 * t199;
-        let rate_rod_leg3 = grod_vx_leg3 * t333 - minus_grod_vy_leg3 * t326;
-        let t503 = t490 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t505 = 0.5 * rate_cross_leg3;
-        let t507 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t508 = t505 + t507;
-        let t511 = minus_c_armcross_leg3 * rate_rod_leg3;
-        let t513 = t503 * t503 + t508 * t508 + t511 * t511;
-        let t516 = 0.12 * minus_c_arm_leg3;
-        let t518 = t31 - (t516 - 0.1);
-        let t523 = t518 * t503 - t472 * t508 - t170 * t511;
-        let t527 = 1.3333333333333333 * (t490 * t507);
-        let t529 = t505 * t511;
-        let t532 = t468 * t469 + t472 * t513 + t508 * t523 + t518 * t527 + t170 * t529;
-        let t539 = t490 * t511;
-        let t543 = t503 * t523 - (t516 * t469 + t518 * t513) + t170 * t539 + t472 * t527;
-        let t551 = t472 * t529 - t518 * t539;
-        let t553 = t169 * t469 - t170 * t513 + t551 + t551;
-        let rate_dot_arm_leg3 = garm_vy_leg3 * t532 - garm_vx_leg3 * t543
-            - garm_vz_leg3 * t553;
-        let t556 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t563 = garm_vx_leg1 * t375 + garm_vx_leg2 * t465 + garm_vx_leg3 * t556;
-        let t565 = garm_vy_leg1 * t375 + garm_vy_leg2 * t465 + garm_vy_leg3 * t556
-            - t265 * t563;
-        let t576 = t314
-            * (garm_vz_leg1 * t375 + garm_vz_leg2 * t465 + garm_vz_leg3 * t556
-                - t301 * t563 - t304 * t565);
-        let t578 = t268 * t565 - t304 * t576;
-        let t579 = t578 - t363;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t579;
-        let t581 = t342 - rate_dot_rod_leg1;
-        let t583 = t341 * t341;
-        let t584 = rate_rod_leg1 * rate_rod_leg1;
-        let t593 = t203 * t563 - t265 * t578 - t301 * t576;
-        let rate_dot_cross_leg1 = gcross_vy_leg1 * t579
-            - minus_gcross_vx_leg1 * (t593 - t359)
-            - minus_gcross_vz_leg1 * (t576 - t372);
-        let t600 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t604 = t212 - 0.24 * t348;
-        let t607 = 0.24 * actuator_accelerations[0] - t205;
-        let t609 = c_cross_leg1 * t604 + s_cross_leg1 * t607;
-        let t610 = c_rod_leg1 * t609;
-        let t613 = 0.8928571428571429 * t17
-            * (parameters[14] * t581 - (t583 + t584) * parameters[13]
-                + parameters[15] * t600 + parameters[16] * t610);
-        let t616 = t342 + rate_dot_rod_leg1;
-        let t619 = 3.188775510204082 * (t339 * t339);
-        let t623 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t626 = s_rod_leg1 * t609;
-        let t629 = 0.42857142857142855 * (pose[1] * s_cross_leg1)
-            * (parameters[13] * t616 - (t619 + t584) * parameters[14]
-                - parameters[15] * t623 - parameters[16] * t626);
-        let t632 = rate_rod_leg1 * t340;
-        let t633 = t600 - t632;
-        let t634 = t632 - t633;
-        let t636 = rate_rod_leg1 * t341;
-        let t637 = t623 + t636;
-        let t638 = t636 + t637;
-        let t645 = c_cross_leg1 * t607 - s_cross_leg1 * t604;
-        let t649 = t613 - t629
-            - 0.24 * c_cross_leg1
-                * (parameters[13] * t634 + parameters[14] * t638 - t351 * parameters[15]
-                    - parameters[16] * t645);
-        let t650 = t221 + t649;
-        let t661 = parameters[7] * t637 - parameters[8] * t634 + parameters[9] * t616
-            - t636 * parameters[10] + parameters[11] * (t583 - t584);
-        let t678 = t632 * parameters[7] + parameters[8] * t638
-            + parameters[9] * (t584 - t619) + parameters[10] * t633
-            - parameters[11] * t581;
-        let t686 = s_rod_leg1
-            * (t661 + t636 * parameters[12] - parameters[14] * t645
-                + parameters[15] * t626)
+            + garm_vy_leg3 * actuator_velocities[2] - t178 * t196;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t41;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t74;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t128;
+        let t229 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+            + garm_vx_leg3 * minus_garm_vz_leg3;
+        let t230 = t229 * t157;
+        let t237 = t195 * t230
+            - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
+                + garm_vy_leg3 * minus_garm_vz_leg3);
+        let t238 = t237 * t204;
+        let t247 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+            + minus_garm_vz_leg2 * minus_garm_vz_leg2
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t229 * t230 - t237 * t238;
+        ::overact::guard::platform(t247, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t247, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t247, 34.855350201355726, "actuators")?;
+        let t248 = 1.0 / t247;
+        let t258 = t248
+            * (t178 * t230
+                - (minus_garm_vz_leg1 * actuator_velocities[0]
+                    + minus_garm_vz_leg2 * actuator_velocities[1]
+                    + minus_garm_vz_leg3 * actuator_velocities[2]) - t238 * t211);
+        let t260 = t204 * t211 - t238 * t258;
+        let t264 = t178 * t157 - t196 * t260 + t230 * t258;
+        let t269 = 0.24 * c_cross_leg1;
+        let t270 = t269 * garm_vy_leg1;
+        let t276 = t173 * (c_armcross_leg1 * t264 - s_armcross_leg1 * t258) + t270 * t260
+            + s_armcross_leg1 * t264 + c_armcross_leg1 * t258;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t276;
+        let t278 = pose[1] * minus_rate_cross_leg1;
+        let t280 = 3.188775510204082 * (t276 * t278);
+        let t281 = actuator_velocities[0] * actuator_velocities[0];
+        let t283 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t260;
+        let t285 = rate_rod_leg1 * rate_rod_leg1;
+        let t286 = t283 + t285;
+        let t288 = t269 * t281 + t36 * t286;
+        let t291 = minus_rate_cross_leg1 * t278 - pose[1] * t286;
+        let rate_dot_arm_leg1 = t41 * (t288 - t181 * t291);
+        let t295 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t297 = 0.24 * c_cross_leg2;
+        let t298 = actuator_velocities[1] * actuator_velocities[1];
+        let t300 = 0.8660254037844387 * t264;
+        let t301 = 0.5 * t260;
+        let t302 = t300 + t301;
+        let minus_rate_rod_leg2 = t76 * t302;
+        let t304 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t305 = 0.5 * s_armcross_leg2;
+        let t307 = 0.8660254037844387 * s_armcross_leg2;
+        let t312 = c_cross_leg2 * t73;
+        let t319 = t305 * t264 - t307 * t260 - c_armcross_leg2 * t258
+            - t312 * (t184 * t260 - t98 * t264 - s_armcross_leg2 * t258);
+        let t321 = t297 * (t74 * t77);
+        let t323 = t319 - t321 * t302;
+        let rate_cross_leg2 = t76 * t323;
+        let t325 = rate_cross_leg2 * rate_cross_leg2;
+        let t326 = t304 + t325;
+        let t328 = t297 * t298 + t71 * t326;
+        let t330 = t66 * rate_cross_leg2;
+        let t332 = t66 * t326 - rate_cross_leg2 * t330;
+        let rate_dot_arm_leg2 = t74 * (t328 + t77 * t332);
+        let t336 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t339 = 0.24 * c_cross_leg3;
+        let t340 = actuator_velocities[2] * actuator_velocities[2];
+        let t342 = t300 - t301;
+        let rate_rod_leg3 = t150 * t342;
+        let t344 = rate_rod_leg3 * rate_rod_leg3;
+        let t345 = 0.5 * s_armcross_leg3;
+        let t347 = 0.8660254037844387 * s_armcross_leg3;
+        let t352 = c_cross_leg3 * t127;
+        let t359 = t345 * t264 + t347 * t260 + minus_c_armcross_leg3 * t258
+            - t352 * (t148 * t264 + t190 * t260 - s_armcross_leg3 * t258);
+        let t361 = t339 * (t128 * t151);
+        let t363 = t359 - t361 * t342;
+        let rate_cross_leg3 = t150 * t363;
+        let t365 = rate_cross_leg3 * rate_cross_leg3;
+        let t366 = t344 + t365;
+        let t368 = t339 * t340 + t125 * t366;
+        let t369 = t120 * rate_cross_leg3;
+        let t372 = rate_cross_leg3 * t369 - t120 * t366;
+        let rate_dot_arm_leg3 = t128 * (t368 - t151 * t372);
+        let t376 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t383 = garm_vx_leg1 * t295 + garm_vx_leg2 * t336 + garm_vx_leg3 * t376;
+        let t385 = garm_vy_leg1 * t295 + garm_vy_leg2 * t336 + garm_vy_leg3 * t376
+            - t196 * t383;
+        let t396 = t248
+            * (t230 * t383
+                - (minus_garm_vz_leg1 * t295 + minus_garm_vz_leg2 * t336
+                    + minus_garm_vz_leg3 * t376) - t238 * t385);
+        let t398 = t204 * t385 - t238 * t396;
+        let t399 = t398 - t291;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t399;
+        let t401 = t280 - rate_dot_rod_leg1;
+        let t403 = t276 * t276;
+        let t404 = 3.188775510204082 * t403;
+        let t412 = t157 * t383 - t196 * t398 + t230 * t396;
+        let t426 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
+        let t430 = t173 * (c_armcross_leg1 * t412 - s_armcross_leg1 * t396 + t288)
+            + t270 * t399 + s_armcross_leg1 * t412 + c_armcross_leg1 * t396
+            + 0.24 * s_cross_leg1 * t281 + t426 + t426;
+        let t431 = 1.7857142857142858 * t430;
+        let t435 = t162 - 0.24 * t281;
+        let t438 = 0.24 * actuator_accelerations[0] - t159;
+        let t440 = c_cross_leg1 * t435 + s_cross_leg1 * t438;
+        let t441 = c_rod_leg1 * t440;
+        let t444 = 0.8928571428571429 * t17
+            * (parameters[14] * t401 - (t404 + t285) * parameters[13]
+                - parameters[15] * t431 + parameters[16] * t441);
+        let t447 = t280 + rate_dot_rod_leg1;
+        let t449 = t278 * t278;
+        let t450 = 3.188775510204082 * t449;
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t430;
+        let t456 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t459 = s_rod_leg1 * t440;
+        let t462 = 0.42857142857142855 * (pose[1] * s_cross_leg1)
+            * (parameters[13] * t447 - (t450 + t285) * parameters[14]
+                + parameters[15] * t456 - parameters[16] * t459);
+        let t464 = t426 - t430;
+        let t466 = 1.7857142857142858 * (t426 + t464);
+        let t469 = rate_rod_leg1 * (1.7857142857142858 * t276);
+        let t470 = t456 + t469;
+        let t471 = t469 + t470;
+        let t478 = c_cross_leg1 * t438 - s_cross_leg1 * t435;
+        let t482 = t444 - t462
+            + t269
+                * (parameters[13] * t466 + parameters[14] * t471 + t283 * parameters[15]
+                    + parameters[16] * t478);
+        let t483 = t171 + t482;
+        let minus_gcross_vx_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 * t173 + s_armcross_leg1);
+        let t497 = parameters[8] * t466 - parameters[7] * t470 + parameters[9] * t447
+            + t469 * parameters[10] + parameters[11] * (t404 - t285);
+        let t507 = 1.7857142857142858 * t426;
+        let t516 = parameters[9] * (t285 - t450)
+            - (t507 * parameters[7] + parameters[8] * t471)
+            + parameters[10] * (1.7857142857142858 * t464) - parameters[11] * t401;
+        let t524 = s_rod_leg1
+            * (t497 - t469 * parameters[12] - parameters[14] * t478
+                + parameters[15] * t459)
             + c_rod_leg1
-                * (t678 - t632 * parameters[12] + parameters[13] * t645
-                    + parameters[15] * t610);
-        let t690 = 9.81 * c_arm_leg2;
-        let t693 = 9.81 * minus_s_arm_leg2;
-        let t702 = actuator_accelerations[1] * parameters[17] - t690 * parameters[18]
-            - t693 * parameters[19] + actuator_accelerations[1] * parameters[20]
+                * (t516 + t507 * parameters[12] + parameters[13] * t478
+                    + parameters[15] * t441);
+        let t528 = 9.81 * c_arm_leg2;
+        let t531 = 9.81 * minus_s_arm_leg2;
+        let t540 = actuator_accelerations[1] * parameters[17] - t528 * parameters[18]
+            - t531 * parameters[19] + actuator_accelerations[1] * parameters[20]
             + actuator_velocities[1] * parameters[21]
             + ::overact::math::signed(parameters[22], actuator_velocities[1])
             + parameters[23];
-        let t704 = 1.7857142857142858 * t443;
-        let t705 = c_rod_leg2 * rate_cross_leg2;
-        let t706 = t704 * t705;
-        let t707 = t593 - t451;
-        let t709 = t578 - t461;
-        let rate_dot_rod_leg2 = grod_vx_leg2 * t707 - minus_grod_vy_leg2 * t709;
-        let t712 = t706 - rate_dot_rod_leg2;
-        let t714 = t705 * t705;
-        let t715 = rate_rod_leg2 * rate_rod_leg2;
-        let rate_dot_cross_leg2 = gcross_vz_leg2 * (t576 + t434)
-            - (minus_gcross_vx_leg2 * t707 + minus_gcross_vy_leg2 * t709);
-        let t725 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t729 = t693 - 0.24 * t377;
-        let t732 = 0.24 * actuator_accelerations[1] - t690;
-        let t734 = c_cross_leg2 * t729 + s_cross_leg2 * t732;
-        let t735 = c_rod_leg2 * t734;
-        let t738 = 0.8928571428571429 * t49
-            * (parameters[31] * t712 - (t714 + t715) * parameters[30]
-                + parameters[32] * t725 + parameters[33] * t735);
-        let t741 = t706 + rate_dot_rod_leg2;
-        let t744 = 3.188775510204082 * (t443 * t443);
-        let t748 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t751 = minus_s_rod_leg2 * t734;
-        let t754 = 0.42857142857142855 * (t57 * s_cross_leg2)
-            * (parameters[30] * t741 - (t744 + t715) * parameters[31]
-                + parameters[32] * t748 + parameters[33] * t751);
-        let t757 = rate_rod_leg2 * t704;
-        let t758 = t725 - t757;
-        let t759 = t757 - t758;
-        let t761 = rate_rod_leg2 * t705;
-        let t762 = t761 - t748;
-        let t763 = t761 + t762;
-        let t771 = c_cross_leg2 * t732 - s_cross_leg2 * t729;
-        let t774 = 0.24 * c_cross_leg2
-            * (parameters[30] * t759 + parameters[31] * t763
-                - rate_cross_leg2 * rate_cross_leg2 * parameters[32]
-                - parameters[33] * t771);
-        let t776 = t702 + t738 + t754 - t774;
-        let t787 = t757 * parameters[24] + parameters[25] * t763
-            + parameters[26] * (t715 - t744) + parameters[27] * t758
-            - parameters[28] * t712;
-        let t804 = parameters[24] * t762 - parameters[25] * t759 + parameters[26] * t741
-            - t761 * parameters[27] + parameters[28] * (t714 - t715);
-        let t812 = c_rod_leg2
-            * (t787 - t757 * parameters[29] + parameters[30] * t771
-                + parameters[32] * t735)
+        let t542 = 0.8660254037844387 * t412;
+        let t543 = 0.5 * t398;
+        let t545 = t542 + t543 + t332;
+        let minus_rate_dot_rod_leg2 = t76 * t545;
+        let t548 = 3.188775510204082 * (t323 * t330);
+        let t549 = minus_rate_dot_rod_leg2 - t548;
+        let t551 = t323 * t323;
+        let t552 = 3.188775510204082 * t551;
+        let t564 = t66 * (rate_cross_leg2 * minus_rate_rod_leg2);
+        let t567 = t305 * t412 - t307 * t398 - c_armcross_leg2 * t396
+            - (0.24 * s_cross_leg2 * t298 - t564 - t564);
+        let t577 = t567
+            - t312 * (t184 * t398 - t98 * t412 - s_armcross_leg2 * t396 + t328)
+            - t321 * t545;
+        let t578 = 1.7857142857142858 * t577;
+        let t582 = t531 - 0.24 * t298;
+        let t585 = 0.24 * actuator_accelerations[1] - t528;
+        let t587 = c_cross_leg2 * t582 + s_cross_leg2 * t585;
+        let t588 = c_rod_leg2 * t587;
+        let t591 = 0.8928571428571429 * t62
+            * (parameters[31] * t549 - (t552 + t304) * parameters[30]
+                + parameters[32] * t578 + parameters[33] * t588);
+        let minus_s_rod_leg2 = 1.7857142857142858 * t66;
+        let rate_dot_cross_leg2 = t76 * t577;
+        let t596 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t598 = t548 + minus_rate_dot_rod_leg2;
+        let t600 = t330 * t330;
+        let t601 = 3.188775510204082 * t600;
+        let t606 = minus_s_rod_leg2 * t587;
+        let t609 = 0.42857142857142855 * (t66 * s_cross_leg2)
+            * (parameters[32] * t596
+                - (parameters[30] * t598 + (t601 + t304) * parameters[31])
+                + parameters[33] * t606);
+        let t611 = t577 - t564;
+        let t613 = 1.7857142857142858 * (t564 - t611);
+        let t616 = minus_rate_rod_leg2 * (1.7857142857142858 * t323);
+        let t617 = t596 + t616;
+        let t618 = t616 + t617;
+        let t625 = c_cross_leg2 * t585 - s_cross_leg2 * t582;
+        let t629 = t591 + t609
+            - t297
+                * (parameters[30] * t613 - parameters[31] * t618 - t325 * parameters[32]
+                    - parameters[33] * t625);
+        let t630 = t540 + t629;
+        let gcross_vx_leg2 = t76 * (t98 * t312 + t305 - 0.8660254037844387 * t321);
+        let t637 = 1.7857142857142858 * t564;
+        let t648 = t637 * parameters[24] - parameters[25] * t618
+            + parameters[26] * (t304 - t601)
+            + parameters[27] * (1.7857142857142858 * t611) - parameters[28] * t549;
+        let t665 = t616 * parameters[27]
+            - (parameters[24] * t617 + parameters[25] * t613 + parameters[26] * t598)
+            + parameters[28] * (t552 - t304);
+        let t673 = c_rod_leg2
+            * (t648 - t637 * parameters[29] + parameters[30] * t625
+                + parameters[32] * t588)
             - minus_s_rod_leg2
-                * (t804 + t761 * parameters[29] - parameters[31] * t771
-                    - parameters[32] * t751);
-        let t824 = parameters[25] * (t744 - t714) - t706 * parameters[24]
-            - parameters[26] * t748 + t706 * parameters[27] + parameters[28] * t725;
-        let t830 = t824 + parameters[29] * rate_dot_rod_leg2 + parameters[30] * t751
-            - parameters[31] * t735;
-        let t835 = 9.81 * minus_c_arm_leg3;
-        let t838 = 9.81 * s_arm_leg3;
-        let t847 = actuator_accelerations[2] * parameters[34] + t835 * parameters[35]
-            + t838 * parameters[36] + actuator_accelerations[2] * parameters[37]
+                * (t665 - t616 * parameters[29] - parameters[31] * t625
+                    - parameters[32] * t606);
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t75;
+        let t687 = t548 * parameters[24]
+            + parameters[25] * (3.188775510204082 * (t600 - t551))
+            - parameters[26] * t596 - t548 * parameters[27] + parameters[28] * t578;
+        let t693 = t687 - parameters[29] * minus_rate_dot_rod_leg2
+            + parameters[30] * t606 - parameters[31] * t588;
+        let t698 = 9.81 * minus_c_arm_leg3;
+        let t701 = 9.81 * s_arm_leg3;
+        let t710 = actuator_accelerations[2] * parameters[34] + t698 * parameters[35]
+            + t701 * parameters[36] + actuator_accelerations[2] * parameters[37]
             + actuator_velocities[2] * parameters[38]
             + ::overact::math::signed(parameters[39], actuator_velocities[2])
             + parameters[40];
-        let t849 = 1.7857142857142858 * t523;
-        let t850 = c_rod_leg3 * rate_cross_leg3;
-        let t851 = t849 * t850;
-        let t852 = t593 - t543;
-        let t854 = t578 + t532;
-        let rate_dot_rod_leg3 = grod_vx_leg3 * t852 - minus_grod_vy_leg3 * t854;
-        let t857 = t851 - rate_dot_rod_leg3;
-        let t859 = t850 * t850;
-        let t860 = rate_rod_leg3 * rate_rod_leg3;
-        let rate_dot_cross_leg3 = gcross_vz_leg3 * (t576 - t553)
-            - (minus_gcross_vx_leg3 * t852 + minus_gcross_vy_leg3 * t854);
-        let t870 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t874 = t835 + 0.24 * actuator_accelerations[2];
-        let t877 = t838 + 0.24 * t469;
-        let t879 = s_cross_leg3 * t874 - c_cross_leg3 * t877;
-        let t880 = c_rod_leg3 * t879;
-        let t883 = 0.8928571428571429 * t135
-            * (parameters[48] * t857 - (t859 + t860) * parameters[47]
-                + parameters[49] * t870 + parameters[50] * t880);
-        let t886 = t851 + rate_dot_rod_leg3;
-        let t889 = 3.188775510204082 * (t523 * t523);
-        let t893 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t896 = s_rod_leg3 * t879;
-        let t899 = 0.42857142857142855 * (t142 * s_cross_leg3)
-            * (parameters[47] * t886 - (t889 + t860) * parameters[48]
-                - parameters[49] * t893 - parameters[50] * t896);
-        let t902 = rate_rod_leg3 * t849;
-        let t903 = t870 - t902;
-        let t904 = t902 - t903;
-        let t906 = rate_rod_leg3 * t850;
-        let t907 = t893 + t906;
-        let t908 = t906 + t907;
-        let t916 = s_cross_leg3 * t877 + c_cross_leg3 * t874;
-        let t919 = 0.24 * c_cross_leg3
-            * (parameters[47] * t904 + parameters[48] * t908
-                - rate_cross_leg3 * rate_cross_leg3 * parameters[49]
-                - parameters[50] * t916);
-        let t921 = t847 + t883 - t899 - t919;
-        let t932 = parameters[41] * t907 - parameters[42] * t904 + parameters[43] * t886
-            - t906 * parameters[44] + parameters[45] * (t859 - t860);
-        let t949 = t902 * parameters[41] + parameters[42] * t908
-            + parameters[43] * (t860 - t889) + parameters[44] * t903
-            - parameters[45] * t857;
-        let t957 = s_rod_leg3
-            * (t932 + t906 * parameters[46] - parameters[48] * t916
-                + parameters[49] * t896)
+        let t713 = 3.188775510204082 * (t363 * t369);
+        let t715 = t542 - t543 - t372;
+        let rate_dot_rod_leg3 = t150 * t715;
+        let t717 = t713 - rate_dot_rod_leg3;
+        let t719 = t363 * t363;
+        let t720 = 3.188775510204082 * t719;
+        let t732 = t120 * (rate_cross_leg3 * rate_rod_leg3);
+        let t735 = t345 * t412 + t347 * t398 + minus_c_armcross_leg3 * t396
+            - (0.24 * s_cross_leg3 * t340 - t732 - t732);
+        let t745 = t735
+            - t352 * (t148 * t412 + t190 * t398 - s_armcross_leg3 * t396 + t368)
+            - t361 * t715;
+        let t746 = 1.7857142857142858 * t745;
+        let t750 = t698 + 0.24 * actuator_accelerations[2];
+        let t753 = t701 + 0.24 * t340;
+        let t755 = s_cross_leg3 * t750 - c_cross_leg3 * t753;
+        let t756 = c_rod_leg3 * t755;
+        let t759 = 0.8928571428571429 * t117
+            * (parameters[48] * t717 - (t720 + t344) * parameters[47]
+                + parameters[49] * t746 + parameters[50] * t756);
+        let t762 = t713 + rate_dot_rod_leg3;
+        let t764 = t369 * t369;
+        let t765 = 3.188775510204082 * t764;
+        let s_rod_leg3 = 1.7857142857142858 * t120;
+        let rate_dot_cross_leg3 = t150 * t745;
+        let t771 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t774 = s_rod_leg3 * t755;
+        let t777 = 0.42857142857142855 * (t120 * s_cross_leg3)
+            * (parameters[47] * t762 - (t765 + t344) * parameters[48]
+                - parameters[49] * t771 - parameters[50] * t774);
+        let t779 = t745 - t732;
+        let t781 = 1.7857142857142858 * (t732 - t779);
+        let t784 = rate_rod_leg3 * (1.7857142857142858 * t363);
+        let t785 = t771 + t784;
+        let t786 = t784 + t785;
+        let t793 = s_cross_leg3 * t753 + c_cross_leg3 * t750;
+        let t797 = t759 - t777
+            - t339
+                * (parameters[47] * t781 + parameters[48] * t786 - t365 * parameters[49]
+                    - parameters[50] * t793);
+        let t798 = t710 + t797;
+        let gcross_vx_leg3 = t150 * (t345 - t148 * t352 - 0.8660254037844387 * t361);
+        let t814 = parameters[41] * t785 - parameters[42] * t781 + parameters[43] * t762
+            - t784 * parameters[44] + parameters[45] * (t720 - t344);
+        let t822 = 1.7857142857142858 * t732;
+        let t833 = t822 * parameters[41] + parameters[42] * t786
+            + parameters[43] * (t344 - t765)
+            + parameters[44] * (1.7857142857142858 * t779) - parameters[45] * t717;
+        let t841 = s_rod_leg3
+            * (t814 + t784 * parameters[46] - parameters[48] * t793
+                + parameters[49] * t774)
             + c_rod_leg3
-                * (t949 - t902 * parameters[46] + parameters[47] * t916
-                    + parameters[49] * t880);
-        let t969 = parameters[42] * (t889 - t859) - t851 * parameters[41]
-            + parameters[43] * t893 + t851 * parameters[44] + parameters[45] * t870;
-        let t975 = t969 + parameters[46] * rate_dot_rod_leg3 - parameters[47] * t896
-            - parameters[48] * t880;
-        let t978 = garm_vx_leg1 * t650 - minus_gcross_vx_leg1 * t686
-            + garm_vx_leg2 * t776 - minus_gcross_vx_leg2 * t812 + grod_vx_leg2 * t830
-            + garm_vx_leg3 * t921 - minus_gcross_vx_leg3 * t957 + grod_vx_leg3 * t975;
-        let t982 = t978 + t593 * parameters[51] + t593 * parameters[52];
-        let t996 = parameters[8] * (t619 - t583) - t342 * parameters[7]
-            + parameters[9] * t623 + t342 * parameters[10] + parameters[11] * t600;
-        let t1004 = garm_vy_leg1 * t650 + gcross_vy_leg1 * t686
+                * (t833 - t822 * parameters[46] + parameters[47] * t793
+                    + parameters[49] * t756);
+        let grod_vx_leg3 = 1.5464739353293548 * t149;
+        let t855 = parameters[42] * (3.188775510204082 * (t764 - t719))
+            - t713 * parameters[41] + parameters[43] * t771 + t713 * parameters[44]
+            + parameters[45] * t746;
+        let t861 = t855 + parameters[46] * rate_dot_rod_leg3 - parameters[47] * t774
+            - parameters[48] * t756;
+        let t864 = garm_vx_leg1 * t483 - minus_gcross_vx_leg1 * t524
+            + garm_vx_leg2 * t630 + gcross_vx_leg2 * t673 - minus_grod_vx_leg2 * t693
+            + garm_vx_leg3 * t798 + gcross_vx_leg3 * t841 + grod_vx_leg3 * t861;
+        let t868 = t864 + t412 * parameters[51] + t412 * parameters[52];
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * t270;
+        let t884 = parameters[8] * (3.188775510204082 * (t449 - t403))
+            - t280 * parameters[7] - parameters[9] * t456 + t280 * parameters[10]
+            - parameters[11] * t431;
+        let t892 = garm_vy_leg1 * t483 - minus_gcross_vy_leg1 * t524
             + grod_vy_leg1
-                * (t996 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t626
-                    - parameters[14] * t610);
-        let t1016 = t1004 + garm_vy_leg2 * t776 - minus_gcross_vy_leg2 * t812
-            - minus_grod_vy_leg2 * t830 + garm_vy_leg3 * t921
-            - minus_gcross_vy_leg3 * t957 - minus_grod_vy_leg3 * t975;
-        let t1022 = t1016 + t578 * parameters[51] + t578 * parameters[52] - t265 * t982;
-        let t1034 = garm_vz_leg1 * t650 - minus_gcross_vz_leg1 * t686
-            + garm_vz_leg2 * t776 + gcross_vz_leg2 * t812 + garm_vz_leg3 * t921
-            + gcross_vz_leg3 * t957;
-        let t1035 = t576 + 9.81;
-        let t1044 = t314
-            * (t1034 + parameters[51] * t1035 + parameters[52] * t1035 - t301 * t982
-                - t304 * t1022);
-        let t1046 = t268 * t1022 - t304 * t1044;
-        let t1050 = t203 * t982 - t265 * t1046 - t301 * t1044;
+                * (t884 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t459
+                    - parameters[14] * t441);
+        let minus_gcross_vy_leg2 = t76 * (t184 * t312 + t307 + 0.5 * t321);
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t75;
+        let gcross_vy_leg3 = t150 * (t347 - t190 * t352 + 0.5 * t361);
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t149;
+        let t916 = t892 + garm_vy_leg2 * t630 - minus_gcross_vy_leg2 * t673
+            - minus_grod_vy_leg2 * t693 + garm_vy_leg3 * t798 + gcross_vy_leg3 * t841
+            - minus_grod_vy_leg3 * t861;
+        let t922 = t916 + t398 * parameters[51] + t398 * parameters[52] - t196 * t868;
+        let gcross_vz_leg2 = t76 * (s_armcross_leg2 * t312 - c_armcross_leg2);
+        let minus_gcross_vz_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 - s_armcross_leg1 * t173);
+        let gcross_vz_leg3 = t150 * (s_armcross_leg3 * t352 + minus_c_armcross_leg3);
+        let t943 = gcross_vz_leg2 * t673 - minus_garm_vz_leg2 * t630
+            - (minus_garm_vz_leg1 * t483 + minus_gcross_vz_leg1 * t524)
+            + gcross_vz_leg3 * t841 - minus_garm_vz_leg3 * t798;
+        let t944 = t396 + 9.81;
+        let t953 = t248
+            * (t943 + parameters[51] * t944 + parameters[52] * t944 + t230 * t868
+                - t238 * t922);
+        let t955 = t204 * t922 - t238 * t953;
+        let t959 = t157 * t868 - t196 * t955 + t230 * t953;
         Ok([
-            garm_vx_leg1 * t1050 + garm_vy_leg1 * t1046 + garm_vz_leg1 * t1044,
-            garm_vx_leg2 * t1050 + garm_vy_leg2 * t1046 + garm_vz_leg2 * t1044,
-            garm_vx_leg3 * t1050 + garm_vy_leg3 * t1046 + garm_vz_leg3 * t1044,
+            garm_vx_leg1 * t959 + garm_vy_leg1 * t955 - minus_garm_vz_leg1 * t953,
+            garm_vx_leg2 * t959 + garm_vy_leg2 * t955 - minus_garm_vz_leg2 * t953,
+            garm_vx_leg3 * t959 + garm_vy_leg3 * t955 - minus_garm_vz_leg3 * t953,
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -9907,7 +9056,7 @@ impl Delta {
     ///
     /// Output: 3 x 3.
     ///
-    /// 889 operations (320 additions, 556 multiplications, 13 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 889 intermediates.
+    /// 830 operations (313 additions, 502 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 830 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -9929,394 +9078,396 @@ impl Delta {
         let t16 = t5 - t12 * t12;
         ::overact::guard::reach(t16, "leg1")?;
         let t17 = ::overact::math::sqrt(t16);
-        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
         let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t23 = t0 - (0.2 + 0.24 * c_arm_leg1);
-        let t24 = 1.0 / t17;
-        let t25 = 2.0 * t24;
-        let garm_vx_leg1 = t23 * t25;
-        let t30 = 0.8928571428571429 * t17;
-        let t31 = 1.7857142857142858 * t23;
-        let t34 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t34, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t34);
+        let t24 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t24, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t24);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t36 = 0.48 * t24;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t36;
-        let t38 = c_rod_leg1 * minus_gcross_vx_leg1;
-        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
-        let t46 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
-        let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t48 = s_rod_leg1 * minus_gcross_vx_leg1;
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t34) / (0.2688 * c_rod_leg1);
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
         let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t63 = s_rod_leg1 * c_armcross_leg1;
-        let t68 = 0.24 * c_cross_leg1;
-        let t73 = c_cross_leg1 * (0.24 * garm_vx_leg1);
-        let t77 = t30 * (t31 * parameters[16] - parameters[15] * t38)
-            - t46 * (parameters[15] * t48 - t63 * parameters[16])
-            - t68 * (parameters[13] * t38 - parameters[14] * t48 - parameters[16] * t73);
-        let t96 = s_rod_leg1
-            * (t63 * parameters[15]
-                - (parameters[7] * t48 + parameters[8] * t38 + parameters[14] * t73))
-            + c_rod_leg1
-                * (parameters[13] * t73 - (parameters[8] * t48 + parameters[10] * t38)
-                    + t31 * parameters[15]);
-        let t99 = pose[1] + 0.04330127018922194;
-        let t100 = t99 - 0.17320508075688776;
-        let t102 = pose[0] - 0.025;
-        let t103 = t102 + 0.1;
-        let t104 = 0.5 * t103;
-        let t105 = 0.8660254037844387 * t100 - t104;
-        let t108 = 0.2304 * (t105 * t105 + t3);
-        let t109 = 1.0 / t108;
-        let t110 = 0.48 * t105;
-        let t111 = t103 * t103;
-        let t114 = t111 + t100 * t100 + t3;
-        let t116 = t114 - 0.3136 + 0.0576;
-        let t119 = t108 - t116 * t116;
-        ::overact::guard::reach(t119, "leg2")?;
-        let t120 = ::overact::math::sqrt(t119);
-        let c_arm_leg2 = t109 * (t110 * t116 - t14 * t120);
-        let t125 = t105 - 0.24 * c_arm_leg2;
-        let t126 = 0.8660254037844387 * t103;
-        let t128 = t126 + 0.5 * t100;
-        let t129 = t128 * t128;
-        let t133 = 1.0 - 3.188775510204082 * t129;
-        ::overact::guard::reach(t133, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t133);
-        let c_cross_leg2 = (t114 - (0.0576 + t129) - 0.3136 * t133)
-            / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t109 * (t14 * t116 + t110 * t120);
-        let s_cross_leg2 = 2.0833333333333335 * t120 / (0.56 * c_rod_leg2);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
-            + minus_s_arm_leg2 * s_cross_leg2;
-        let t149 = t128 * c_armcross_leg2;
-        let t152 = 1.5464739353293548 * t149 - 0.5 * c_rod_leg2;
-        let t156 = pose[2] - 0.24 * minus_s_arm_leg2;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t128;
-        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
-            - minus_s_arm_leg2 * c_cross_leg2;
-        let t161 = minus_s_rod_leg2 * s_armcross_leg2;
-        let t162 = t156 * t161;
-        let t165 = 0.20784609690826528 * minus_s_arm_leg2;
-        let t168 = 0.8928571428571429 * t149 + 0.8660254037844387 * c_rod_leg2;
-        let t172 = t125 * (0.56 * t168) - 0.28 * t162;
-        let t177 = minus_s_arm_leg2 * t161;
-        let t179 = 0.1344 * (c_arm_leg2 * t168) - 0.0672 * t177;
-        let t184 = t165 * t172 - 0.8660254037844387 * t156 * t179 - 0.14 * (t120 * t152);
-        ::overact::guard::leg(t184, 0.06758306237512474, "leg2")?;
-        let t185 = 1.0 / t184;
-        let garm_vx_leg2 = (t125 * (0.56 * t152) - 0.4849742261192857 * t162) * t185;
-        let t190 = 0.8928571428571429 * t120;
-        let t194 = 1.7857142857142858 * (t102 + 0.1 + 0.12 * c_arm_leg2);
-        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t152)
-            - 0.11639381426862856 * t177) * t185;
-        let t201 = c_rod_leg2 * minus_gcross_vx_leg2;
-        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t156) - t125 * t165)
-            * t185;
-        let t213 = 0.42857142857142855 * (t128 * s_cross_leg2);
-        let t215 = minus_s_rod_leg2 * minus_gcross_vx_leg2;
-        let t218 = 0.24 * garm_vx_leg2;
-        let t220 = minus_s_rod_leg2 * (s_cross_leg2 * t218);
-        let t224 = t190
-            * (t194 * parameters[33]
-                - (parameters[32] * t201 + grod_vx_leg2 * parameters[31]))
-            + t213
-                * (grod_vx_leg2 * parameters[30] - parameters[32] * t215
-                    + parameters[33] * t220);
-        let t225 = 0.24 * c_cross_leg2;
-        let t226 = c_cross_leg2 * t218;
-        let t234 = garm_vx_leg2 * parameters[17] + garm_vx_leg2 * parameters[20] + t224
-            + t225
-                * (parameters[33] * t226
-                    - (parameters[30] * t201 + parameters[31] * t215));
-        let t245 = c_rod_leg2
-            * (parameters[25] * t215 - parameters[27] * t201
-                + grod_vx_leg2 * parameters[28] + parameters[30] * t226
-                + t194 * parameters[32]);
-        let t255 = minus_s_rod_leg2
-            * (parameters[24] * t215 - parameters[25] * t201
-                + grod_vx_leg2 * parameters[26] - parameters[31] * t226
-                - parameters[32] * t220);
-        let t268 = grod_vx_leg2
-            * (parameters[26] * t215 - parameters[28] * t201
-                + grod_vx_leg2 * parameters[29] + parameters[30] * t220
-                - t194 * parameters[31]);
-        let t270 = garm_vx_leg1
-            * (garm_vx_leg1 * parameters[0] + garm_vx_leg1 * parameters[3] + t77)
-            - minus_gcross_vx_leg1 * t96 + garm_vx_leg2 * t234
-            - minus_gcross_vx_leg2 * (t245 - t255) + t268;
-        let t271 = pose[1] - 0.04330127018922194;
-        let t272 = t271 + 0.17320508075688776;
-        let t274 = t104 + 0.8660254037844387 * t272;
-        let t277 = 0.2304 * (t274 * t274 + t3);
-        let t278 = 1.0 / t277;
-        let t279 = 0.48 * t274;
-        let t282 = t111 + t272 * t272 + t3;
-        let t284 = t282 - 0.3136 + 0.0576;
-        let t287 = t277 - t284 * t284;
-        ::overact::guard::reach(t287, "leg3")?;
-        let t288 = ::overact::math::sqrt(t287);
-        let minus_c_arm_leg3 = t278 * (t279 * t284 + t14 * t288);
-        let t293 = t274 - 0.24 * minus_c_arm_leg3;
-        let t295 = t126 - 0.5 * t272;
-        let t296 = t295 * t295;
-        let t300 = 1.0 - 3.188775510204082 * t296;
-        ::overact::guard::reach(t300, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t300);
-        let c_cross_leg3 = (t282 - (0.0576 + t296) - 0.3136 * t300)
-            / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t278 * (t279 * t288 - t14 * t284);
-        let s_cross_leg3 = 2.0833333333333335 * t288 / (0.56 * c_rod_leg3);
-        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
-            + s_arm_leg3 * s_cross_leg3;
-        let t316 = t295 * minus_c_armcross_leg3;
-        let t319 = 1.5464739353293548 * t316 + 0.5 * c_rod_leg3;
-        let t323 = pose[2] + 0.24 * s_arm_leg3;
-        let s_rod_leg3 = 1.7857142857142858 * t295;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
-            - minus_c_arm_leg3 * s_cross_leg3;
-        let t328 = s_rod_leg3 * s_armcross_leg3;
-        let t329 = t323 * t328;
-        let t332 = 0.20784609690826528 * s_arm_leg3;
-        let t335 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t316;
-        let t339 = t293 * (0.56 * t335) + 0.28 * t329;
-        let t344 = s_arm_leg3 * t328;
-        let t346 = 0.1344 * (minus_c_arm_leg3 * t335) - 0.0672 * t344;
-        let t351 = t332 * t339 + 0.8660254037844387 * t323 * t346 + 0.14 * (t288 * t319);
-        ::overact::guard::leg(t351, 0.06758306237512474, "leg3")?;
-        let t352 = 1.0 / t351;
-        let garm_vx_leg3 = (t293 * (0.56 * t319) - 0.4849742261192857 * t329) * t352;
-        let t357 = 0.8928571428571429 * t288;
-        let t361 = 1.7857142857142858 * (t102 - (0.12 * minus_c_arm_leg3 - 0.1));
-        let minus_gcross_vx_leg3 = (0.11639381426862856 * t344
-            + 0.1344 * (minus_c_arm_leg3 * t319)) * t352;
-        let t368 = c_rod_leg3 * minus_gcross_vx_leg3;
-        let grod_vx_leg3 = (t293 * t332
-            + 0.20784609690826528 * (minus_c_arm_leg3 * t323)) * t352;
-        let t380 = 0.42857142857142855 * (t295 * s_cross_leg3);
-        let t382 = s_rod_leg3 * minus_gcross_vx_leg3;
-        let t385 = 0.24 * garm_vx_leg3;
-        let t387 = s_rod_leg3 * (s_cross_leg3 * t385);
-        let t391 = t357
-            * (t361 * parameters[50]
-                - (parameters[49] * t368 + grod_vx_leg3 * parameters[48]))
-            - t380
-                * (grod_vx_leg3 * parameters[47] + parameters[49] * t382
-                    - parameters[50] * t387);
-        let t392 = 0.24 * c_cross_leg3;
-        let t396 = c_cross_leg3 * t385;
-        let t401 = garm_vx_leg3 * parameters[34] + garm_vx_leg3 * parameters[37] + t391
-            - t392
-                * (parameters[47] * t368 - parameters[48] * t382
-                    - parameters[50] * t396);
-        let t412 = s_rod_leg3
-            * (grod_vx_leg3 * parameters[43]
-                - (parameters[41] * t382 + parameters[42] * t368) - parameters[48] * t396
-                + parameters[49] * t387);
-        let t422 = c_rod_leg3
-            * (grod_vx_leg3 * parameters[45]
-                - (parameters[42] * t382 + parameters[44] * t368) + parameters[47] * t396
-                + t361 * parameters[49]);
-        let t435 = grod_vx_leg3
-            * (grod_vx_leg3 * parameters[46]
-                - (parameters[43] * t382 + parameters[45] * t368) - parameters[47] * t387
-                - t361 * parameters[48]);
-        let t438 = parameters[51] + parameters[52];
-        let garm_vy_leg1 = pose[1] * t25;
+        let t40 = 1.0 / s_cross_leg1;
+        let t41 = 4.166666666666667 * t40;
+        let garm_vx_leg1 = c_armcross_leg1 * t41;
+        let t46 = 0.8928571428571429 * t17;
+        let t50 = 1.7857142857142858 * (t0 - (0.2 + 0.24 * c_arm_leg1));
+        let t52 = c_cross_leg1 * t40;
+        let t53 = c_armcross_leg1 * t52;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t447 = s_rod_leg1 * s_armcross_leg1;
-        let t448 = 1.0 / c_rod_leg1;
-        let gcross_vy_leg1 = t36
-            * (minus_s_arm_leg1 * (t447 * t448) - c_arm_leg1 * (t63 * t448));
-        let t455 = c_rod_leg1 * gcross_vy_leg1;
-        let grod_vy_leg1 = 1.7857142857142858 * t448;
-        let t464 = s_rod_leg1 * gcross_vy_leg1;
-        let t469 = s_rod_leg1 * (s_cross_leg1 * (0.24 * garm_vy_leg1));
-        let t473 = t30
-            * (parameters[15] * t455 - grod_vy_leg1 * parameters[14]
-                + s_rod_leg1 * parameters[16])
-            - t46
-                * (grod_vy_leg1 * parameters[13] - parameters[15] * t464
-                    - parameters[16] * t469);
-        let t475 = parameters[13] * t455;
-        let t477 = 0.56 * t455;
-        let t482 = garm_vy_leg1 * parameters[0] + garm_vy_leg1 * parameters[3] + t473
-            - t68 * (parameters[14] * t464 - t475 + parameters[16] * t477);
-        let t493 = s_rod_leg1
-            * (parameters[7] * t464 + parameters[8] * t455 + grod_vy_leg1 * parameters[9]
-                + parameters[14] * t477 + parameters[15] * t469);
-        let t503 = c_rod_leg1
-            * (parameters[8] * t464 + parameters[10] * t455
-                + grod_vy_leg1 * parameters[11] - 0.56 * t475
+        let t57 = t53 + s_armcross_leg1;
+        let t58 = 1.7857142857142858 * t57;
+        let t63 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
+        let minus_gcross_vx_leg1 = grod_vy_leg1 * t57;
+        let t67 = s_rod_leg1 * minus_gcross_vx_leg1;
+        let t69 = s_rod_leg1 * c_armcross_leg1;
+        let t74 = 0.24 * c_cross_leg1;
+        let t81 = t46 * (parameters[16] * t50 - parameters[15] * t58)
+            - t63 * (parameters[15] * t67 - parameters[16] * t69)
+            - t74 * (parameters[13] * t58 - parameters[14] * t67 - t53 * parameters[16]);
+        let t100 = s_rod_leg1
+            * (parameters[15] * t69
+                - (parameters[7] * t67 + parameters[8] * t58 + t53 * parameters[14]))
+            + c_rod_leg1
+                * (t53 * parameters[13] - (parameters[8] * t67 + parameters[10] * t58)
+                    + parameters[15] * t50);
+        let t103 = pose[1] + 0.04330127018922194;
+        let t104 = t103 - 0.17320508075688776;
+        let t106 = pose[0] - 0.025;
+        let t107 = t106 + 0.1;
+        let t108 = 0.5 * t107;
+        let t109 = 0.8660254037844387 * t104 - t108;
+        let t112 = 0.2304 * (t109 * t109 + t3);
+        let t113 = t107 * t107;
+        let t116 = t113 + t104 * t104 + t3;
+        let t118 = t116 - 0.3136 + 0.0576;
+        let t120 = t112 - t118 * t118;
+        ::overact::guard::reach(t120, "leg2")?;
+        let t121 = ::overact::math::sqrt(t120);
+        let t123 = 0.8660254037844387 * t107;
+        let t125 = t123 + 0.5 * t104;
+        let t126 = t125 * t125;
+        let t128 = 1.0 - 3.188775510204082 * t126;
+        ::overact::guard::reach(t128, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t128);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let s_cross_leg2 = 2.0833333333333335 * t121 / (0.56 * c_rod_leg2);
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
+        let t132 = 1.0 / s_cross_leg2;
+        let t133 = 4.166666666666667 * t132;
+        let t134 = 1.0 / c_rod_leg2;
+        let t135 = 1.7857142857142858 * t134;
+        let t136 = t125 * t135;
+        let t138 = 1.0 / t112;
+        let t139 = 0.48 * t109;
+        let c_arm_leg2 = t138 * (t139 * t118 - t14 * t121);
+        let c_cross_leg2 = (t116 - (0.0576 + t126) - 0.3136 * t128)
+            / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t138 * (t14 * t118 + t139 * t121);
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t157 = 0.5 * c_armcross_leg2;
+        let t158 = 0.8660254037844387 * t136 - t157;
+        let garm_vx_leg2 = t133 * t158;
+        let t163 = 0.8928571428571429 * t121;
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t134;
+        let t166 = c_cross_leg2 * t132;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t173 = 0.24 * c_cross_leg2;
+        let t175 = t173 * (t133 * t136);
+        let t177 = t157 * t166 + 0.5 * s_armcross_leg2 - 0.8660254037844387 * t175;
+        let t178 = 1.7857142857142858 * t177;
+        let t184 = 1.7857142857142858 * (t106 + 0.1 + 0.12 * c_arm_leg2);
+        let t189 = 0.42857142857142855 * (t125 * s_cross_leg2);
+        let minus_s_rod_leg2 = 1.7857142857142858 * t125;
+        let gcross_vx_leg2 = t135 * t177;
+        let t192 = minus_s_rod_leg2 * gcross_vx_leg2;
+        let t196 = minus_s_rod_leg2 * t158;
+        let t200 = t163
+            * (minus_grod_vx_leg2 * parameters[31] + parameters[32] * t178
+                + parameters[33] * t184)
+            + t189
+                * (parameters[32] * t192 - minus_grod_vx_leg2 * parameters[30]
+                    + parameters[33] * t196);
+        let t205 = c_cross_leg2 * (0.24 * garm_vx_leg2);
+        let t210 = garm_vx_leg2 * parameters[17] + garm_vx_leg2 * parameters[20] + t200
+            + t173
+                * (parameters[30] * t178 + parameters[31] * t192
+                    + parameters[33] * t205);
+        let t221 = c_rod_leg2
+            * (parameters[27] * t178 - parameters[25] * t192
+                - minus_grod_vx_leg2 * parameters[28] + parameters[30] * t205
+                + parameters[32] * t184);
+        let t231 = minus_s_rod_leg2
+            * (parameters[25] * t178 - parameters[24] * t192
+                - minus_grod_vx_leg2 * parameters[26] - parameters[31] * t205
+                - parameters[32] * t196);
+        let t244 = minus_grod_vx_leg2
+            * (parameters[28] * t178 - parameters[26] * t192
+                - minus_grod_vx_leg2 * parameters[29] + parameters[30] * t196
+                - parameters[31] * t184);
+        let t246 = garm_vx_leg1
+            * (garm_vx_leg1 * parameters[0] + garm_vx_leg1 * parameters[3] + t81)
+            - minus_gcross_vx_leg1 * t100 + garm_vx_leg2 * t210
+            + gcross_vx_leg2 * (t221 - t231) - t244;
+        let t247 = pose[1] - 0.04330127018922194;
+        let t248 = t247 + 0.17320508075688776;
+        let t250 = t108 + 0.8660254037844387 * t248;
+        let t253 = 0.2304 * (t250 * t250 + t3);
+        let t256 = t113 + t248 * t248 + t3;
+        let t258 = t256 - 0.3136 + 0.0576;
+        let t260 = t253 - t258 * t258;
+        ::overact::guard::reach(t260, "leg3")?;
+        let t261 = ::overact::math::sqrt(t260);
+        let t264 = t123 - 0.5 * t248;
+        let t265 = t264 * t264;
+        let t267 = 1.0 - 3.188775510204082 * t265;
+        ::overact::guard::reach(t267, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t267);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let s_cross_leg3 = 2.0833333333333335 * t261 / (0.56 * c_rod_leg3);
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
+        let t271 = 1.0 / s_cross_leg3;
+        let t272 = 4.166666666666667 * t271;
+        let t273 = 1.0 / t253;
+        let t274 = 0.48 * t250;
+        let minus_c_arm_leg3 = t273 * (t274 * t258 + t14 * t261);
+        let c_cross_leg3 = (t256 - (0.0576 + t265) - 0.3136 * t267)
+            / (0.2688 * c_rod_leg3);
+        let s_arm_leg3 = t273 * (t274 * t261 - t14 * t258);
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t292 = 0.5 * minus_c_armcross_leg3;
+        let t293 = 1.0 / c_rod_leg3;
+        let t294 = 1.7857142857142858 * t293;
+        let t295 = t264 * t294;
+        let t297 = t292 + 0.8660254037844387 * t295;
+        let garm_vx_leg3 = t272 * t297;
+        let t302 = 0.8928571428571429 * t261;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t307 = c_cross_leg3 * t271;
+        let t310 = 0.24 * c_cross_leg3;
+        let t312 = t310 * (t272 * t295);
+        let t314 = 0.5 * s_armcross_leg3 - t292 * t307 - 0.8660254037844387 * t312;
+        let t315 = 1.7857142857142858 * t314;
+        let grod_vx_leg3 = 1.5464739353293548 * t293;
+        let t323 = 1.7857142857142858 * (t106 - (0.12 * minus_c_arm_leg3 - 0.1));
+        let t328 = 0.42857142857142855 * (t264 * s_cross_leg3);
+        let s_rod_leg3 = 1.7857142857142858 * t264;
+        let gcross_vx_leg3 = t294 * t314;
+        let t332 = s_rod_leg3 * gcross_vx_leg3;
+        let t335 = s_rod_leg3 * t297;
+        let t339 = t302
+            * (parameters[49] * t315 - grod_vx_leg3 * parameters[48]
+                + parameters[50] * t323)
+            - t328
+                * (grod_vx_leg3 * parameters[47] - parameters[49] * t332
+                    - parameters[50] * t335);
+        let t344 = c_cross_leg3 * (0.24 * garm_vx_leg3);
+        let t349 = garm_vx_leg3 * parameters[34] + garm_vx_leg3 * parameters[37] + t339
+            - t310
+                * (parameters[48] * t332 - parameters[47] * t315
+                    - parameters[50] * t344);
+        let t360 = s_rod_leg3
+            * (parameters[41] * t332 + parameters[42] * t315
+                + grod_vx_leg3 * parameters[43] - parameters[48] * t344
+                + parameters[49] * t335);
+        let t370 = c_rod_leg3
+            * (parameters[42] * t332 + parameters[44] * t315
+                + grod_vx_leg3 * parameters[45] + parameters[47] * t344
+                + parameters[49] * t323);
+        let t383 = grod_vx_leg3
+            * (parameters[43] * t332 + parameters[45] * t315
+                + grod_vx_leg3 * parameters[46] - parameters[47] * t335
+                - parameters[48] * t323);
+        let t386 = parameters[51] + parameters[52];
+        let t388 = pose[1] * grod_vy_leg1;
+        let garm_vy_leg1 = t41 * t388;
+        let t395 = t74 * garm_vy_leg1;
+        let t396 = 1.7857142857142858 * t395;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * t395;
+        let t403 = s_rod_leg1 * minus_gcross_vy_leg1;
+        let t406 = s_rod_leg1 * t388;
+        let t410 = t46
+            * (s_rod_leg1 * parameters[16]
+                - (grod_vy_leg1 * parameters[14] + parameters[15] * t396))
+            - t63
+                * (grod_vy_leg1 * parameters[13] + parameters[15] * t403
+                    - parameters[16] * t406);
+        let t411 = parameters[13] * t396;
+        let t418 = garm_vy_leg1 * parameters[0] + garm_vy_leg1 * parameters[3] + t410
+            - t74 * (t411 - parameters[14] * t403 - t395 * parameters[16]);
+        let t429 = s_rod_leg1
+            * (grod_vy_leg1 * parameters[9]
+                - (parameters[7] * t403 + parameters[8] * t396) - t395 * parameters[14]
+                + parameters[15] * t406);
+        let t439 = c_rod_leg1
+            * (grod_vy_leg1 * parameters[11]
+                - (parameters[8] * t403 + parameters[10] * t396) + 0.56 * t411
                 + s_rod_leg1 * parameters[15]);
-        let t504 = t493 + t503;
-        let garm_vy_leg2 = t172 * t185;
-        let minus_grod_vy_leg2 = 0.25 * t120 * t185;
-        let minus_gcross_vy_leg2 = t179 * t185;
-        let t515 = c_rod_leg2 * minus_gcross_vy_leg2;
-        let t521 = 1.7857142857142858
-            * (t99 - (0.17320508075688776 + 0.20784609690826528 * c_arm_leg2));
-        let t525 = 0.24 * garm_vy_leg2;
-        let t527 = minus_s_rod_leg2 * (s_cross_leg2 * t525);
-        let t530 = minus_s_rod_leg2 * minus_gcross_vy_leg2;
-        let t535 = t190
-            * (minus_grod_vy_leg2 * parameters[31] - parameters[32] * t515
-                + t521 * parameters[33])
-            + t213
-                * (parameters[33] * t527
-                    - (minus_grod_vy_leg2 * parameters[30] + parameters[32] * t530));
-        let t536 = c_cross_leg2 * t525;
-        let t544 = garm_vy_leg2 * parameters[17] + garm_vy_leg2 * parameters[20] + t535
-            + t225
-                * (parameters[33] * t536
-                    - (parameters[30] * t515 + parameters[31] * t530));
-        let t555 = c_rod_leg2
-            * (parameters[25] * t530 - parameters[27] * t515
-                - minus_grod_vy_leg2 * parameters[28] + parameters[30] * t536
-                + t521 * parameters[32]);
-        let t565 = minus_s_rod_leg2
-            * (parameters[24] * t530 - parameters[25] * t515
-                - minus_grod_vy_leg2 * parameters[26] - parameters[31] * t536
-                - parameters[32] * t527);
-        let t566 = t555 - t565;
-        let t577 = parameters[26] * t530 - parameters[28] * t515
-            - minus_grod_vy_leg2 * parameters[29] + parameters[30] * t527
-            - t521 * parameters[31];
-        let garm_vy_leg3 = t339 * t352;
-        let minus_grod_vy_leg3 = 0.25 * t288 * t352;
-        let minus_gcross_vy_leg3 = t346 * t352;
-        let t589 = c_rod_leg3 * minus_gcross_vy_leg3;
-        let t595 = 1.7857142857142858
-            * (t271 - (0.20784609690826528 * minus_c_arm_leg3 - 0.17320508075688776));
-        let t599 = s_rod_leg3 * minus_gcross_vy_leg3;
-        let t603 = 0.24 * garm_vy_leg3;
-        let t605 = s_rod_leg3 * (s_cross_leg3 * t603);
-        let t609 = t357
-            * (minus_grod_vy_leg3 * parameters[48] - parameters[49] * t589
-                + t595 * parameters[50])
-            - t380
-                * (parameters[49] * t599 - minus_grod_vy_leg3 * parameters[47]
-                    - parameters[50] * t605);
-        let t613 = c_cross_leg3 * t603;
-        let t618 = garm_vy_leg3 * parameters[34] + garm_vy_leg3 * parameters[37] + t609
-            - t392
-                * (parameters[47] * t589 - parameters[48] * t599
-                    - parameters[50] * t613);
-        let t629 = s_rod_leg3
-            * (parameters[49] * t605
-                - (parameters[41] * t599 + parameters[42] * t589
-                    + minus_grod_vy_leg3 * parameters[43] + parameters[48] * t613));
-        let t639 = c_rod_leg3
-            * (parameters[47] * t613
-                - (parameters[42] * t599 + parameters[44] * t589
-                    + minus_grod_vy_leg3 * parameters[45]) + t595 * parameters[49]);
-        let t640 = t629 + t639;
-        let t651 = parameters[43] * t599 + parameters[45] * t589
-            + minus_grod_vy_leg3 * parameters[46] + parameters[47] * t605
-            + t595 * parameters[48];
-        let t654 = garm_vx_leg1 * t482 - minus_gcross_vx_leg1 * t504
-            + garm_vx_leg2 * t544 - minus_gcross_vx_leg2 * t566 + grod_vx_leg2 * t577
-            + garm_vx_leg3 * t618 - minus_gcross_vx_leg3 * t640 - grod_vx_leg3 * t651;
-        let t656 = pose[2] - 0.24 * minus_s_arm_leg1;
-        let garm_vz_leg1 = t656 * t25;
-        let t661 = 1.7857142857142858 * t656;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t36;
-        let t664 = c_rod_leg1 * minus_gcross_vz_leg1;
-        let t668 = s_rod_leg1 * minus_gcross_vz_leg1;
-        let t678 = c_cross_leg1 * (0.24 * garm_vz_leg1);
-        let t682 = t30 * (t661 * parameters[16] - parameters[15] * t664)
-            - t46 * (parameters[15] * t668 + t447 * parameters[16])
-            - t68
-                * (parameters[13] * t664 - parameters[14] * t668
-                    - parameters[16] * t678);
-        let t683 = garm_vz_leg1 * parameters[0] + garm_vz_leg1 * parameters[3] + t682;
-        let t701 = c_rod_leg1
-            * (parameters[13] * t678 - (parameters[8] * t668 + parameters[10] * t664)
-                + t661 * parameters[15])
-            - s_rod_leg1
-                * (parameters[7] * t668 + parameters[8] * t664 + parameters[14] * t678
-                    + t447 * parameters[15]);
-        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t156) * t185;
-        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t152)
-            - 0.11639381426862856 * (minus_s_arm_leg2 * t168)) * t185;
-        let t716 = c_rod_leg2 * gcross_vz_leg2;
-        let t718 = 1.7857142857142858 * t156;
-        let t722 = minus_s_rod_leg2 * gcross_vz_leg2;
-        let t732 = c_cross_leg2 * (0.24 * garm_vz_leg2);
-        let t736 = t190 * (parameters[32] * t716 + t718 * parameters[33])
-            + t213 * (parameters[32] * t722 - t161 * parameters[33])
-            + t225
-                * (parameters[30] * t716 + parameters[31] * t722
-                    + parameters[33] * t732);
-        let t737 = garm_vz_leg2 * parameters[17] + garm_vz_leg2 * parameters[20] + t736;
-        let t755 = c_rod_leg2
-            * (parameters[27] * t716 - parameters[25] * t722 + parameters[30] * t732
-                + t718 * parameters[32])
+        let t440 = t429 + t439;
+        let t443 = 0.8660254037844387 * c_armcross_leg2;
+        let t445 = t443 + 0.5 * t136;
+        let garm_vy_leg2 = t133 * t445;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t134;
+        let t456 = t443 * t166 + 0.8660254037844387 * s_armcross_leg2 + 0.5 * t175;
+        let t457 = 1.7857142857142858 * t456;
+        let t463 = 1.7857142857142858
+            * (t103 - (0.17320508075688776 + 0.20784609690826528 * c_arm_leg2));
+        let t467 = minus_s_rod_leg2 * t445;
+        let minus_gcross_vy_leg2 = t135 * t456;
+        let t470 = minus_s_rod_leg2 * minus_gcross_vy_leg2;
+        let t476 = t163
+            * (minus_grod_vy_leg2 * parameters[31] - parameters[32] * t457
+                + parameters[33] * t463)
+            + t189
+                * (parameters[33] * t467
+                    - (parameters[32] * t470 + minus_grod_vy_leg2 * parameters[30]));
+        let t478 = c_cross_leg2 * (0.24 * garm_vy_leg2);
+        let t486 = garm_vy_leg2 * parameters[17] + garm_vy_leg2 * parameters[20] + t476
+            + t173
+                * (parameters[33] * t478
+                    - (parameters[30] * t457 + parameters[31] * t470));
+        let t497 = c_rod_leg2
+            * (parameters[25] * t470 - parameters[27] * t457
+                - minus_grod_vy_leg2 * parameters[28] + parameters[30] * t478
+                + parameters[32] * t463);
+        let t507 = minus_s_rod_leg2
+            * (parameters[24] * t470 - parameters[25] * t457
+                - minus_grod_vy_leg2 * parameters[26] - parameters[31] * t478
+                - parameters[32] * t467);
+        let t508 = t497 - t507;
+        let t519 = parameters[26] * t470 - parameters[28] * t457
+            - minus_grod_vy_leg2 * parameters[29] + parameters[30] * t467
+            - parameters[31] * t463;
+        let t523 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let t525 = t523 - 0.5 * t295;
+        let garm_vy_leg3 = t272 * t525;
+        let t534 = 0.8660254037844387 * s_armcross_leg3 - t523 * t307 + 0.5 * t312;
+        let t535 = 1.7857142857142858 * t534;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t293;
+        let t543 = 1.7857142857142858
+            * (t247 - (0.20784609690826528 * minus_c_arm_leg3 - 0.17320508075688776));
+        let gcross_vy_leg3 = t294 * t534;
+        let t549 = s_rod_leg3 * gcross_vy_leg3;
+        let t552 = s_rod_leg3 * t525;
+        let t556 = t302
+            * (parameters[49] * t535 + minus_grod_vy_leg3 * parameters[48]
+                + parameters[50] * t543)
+            + t328
+                * (minus_grod_vy_leg3 * parameters[47] + parameters[49] * t549
+                    + parameters[50] * t552);
+        let t561 = c_cross_leg3 * (0.24 * garm_vy_leg3);
+        let t566 = garm_vy_leg3 * parameters[34] + garm_vy_leg3 * parameters[37] + t556
+            - t310
+                * (parameters[48] * t549 - parameters[47] * t535
+                    - parameters[50] * t561);
+        let t577 = s_rod_leg3
+            * (parameters[41] * t549 + parameters[42] * t535
+                - minus_grod_vy_leg3 * parameters[43] - parameters[48] * t561
+                + parameters[49] * t552);
+        let t587 = c_rod_leg3
+            * (parameters[42] * t549 + parameters[44] * t535
+                - minus_grod_vy_leg3 * parameters[45] + parameters[47] * t561
+                + parameters[49] * t543);
+        let t588 = t577 + t587;
+        let t599 = parameters[43] * t549 + parameters[45] * t535
+            - minus_grod_vy_leg3 * parameters[46] - parameters[47] * t552
+            - parameters[48] * t543;
+        let t602 = garm_vx_leg1 * t418 - minus_gcross_vx_leg1 * t440
+            + garm_vx_leg2 * t486 + gcross_vx_leg2 * t508 - minus_grod_vx_leg2 * t519
+            + garm_vx_leg3 * t566 + gcross_vx_leg3 * t588 + grod_vx_leg3 * t599;
+        let t605 = 1.7857142857142858 * (pose[2] - 0.24 * minus_s_arm_leg1);
+        let t607 = s_armcross_leg1 * t52;
+        let t608 = c_armcross_leg1 - t607;
+        let t609 = 1.7857142857142858 * t608;
+        let minus_gcross_vz_leg1 = grod_vy_leg1 * t608;
+        let t614 = s_rod_leg1 * minus_gcross_vz_leg1;
+        let t616 = s_rod_leg1 * s_armcross_leg1;
+        let t627 = t46 * (parameters[16] * t605 - parameters[15] * t609)
+            - t63 * (parameters[15] * t614 + parameters[16] * t616)
+            - t74
+                * (parameters[13] * t609 - parameters[14] * t614
+                    + t607 * parameters[16]);
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t41;
+        let t632 = t627
+            - (minus_garm_vz_leg1 * parameters[0] + minus_garm_vz_leg1 * parameters[3]);
+        let t650 = s_rod_leg1
+            * (t607 * parameters[14] - (parameters[7] * t614 + parameters[8] * t609)
+                - parameters[15] * t616)
+            + c_rod_leg1
+                * (parameters[15] * t605
+                    - (parameters[8] * t614 + parameters[10] * t609
+                        + t607 * parameters[13]));
+        let t653 = s_armcross_leg2 * t166;
+        let t654 = t653 - c_armcross_leg2;
+        let t655 = 1.7857142857142858 * t654;
+        let t659 = 1.7857142857142858 * (pose[2] - 0.24 * minus_s_arm_leg2);
+        let gcross_vz_leg2 = t135 * t654;
+        let t664 = minus_s_rod_leg2 * gcross_vz_leg2;
+        let t666 = minus_s_rod_leg2 * s_armcross_leg2;
+        let t677 = t163 * (parameters[32] * t655 + parameters[33] * t659)
+            + t189 * (parameters[32] * t664 - parameters[33] * t666)
+            + t173
+                * (parameters[30] * t655 + parameters[31] * t664
+                    - t653 * parameters[33]);
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t133;
+        let t682 = t677
+            - (minus_garm_vz_leg2 * parameters[17]
+                + minus_garm_vz_leg2 * parameters[20]);
+        let t700 = c_rod_leg2
+            * (parameters[27] * t655 - parameters[25] * t664 - t653 * parameters[30]
+                + parameters[32] * t659)
             - minus_s_rod_leg2
-                * (parameters[25] * t716 - parameters[24] * t722 - parameters[31] * t732
-                    + t161 * parameters[32]);
-        let t764 = parameters[28] * t716 - parameters[26] * t722 - t161 * parameters[30]
-            - t718 * parameters[31];
-        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t323) * t352;
-        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t335)
-            + 0.0672 * (s_arm_leg3 * t319)) * t352;
-        let t780 = c_rod_leg3 * gcross_vz_leg3;
-        let t782 = 1.7857142857142858 * t323;
-        let t787 = s_rod_leg3 * gcross_vz_leg3;
-        let t796 = c_cross_leg3 * (0.24 * garm_vz_leg3);
-        let t800 = t357 * (parameters[49] * t780 + t782 * parameters[50])
-            - t380 * (t328 * parameters[50] - parameters[49] * t787)
-            - t392
-                * (parameters[48] * t787 - parameters[47] * t780
-                    - parameters[50] * t796);
-        let t801 = garm_vz_leg3 * parameters[34] + garm_vz_leg3 * parameters[37] + t800;
-        let t819 = s_rod_leg3
-            * (parameters[41] * t787 + parameters[42] * t780 - parameters[48] * t796
-                - t328 * parameters[49])
+                * (parameters[25] * t655 - parameters[24] * t664 + t653 * parameters[31]
+                    + parameters[32] * t666);
+        let t709 = parameters[28] * t655 - parameters[26] * t664 - parameters[30] * t666
+            - parameters[31] * t659;
+        let t713 = s_armcross_leg3 * t307;
+        let t714 = t713 + minus_c_armcross_leg3;
+        let t715 = 1.7857142857142858 * t714;
+        let t719 = 1.7857142857142858 * (pose[2] + 0.24 * s_arm_leg3);
+        let t723 = s_rod_leg3 * s_armcross_leg3;
+        let gcross_vz_leg3 = t294 * t714;
+        let t726 = s_rod_leg3 * gcross_vz_leg3;
+        let t737 = t302 * (parameters[49] * t715 + parameters[50] * t719)
+            - t328 * (parameters[50] * t723 - parameters[49] * t726)
+            - t310
+                * (parameters[48] * t726 - parameters[47] * t715
+                    + t713 * parameters[50]);
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t272;
+        let t742 = t737
+            - (minus_garm_vz_leg3 * parameters[34]
+                + minus_garm_vz_leg3 * parameters[37]);
+        let t760 = s_rod_leg3
+            * (parameters[41] * t726 + parameters[42] * t715 + t713 * parameters[48]
+                - parameters[49] * t723)
             + c_rod_leg3
-                * (parameters[42] * t787 + parameters[44] * t780 + parameters[47] * t796
-                    + t782 * parameters[49]);
-        let t828 = parameters[43] * t787 + parameters[45] * t780 + t328 * parameters[47]
-            - t782 * parameters[48];
-        let t831 = garm_vx_leg1 * t683 - minus_gcross_vx_leg1 * t701
-            + garm_vx_leg2 * t737 - minus_gcross_vx_leg2 * t755 + grod_vx_leg2 * t764
-            + garm_vx_leg3 * t801 - minus_gcross_vx_leg3 * t819 + grod_vx_leg3 * t828;
-        let t844 = grod_vy_leg1
-            * (parameters[9] * t464 + parameters[11] * t455
-                + grod_vy_leg1 * parameters[12] - parameters[13] * t469
+                * (parameters[42] * t726 + parameters[44] * t715 - t713 * parameters[47]
+                    + parameters[49] * t719);
+        let t769 = parameters[43] * t726 + parameters[45] * t715 + parameters[47] * t723
+            - parameters[48] * t719;
+        let t772 = garm_vx_leg1 * t632 - minus_gcross_vx_leg1 * t650
+            + garm_vx_leg2 * t682 + gcross_vx_leg2 * t700 - minus_grod_vx_leg2 * t709
+            + garm_vx_leg3 * t742 + gcross_vx_leg3 * t760 + grod_vx_leg3 * t769;
+        let t785 = grod_vy_leg1
+            * (grod_vy_leg1 * parameters[12]
+                - (parameters[9] * t403 + parameters[11] * t396) - parameters[13] * t406
                 - s_rod_leg1 * parameters[14]);
-        let t851 = garm_vy_leg1 * t482 + gcross_vy_leg1 * t504 + t844
-            + garm_vy_leg2 * t544 - minus_gcross_vy_leg2 * t566
-            - minus_grod_vy_leg2 * t577;
-        let t870 = garm_vy_leg1 * t683 + gcross_vy_leg1 * t701
+        let t792 = garm_vy_leg1 * t418 - minus_gcross_vy_leg1 * t440 + t785
+            + garm_vy_leg2 * t486 - minus_gcross_vy_leg2 * t508
+            - minus_grod_vy_leg2 * t519;
+        let t811 = garm_vy_leg1 * t632 - minus_gcross_vy_leg1 * t650
             + grod_vy_leg1
-                * (t447 * parameters[13] - (parameters[9] * t668 + parameters[11] * t664)
-                    - t661 * parameters[14]);
-        let t882 = t870 + garm_vy_leg2 * t737 - minus_gcross_vy_leg2 * t755
-            - minus_grod_vy_leg2 * t764 + garm_vy_leg3 * t801
-            - minus_gcross_vy_leg3 * t819 - minus_grod_vy_leg3 * t828;
-        let t893 = garm_vz_leg1 * t683 - minus_gcross_vz_leg1 * t701
-            + garm_vz_leg2 * t737 + gcross_vz_leg2 * t755 + garm_vz_leg3 * t801
-            + gcross_vz_leg3 * t819;
+                * (parameters[13] * t616 - (parameters[9] * t614 + parameters[11] * t609)
+                    - parameters[14] * t605);
+        let t823 = t811 + garm_vy_leg2 * t682 - minus_gcross_vy_leg2 * t700
+            - minus_grod_vy_leg2 * t709 + garm_vy_leg3 * t742 + gcross_vy_leg3 * t760
+            - minus_grod_vy_leg3 * t769;
+        let t834 = gcross_vz_leg2 * t700 - minus_garm_vz_leg2 * t682
+            - (minus_garm_vz_leg1 * t632 + minus_gcross_vz_leg1 * t650)
+            + gcross_vz_leg3 * t760 - minus_garm_vz_leg3 * t742;
         Ok([
             [
-                t270 + garm_vx_leg3 * t401 - minus_gcross_vx_leg3 * (t412 + t422) + t435
-                    + t438,
-                t654,
-                t831,
+                t246 + garm_vx_leg3 * t349 + gcross_vx_leg3 * (t360 + t370) + t383
+                    + t386,
+                t602,
+                t772,
             ],
             [
-                t654,
-                t851 + garm_vy_leg3 * t618 - minus_gcross_vy_leg3 * t640
-                    + minus_grod_vy_leg3 * t651 + t438,
-                t882,
+                t602,
+                t792 + garm_vy_leg3 * t566 + gcross_vy_leg3 * t588
+                    - minus_grod_vy_leg3 * t599 + t386,
+                t823,
             ],
-            [t831, t882, t893 + t438],
+            [t772, t823, t834 + t386],
         ])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -10328,7 +9479,7 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 916 operations (350 additions, 553 multiplications, 13 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 922 intermediates.
+    /// 789 operations (302 additions, 472 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 795 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -10337,8 +9488,7 @@ impl Delta {
         twist: &[f64; 3],
         parameters: &[f64; 53],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let t0 = pose[0] + 0.05;
-        let t1 = t0 - 0.2;
+        let t1 = pose[0] + 0.05 - 0.2;
         let t2 = t1 * t1;
         let t3 = pose[2] * pose[2];
         let t5 = 0.2304 * (t2 + t3);
@@ -10351,402 +9501,370 @@ impl Delta {
         let t16 = t5 - t12 * t12;
         ::overact::guard::reach(t16, "leg1")?;
         let t17 = ::overact::math::sqrt(t16);
-        ::overact::guard::leg(t17, 0.24136807991115974, "leg1")?;
         let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t21 = 0.24 * c_arm_leg1;
-        let t23 = t0 - (0.2 + t21);
-        let t24 = 1.0 / t17;
-        let t25 = 2.0 * t24;
-        let garm_vx_leg1 = t23 * t25;
-        let garm_vy_leg1 = pose[1] * t25;
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let t35 = 0.24 * minus_s_arm_leg1;
-        let t36 = pose[2] - t35;
-        let garm_vz_leg1 = t36 * t25;
-        let rate_arm_leg1 = garm_vx_leg1 * twist[0] + garm_vy_leg1 * twist[1]
-            + garm_vz_leg1 * twist[2];
-        let t41 = 0.48 * t24;
-        let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t45 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t45, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t45);
+        let t24 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t24, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t24);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t45) / (0.2688 * c_rod_leg1);
-        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
-            - minus_s_arm_leg1 * c_cross_leg1;
-        let t59 = 1.0 / c_rod_leg1;
+        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
+        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
+        let t36 = 0.56 * c_rod_leg1;
+        let s_cross_leg1 = 2.0833333333333335 * t17 / t36;
+        ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let gcross_vy_leg1 = t41
-            * (minus_s_arm_leg1 * (s_rod_leg1 * s_armcross_leg1 * t59)
-                - c_arm_leg1 * (s_rod_leg1 * c_armcross_leg1 * t59));
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t41;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t41;
-        let rate_cross_leg1 = gcross_vy_leg1 * twist[1] - minus_gcross_vx_leg1 * twist[0]
-            - minus_gcross_vz_leg1 * twist[2];
-        let grod_vy_leg1 = 1.7857142857142858 * t59;
+        let t40 = 1.0 / s_cross_leg1;
+        let t41 = 4.166666666666667 * t40;
+        let garm_vx_leg1 = c_armcross_leg1 * t41;
+        let t43 = 0.24 * c_cross_leg1;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t49 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
+        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
+        let t51 = pose[1] * grod_vy_leg1;
+        let rate_arm_leg1 = t41 * (t49 + t51 * twist[1]);
+        let t55 = rate_arm_leg1 * rate_arm_leg1;
+        let t57 = c_cross_leg1 * t40;
+        let garm_vy_leg1 = t41 * t51;
+        let t60 = t43 * garm_vy_leg1;
+        let t66 = t57 * t49 + t60 * twist[1] + s_armcross_leg1 * twist[0]
+            + c_armcross_leg1 * twist[2];
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t66;
+        let t68 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t79 = s_armcross_leg1 * rate_rod_leg1;
-        let t81 = pose[1] * (rate_cross_leg1 * t79);
-        let t82 = rate_arm_leg1 * rate_arm_leg1;
-        let t85 = rate_cross_leg1 * rate_cross_leg1;
-        let t87 = c_armcross_leg1 * rate_rod_leg1;
-        let t89 = t79 * t79 + t85 + t87 * t87;
-        let t93 = t81 - (t21 * t82 + t23 * t89) + t81;
-        let t95 = pose[1] * rate_cross_leg1;
-        let t98 = rate_cross_leg1 * t95 - pose[1] * t89;
-        let t102 = pose[1] * (rate_cross_leg1 * t87);
-        let t107 = t102 - (t35 * t82 + t36 * t89) + t102;
-        let minus_rate_dot_arm_leg1 = garm_vx_leg1 * t93 + garm_vy_leg1 * t98
-            + garm_vz_leg1 * t107;
-        let t116 = 9.81 * c_arm_leg1;
-        let t119 = 9.81 * minus_s_arm_leg1;
-        let t122 = parameters[4] * rate_arm_leg1
-            - parameters[3] * minus_rate_dot_arm_leg1
-            + ::overact::math::signed(parameters[5], rate_arm_leg1) + parameters[6]
-            - (parameters[0] * minus_rate_dot_arm_leg1 + parameters[1] * t116
-                + parameters[2] * t119);
-        let t124 = 1.7857142857142858 * t95;
-        let t125 = c_rod_leg1 * rate_cross_leg1;
-        let t126 = t124 * t125;
-        let minus_rate_dot_rod_leg1 = grod_vy_leg1 * t98;
-        let t128 = t126 + minus_rate_dot_rod_leg1;
-        let t130 = t125 * t125;
-        let t131 = rate_rod_leg1 * rate_rod_leg1;
-        let rate_dot_cross_leg1 = minus_gcross_vx_leg1 * t93 - gcross_vy_leg1 * t98
-            + minus_gcross_vz_leg1 * t107;
-        let t140 = c_rod_leg1 * rate_dot_cross_leg1;
-        let t144 = t119 - 0.24 * t82;
-        let t147 = t116 + 0.24 * minus_rate_dot_arm_leg1;
-        let t149 = c_cross_leg1 * t144 - s_cross_leg1 * t147;
-        let t150 = c_rod_leg1 * t149;
-        let t153 = 0.8928571428571429 * t17
-            * (parameters[14] * t128 - parameters[13] * (t130 + t131)
-                + parameters[15] * t140 + parameters[16] * t150);
-        let t156 = t126 - minus_rate_dot_rod_leg1;
-        let t159 = 3.188775510204082 * (t95 * t95);
-        let t163 = s_rod_leg1 * rate_dot_cross_leg1;
-        let t166 = s_rod_leg1 * t149;
-        let t169 = 0.42857142857142855 * (pose[1] * s_cross_leg1)
-            * (parameters[13] * t156 - parameters[14] * (t159 + t131)
-                - parameters[15] * t163 - parameters[16] * t166);
-        let t172 = rate_rod_leg1 * t124;
-        let t173 = t140 - t172;
-        let t174 = t172 - t173;
-        let t176 = rate_rod_leg1 * t125;
-        let t177 = t163 + t176;
-        let t178 = t176 + t177;
-        let t185 = s_cross_leg1 * t144 + c_cross_leg1 * t147;
-        let t189 = t153 - t169
-            - 0.24 * c_cross_leg1
-                * (parameters[13] * t174 + parameters[14] * t178 - parameters[15] * t85
-                    + parameters[16] * t185);
-        let t190 = t122 + t189;
-        let t201 = parameters[7] * t177 - parameters[8] * t174 + parameters[9] * t156
-            - parameters[10] * t176 + parameters[11] * (t130 - t131);
-        let t218 = parameters[7] * t172 + parameters[8] * t178
-            + parameters[9] * (t131 - t159) + parameters[10] * t173
-            - parameters[11] * t128;
-        let t226 = s_rod_leg1
-            * (t201 + parameters[12] * t176 + parameters[14] * t185
-                + parameters[15] * t166)
+        let t70 = rate_rod_leg1 * rate_rod_leg1;
+        let t71 = t68 + t70;
+        let t73 = t43 * t55 + t36 * t71;
+        let t74 = pose[1] * minus_rate_cross_leg1;
+        let t77 = minus_rate_cross_leg1 * t74 - pose[1] * t71;
+        let rate_dot_arm_leg1 = t41 * (t73 - t51 * t77);
+        let t82 = 9.81 * c_arm_leg1;
+        let t85 = 9.81 * minus_s_arm_leg1;
+        let t94 = parameters[0] * rate_dot_arm_leg1 - parameters[1] * t82
+            - parameters[2] * t85 + parameters[3] * rate_dot_arm_leg1
+            + parameters[4] * rate_arm_leg1
+            + ::overact::math::signed(parameters[5], rate_arm_leg1) + parameters[6];
+        let t97 = 3.188775510204082 * (t66 * t74);
+        let minus_rate_dot_rod_leg1 = grod_vy_leg1 * t77;
+        let t99 = t97 + minus_rate_dot_rod_leg1;
+        let t101 = t66 * t66;
+        let t102 = 3.188775510204082 * t101;
+        let t112 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
+        let t115 = t57 * t73 - t60 * t77 + 0.24 * s_cross_leg1 * t55 + t112 + t112;
+        let t116 = 1.7857142857142858 * t115;
+        let t120 = t85 - 0.24 * t55;
+        let t123 = 0.24 * rate_dot_arm_leg1 - t82;
+        let t125 = c_cross_leg1 * t120 + s_cross_leg1 * t123;
+        let t126 = c_rod_leg1 * t125;
+        let t129 = 0.8928571428571429 * t17
+            * (parameters[14] * t99 - parameters[13] * (t102 + t70)
+                - parameters[15] * t116 + parameters[16] * t126);
+        let t132 = t97 - minus_rate_dot_rod_leg1;
+        let t134 = t74 * t74;
+        let t135 = 3.188775510204082 * t134;
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t115;
+        let t141 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t144 = s_rod_leg1 * t125;
+        let t147 = 0.42857142857142855 * (pose[1] * s_cross_leg1)
+            * (parameters[13] * t132 - parameters[14] * (t135 + t70)
+                + parameters[15] * t141 - parameters[16] * t144);
+        let t149 = t112 - t115;
+        let t151 = 1.7857142857142858 * (t112 + t149);
+        let t154 = rate_rod_leg1 * (1.7857142857142858 * t66);
+        let t155 = t141 + t154;
+        let t156 = t154 + t155;
+        let t163 = c_cross_leg1 * t123 - s_cross_leg1 * t120;
+        let t167 = t129 - t147
+            + t43
+                * (parameters[13] * t151 + parameters[14] * t156 + parameters[15] * t68
+                    + parameters[16] * t163);
+        let t168 = t94 + t167;
+        let minus_gcross_vx_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 * t57 + s_armcross_leg1);
+        let t182 = parameters[8] * t151 - parameters[7] * t155 + parameters[9] * t132
+            + parameters[10] * t154 + parameters[11] * (t102 - t70);
+        let t192 = 1.7857142857142858 * t112;
+        let t201 = parameters[9] * (t70 - t135)
+            - (parameters[7] * t192 + parameters[8] * t156)
+            + parameters[10] * (1.7857142857142858 * t149) - parameters[11] * t99;
+        let t209 = s_rod_leg1
+            * (t182 - parameters[12] * t154 - parameters[14] * t163
+                + parameters[15] * t144)
             + c_rod_leg1
-                * (t218 - parameters[12] * t172 - parameters[13] * t185
-                    + parameters[15] * t150);
-        let t229 = pose[1] + 0.04330127018922194;
-        let t230 = t229 - 0.17320508075688776;
-        let t232 = pose[0] - 0.025;
-        let t233 = t232 + 0.1;
-        let t234 = 0.5 * t233;
-        let t235 = 0.8660254037844387 * t230 - t234;
-        let t238 = 0.2304 * (t235 * t235 + t3);
-        let t239 = 1.0 / t238;
-        let t240 = 0.48 * t235;
-        let t241 = t233 * t233;
-        let t244 = t241 + t230 * t230 + t3;
-        let t246 = t244 - 0.3136 + 0.0576;
-        let t249 = t238 - t246 * t246;
-        ::overact::guard::reach(t249, "leg2")?;
-        let t250 = ::overact::math::sqrt(t249);
-        let c_arm_leg2 = t239 * (t240 * t246 - t14 * t250);
-        let t255 = t235 - 0.24 * c_arm_leg2;
-        let t256 = 0.8660254037844387 * t233;
-        let t258 = t256 + 0.5 * t230;
-        let t259 = t258 * t258;
-        let t263 = 1.0 - 3.188775510204082 * t259;
-        ::overact::guard::reach(t263, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t263);
-        let c_cross_leg2 = (t244 - (0.0576 + t259) - 0.3136 * t263)
+                * (t201 + parameters[12] * t192 + parameters[13] * t163
+                    + parameters[15] * t126);
+        let t213 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t216 = pose[0] - 0.025 + 0.1;
+        let t217 = 0.5 * t216;
+        let t218 = 0.8660254037844387 * t213 - t217;
+        let t221 = 0.2304 * (t218 * t218 + t3);
+        let t222 = t216 * t216;
+        let t225 = t222 + t213 * t213 + t3;
+        let t227 = t225 - 0.3136 + 0.0576;
+        let t229 = t221 - t227 * t227;
+        ::overact::guard::reach(t229, "leg2")?;
+        let t230 = ::overact::math::sqrt(t229);
+        let t232 = 0.8660254037844387 * t216;
+        let t234 = t232 + 0.5 * t213;
+        let t235 = t234 * t234;
+        let t237 = 1.0 - 3.188775510204082 * t235;
+        ::overact::guard::reach(t237, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t237);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t239 = 0.56 * c_rod_leg2;
+        let s_cross_leg2 = 2.0833333333333335 * t230 / t239;
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
+        let t241 = 1.0 / s_cross_leg2;
+        let t242 = 4.166666666666667 * t241;
+        let t243 = 1.0 / c_rod_leg2;
+        let t244 = 1.7857142857142858 * t243;
+        let t245 = t234 * t244;
+        let t247 = 1.0 / t221;
+        let t248 = 0.48 * t218;
+        let c_arm_leg2 = t247 * (t248 * t227 - t14 * t230);
+        let c_cross_leg2 = (t225 - (0.0576 + t235) - 0.3136 * t237)
             / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t239 * (t14 * t246 + t240 * t250);
-        let s_cross_leg2 = 2.0833333333333335 * t250 / (0.56 * c_rod_leg2);
+        let minus_s_arm_leg2 = t247 * (t14 * t227 + t248 * t230);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t279 = t258 * c_armcross_leg2;
-        let t282 = 1.5464739353293548 * t279 - 0.5 * c_rod_leg2;
-        let t285 = 0.24 * minus_s_arm_leg2;
-        let t286 = pose[2] - t285;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t258;
+        let t266 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t242 * (0.8660254037844387 * t245 - t266);
+        let t269 = 0.24 * c_cross_leg2;
+        let t270 = 0.8660254037844387 * c_armcross_leg2;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t291 = minus_s_rod_leg2 * s_armcross_leg2;
-        let t292 = t286 * t291;
-        let t295 = 0.20784609690826528 * minus_s_arm_leg2;
-        let t298 = 0.8928571428571429 * t279 + 0.8660254037844387 * c_rod_leg2;
-        let t302 = t255 * (0.56 * t298) - 0.28 * t292;
-        let t307 = minus_s_arm_leg2 * t291;
-        let t309 = 0.1344 * (c_arm_leg2 * t298) - 0.0672 * t307;
-        let t314 = t295 * t302 - 0.8660254037844387 * t286 * t309 - 0.14 * (t250 * t282);
-        ::overact::guard::leg(t314, 0.06758306237512474, "leg2")?;
-        let t315 = 1.0 / t314;
-        let garm_vx_leg2 = (t255 * (0.56 * t282) - 0.4849742261192857 * t292) * t315;
-        let garm_vz_leg2 = 0.56 * (c_rod_leg2 * t286) * t315;
-        let garm_vy_leg2 = t302 * t315;
-        let rate_arm_leg2 = garm_vx_leg2 * twist[0] + garm_vy_leg2 * twist[1]
-            + garm_vz_leg2 * twist[2];
-        let t326 = rate_arm_leg2 * rate_arm_leg2;
-        let gcross_vz_leg2 = (0.0672 * (minus_s_arm_leg2 * t282)
-            - 0.11639381426862856 * (minus_s_arm_leg2 * t298)) * t315;
-        let minus_gcross_vx_leg2 = (0.1344 * (c_arm_leg2 * t282)
-            - 0.11639381426862856 * t307) * t315;
-        let minus_gcross_vy_leg2 = t309 * t315;
-        let rate_cross_leg2 = gcross_vz_leg2 * twist[2]
-            - (minus_gcross_vx_leg2 * twist[0] + minus_gcross_vy_leg2 * twist[1]);
-        let t345 = 0.8660254037844387 * rate_cross_leg2;
-        let grod_vx_leg2 = (0.20784609690826528 * (c_arm_leg2 * t286) - t255 * t295)
-            * t315;
-        let minus_grod_vy_leg2 = 0.25 * t250 * t315;
-        let rate_rod_leg2 = grod_vx_leg2 * twist[0] - minus_grod_vy_leg2 * twist[1];
-        let t358 = t345 + 0.5 * s_armcross_leg2 * rate_rod_leg2;
-        let t361 = 0.8660254037844387 * s_armcross_leg2 * rate_rod_leg2;
-        let t362 = 0.5 * rate_cross_leg2;
-        let t363 = t361 - t362;
-        let t366 = c_armcross_leg2 * rate_rod_leg2;
-        let t368 = t358 * t358 + t363 * t363 + t366 * t366;
-        let t371 = 0.20784609690826528 * c_arm_leg2;
-        let t373 = t229 - (0.17320508075688776 + t371);
-        let t374 = t362 * t366;
-        let t376 = 0.12 * c_arm_leg2;
-        let t378 = t232 + 0.1 + t376;
-        let t379 = t345 * t366;
-        let t381 = t373 * t374 + t378 * t379;
-        let t383 = t285 * t326 + t286 * t368 + t381 + t381;
-        let t392 = t373 * t363 - t378 * t358 + t286 * t366;
-        let t397 = 1.3333333333333333 * (t345 * t361);
-        let t400 = t376 * t326 - t378 * t368 - t358 * t392 + t286 * t379 + t373 * t397;
-        let t410 = t363 * t392 - (t371 * t326 + t373 * t368) + t286 * t374 - t378 * t397;
-        let rate_dot_arm_leg2 = garm_vz_leg2 * t383
-            - (garm_vx_leg2 * t400 + garm_vy_leg2 * t410);
-        let t415 = 9.81 * c_arm_leg2;
-        let t418 = 9.81 * minus_s_arm_leg2;
-        let t427 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t415
-            - parameters[19] * t418 + parameters[20] * rate_dot_arm_leg2
+        let t278 = t270 * twist[1] - t266 * twist[0] - s_armcross_leg2 * twist[2];
+        let t279 = 0.8660254037844387 * twist[0];
+        let t280 = 0.5 * twist[1];
+        let t281 = t279 + t280;
+        let rate_arm_leg2 = t242 * (t278 + t245 * t281);
+        let t285 = rate_arm_leg2 * rate_arm_leg2;
+        let minus_rate_rod_leg2 = t244 * t281;
+        let t288 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t289 = 0.5 * s_armcross_leg2;
+        let t291 = 0.8660254037844387 * s_armcross_leg2;
+        let t296 = c_cross_leg2 * t241;
+        let t300 = t269 * (t242 * t245);
+        let t302 = t289 * twist[0] - t291 * twist[1] - c_armcross_leg2 * twist[2]
+            - t296 * t278 - t300 * t281;
+        let rate_cross_leg2 = t244 * t302;
+        let t304 = rate_cross_leg2 * rate_cross_leg2;
+        let t305 = t288 + t304;
+        let t307 = t269 * t285 + t239 * t305;
+        let t309 = t234 * rate_cross_leg2;
+        let t311 = t234 * t305 - rate_cross_leg2 * t309;
+        let rate_dot_arm_leg2 = t242 * (t307 + t245 * t311);
+        let t316 = 9.81 * c_arm_leg2;
+        let t319 = 9.81 * minus_s_arm_leg2;
+        let t328 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t316
+            - parameters[19] * t319 + parameters[20] * rate_dot_arm_leg2
             + parameters[21] * rate_arm_leg2
             + ::overact::math::signed(parameters[22], rate_arm_leg2) + parameters[23];
-        let t429 = 1.7857142857142858 * t392;
-        let t430 = c_rod_leg2 * rate_cross_leg2;
-        let t431 = t429 * t430;
-        let rate_dot_rod_leg2 = minus_grod_vy_leg2 * t410 - grod_vx_leg2 * t400;
-        let t435 = t431 - rate_dot_rod_leg2;
-        let t437 = t430 * t430;
-        let t438 = rate_rod_leg2 * rate_rod_leg2;
-        let rate_dot_cross_leg2 = minus_gcross_vx_leg2 * t400
-            + minus_gcross_vy_leg2 * t410 + gcross_vz_leg2 * t383;
-        let t447 = c_rod_leg2 * rate_dot_cross_leg2;
-        let t451 = t418 - 0.24 * t326;
-        let t454 = 0.24 * rate_dot_arm_leg2 - t415;
-        let t456 = c_cross_leg2 * t451 + s_cross_leg2 * t454;
-        let t457 = c_rod_leg2 * t456;
-        let t460 = 0.8928571428571429 * t250
-            * (parameters[31] * t435 - parameters[30] * (t437 + t438)
-                + parameters[32] * t447 + parameters[33] * t457);
-        let t463 = t431 + rate_dot_rod_leg2;
-        let t466 = 3.188775510204082 * (t392 * t392);
-        let t470 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t473 = minus_s_rod_leg2 * t456;
-        let t476 = 0.42857142857142855 * (t258 * s_cross_leg2)
-            * (parameters[30] * t463 - parameters[31] * (t466 + t438)
-                + parameters[32] * t470 + parameters[33] * t473);
-        let t479 = rate_rod_leg2 * t429;
-        let t480 = t447 - t479;
-        let t481 = t479 - t480;
-        let t483 = rate_rod_leg2 * t430;
-        let t484 = t483 - t470;
-        let t485 = t483 + t484;
-        let t493 = c_cross_leg2 * t454 - s_cross_leg2 * t451;
-        let t496 = 0.24 * c_cross_leg2
-            * (parameters[30] * t481 + parameters[31] * t485
-                - parameters[32] * (rate_cross_leg2 * rate_cross_leg2)
-                - parameters[33] * t493);
-        let t498 = t427 + t460 + t476 - t496;
-        let t509 = parameters[24] * t479 + parameters[25] * t485
-            + parameters[26] * (t438 - t466) + parameters[27] * t480
-            - parameters[28] * t435;
-        let t526 = parameters[24] * t484 - parameters[25] * t481 + parameters[26] * t463
-            - parameters[27] * t483 + parameters[28] * (t437 - t438);
-        let t534 = c_rod_leg2
-            * (t509 - parameters[29] * t479 + parameters[30] * t493
-                + parameters[32] * t457)
+        let minus_rate_dot_rod_leg2 = t244 * t311;
+        let t332 = 3.188775510204082 * (t302 * t309);
+        let t333 = minus_rate_dot_rod_leg2 - t332;
+        let t335 = t302 * t302;
+        let t336 = 3.188775510204082 * t335;
+        let t344 = t234 * (rate_cross_leg2 * minus_rate_rod_leg2);
+        let t349 = t296 * t307 + 0.24 * s_cross_leg2 * t285 - t344 - t344 + t300 * t311;
+        let t350 = 1.7857142857142858 * t349;
+        let t354 = t319 - 0.24 * t285;
+        let t357 = 0.24 * rate_dot_arm_leg2 - t316;
+        let t359 = c_cross_leg2 * t354 + s_cross_leg2 * t357;
+        let t360 = c_rod_leg2 * t359;
+        let t363 = 0.8928571428571429 * t230
+            * (parameters[31] * t333 - parameters[30] * (t336 + t288)
+                - parameters[32] * t350 + parameters[33] * t360);
+        let minus_s_rod_leg2 = 1.7857142857142858 * t234;
+        let t367 = minus_s_rod_leg2 * t359;
+        let t369 = t332 + minus_rate_dot_rod_leg2;
+        let t371 = t309 * t309;
+        let t372 = 3.188775510204082 * t371;
+        let minus_rate_dot_cross_leg2 = t244 * t349;
+        let t377 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t381 = 0.42857142857142855 * (t234 * s_cross_leg2)
+            * (parameters[33] * t367
+                - (parameters[30] * t369 + parameters[31] * (t372 + t288)
+                    + parameters[32] * t377));
+        let t383 = t349 + t344;
+        let t385 = 1.7857142857142858 * (t344 + t383);
+        let t388 = minus_rate_rod_leg2 * (1.7857142857142858 * t302);
+        let t389 = t377 - t388;
+        let t390 = t389 - t388;
+        let t397 = c_cross_leg2 * t357 - s_cross_leg2 * t354;
+        let t401 = t363 + t381
+            - t269
+                * (parameters[30] * t385 + parameters[31] * t390 - parameters[32] * t304
+                    - parameters[33] * t397);
+        let t402 = t328 + t401;
+        let gcross_vx_leg2 = t244 * (t266 * t296 + t289 - 0.8660254037844387 * t300);
+        let t409 = 1.7857142857142858 * t344;
+        let t420 = parameters[24] * t409 + parameters[25] * t390
+            + parameters[26] * (t288 - t372)
+            - parameters[27] * (1.7857142857142858 * t383) - parameters[28] * t333;
+        let t437 = parameters[24] * t389 - parameters[25] * t385 - parameters[26] * t369
+            + parameters[27] * t388 + parameters[28] * (t336 - t288);
+        let t445 = c_rod_leg2
+            * (t420 - parameters[29] * t409 + parameters[30] * t397
+                + parameters[32] * t360)
             - minus_s_rod_leg2
-                * (t526 + parameters[29] * t483 - parameters[31] * t493
-                    - parameters[32] * t473);
-        let t546 = parameters[25] * (t466 - t437) - parameters[24] * t431
-            - parameters[26] * t470 + parameters[27] * t431 + parameters[28] * t447;
-        let t552 = t546 + parameters[29] * rate_dot_rod_leg2 + parameters[30] * t473
-            - parameters[31] * t457;
-        let t556 = pose[1] - 0.04330127018922194;
-        let t557 = t556 + 0.17320508075688776;
-        let t559 = t234 + 0.8660254037844387 * t557;
-        let t562 = 0.2304 * (t559 * t559 + t3);
-        let t563 = 1.0 / t562;
-        let t564 = 0.48 * t559;
-        let t567 = t241 + t557 * t557 + t3;
-        let t569 = t567 - 0.3136 + 0.0576;
-        let t572 = t562 - t569 * t569;
-        ::overact::guard::reach(t572, "leg3")?;
-        let t573 = ::overact::math::sqrt(t572);
-        let minus_c_arm_leg3 = t563 * (t564 * t569 + t14 * t573);
-        let t578 = t559 - 0.24 * minus_c_arm_leg3;
-        let t580 = t256 - 0.5 * t557;
-        let t581 = t580 * t580;
-        let t585 = 1.0 - 3.188775510204082 * t581;
-        ::overact::guard::reach(t585, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t585);
-        let c_cross_leg3 = (t567 - (0.0576 + t581) - 0.3136 * t585)
+                * (t437 - parameters[29] * t388 - parameters[31] * t397
+                    - parameters[32] * t367);
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t243;
+        let t459 = parameters[24] * t332
+            + parameters[25] * (3.188775510204082 * (t371 - t335))
+            + parameters[26] * t377 - parameters[27] * t332 - parameters[28] * t350;
+        let t465 = t459 - parameters[29] * minus_rate_dot_rod_leg2
+            + parameters[30] * t367 - parameters[31] * t360;
+        let t470 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t472 = t217 + 0.8660254037844387 * t470;
+        let t475 = 0.2304 * (t472 * t472 + t3);
+        let t478 = t222 + t470 * t470 + t3;
+        let t480 = t478 - 0.3136 + 0.0576;
+        let t482 = t475 - t480 * t480;
+        ::overact::guard::reach(t482, "leg3")?;
+        let t483 = ::overact::math::sqrt(t482);
+        let t486 = t232 - 0.5 * t470;
+        let t487 = t486 * t486;
+        let t489 = 1.0 - 3.188775510204082 * t487;
+        ::overact::guard::reach(t489, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t489);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let t491 = 0.56 * c_rod_leg3;
+        let s_cross_leg3 = 2.0833333333333335 * t483 / t491;
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
+        let t493 = 1.0 / s_cross_leg3;
+        let t494 = 4.166666666666667 * t493;
+        let t495 = 1.0 / t475;
+        let t496 = 0.48 * t472;
+        let minus_c_arm_leg3 = t495 * (t496 * t480 + t14 * t483);
+        let c_cross_leg3 = (t478 - (0.0576 + t487) - 0.3136 * t489)
             / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t563 * (t564 * t573 - t14 * t569);
-        let s_cross_leg3 = 2.0833333333333335 * t573 / (0.56 * c_rod_leg3);
+        let s_arm_leg3 = t495 * (t496 * t483 - t14 * t480);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t601 = t580 * minus_c_armcross_leg3;
-        let t604 = 1.5464739353293548 * t601 + 0.5 * c_rod_leg3;
-        let t607 = 0.24 * s_arm_leg3;
-        let t608 = pose[2] + t607;
-        let s_rod_leg3 = 1.7857142857142858 * t580;
+        let t514 = 0.5 * minus_c_armcross_leg3;
+        let t515 = 1.0 / c_rod_leg3;
+        let t516 = 1.7857142857142858 * t515;
+        let t517 = t486 * t516;
+        let garm_vx_leg3 = t494 * (t514 + 0.8660254037844387 * t517);
+        let t521 = 0.24 * c_cross_leg3;
+        let t523 = 0.8660254037844387 * minus_c_armcross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t613 = s_rod_leg3 * s_armcross_leg3;
-        let t614 = t608 * t613;
-        let t617 = 0.20784609690826528 * s_arm_leg3;
-        let t620 = 0.8660254037844387 * c_rod_leg3 - 0.8928571428571429 * t601;
-        let t624 = t578 * (0.56 * t620) + 0.28 * t614;
-        let t629 = s_arm_leg3 * t613;
-        let t631 = 0.1344 * (minus_c_arm_leg3 * t620) - 0.0672 * t629;
-        let t636 = t617 * t624 + 0.8660254037844387 * t608 * t631 + 0.14 * (t573 * t604);
-        ::overact::guard::leg(t636, 0.06758306237512474, "leg3")?;
-        let t637 = 1.0 / t636;
-        let garm_vx_leg3 = (t578 * (0.56 * t604) - 0.4849742261192857 * t614) * t637;
-        let garm_vy_leg3 = t624 * t637;
-        let t640 = 0.20784609690826528 * minus_c_arm_leg3;
-        let garm_vz_leg3 = 0.56 * (c_rod_leg3 * t608) * t637;
-        let rate_arm_leg3 = garm_vx_leg3 * twist[0] + garm_vy_leg3 * twist[1]
-            + garm_vz_leg3 * twist[2];
-        let t649 = rate_arm_leg3 * rate_arm_leg3;
-        let t652 = t556 - (t640 - 0.17320508075688776);
-        let gcross_vz_leg3 = (0.11639381426862856 * (s_arm_leg3 * t620)
-            + 0.0672 * (s_arm_leg3 * t604)) * t637;
-        let minus_gcross_vx_leg3 = (0.11639381426862856 * t629
-            + 0.1344 * (minus_c_arm_leg3 * t604)) * t637;
-        let minus_gcross_vy_leg3 = t631 * t637;
-        let rate_cross_leg3 = gcross_vz_leg3 * twist[2]
-            - (minus_gcross_vx_leg3 * twist[0] + minus_gcross_vy_leg3 * twist[1]);
-        let t670 = 0.8660254037844387 * rate_cross_leg3;
-        let grod_vx_leg3 = (t578 * t617
-            + 0.20784609690826528 * (minus_c_arm_leg3 * t608)) * t637;
-        let minus_grod_vy_leg3 = 0.25 * t573 * t637;
-        let rate_rod_leg3 = grod_vx_leg3 * twist[0] - minus_grod_vy_leg3 * twist[1];
-        let t683 = t670 - 0.5 * s_armcross_leg3 * rate_rod_leg3;
-        let t685 = 0.5 * rate_cross_leg3;
-        let t687 = 0.8660254037844387 * s_armcross_leg3 * rate_rod_leg3;
-        let t688 = t685 + t687;
-        let t691 = minus_c_armcross_leg3 * rate_rod_leg3;
-        let t693 = t683 * t683 + t688 * t688 + t691 * t691;
-        let t696 = 0.12 * minus_c_arm_leg3;
-        let t698 = t232 - (t696 - 0.1);
-        let t703 = t698 * t683 - t652 * t688 - t608 * t691;
-        let t707 = 1.3333333333333333 * (t670 * t687);
-        let t709 = t685 * t691;
-        let t712 = t640 * t649 + t652 * t693 + t688 * t703 + t698 * t707 + t608 * t709;
-        let t719 = t670 * t691;
-        let t723 = t683 * t703 - (t696 * t649 + t698 * t693) + t608 * t719 + t652 * t707;
-        let t731 = t652 * t709 - t698 * t719;
-        let t733 = t607 * t649 - t608 * t693 + t731 + t731;
-        let rate_dot_arm_leg3 = garm_vy_leg3 * t712 - garm_vx_leg3 * t723
-            - garm_vz_leg3 * t733;
-        let t737 = 9.81 * minus_c_arm_leg3;
-        let t740 = 9.81 * s_arm_leg3;
-        let t749 = parameters[34] * rate_dot_arm_leg3 + parameters[35] * t737
-            + parameters[36] * t740 + parameters[37] * rate_dot_arm_leg3
+        let t530 = t514 * twist[0] + t523 * twist[1] - s_armcross_leg3 * twist[2];
+        let t531 = t279 - t280;
+        let rate_arm_leg3 = t494 * (t530 + t517 * t531);
+        let t535 = rate_arm_leg3 * rate_arm_leg3;
+        let rate_rod_leg3 = t516 * t531;
+        let t538 = rate_rod_leg3 * rate_rod_leg3;
+        let t539 = 0.5 * s_armcross_leg3;
+        let t541 = 0.8660254037844387 * s_armcross_leg3;
+        let t546 = c_cross_leg3 * t493;
+        let t550 = t521 * (t494 * t517);
+        let t552 = t539 * twist[0] + t541 * twist[1] + minus_c_armcross_leg3 * twist[2]
+            - t546 * t530 - t550 * t531;
+        let rate_cross_leg3 = t516 * t552;
+        let t554 = rate_cross_leg3 * rate_cross_leg3;
+        let t555 = t538 + t554;
+        let t557 = t521 * t535 + t491 * t555;
+        let t558 = t486 * rate_cross_leg3;
+        let t561 = rate_cross_leg3 * t558 - t486 * t555;
+        let rate_dot_arm_leg3 = t494 * (t557 - t517 * t561);
+        let t566 = 9.81 * minus_c_arm_leg3;
+        let t569 = 9.81 * s_arm_leg3;
+        let t578 = parameters[34] * rate_dot_arm_leg3 + parameters[35] * t566
+            + parameters[36] * t569 + parameters[37] * rate_dot_arm_leg3
             + parameters[38] * rate_arm_leg3
             + ::overact::math::signed(parameters[39], rate_arm_leg3) + parameters[40];
-        let t751 = 1.7857142857142858 * t703;
-        let t752 = c_rod_leg3 * rate_cross_leg3;
-        let t753 = t751 * t752;
-        let minus_rate_dot_rod_leg3 = grod_vx_leg3 * t723 + minus_grod_vy_leg3 * t712;
-        let t757 = t753 + minus_rate_dot_rod_leg3;
-        let t759 = t752 * t752;
-        let t760 = rate_rod_leg3 * rate_rod_leg3;
-        let rate_dot_cross_leg3 = minus_gcross_vx_leg3 * t723
-            - minus_gcross_vy_leg3 * t712 - gcross_vz_leg3 * t733;
-        let t769 = c_rod_leg3 * rate_dot_cross_leg3;
-        let t773 = t737 + 0.24 * rate_dot_arm_leg3;
-        let t776 = t740 + 0.24 * t649;
-        let t778 = s_cross_leg3 * t773 - c_cross_leg3 * t776;
-        let t779 = c_rod_leg3 * t778;
-        let t782 = 0.8928571428571429 * t573
-            * (parameters[48] * t757 - parameters[47] * (t759 + t760)
-                + parameters[49] * t769 + parameters[50] * t779);
-        let t785 = t753 - minus_rate_dot_rod_leg3;
-        let t788 = 3.188775510204082 * (t703 * t703);
-        let t792 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t795 = s_rod_leg3 * t778;
-        let t798 = 0.42857142857142855 * (t580 * s_cross_leg3)
-            * (parameters[47] * t785 - parameters[48] * (t788 + t760)
-                - parameters[49] * t792 - parameters[50] * t795);
-        let t801 = rate_rod_leg3 * t751;
-        let t802 = t769 - t801;
-        let t803 = t801 - t802;
-        let t805 = rate_rod_leg3 * t752;
-        let t806 = t792 + t805;
-        let t807 = t805 + t806;
-        let t815 = s_cross_leg3 * t776 + c_cross_leg3 * t773;
-        let t818 = 0.24 * c_cross_leg3
-            * (parameters[47] * t803 + parameters[48] * t807
-                - parameters[49] * (rate_cross_leg3 * rate_cross_leg3)
-                - parameters[50] * t815);
-        let t820 = t749 + t782 - t798 - t818;
-        let t831 = parameters[41] * t806 - parameters[42] * t803 + parameters[43] * t785
-            - parameters[44] * t805 + parameters[45] * (t759 - t760);
-        let t848 = parameters[41] * t801 + parameters[42] * t807
-            + parameters[43] * (t760 - t788) + parameters[44] * t802
-            - parameters[45] * t757;
-        let t856 = s_rod_leg3
-            * (t831 + parameters[46] * t805 - parameters[48] * t815
-                + parameters[49] * t795)
+        let t581 = 3.188775510204082 * (t552 * t558);
+        let minus_rate_dot_rod_leg3 = t516 * t561;
+        let t583 = t581 + minus_rate_dot_rod_leg3;
+        let t585 = t552 * t552;
+        let t586 = 3.188775510204082 * t585;
+        let t595 = t486 * (rate_cross_leg3 * rate_rod_leg3);
+        let t599 = t550 * t561
+            - (t546 * t557 + 0.24 * s_cross_leg3 * t535 - t595 - t595);
+        let t600 = 1.7857142857142858 * t599;
+        let t604 = t566 + 0.24 * rate_dot_arm_leg3;
+        let t607 = t569 + 0.24 * t535;
+        let t609 = s_cross_leg3 * t604 - c_cross_leg3 * t607;
+        let t610 = c_rod_leg3 * t609;
+        let t613 = 0.8928571428571429 * t483
+            * (parameters[48] * t583 - parameters[47] * (t586 + t538)
+                + parameters[49] * t600 + parameters[50] * t610);
+        let t616 = t581 - minus_rate_dot_rod_leg3;
+        let t618 = t558 * t558;
+        let t619 = 3.188775510204082 * t618;
+        let s_rod_leg3 = 1.7857142857142858 * t486;
+        let rate_dot_cross_leg3 = t516 * t599;
+        let t625 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t628 = s_rod_leg3 * t609;
+        let t631 = 0.42857142857142855 * (t486 * s_cross_leg3)
+            * (parameters[47] * t616 - parameters[48] * (t619 + t538)
+                - parameters[49] * t625 - parameters[50] * t628);
+        let t633 = t599 - t595;
+        let t635 = 1.7857142857142858 * (t595 - t633);
+        let t638 = rate_rod_leg3 * (1.7857142857142858 * t552);
+        let t639 = t625 + t638;
+        let t640 = t638 + t639;
+        let t647 = s_cross_leg3 * t607 + c_cross_leg3 * t604;
+        let t651 = t613 - t631
+            - t521
+                * (parameters[47] * t635 + parameters[48] * t640 - parameters[49] * t554
+                    - parameters[50] * t647);
+        let t652 = t578 + t651;
+        let gcross_vx_leg3 = t516 * (t539 - t514 * t546 - 0.8660254037844387 * t550);
+        let t668 = parameters[41] * t639 - parameters[42] * t635 + parameters[43] * t616
+            - parameters[44] * t638 + parameters[45] * (t586 - t538);
+        let t676 = 1.7857142857142858 * t595;
+        let t687 = parameters[41] * t676 + parameters[42] * t640
+            + parameters[43] * (t538 - t619)
+            + parameters[44] * (1.7857142857142858 * t633) - parameters[45] * t583;
+        let t695 = s_rod_leg3
+            * (t668 + parameters[46] * t638 - parameters[48] * t647
+                + parameters[49] * t628)
             + c_rod_leg3
-                * (t848 - parameters[46] * t801 + parameters[47] * t815
-                    + parameters[49] * t779);
-        let t868 = parameters[42] * (t788 - t759) - parameters[41] * t753
-            + parameters[43] * t792 + parameters[44] * t753 + parameters[45] * t769;
-        let t874 = t868 - parameters[46] * minus_rate_dot_rod_leg3
-            - parameters[47] * t795 - parameters[48] * t779;
-        let t877 = garm_vx_leg1 * t190 - minus_gcross_vx_leg1 * t226
-            + garm_vx_leg2 * t498 - minus_gcross_vx_leg2 * t534 + grod_vx_leg2 * t552
-            + garm_vx_leg3 * t820 - minus_gcross_vx_leg3 * t856 + grod_vx_leg3 * t874;
-        let t890 = parameters[8] * (t159 - t130) - parameters[7] * t126
-            + parameters[9] * t163 + parameters[10] * t126 + parameters[11] * t140;
-        let t898 = garm_vy_leg1 * t190 + gcross_vy_leg1 * t226
+                * (t687 - parameters[46] * t676 + parameters[47] * t647
+                    + parameters[49] * t610);
+        let grod_vx_leg3 = 1.5464739353293548 * t515;
+        let t709 = parameters[42] * (3.188775510204082 * (t618 - t585))
+            - parameters[41] * t581 + parameters[43] * t625 + parameters[44] * t581
+            + parameters[45] * t600;
+        let t715 = t709 - parameters[46] * minus_rate_dot_rod_leg3
+            - parameters[47] * t628 - parameters[48] * t610;
+        let t718 = garm_vx_leg1 * t168 - minus_gcross_vx_leg1 * t209
+            + garm_vx_leg2 * t402 + gcross_vx_leg2 * t445 - minus_grod_vx_leg2 * t465
+            + garm_vx_leg3 * t652 + gcross_vx_leg3 * t695 + grod_vx_leg3 * t715;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * t60;
+        let t733 = parameters[8] * (3.188775510204082 * (t134 - t101))
+            - parameters[7] * t97 - parameters[9] * t141 + parameters[10] * t97
+            - parameters[11] * t116;
+        let t741 = garm_vy_leg1 * t168 - minus_gcross_vy_leg1 * t209
             + grod_vy_leg1
-                * (t890 - parameters[12] * minus_rate_dot_rod_leg1
-                    - parameters[13] * t166 - parameters[14] * t150);
-        let t910 = t898 + garm_vy_leg2 * t498 - minus_gcross_vy_leg2 * t534
-            - minus_grod_vy_leg2 * t552 + garm_vy_leg3 * t820
-            - minus_gcross_vy_leg3 * t856 - minus_grod_vy_leg3 * t874;
-        let t921 = garm_vz_leg1 * t190 - minus_gcross_vz_leg1 * t226
-            + garm_vz_leg2 * t498 + gcross_vz_leg2 * t534 + garm_vz_leg3 * t820
-            + gcross_vz_leg3 * t856;
-        Ok([t877, t910, t921 + 9.81 * (parameters[51] + parameters[52])])
+                * (t733 - parameters[12] * minus_rate_dot_rod_leg1
+                    - parameters[13] * t144 - parameters[14] * t126);
+        let garm_vy_leg2 = t242 * (t270 + 0.5 * t245);
+        let minus_gcross_vy_leg2 = t244 * (t270 * t296 + t291 + 0.5 * t300);
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t243;
+        let garm_vy_leg3 = t494 * (t523 - 0.5 * t517);
+        let gcross_vy_leg3 = t516 * (t541 - t523 * t546 + 0.5 * t550);
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t515;
+        let t771 = t741 + garm_vy_leg2 * t402 - minus_gcross_vy_leg2 * t445
+            - minus_grod_vy_leg2 * t465 + garm_vy_leg3 * t652 + gcross_vy_leg3 * t695
+            - minus_grod_vy_leg3 * t715;
+        let gcross_vz_leg2 = t244 * (s_armcross_leg2 * t296 - c_armcross_leg2);
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t242;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t41;
+        let minus_gcross_vz_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 - s_armcross_leg1 * t57);
+        let gcross_vz_leg3 = t516 * (s_armcross_leg3 * t546 + minus_c_armcross_leg3);
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t494;
+        let t794 = gcross_vz_leg2 * t445 - minus_garm_vz_leg2 * t402
+            - (minus_garm_vz_leg1 * t168 + minus_gcross_vz_leg1 * t209)
+            + gcross_vz_leg3 * t695 - minus_garm_vz_leg3 * t652;
+        Ok([t718, t771, t794 + 9.81 * (parameters[51] + parameters[52])])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. It is `pose_in_closed_form` where that has a value.
     ///

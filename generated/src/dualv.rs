@@ -245,9 +245,11 @@ impl DualV {
     pub fn pose_in_closed_form(
         actuators: &[f64; 4],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(actuators[0]);
+        let [(s1_leg1, c1_leg1), (s1_leg2, c1_leg2), (s1_leg3, c1_leg3),
+        (s1_leg4, c1_leg4)] = ::overact::math::sin_cos_all([
+            actuators[0], actuators[1], actuators[2], actuators[3],
+        ]);
         let t3 = 0.3950502153918333 + 0.28 * c1_leg1;
-        let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(actuators[1]);
         let t8 = 0.28 * c1_leg2 - 0.3950502153918333 - t3;
         let t14 = 0.10970563941232059 + 0.28 * s1_leg1;
         let t15 = 0.10970563941232059 + 0.28 * s1_leg2 - t14;
@@ -256,9 +258,7 @@ impl DualV {
         ::overact::guard::reach(t21, "leg1")?;
         let t22 = ::overact::math::sqrt(t21);
         let t24 = t3 + 0.5 * t8 - t15 * t22;
-        let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(actuators[2]);
         let t28 = 0.28 * c1_leg3 - 0.3950502153918333;
-        let (s1_leg4, c1_leg4) = ::overact::math::sin_cos(actuators[3]);
         let t33 = 0.3950502153918333 + 0.28 * c1_leg4 - t28;
         let t39 = 0.28 * s1_leg3 - 0.10970563941232059;
         let t40 = 0.28 * s1_leg4 - 0.10970563941232059 - t39;
@@ -560,34 +560,30 @@ impl DualV {
         joints: &[f64; 12],
     ) -> Result<[[f64; 3]; 4], ::overact::Error> {
         let t0 = joints[0] + joints[1];
-        let (s12_leg1, c12_leg1) = ::overact::math::sin_cos(t0);
-        let s2_leg1 = ::overact::math::sin_cos(joints[1]).0;
+        let t6 = joints[3] + joints[4];
+        let t12 = joints[6] + joints[7];
+        let t18 = joints[9] + joints[10];
+        let [(s12_leg1, c12_leg1), (s2_leg1, _), (s12_leg2, c12_leg2), (s2_leg2, _),
+        (s12_leg3, c12_leg3), (s2_leg3, _), (s12_leg4, c12_leg4), (s2_leg4, _),
+        (s_phi, c_phi)] = ::overact::math::sin_cos_all([
+            t0, joints[1], t6, joints[4], t12, joints[7], t18, joints[10], pose[2],
+        ]);
         ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
+        ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
         let t4 = 3.5714285714285716 / s2_leg1;
         let g1_vx_leg1 = c12_leg1 * t4;
-        let t6 = joints[3] + joints[4];
-        let (s12_leg2, c12_leg2) = ::overact::math::sin_cos(t6);
-        let s2_leg2 = ::overact::math::sin_cos(joints[4]).0;
-        ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
         let t10 = 3.5714285714285716 / s2_leg2;
         let g1_vx_leg2 = c12_leg2 * t10;
-        let t12 = joints[6] + joints[7];
-        let (s12_leg3, c12_leg3) = ::overact::math::sin_cos(t12);
-        let s2_leg3 = ::overact::math::sin_cos(joints[7]).0;
-        ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
         let t16 = 3.5714285714285716 / s2_leg3;
         let g1_vx_leg3 = c12_leg3 * t16;
-        let t18 = joints[9] + joints[10];
-        let (s12_leg4, c12_leg4) = ::overact::math::sin_cos(t18);
-        let s2_leg4 = ::overact::math::sin_cos(joints[10]).0;
-        ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
         let t22 = 3.5714285714285716 / s2_leg4;
         let g1_vx_leg4 = c12_leg4 * t22;
         let g1_vy_leg1 = s12_leg1 * t4;
         let g1_vy_leg2 = s12_leg2 * t10;
         let g1_vy_leg3 = s12_leg3 * t16;
         let g1_vy_leg4 = s12_leg4 * t22;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t30 = 0.11 * s_phi;
         let t32 = 0.11 * c_phi;
         let minus_g1_wz_leg1 = g1_vy_leg1 * t30 + g1_vx_leg1 * t32;
@@ -728,18 +724,15 @@ impl DualV {
         _pose: &[f64; 3],
         joints: &[f64; 12],
     ) -> [[f64; 12]; 12] {
-        let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(joints[0]);
         let t2 = joints[0] + joints[1];
-        let (s12_leg1, c12_leg1) = ::overact::math::sin_cos(t2);
-        let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(joints[3]);
         let t13 = joints[3] + joints[4];
-        let (s12_leg2, c12_leg2) = ::overact::math::sin_cos(t13);
-        let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(joints[6]);
         let t24 = joints[6] + joints[7];
-        let (s12_leg3, c12_leg3) = ::overact::math::sin_cos(t24);
-        let (s1_leg4, c1_leg4) = ::overact::math::sin_cos(joints[9]);
         let t35 = joints[9] + joints[10];
-        let (s12_leg4, c12_leg4) = ::overact::math::sin_cos(t35);
+        let [(s1_leg1, c1_leg1), (s12_leg1, c12_leg1), (s1_leg2, c1_leg2),
+        (s12_leg2, c12_leg2), (s1_leg3, c1_leg3), (s12_leg3, c12_leg3),
+        (s1_leg4, c1_leg4), (s12_leg4, c12_leg4)] = ::overact::math::sin_cos_all([
+            joints[0], t2, joints[3], t13, joints[6], t24, joints[9], t35,
+        ]);
         [
             [
                 -(0.28 * (s1_leg1 + s12_leg1)), -(0.28 * s12_leg1), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
@@ -819,36 +812,32 @@ impl DualV {
         joints: &[f64; 12],
     ) -> Result<[[f64; 3]; 4], ::overact::Error> {
         let t0 = joints[0] + joints[1];
-        let (s12_leg1, c12_leg1) = ::overact::math::sin_cos(t0);
         let t4 = joints[3] + joints[4];
-        let (s12_leg2, c12_leg2) = ::overact::math::sin_cos(t4);
         let t8 = joints[6] + joints[7];
-        let (s12_leg3, c12_leg3) = ::overact::math::sin_cos(t8);
         let t12 = joints[9] + joints[10];
-        let (s12_leg4, c12_leg4) = ::overact::math::sin_cos(t12);
-        let s2_leg1 = ::overact::math::sin_cos(joints[1]).0;
+        let [(s12_leg1, c12_leg1), (s12_leg2, c12_leg2), (s12_leg3, c12_leg3),
+        (s12_leg4, c12_leg4), (s2_leg1, _), (s_phi, c_phi), (s2_leg2, _), (s2_leg3, _),
+        (s2_leg4, _)] = ::overact::math::sin_cos_all([
+            t0, t4, t8, t12, joints[1], pose[2], joints[4], joints[7], joints[10],
+        ]);
         ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
+        ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
         let t22 = 3.5714285714285716 / s2_leg1;
         let g1_vy_leg1 = s12_leg1 * t22;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t26 = 0.11 * s_phi;
         let g1_vx_leg1 = c12_leg1 * t22;
         let t29 = 0.11 * c_phi;
         let minus_g1_wz_leg1 = g1_vy_leg1 * t26 + g1_vx_leg1 * t29;
-        let s2_leg2 = ::overact::math::sin_cos(joints[4]).0;
-        ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
         let t35 = 3.5714285714285716 / s2_leg2;
         let g1_vy_leg2 = s12_leg2 * t35;
         let g1_vx_leg2 = c12_leg2 * t35;
         let minus_g1_wz_leg2 = t26 * g1_vy_leg2 + t29 * g1_vx_leg2;
-        let s2_leg3 = ::overact::math::sin_cos(joints[7]).0;
-        ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
         let t44 = 3.5714285714285716 / s2_leg3;
         let g1_vy_leg3 = s12_leg3 * t44;
         let g1_vx_leg3 = c12_leg3 * t44;
         let g1_wz_leg3 = t26 * g1_vy_leg3 + t29 * g1_vx_leg3;
-        let s2_leg4 = ::overact::math::sin_cos(joints[10]).0;
-        ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
         let t53 = 3.5714285714285716 / s2_leg4;
         let g1_vy_leg4 = s12_leg4 * t53;
         let g1_vx_leg4 = c12_leg4 * t53;
@@ -874,10 +863,9 @@ impl DualV {
         _pose: &[f64; 3],
         joints: &[f64; 12],
     ) -> [[f64; 4]; 4] {
-        let s2_leg1 = ::overact::math::sin_cos(joints[1]).0;
-        let s2_leg2 = ::overact::math::sin_cos(joints[4]).0;
-        let s2_leg3 = ::overact::math::sin_cos(joints[7]).0;
-        let s2_leg4 = ::overact::math::sin_cos(joints[10]).0;
+        let [(s2_leg1, _), (s2_leg2, _), (s2_leg3, _), (s2_leg4, _)] = ::overact::math::sin_cos_all([
+            joints[1], joints[4], joints[7], joints[10],
+        ]);
         [
             [-(0.0784 * s2_leg1), 0.0, 0.0, 0.0], [0.0, -(0.0784 * s2_leg2), 0.0, 0.0],
             [0.0, 0.0, -(0.0784 * s2_leg3), 0.0], [0.0, 0.0, 0.0, -(0.0784 * s2_leg4)],
@@ -1739,14 +1727,20 @@ impl DualV {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 64]; 3], ::overact::Error> {
-        let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
+        let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s_phi, c_phi), (s1_leg2, c1_leg2),
+        (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3), (s1_leg4, c1_leg4),
+        (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
+            joints[0], joints[1], pose[2], joints[3], joints[4], joints[6], joints[7], joints[9],
+            joints[10],
+        ]);
         ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
+        ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
         let t10 = 3.5714285714285716 / s2_leg1;
         let g1_vx_leg1 = c12_leg1 * t10;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t14 = 0.11 * c_phi;
         let t15 = t14 * acceleration[2];
         let t17 = 0.11 * s_phi;
@@ -1790,9 +1784,6 @@ impl DualV {
         let t108 = minus_g1_wz_leg1 + g2_wz_leg1;
         let t113 = minus_rate_2_leg1 + twist[2];
         let t116 = 1.0 - g2_wz_leg1;
-        let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
         let t131 = 3.5714285714285716 / s2_leg2;
@@ -1823,9 +1814,6 @@ impl DualV {
         let t205 = minus_g1_wz_leg2 + g2_wz_leg2;
         let t210 = minus_rate_2_leg2 + twist[2];
         let t213 = 1.0 - g2_wz_leg2;
-        let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
         let t228 = 3.5714285714285716 / s2_leg3;
@@ -1863,9 +1851,6 @@ impl DualV {
         let t312 = g1_wz_leg3 + minus_g2_wz_leg3;
         let t317 = minus_rate_2_leg3 + twist[2];
         let t320 = minus_g2_wz_leg3 + 1.0;
-        let (s1_leg4, c1_leg4) = ::overact::math::sin_cos(joints[9]);
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
         let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
         let t335 = 3.5714285714285716 / s2_leg4;
@@ -2673,13 +2658,19 @@ impl DualV {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 64]; 3], ::overact::Error> {
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_leg1, c2_leg1), (s1_leg1, c1_leg1), (s_phi, c_phi), (s1_leg2, c1_leg2),
+        (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3), (s1_leg4, c1_leg4),
+        (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
+            joints[1], joints[0], pose[2], joints[3], joints[4], joints[6], joints[7], joints[9],
+            joints[10],
+        ]);
         ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
+        ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
         let t2 = 3.5714285714285716 / s2_leg1;
-        let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(joints[0]);
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t13 = 0.11 * c_phi;
         let t14 = t13 * acceleration[2];
         let t16 = 0.11 * s_phi;
@@ -2703,16 +2694,10 @@ impl DualV {
         let t43 = rate_1_leg1 * rate_1_leg1;
         let t44 = 0.28 * c2_leg1;
         let rate_dot_1_leg1 = t2 * (t37 + t43 * t44);
-        let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
         let t59 = 3.5714285714285716 / s2_leg2;
         let g1_vx_leg2 = c12_leg2 * t59;
-        let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
         let t71 = 3.5714285714285716 / s2_leg3;
@@ -2825,9 +2810,6 @@ impl DualV {
         let t361 = t116 - t300;
         let t363 = t133 - t314;
         let t365 = t327 + t195;
-        let (s1_leg4, c1_leg4) = ::overact::math::sin_cos(joints[9]);
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
         let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
         let t380 = 3.5714285714285716 / s2_leg4;
@@ -3589,7 +3571,16 @@ impl DualV {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 49]; 3], ::overact::Error> {
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let [(s_phi, c_phi), (s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
+        (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3), (s1_leg4, c1_leg4),
+        (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
+            pose[2], joints[0], joints[1], joints[3], joints[4], joints[6], joints[7], joints[9],
+            joints[10],
+        ]);
+        ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
+        ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
         let t2 = 0.11 * c_phi;
         let t3 = t2 * twist[2];
         let t4 = twist[2] * t3;
@@ -3600,9 +3591,6 @@ impl DualV {
         let t10 = t5 * twist[2];
         let t11 = twist[2] * t10;
         let t13 = 9.090909090909092 * (t9 - t11);
-        let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
         let t30 = 3.5714285714285716 / s2_leg1;
@@ -3622,9 +3610,6 @@ impl DualV {
         let t54 = 0.28 * c2_leg1;
         let rate_dot_1_leg1 = t30 * (t48 + t53 * t54);
         let minus_g1_wz_leg1 = g1_vy_leg1 * t5 + g1_vx_leg1 * t2;
-        let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
         let t74 = 3.5714285714285716 / s2_leg2;
@@ -3640,9 +3625,6 @@ impl DualV {
         let t92 = 0.28 * c2_leg2;
         let rate_dot_1_leg2 = t74 * (t86 + t91 * t92);
         let minus_g1_wz_leg2 = t5 * g1_vy_leg2 + t2 * g1_vx_leg2;
-        let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
         let t112 = 3.5714285714285716 / s2_leg3;
@@ -3662,9 +3644,6 @@ impl DualV {
         let t136 = 0.28 * c2_leg3;
         let rate_dot_1_leg3 = t112 * (t130 + t135 * t136);
         let g1_wz_leg3 = t5 * g1_vy_leg3 + t2 * g1_vx_leg3;
-        let (s1_leg4, c1_leg4) = ::overact::math::sin_cos(joints[9]);
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
         let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
         let t156 = 3.5714285714285716 / s2_leg4;
@@ -4424,30 +4403,30 @@ impl DualV {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 49]; 3], ::overact::Error> {
-        let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
+        let [(s1_leg2, c1_leg2), (s2_leg2, c2_leg2), (s1_leg3, c1_leg3),
+        (s2_leg3, c2_leg3), (s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s_phi, c_phi),
+        (s1_leg4, c1_leg4), (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
+            joints[3], joints[4], joints[6], joints[7], joints[0], joints[1], pose[2], joints[9],
+            joints[10],
+        ]);
         ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
+        ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
+        ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
         let t10 = 3.5714285714285716 / s2_leg2;
         let g1_vx_leg2 = c12_leg2 * t10;
-        let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
         let t22 = 3.5714285714285716 / s2_leg3;
         let g1_vy_leg3 = s12_leg3 * t22;
         let g1_vy_leg2 = s12_leg2 * t10;
         let g1_vx_leg3 = c12_leg3 * t22;
-        let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
         let t39 = 3.5714285714285716 / s2_leg1;
         let g1_vy_leg1 = s12_leg1 * t39;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t43 = 0.11 * s_phi;
         let g1_vx_leg1 = c12_leg1 * t39;
         let t46 = 0.11 * c_phi;
@@ -4518,9 +4497,6 @@ impl DualV {
         let t212 = rate_1_leg3 * rate_1_leg3;
         let t213 = 0.28 * c2_leg3;
         let rate_dot_1_leg3 = t22 * (t208 + t212 * t213);
-        let (s1_leg4, c1_leg4) = ::overact::math::sin_cos(joints[9]);
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
         let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
         let t227 = 3.5714285714285716 / s2_leg4;
@@ -5855,14 +5831,20 @@ impl DualV {
         acceleration: &[f64; 3],
         parameters: &[f64; 68],
     ) -> Result<[f64; 4], ::overact::Error> {
-        let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
+        let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s_phi, c_phi), (s1_leg2, c1_leg2),
+        (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3), (s1_leg4, c1_leg4),
+        (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
+            joints[0], joints[1], pose[2], joints[3], joints[4], joints[6], joints[7], joints[9],
+            joints[10],
+        ]);
         ::overact::guard::leg(s2_leg1, 0.9999890064153126, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
+        ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
         let t10 = 3.5714285714285716 / s2_leg1;
         let g1_vx_leg1 = c12_leg1 * t10;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t14 = 0.11 * c_phi;
         let t15 = t14 * acceleration[2];
         let t17 = 0.11 * s_phi;
@@ -5907,9 +5889,6 @@ impl DualV {
             + parameters[14];
         let t101 = parameters[6] * t74 - parameters[5] * minus_rate_dot_2_leg1
             - parameters[7] * t38 + t87 - t100;
-        let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.9999890064153126, "leg2")?;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
         let t114 = 3.5714285714285716 / s2_leg2;
@@ -5946,9 +5925,6 @@ impl DualV {
             + parameters[29];
         let t189 = parameters[21] * t162 - parameters[20] * minus_rate_dot_2_leg2
             - parameters[22] * t126 + t175 - t188;
-        let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.9999890064153126, "leg3")?;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
         let t203 = 3.5714285714285716 / s2_leg3;
@@ -5991,9 +5967,6 @@ impl DualV {
             - parameters[37] * t221 + t270 - t283;
         let t287 = g1_vx_leg1 * t88 - minus_g2_vx_leg1 * t101 + g1_vx_leg2 * t176
             - minus_g2_vx_leg2 * t189 + g1_vx_leg3 * t271 - minus_g2_vx_leg3 * t284;
-        let (s1_leg4, c1_leg4) = ::overact::math::sin_cos(joints[9]);
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
         let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
         let t298 = 3.5714285714285716 / s2_leg4;

@@ -136,9 +136,10 @@ impl FiveBar {
     pub fn pose_in_closed_form(
         actuators: &[f64; 2],
     ) -> Result<[f64; 2], ::overact::Error> {
-        let (s1_left, c1_left) = ::overact::math::sin_cos(actuators[0]);
+        let [(s1_left, c1_left), (s1_right, c1_right)] = ::overact::math::sin_cos_all([
+            actuators[0], actuators[1],
+        ]);
         let t3 = 0.2 * c1_left - 0.1;
-        let (s1_right, c1_right) = ::overact::math::sin_cos(actuators[1]);
         let t8 = 0.1 + 0.2 * c1_right - t3;
         let t11 = s1_right - s1_left;
         let t16 = t8 * t8 + 0.04 * (t11 * t11);
@@ -297,15 +298,13 @@ impl FiveBar {
         joints: &[f64; 4],
     ) -> Result<[[f64; 2]; 2], ::overact::Error> {
         let t0 = joints[0] + joints[1];
-        let (s12_left, c12_left) = ::overact::math::sin_cos(t0);
-        let s2_left = ::overact::math::sin_cos(joints[1]).0;
+        let t6 = joints[2] + joints[3];
+        let [(s12_left, c12_left), (s2_left, _), (s12_right, c12_right), (s2_right, _),
+        ] = ::overact::math::sin_cos_all([t0, joints[1], t6, joints[3]]);
         ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
+        ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
         let t4 = 5.0 / s2_left;
         let g1_vx_left = c12_left * t4;
-        let t6 = joints[2] + joints[3];
-        let (s12_right, c12_right) = ::overact::math::sin_cos(t6);
-        let s2_right = ::overact::math::sin_cos(joints[3]).0;
-        ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
         let t10 = 5.0 / s2_right;
         let g1_vx_right = c12_right * t10;
         let g1_vy_left = s12_left * t4;
@@ -378,14 +377,14 @@ impl FiveBar {
         _pose: &[f64; 2],
         joints: &[f64; 4],
     ) -> [[f64; 4]; 4] {
-        let (s1_left, c1_left) = ::overact::math::sin_cos(joints[0]);
         let t3 = joints[0] + joints[1];
-        let (s12_left, c12_left) = ::overact::math::sin_cos(t3);
+        let t14 = joints[2] + joints[3];
+        let [(s1_left, c1_left), (s12_left, c12_left), (s1_right, c1_right),
+        (s12_right, c12_right)] = ::overact::math::sin_cos_all([
+            joints[0], t3, joints[2], t14,
+        ]);
         let t6 = 0.25 * s12_left;
         let t9 = 0.25 * c12_left;
-        let (s1_right, c1_right) = ::overact::math::sin_cos(joints[2]);
-        let t14 = joints[2] + joints[3];
-        let (s12_right, c12_right) = ::overact::math::sin_cos(t14);
         let t17 = 0.25 * s12_right;
         let t20 = 0.25 * c12_right;
         [
@@ -424,9 +423,10 @@ impl FiveBar {
         joints: &[f64; 4],
     ) -> [[f64; 2]; 2] {
         let t0 = joints[0] + joints[1];
-        let (s12_left, c12_left) = ::overact::math::sin_cos(t0);
         let t4 = joints[2] + joints[3];
-        let (s12_right, c12_right) = ::overact::math::sin_cos(t4);
+        let [(s12_left, c12_left), (s12_right, c12_right)] = ::overact::math::sin_cos_all([
+            t0, t4,
+        ]);
         [[0.25 * c12_left, 0.25 * s12_left], [0.25 * c12_right, 0.25 * s12_right]]
     }
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
@@ -443,8 +443,9 @@ impl FiveBar {
         _pose: &[f64; 2],
         joints: &[f64; 4],
     ) -> [[f64; 2]; 2] {
-        let s2_left = ::overact::math::sin_cos(joints[1]).0;
-        let s2_right = ::overact::math::sin_cos(joints[3]).0;
+        let [(s2_left, _), (s2_right, _)] = ::overact::math::sin_cos_all([
+            joints[1], joints[3],
+        ]);
         [[-(0.05 * s2_left), 0.0], [0.0, -(0.05 * s2_right)]]
     }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
@@ -881,9 +882,12 @@ impl FiveBar {
         twist: &[f64; 2],
         acceleration: &[f64; 2],
     ) -> Result<[[f64; 25]; 2], ::overact::Error> {
-        let (s1_left, c1_left) = ::overact::math::sin_cos(joints[0]);
-        let (s2_left, c2_left) = ::overact::math::sin_cos(joints[1]);
+        let [(s1_left, c1_left), (s2_left, c2_left), (s1_right, c1_right),
+        (s2_right, c2_right)] = ::overact::math::sin_cos_all([
+            joints[0], joints[1], joints[2], joints[3],
+        ]);
         ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
+        ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
         let c12_left = c1_left * c2_left - s1_left * s2_left;
         let s12_left = s1_left * c2_left + c1_left * s2_left;
         let t10 = 1.0 / s2_left;
@@ -920,9 +924,6 @@ impl FiveBar {
         let t75 = 0.8 * t50;
         let t80 = c2_left * (t39 - t49) + s2_left * t59;
         let t87 = rate_1_left + minus_rate_2_left;
-        let (s1_right, c1_right) = ::overact::math::sin_cos(joints[2]);
-        let (s2_right, c2_right) = ::overact::math::sin_cos(joints[3]);
-        ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
         let c12_right = c1_right * c2_right - s1_right * s2_right;
         let s12_right = s1_right * c2_right + c1_right * s2_right;
         let t101 = 1.0 / s2_right;
@@ -1287,11 +1288,14 @@ impl FiveBar {
         twist: &[f64; 2],
         acceleration: &[f64; 2],
     ) -> Result<[[f64; 25]; 2], ::overact::Error> {
-        let (s2_left, c2_left) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_left, c2_left), (s1_left, c1_left), (s1_right, c1_right),
+        (s2_right, c2_right)] = ::overact::math::sin_cos_all([
+            joints[1], joints[0], joints[2], joints[3],
+        ]);
         ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
+        ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
         let t2 = 1.0 / s2_left;
         let t3 = 5.0 * t2;
-        let (s1_left, c1_left) = ::overact::math::sin_cos(joints[0]);
         let c12_left = c1_left * c2_left - s1_left * s2_left;
         let s12_left = s1_left * c2_left + c1_left * s2_left;
         let t15 = 4.0 * t2;
@@ -1309,9 +1313,6 @@ impl FiveBar {
                 + t29 * (0.2 * c2_left));
         let t34 = 9.81 * c1_left;
         let t35 = 9.81 * s1_left;
-        let (s1_right, c1_right) = ::overact::math::sin_cos(joints[2]);
-        let (s2_right, c2_right) = ::overact::math::sin_cos(joints[3]);
-        ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
         let c12_right = c1_right * c2_right - s1_right * s2_right;
         let s12_right = s1_right * c2_right + c1_right * s2_right;
         let t47 = 1.0 / s2_right;
@@ -1671,9 +1672,12 @@ impl FiveBar {
         twist: &[f64; 2],
         acceleration: &[f64; 2],
     ) -> Result<[[f64; 19]; 2], ::overact::Error> {
-        let (s1_left, c1_left) = ::overact::math::sin_cos(joints[0]);
-        let (s2_left, c2_left) = ::overact::math::sin_cos(joints[1]);
+        let [(s1_left, c1_left), (s2_left, c2_left), (s1_right, c1_right),
+        (s2_right, c2_right)] = ::overact::math::sin_cos_all([
+            joints[0], joints[1], joints[2], joints[3],
+        ]);
         ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
+        ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
         let c12_left = c1_left * c2_left - s1_left * s2_left;
         let s12_left = s1_left * c2_left + c1_left * s2_left;
         let t11 = 1.0 / s2_left;
@@ -1691,9 +1695,6 @@ impl FiveBar {
         let rate_dot_1_left = t12
             * (c12_left * acceleration[0] + s12_left * acceleration[1] + 0.25 * t23
                 + t30 * (0.2 * c2_left));
-        let (s1_right, c1_right) = ::overact::math::sin_cos(joints[2]);
-        let (s2_right, c2_right) = ::overact::math::sin_cos(joints[3]);
-        ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
         let c12_right = c1_right * c2_right - s1_right * s2_right;
         let s12_right = s1_right * c2_right + c1_right * s2_right;
         let t47 = 1.0 / s2_right;
@@ -2038,17 +2039,17 @@ impl FiveBar {
         twist: &[f64; 2],
         acceleration: &[f64; 2],
     ) -> Result<[[f64; 19]; 2], ::overact::Error> {
-        let (s1_right, c1_right) = ::overact::math::sin_cos(joints[2]);
-        let (s2_right, c2_right) = ::overact::math::sin_cos(joints[3]);
+        let [(s1_right, c1_right), (s2_right, c2_right), (s1_left, c1_left),
+        (s2_left, c2_left)] = ::overact::math::sin_cos_all([
+            joints[2], joints[3], joints[0], joints[1],
+        ]);
         ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
+        ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
         let c12_right = c1_right * c2_right - s1_right * s2_right;
         let s12_right = s1_right * c2_right + c1_right * s2_right;
         let t10 = 1.0 / s2_right;
         let t11 = 5.0 * t10;
         let g1_vx_right = c12_right * t11;
-        let (s1_left, c1_left) = ::overact::math::sin_cos(joints[0]);
-        let (s2_left, c2_left) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
         let c12_left = c1_left * c2_left - s1_left * s2_left;
         let s12_left = s1_left * c2_left + c1_left * s2_left;
         let t23 = 1.0 / s2_left;
@@ -2490,9 +2491,12 @@ impl FiveBar {
         acceleration: &[f64; 2],
         parameters: &[f64; 25],
     ) -> Result<[f64; 2], ::overact::Error> {
-        let (s1_left, c1_left) = ::overact::math::sin_cos(joints[0]);
-        let (s2_left, c2_left) = ::overact::math::sin_cos(joints[1]);
+        let [(s1_left, c1_left), (s2_left, c2_left), (s1_right, c1_right),
+        (s2_right, c2_right)] = ::overact::math::sin_cos_all([
+            joints[0], joints[1], joints[2], joints[3],
+        ]);
         ::overact::guard::leg(s2_left, 0.99968745115661, "left")?;
+        ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
         let c12_left = c1_left * c2_left - s1_left * s2_left;
         let s12_left = s1_left * c2_left + c1_left * s2_left;
         let t10 = 1.0 / s2_left;
@@ -2538,9 +2542,6 @@ impl FiveBar {
         let t83 = t47 + t79 + t82;
         let t90 = parameters[8] * t72 - parameters[7] * minus_rate_dot_2_left
             - parameters[9] * t66 - t82;
-        let (s1_right, c1_right) = ::overact::math::sin_cos(joints[2]);
-        let (s2_right, c2_right) = ::overact::math::sin_cos(joints[3]);
-        ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
         let c12_right = c1_right * c2_right - s1_right * s2_right;
         let s12_right = s1_right * c2_right + c1_right * s2_right;
         let t103 = 1.0 / s2_right;

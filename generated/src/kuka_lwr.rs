@@ -397,7 +397,10 @@ impl KukaLwr {
         joint_velocities: &[f64; 7],
         joint_accelerations: &[f64; 7],
     ) -> [[f64; 87]; 7] {
-        let (s2_arm, c2_arm) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
+        (s6_arm, c6_arm), (s7_arm, c7_arm)] = ::overact::math::sin_cos_all([
+            joints[1], joints[2], joints[3], joints[4], joints[5], joints[6],
+        ]);
         let t3 = s2_arm * joint_accelerations[0];
         let t4 = c2_arm * joint_velocities[0];
         let t5 = joint_velocities[1] * t4;
@@ -415,7 +418,6 @@ impl KukaLwr {
         let t32 = t12 - joint_accelerations[1];
         let t35 = 9.81 * c2_arm;
         let t36 = 9.81 * s2_arm;
-        let (s3_arm, c3_arm) = ::overact::math::sin_cos(joints[2]);
         let t40 = s2_arm * c3_arm;
         let t46 = s3_arm * t8 + c3_arm * joint_velocities[1];
         let t48 = c3_arm * t6 - s3_arm * joint_accelerations[1]
@@ -463,7 +465,6 @@ impl KukaLwr {
         let t142 = c3_arm * t127 - s3_arm * t129;
         let t145 = 0.16 * t11;
         let t146 = 0.4 * t127;
-        let (s4_arm, c4_arm) = ::overact::math::sin_cos(joints[3]);
         let t152 = t40 * c4_arm - c2_arm * s4_arm;
         let t158 = s4_arm * t53 + c4_arm * t54;
         let t160 = c4_arm * t48 - s4_arm * t83 - joint_velocities[3] * t158;
@@ -511,7 +512,6 @@ impl KukaLwr {
         let t299 = t259 * t234 - t262 * t288 - t265 * t193 + t50 * t295 - t152 * t131;
         let t308 = t275 * t234 - t277 * t288 + t134 * t193 + t131 * t177 + c3_arm * t295;
         let t309 = s4_arm * t131;
-        let (s5_arm, c5_arm) = ::overact::math::sin_cos(joints[4]);
         let t315 = t152 * c5_arm - t50 * s5_arm;
         let t321 = c5_arm * t168 - s5_arm * t167;
         let t323 = c5_arm * t160 + s5_arm * t209 + joint_velocities[4] * t321;
@@ -586,7 +586,6 @@ impl KukaLwr {
         let t573 = t526 * t495 - t481 * t491 + t277 * t473;
         let t576 = t526 * t350 - t481 * t353;
         let t577 = 0.39 * t476;
-        let (s6_arm, c6_arm) = ::overact::math::sin_cos(joints[5]);
         let t583 = t315 * c6_arm + t164 * s6_arm;
         let t589 = c6_arm * t331 - s6_arm * t330;
         let t591 = c6_arm * t323 + s6_arm * t391 + joint_velocities[5] * t589;
@@ -648,7 +647,6 @@ impl KukaLwr {
         let t840 = t790 * t711 + t792 * t817 - t353 * t639 + t481 * t619 + t351 * t813;
         let t849 = t799 * t711 + t801 * t817 + t547 * t639 + t481 * t628 + c5_arm * t813;
         let t850 = s6_arm * t481;
-        let (s7_arm, c7_arm) = ::overact::math::sin_cos(joints[6]);
         let t856 = t583 * c7_arm - t327 * s7_arm;
         let t862 = s7_arm * t598 + c7_arm * t599;
         let t864 = c7_arm * t591 - s7_arm * t672 - joint_velocities[6] * t862;
@@ -874,7 +872,10 @@ impl KukaLwr {
         joint_velocities: &[f64; 7],
         joint_accelerations: &[f64; 7],
     ) -> [[f64; 69]; 7] {
-        let (s2_arm, c2_arm) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
+        (s6_arm, c6_arm), (s7_arm, c7_arm)] = ::overact::math::sin_cos_all([
+            joints[1], joints[2], joints[3], joints[4], joints[5], joints[6],
+        ]);
         let t3 = s2_arm * joint_accelerations[0];
         let t4 = c2_arm * joint_velocities[0];
         let t5 = joint_velocities[1] * t4;
@@ -891,7 +892,6 @@ impl KukaLwr {
         let t31 = t12 - joint_accelerations[1];
         let t34 = 9.81 * c2_arm;
         let t35 = 9.81 * s2_arm;
-        let (s3_arm, c3_arm) = ::overact::math::sin_cos(joints[2]);
         let t39 = s2_arm * c3_arm;
         let t45 = s3_arm * t8 + c3_arm * joint_velocities[1];
         let t47 = c3_arm * t6 - s3_arm * joint_accelerations[1]
@@ -930,7 +930,6 @@ impl KukaLwr {
         let t128 = s3_arm * t124 + c3_arm * t126;
         let t131 = 0.4 * s3_arm;
         let t139 = c3_arm * t124 - s3_arm * t126;
-        let (s4_arm, c4_arm) = ::overact::math::sin_cos(joints[3]);
         let t145 = t39 * c4_arm - c2_arm * s4_arm;
         let t151 = s4_arm * t52 + c4_arm * t53;
         let t153 = c4_arm * t47 - s4_arm * t82 - joint_velocities[3] * t151;
@@ -969,7 +968,6 @@ impl KukaLwr {
         let t265 = s4_arm * t113;
         let t276 = t189 + t205;
         let t283 = c4_arm * t139 - s4_arm * t120;
-        let (s5_arm, c5_arm) = ::overact::math::sin_cos(joints[4]);
         let t303 = t145 * c5_arm - t49 * s5_arm;
         let t309 = c5_arm * t161 - s5_arm * t160;
         let t311 = c5_arm * t153 + s5_arm * t202 + joint_velocities[4] * t309;
@@ -1025,7 +1023,6 @@ impl KukaLwr {
         let t499 = t350 + t382;
         let t507 = c5_arm * t457 - s5_arm * t460;
         let t528 = 0.39 * s5_arm;
-        let (s6_arm, c6_arm) = ::overact::math::sin_cos(joints[5]);
         let t538 = t303 * c6_arm + t157 * s6_arm;
         let t544 = c6_arm * t319 - s6_arm * t318;
         let t546 = c6_arm * t311 + s6_arm * t379 + joint_velocities[5] * t544;
@@ -1072,7 +1069,6 @@ impl KukaLwr {
         let t747 = s6_arm * t493;
         let t759 = c6_arm * t507 - s6_arm * t454;
         let t763 = t604 + t630;
-        let (s7_arm, c7_arm) = ::overact::math::sin_cos(joints[6]);
         let t802 = t538 * c7_arm - t315 * s7_arm;
         let t808 = s7_arm * t553 + c7_arm * t554;
         let t810 = c7_arm * t546 - s7_arm * t627 - joint_velocities[6] * t808;
@@ -1308,7 +1304,10 @@ impl KukaLwr {
         joint_accelerations: &[f64; 7],
         parameters: &[f64; 87],
     ) -> [f64; 7] {
-        let (s2_arm, c2_arm) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
+        (s6_arm, c6_arm), (s7_arm, c7_arm)] = ::overact::math::sin_cos_all([
+            joints[1], joints[2], joints[3], joints[4], joints[5], joints[6],
+        ]);
         let t10 = s2_arm * joint_accelerations[0];
         let t11 = c2_arm * joint_velocities[0];
         let t12 = joint_velocities[1] * t11;
@@ -1334,7 +1333,6 @@ impl KukaLwr {
             + ::overact::math::signed(parameters[3], joint_velocities[0]) + parameters[4]
             + s2_arm * (t32 + parameters[10] * t12)
             + c2_arm * (t48 - parameters[10] * t16);
-        let (s3_arm, c3_arm) = ::overact::math::sin_cos(joints[2]);
         let t56 = s2_arm * c3_arm;
         let t62 = s3_arm * t15 + c3_arm * joint_velocities[1];
         let t64 = c3_arm * t13 - s3_arm * joint_accelerations[1]
@@ -1385,7 +1383,6 @@ impl KukaLwr {
             - parameters[26] * t106;
         let t177 = t53 + t56 * t108 - t110 * t132 + c2_arm * t152
             - (t155 * t163 + t165 * t173);
-        let (s4_arm, c4_arm) = ::overact::math::sin_cos(joints[3]);
         let t180 = s4_arm * t155;
         let t181 = joint_accelerations[3] - t75;
         let t184 = c4_arm * t68 - s4_arm * t69;
@@ -1433,7 +1430,6 @@ impl KukaLwr {
             - parameters[38] * t230;
         let t305 = t180 * t210 - t212 * t232 - t165 * t243 + t248 * t264 - t268 * t284
             - t110 * t302;
-        let (s5_arm, c5_arm) = ::overact::math::sin_cos(joints[4]);
         let t310 = t212 + 0.39 * t110;
         let t313 = t165 + 0.39 * t248;
         let t315 = s5_arm * t310 - c5_arm * t313;
@@ -1485,7 +1481,6 @@ impl KukaLwr {
             - parameters[52] * t371;
         let t448 = t315 * t349 - t353 * t373 - t180 * t386 + t391 * t407 - t411 * t427
             + t268 * t445;
-        let (s6_arm, c6_arm) = ::overact::math::sin_cos(joints[5]);
         let t454 = s6_arm * t353 - c6_arm * t180;
         let t457 = c6_arm * t318 + s6_arm * t327;
         let t460 = c6_arm * t327 - s6_arm * t318;
@@ -1532,7 +1527,6 @@ impl KukaLwr {
             - parameters[66] * t506;
         let t581 = t454 * t484 - t488 * t508 - t315 * t519 + t524 * t540 + t544 * t560
             + t411 * t578;
-        let (s7_arm, c7_arm) = ::overact::math::sin_cos(joints[6]);
         let t590 = c7_arm * t457 - s7_arm * t466;
         let t591 = t460 + joint_velocities[6];
         let t592 = t590 * t591;
@@ -1678,11 +1672,13 @@ impl KukaLwr {
     /// 1436 operations (628 additions, 808 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 1420 intermediates.
     #[must_use]
     pub fn mass_matrix(joints: &[f64; 7], parameters: &[f64; 87]) -> [[f64; 7]; 7] {
-        let (s2_arm, c2_arm) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
+        (s6_arm, c6_arm), (s7_arm, c7_arm)] = ::overact::math::sin_cos_all([
+            joints[1], joints[2], joints[3], joints[4], joints[5], joints[6],
+        ]);
         let t12 = parameters[0] + parameters[1]
             + s2_arm * (s2_arm * parameters[5] + c2_arm * parameters[6])
             + c2_arm * (s2_arm * parameters[6] + c2_arm * parameters[8]);
-        let (s3_arm, c3_arm) = ::overact::math::sin_cos(joints[2]);
         let t15 = s2_arm * c3_arm;
         let t17 = s2_arm * s3_arm;
         let t22 = 0.4 * t15;
@@ -1704,7 +1700,6 @@ impl KukaLwr {
             - t31
                 * (parameters[26] * t31 + 0.1019367991845056 * (parameters[24] * t47)
                     + 2.5 * t32);
-        let (s4_arm, c4_arm) = ::overact::math::sin_cos(joints[3]);
         let t67 = s4_arm * t31;
         let t72 = t15 * c4_arm - c2_arm * s4_arm;
         let t77 = c4_arm * t31;
@@ -1723,7 +1718,6 @@ impl KukaLwr {
         let t127 = t87
             - t22 * (t81 * parameters[37] + t72 * parameters[38] - parameters[40] * t22)
             + t104 - t114 - t17 * t124;
-        let (s5_arm, c5_arm) = ::overact::math::sin_cos(joints[4]);
         let t132 = t77 + 0.39 * t17;
         let t135 = t22 + 0.39 * t72;
         let t137 = s5_arm * t132 - c5_arm * t135;
@@ -1746,7 +1740,6 @@ impl KukaLwr {
             - t67
                 * (t141 * parameters[52] + t152 * parameters[51] - parameters[54] * t67)
             + t176 - t186 + t81 * t196;
-        let (s6_arm, c6_arm) = ::overact::math::sin_cos(joints[5]);
         let t205 = s6_arm * t149 - c6_arm * t67;
         let t209 = t141 * c6_arm + t81 * s6_arm;
         let t217 = c6_arm * t149 + s6_arm * t67;
@@ -1768,7 +1761,6 @@ impl KukaLwr {
             - t137
                 * (t209 * parameters[66] - t220 * parameters[65] - parameters[68] * t137)
             + t244 + t254 + t152 * t264;
-        let (s7_arm, c7_arm) = ::overact::math::sin_cos(joints[6]);
         let t273 = s7_arm * t137 - c7_arm * t217;
         let t278 = t209 * s7_arm + t152 * c7_arm;
         let t285 = s7_arm * t217 + c7_arm * t137;
@@ -2107,7 +2099,10 @@ impl KukaLwr {
         joint_velocities: &[f64; 7],
         parameters: &[f64; 87],
     ) -> [f64; 7] {
-        let (s2_arm, c2_arm) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
+        (s6_arm, c6_arm), (s7_arm, c7_arm)] = ::overact::math::sin_cos_all([
+            joints[1], joints[2], joints[3], joints[4], joints[5], joints[6],
+        ]);
         let t6 = c2_arm * joint_velocities[0];
         let t7 = joint_velocities[1] * t6;
         let t9 = s2_arm * joint_velocities[0];
@@ -2124,7 +2119,6 @@ impl KukaLwr {
             + ::overact::math::signed(parameters[3], joint_velocities[0]) + parameters[4]
             + s2_arm * (t23 + parameters[10] * t7)
             + c2_arm * (t38 - parameters[10] * t10);
-        let (s3_arm, c3_arm) = ::overact::math::sin_cos(joints[2]);
         let t46 = s2_arm * c3_arm;
         let t47 = 0.4 * t46;
         let t50 = c3_arm * t9 - s3_arm * joint_velocities[1];
@@ -2170,7 +2164,6 @@ impl KukaLwr {
         let t157 = t151 - parameters[22] * t10 - parameters[23] * t75
             - parameters[24] * t96;
         let t161 = t43 + t47 * t77 - t80 * t98 + t46 * t121 - t79 * t139 + c2_arm * t157;
-        let (s4_arm, c4_arm) = ::overact::math::sin_cos(joints[3]);
         let t166 = t46 * c4_arm - c2_arm * s4_arm;
         let t172 = s4_arm * t50 + c4_arm * t58;
         let t174 = c4_arm * t66 + s4_arm * t10 - joint_velocities[3] * t172;
@@ -2216,7 +2209,6 @@ impl KukaLwr {
             - parameters[40] * t75;
         let t288 = t166 * t209 - t213 * t235 - t79 * t255
             - (t258 * t266 + t268 * t276 + t47 * t285);
-        let (s5_arm, c5_arm) = ::overact::math::sin_cos(joints[4]);
         let t293 = t258 + 0.39 * t79;
         let t296 = t47 + 0.39 * t166;
         let t298 = s5_arm * t293 - c5_arm * t296;
@@ -2267,7 +2259,6 @@ impl KukaLwr {
             - parameters[52] * t353;
         let t430 = t298 * t331 - t335 * t355 - t268 * t368 + t373 * t389 - t393 * t409
             + t213 * t427;
-        let (s6_arm, c6_arm) = ::overact::math::sin_cos(joints[5]);
         let t436 = s6_arm * t335 - c6_arm * t268;
         let t439 = c6_arm * t301 + s6_arm * t309;
         let t442 = c6_arm * t309 - s6_arm * t301;
@@ -2313,7 +2304,6 @@ impl KukaLwr {
             - parameters[66] * t487;
         let t562 = t436 * t465 - t469 * t489 - t298 * t500 + t505 * t521 + t525 * t541
             + t393 * t559;
-        let (s7_arm, c7_arm) = ::overact::math::sin_cos(joints[6]);
         let t571 = c7_arm * t439 - s7_arm * t447;
         let t574 = s7_arm * t439 + c7_arm * t447;
         let t575 = t571 * t574;

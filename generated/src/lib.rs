@@ -32,6 +32,8 @@ mod rx90;
 #[rustfmt::skip]
 mod schoenflies_4;
 #[rustfmt::skip]
+mod scotch_yoke;
+#[rustfmt::skip]
 mod spherical_3rrr;
 #[rustfmt::skip]
 mod spherical_4rrr;
@@ -56,6 +58,7 @@ pub use planar_3rrr::Planar3Rrr;
 pub use planar_4prr::Planar4Prr;
 pub use rx90::Rx90;
 pub use schoenflies_4::Schoenflies4;
+pub use scotch_yoke::ScotchYoke;
 pub use spherical_3rrr::Spherical3Rrr;
 pub use spherical_4rrr::Spherical4Rrr;
 pub use stanford::Stanford;

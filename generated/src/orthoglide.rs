@@ -562,11 +562,15 @@ impl Orthoglide {
         _pose: &[f64; 3],
         joints: &[f64; 12],
     ) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let (minus_c_foot_along_y, s_foot_along_y) = ::overact::math::sin_cos(joints[5]);
-        let (s_left_bar_along_y, c_left_bar_along_y) = ::overact::math::sin_cos(
-            joints[6],
-        );
+        let [(minus_c_foot_along_y, s_foot_along_y),
+        (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_z, s_foot_along_z),
+        (s_left_bar_along_z, c_left_bar_along_z), (minus_c_foot_along_x, s_foot_along_x),
+        (s_left_bar_along_x, c_left_bar_along_x)] = ::overact::math::sin_cos_all([
+            joints[5], joints[6], joints[9], joints[10], joints[1], joints[2],
+        ]);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
+        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
         let t4 = minus_c_foot_along_y * c_left_bar_along_y;
         let t6 = s_foot_along_y * c_left_bar_along_y;
         ::overact::guard::leg(t6, 1.0, "along_y")?;
@@ -577,21 +581,11 @@ impl Orthoglide {
             * (minus_c_foot_along_y * s_left_bar_along_y * t10);
         let minus_gdrive_vx_along_y = 0.31 * t4 * minus_gfoot_vx_along_y
             + s_foot_along_y * s_left_bar_along_y * t10;
-        let (minus_c_foot_along_z, s_foot_along_z) = ::overact::math::sin_cos(joints[9]);
-        let (s_left_bar_along_z, c_left_bar_along_z) = ::overact::math::sin_cos(
-            joints[10],
-        );
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
         let t21 = minus_c_foot_along_z * c_left_bar_along_z;
         let t22 = s_foot_along_z * c_left_bar_along_z;
         ::overact::guard::leg(t22, 1.0, "along_z")?;
         let t23 = 1.0 / t22;
         let minus_gdrive_vx_along_z = t21 * t23;
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
-        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
         let t29 = minus_c_foot_along_x * c_left_bar_along_x;
         let t30 = s_foot_along_x * c_left_bar_along_x;
         ::overact::guard::leg(t30, 1.0, "along_x")?;
@@ -735,18 +729,12 @@ impl Orthoglide {
         _pose: &[f64; 3],
         joints: &[f64; 12],
     ) -> [[f64; 12]; 12] {
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
-        let (minus_c_foot_along_y, s_foot_along_y) = ::overact::math::sin_cos(joints[5]);
-        let (s_left_bar_along_y, c_left_bar_along_y) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let (minus_c_foot_along_z, s_foot_along_z) = ::overact::math::sin_cos(joints[9]);
-        let (s_left_bar_along_z, c_left_bar_along_z) = ::overact::math::sin_cos(
-            joints[10],
-        );
+        let [(minus_c_foot_along_x, s_foot_along_x),
+        (s_left_bar_along_x, c_left_bar_along_x), (minus_c_foot_along_y, s_foot_along_y),
+        (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_z, s_foot_along_z),
+        (s_left_bar_along_z, c_left_bar_along_z)] = ::overact::math::sin_cos_all([
+            joints[1], joints[2], joints[5], joints[6], joints[9], joints[10],
+        ]);
         [
             [
                 1.0, -(0.31 * (minus_c_foot_along_x * c_left_bar_along_x)),
@@ -826,19 +814,18 @@ impl Orthoglide {
         _pose: &[f64; 3],
         joints: &[f64; 12],
     ) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
+        let [(s_left_bar_along_x, c_left_bar_along_x),
+        (minus_c_foot_along_x, s_foot_along_x), (s_left_bar_along_y, c_left_bar_along_y),
+        (minus_c_foot_along_y, s_foot_along_y), (s_left_bar_along_z, c_left_bar_along_z),
+        (minus_c_foot_along_z, s_foot_along_z)] = ::overact::math::sin_cos_all([
+            joints[2], joints[1], joints[6], joints[5], joints[10], joints[9],
+        ]);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
+        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
         let t4 = s_foot_along_x * c_left_bar_along_x;
         ::overact::guard::leg(t4, 1.0, "along_x")?;
         let t6 = 0.0961 * (c_left_bar_along_x * t4);
-        let (s_left_bar_along_y, c_left_bar_along_y) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let (minus_c_foot_along_y, s_foot_along_y) = ::overact::math::sin_cos(joints[5]);
         let t11 = s_foot_along_y * c_left_bar_along_y;
         ::overact::guard::leg(t11, 1.0, "along_y")?;
         let t13 = 0.0961 * (c_left_bar_along_y * t11);
@@ -850,11 +837,6 @@ impl Orthoglide {
             * (minus_c_foot_along_y * s_left_bar_along_y * t19);
         let minus_gdrive_vx_along_y = 0.31 * t14 * minus_gfoot_vx_along_y
             + s_foot_along_y * s_left_bar_along_y * t19;
-        let (s_left_bar_along_z, c_left_bar_along_z) = ::overact::math::sin_cos(
-            joints[10],
-        );
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let (minus_c_foot_along_z, s_foot_along_z) = ::overact::math::sin_cos(joints[9]);
         let t31 = s_foot_along_z * c_left_bar_along_z;
         ::overact::guard::leg(t31, 1.0, "along_z")?;
         let t33 = 0.0961 * (c_left_bar_along_z * t31);
@@ -897,12 +879,10 @@ impl Orthoglide {
         _pose: &[f64; 3],
         joints: &[f64; 12],
     ) -> [[f64; 3]; 3] {
-        let c_left_bar_along_x = ::overact::math::sin_cos(joints[2]).1;
-        let s_foot_along_x = ::overact::math::sin_cos(joints[1]).1;
-        let c_left_bar_along_y = ::overact::math::sin_cos(joints[6]).1;
-        let s_foot_along_y = ::overact::math::sin_cos(joints[5]).1;
-        let c_left_bar_along_z = ::overact::math::sin_cos(joints[10]).1;
-        let s_foot_along_z = ::overact::math::sin_cos(joints[9]).1;
+        let [(_, c_left_bar_along_x), (_, s_foot_along_x), (_, c_left_bar_along_y),
+        (_, s_foot_along_y), (_, c_left_bar_along_z), (_, s_foot_along_z)] = ::overact::math::sin_cos_all([
+            joints[2], joints[1], joints[6], joints[5], joints[10], joints[9],
+        ]);
         [
             [
                 0.0961 * (c_left_bar_along_x * (s_foot_along_x * c_left_bar_along_x)), 0.0, 0.0,
@@ -1405,7 +1385,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 573 operations (191 additions, 373 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 464 intermediates.
+    /// 564 operations (191 additions, 364 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 455 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1474,15 +1454,12 @@ impl Orthoglide {
         let t95 = t92 + t94;
         let t97 = 3.225806451612903 * t49;
         let t98 = minus_rate_left_bar_along_x * t97;
-        let t99 = c_left_bar_along_x * t98;
-        let t100 = minus_s_left_bar_along_x * t95 + t99;
+        let t100 = minus_s_left_bar_along_x * t95 + c_left_bar_along_x * t98;
         let t101 = minus_gfoot_vy_along_x * t100;
-        let t103 = 10.40582726326743 * t50;
-        let t104 = minus_gfoot_vz_along_x * t100 - t103;
+        let t104 = minus_gfoot_vz_along_x * t100 - 10.40582726326743 * t50;
         let t105 = t94 + t95;
         let t107 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t108 = t98 - t107;
-        let t109 = t98 + t108;
+        let t109 = t98 + t98 - t107;
         let t111 = c_left_bar_along_x * t105 - minus_s_left_bar_along_x * t109;
         let t112 = minus_gfoot_vy_along_x * t111;
         let t115 = 10.40582726326743 * (t49 * t49);
@@ -1495,320 +1472,311 @@ impl Orthoglide {
         let t126 = minus_s_left_bar_along_x * t122 + c_left_bar_along_x * (t29 - t115);
         let t127 = minus_gfoot_vy_along_x * t126;
         let t130 = minus_gfoot_vz_along_x * t126 + minus_gleft_bar_vz_along_x * t92;
-        let t132 = t99 + c_left_bar_along_x * t108;
-        let t133 = minus_gfoot_vy_along_x * t132;
-        let t135 = t103 - minus_gfoot_vz_along_x * t132;
-        let t137 = 10.40582726326743 * (t10 * acceleration[2]);
-        let t141 = minus_gfoot_vz_along_x * (3.225806451612903 * acceleration[2])
+        let t131 = t70 - t101;
+        let t132 = t71 - t104;
+        let t134 = 10.40582726326743 * (t10 * acceleration[2]);
+        let t138 = minus_gfoot_vz_along_x * (3.225806451612903 * acceleration[2])
             + 3.225806451612903 * minus_rate_dot_foot_along_x;
-        let t142 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
-        let t144 = t116 + t29;
-        let t148 = minus_s_foot_along_x * t109 - (t9 * t144 + t46 * t122);
-        let t151 = gdrive_vy_along_x * t148 - 3.225806451612903 * t56;
-        let t158 = minus_s_left_bar_along_x * t86 - 9.81 * c_left_bar_along_x;
-        let t160 = gdrive_vz_along_x * t148
+        let t139 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
+        let t141 = t116 + t29;
+        let t145 = minus_s_foot_along_x * t109 - (t9 * t141 + t46 * t122);
+        let t148 = gdrive_vy_along_x * t145 - 3.225806451612903 * t56;
+        let t155 = minus_s_left_bar_along_x * t86 - 9.81 * c_left_bar_along_x;
+        let t157 = gdrive_vz_along_x * t145
             - minus_gfoot_vz_along_x * (c_left_bar_along_x * t76)
-            - minus_gleft_bar_vz_along_x * t158;
-        let t167 = t9 * (minus_rate_dot_left_bar_along_x - t120) - t46 * (t115 + t29)
+            - minus_gleft_bar_vz_along_x * t155;
+        let t164 = t9 * (minus_rate_dot_left_bar_along_x - t120) - t46 * (t115 + t29)
             - minus_s_foot_along_x * t105;
-        let t169 = minus_s_left_bar_along_x * t76;
-        let t171 = gdrive_vy_along_x * t167 - minus_gfoot_vy_along_x * t169;
-        let t177 = c_left_bar_along_x * t86 + 31.64516129032258 * pose[2];
-        let t179 = gdrive_vz_along_x * t167 - minus_gfoot_vz_along_x * t169
-            + minus_gleft_bar_vz_along_x * t177;
-        let t183 = t76 + 0.31 * t109 - 0.31 * t107;
-        let t200 = c_left_bar_along_x * (t158 - 0.31 * t122)
-            - minus_s_left_bar_along_x * (t177 - 0.31 * t144);
-        let t203 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
-        ::overact::guard::reach(t203, "along_y")?;
-        let c_left_bar_along_y = ::overact::math::sqrt(t203);
+        let t166 = minus_s_left_bar_along_x * t76;
+        let t168 = gdrive_vy_along_x * t164 - minus_gfoot_vy_along_x * t166;
+        let t174 = c_left_bar_along_x * t86 + 31.64516129032258 * pose[2];
+        let t176 = gdrive_vz_along_x * t164 - minus_gfoot_vz_along_x * t166
+            + minus_gleft_bar_vz_along_x * t174;
+        let t180 = t76 + 0.31 * t109 - 0.31 * t107;
+        let t197 = c_left_bar_along_x * (t155 - 0.31 * t122)
+            - minus_s_left_bar_along_x * (t174 - 0.31 * t141);
+        let t200 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t200, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t200);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
         let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
-        let t208 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
-        ::overact::guard::reach(t208, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t208);
-        let t210 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t210, 1.0, "along_y")?;
-        let t211 = 1.0 / t210;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t211;
+        let t205 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t205, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t205);
+        let t207 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t207, 1.0, "along_y")?;
+        let t208 = 1.0 / t207;
+        let minus_gfoot_vz_along_y = 3.225806451612903 * t208;
         let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t215 = 1.0 / c_left_bar_along_y;
+        let t212 = 1.0 / c_left_bar_along_y;
         let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t215);
-        let t219 = minus_s_left_bar_along_y * c_foot_along_y;
-        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t219 * t215;
+            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t212);
+        let t216 = minus_s_left_bar_along_y * c_foot_along_y;
+        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t216 * t212;
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let t225 = pose[0] * minus_rate_foot_along_y;
-        let t226 = minus_rate_foot_along_y * t225;
-        let t227 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t215;
+        let t222 = pose[0] * minus_rate_foot_along_y;
+        let t223 = minus_rate_foot_along_y * t222;
+        let t224 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t212;
         let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t230 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
-        let t233 = c_foot_along_y * minus_rate_left_bar_along_y;
-        let t235 = t227 + t230 * t230 + t233 * t233;
-        let t238 = acceleration[0] - (t226 - pose[0] * t235);
-        let t241 = pose[0] * (minus_rate_foot_along_y * t230);
+        let t227 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
+        let t230 = c_foot_along_y * minus_rate_left_bar_along_y;
+        let t232 = t224 + t227 * t227 + t230 * t230;
+        let t235 = acceleration[0] - (t223 - pose[0] * t232);
+        let t238 = pose[0] * (minus_rate_foot_along_y * t227);
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t251 = pose[0] * (minus_rate_foot_along_y * t233);
-        let t254 = acceleration[2] + pose[2] * t235 + t251 + t251;
-        let rate_dot_drive_along_y = gdrive_vx_along_y * t238 + acceleration[1]
-            - (t241 - 0.31 * t210 * t235 + t241) + gdrive_vz_along_y * t254;
-        let t257 = gdrive_vx_along_y * rate_dot_drive_along_y;
-        let t258 = gdrive_vz_along_y * rate_dot_drive_along_y;
+        let t248 = pose[0] * (minus_rate_foot_along_y * t230);
+        let t251 = acceleration[2] + pose[2] * t232 + t248 + t248;
+        let rate_dot_drive_along_y = gdrive_vx_along_y * t235 + acceleration[1]
+            - (t238 - 0.31 * t207 * t232 + t238) + gdrive_vz_along_y * t251;
+        let t254 = gdrive_vx_along_y * rate_dot_drive_along_y;
+        let t255 = gdrive_vz_along_y * rate_dot_drive_along_y;
         let rate_drive_along_y = gdrive_vx_along_y * twist[0] + twist[1]
             + gdrive_vz_along_y * twist[2];
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t238
-            + minus_gfoot_vz_along_y * t254;
-        let t271 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
-        let t272 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
-        let t275 = c_foot_along_y * t227
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t235
+            + minus_gfoot_vz_along_y * t251;
+        let t268 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
+        let t269 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
+        let t272 = c_foot_along_y * t224
             + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
-        let t276 = gdrive_vx_along_y * t275;
-        let t279 = minus_s_foot_along_y * rate_dot_drive_along_y - 9.81 * c_foot_along_y;
-        let t282 = gdrive_vz_along_y * t275;
-        let t287 = c_foot_along_y * minus_rate_dot_foot_along_y
-            - minus_s_foot_along_y * t227;
-        let t291 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
-        let t293 = gdrive_vx_along_y * t287 + minus_gfoot_vx_along_y * t291;
-        let t296 = gdrive_vz_along_y * t287 + minus_gfoot_vz_along_y * t291;
-        let t297 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t298 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t299 = minus_rate_left_bar_along_y * t298;
-        let t300 = t297 + t299;
-        let t302 = 3.225806451612903 * t225;
-        let t303 = minus_rate_left_bar_along_y * t302;
-        let t304 = c_left_bar_along_y * t303;
-        let t305 = minus_s_left_bar_along_y * t300 + t304;
-        let t307 = 10.40582726326743 * t226;
-        let t308 = minus_gfoot_vx_along_y * t305 - t307;
-        let t309 = minus_gfoot_vz_along_y * t305;
-        let t310 = t299 + t300;
-        let t312 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t313 = t303 - t312;
-        let t314 = t303 + t313;
-        let t316 = c_left_bar_along_y * t310 - minus_s_left_bar_along_y * t314;
-        let t319 = 10.40582726326743 * (t225 * t225);
-        let t320 = t298 * t298;
-        let t323 = minus_gfoot_vx_along_y * t316
-            + minus_gleft_bar_vx_along_y * (t319 - t320);
-        let t324 = minus_gfoot_vz_along_y * t316;
-        let t325 = t302 * t298;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t238;
-        let t327 = t325 + minus_rate_dot_left_bar_along_y;
-        let t329 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t332 = minus_s_left_bar_along_y * t327 + c_left_bar_along_y * (t329 - t319);
-        let t335 = minus_gfoot_vx_along_y * t332 + minus_gleft_bar_vx_along_y * t297;
-        let t336 = minus_gfoot_vz_along_y * t332;
-        let t338 = t304 + c_left_bar_along_y * t313;
-        let t340 = t307 - minus_gfoot_vx_along_y * t338;
-        let t341 = minus_gfoot_vz_along_y * t338;
-        let t345 = minus_gfoot_vx_along_y * (3.225806451612903 * acceleration[0])
+        let t273 = gdrive_vx_along_y * t272;
+        let t276 = minus_s_foot_along_y * rate_dot_drive_along_y - 9.81 * c_foot_along_y;
+        let t279 = gdrive_vz_along_y * t272;
+        let t284 = c_foot_along_y * minus_rate_dot_foot_along_y
+            - minus_s_foot_along_y * t224;
+        let t288 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
+        let t290 = gdrive_vx_along_y * t284 + minus_gfoot_vx_along_y * t288;
+        let t293 = gdrive_vz_along_y * t284 + minus_gfoot_vz_along_y * t288;
+        let t294 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t295 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t296 = minus_rate_left_bar_along_y * t295;
+        let t297 = t294 + t296;
+        let t299 = 3.225806451612903 * t222;
+        let t300 = minus_rate_left_bar_along_y * t299;
+        let t302 = minus_s_left_bar_along_y * t297 + c_left_bar_along_y * t300;
+        let t305 = minus_gfoot_vx_along_y * t302 - 10.40582726326743 * t223;
+        let t306 = minus_gfoot_vz_along_y * t302;
+        let t307 = t296 + t297;
+        let t309 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t311 = t300 + t300 - t309;
+        let t313 = c_left_bar_along_y * t307 - minus_s_left_bar_along_y * t311;
+        let t316 = 10.40582726326743 * (t222 * t222);
+        let t317 = t295 * t295;
+        let t320 = minus_gfoot_vx_along_y * t313
+            + minus_gleft_bar_vx_along_y * (t316 - t317);
+        let t321 = minus_gfoot_vz_along_y * t313;
+        let t322 = t299 * t295;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t235;
+        let t324 = t322 + minus_rate_dot_left_bar_along_y;
+        let t326 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t329 = minus_s_left_bar_along_y * t324 + c_left_bar_along_y * (t326 - t316);
+        let t332 = minus_gfoot_vx_along_y * t329 + minus_gleft_bar_vx_along_y * t294;
+        let t333 = minus_gfoot_vz_along_y * t329;
+        let t334 = t268 - t305;
+        let t335 = t269 - t306;
+        let t339 = minus_gfoot_vx_along_y * (3.225806451612903 * acceleration[0])
             + 3.225806451612903 * minus_rate_dot_foot_along_y;
-        let t347 = 10.40582726326743 * (t211 * acceleration[0]);
-        let t348 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
-        let t354 = minus_s_foot_along_y * t314 - (t210 * (t320 + t329) + t219 * t327);
-        let t356 = c_left_bar_along_y * t279;
-        let t361 = gdrive_vx_along_y * t354 - minus_gfoot_vx_along_y * t356
-            - minus_gleft_bar_vx_along_y * (minus_s_left_bar_along_y * t291);
-        let t364 = gdrive_vz_along_y * t354 - minus_gfoot_vz_along_y * t356;
-        let t371 = t210 * (minus_rate_dot_left_bar_along_y - t325) - t219 * (t319 + t329)
-            - minus_s_foot_along_y * t310;
-        let t373 = minus_s_left_bar_along_y * t279;
-        let t377 = gdrive_vx_along_y * t371 - minus_gfoot_vx_along_y * t373
-            + 3.225806451612903 * t291;
-        let t380 = gdrive_vz_along_y * t371 - minus_gfoot_vz_along_y * t373;
-        let t385 = t279 + 0.31 * t314 - 0.31 * t312;
-        let t397 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
-        ::overact::guard::reach(t397, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t397);
+        let t341 = 10.40582726326743 * (t208 * acceleration[0]);
+        let t342 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
+        let t348 = minus_s_foot_along_y * t311 - (t207 * (t317 + t326) + t216 * t324);
+        let t350 = c_left_bar_along_y * t276;
+        let t355 = gdrive_vx_along_y * t348 - minus_gfoot_vx_along_y * t350
+            - minus_gleft_bar_vx_along_y * (minus_s_left_bar_along_y * t288);
+        let t358 = gdrive_vz_along_y * t348 - minus_gfoot_vz_along_y * t350;
+        let t365 = t207 * (minus_rate_dot_left_bar_along_y - t322) - t216 * (t316 + t326)
+            - minus_s_foot_along_y * t307;
+        let t367 = minus_s_left_bar_along_y * t276;
+        let t371 = gdrive_vx_along_y * t365 - minus_gfoot_vx_along_y * t367
+            + 3.225806451612903 * t288;
+        let t374 = gdrive_vz_along_y * t365 - minus_gfoot_vz_along_y * t367;
+        let t379 = t276 + 0.31 * t311 - 0.31 * t309;
+        let t391 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t391, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t391);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
         let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
-        let t402 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t402, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t402);
-        let t404 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t404, 1.0, "along_z")?;
-        let t405 = 1.0 / t404;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t405;
+        let t396 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t396, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t396);
+        let t398 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t398, 1.0, "along_z")?;
+        let t399 = 1.0 / t398;
+        let minus_gfoot_vx_along_z = 3.225806451612903 * t399;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t408 = 1.0 / c_left_bar_along_z;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t408;
+        let t402 = 1.0 / c_left_bar_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t402;
         let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t411 = c_foot_along_z * minus_rate_left_bar_along_z;
+        let t405 = c_foot_along_z * minus_rate_left_bar_along_z;
         let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
         let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t408);
+            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t402);
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let t420 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t422 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
-        let t424 = t411 * t411 + t420 + t422 * t422;
-        let t427 = pose[1] * (minus_rate_foot_along_z * t411);
-        let t430 = acceleration[0] + pose[0] * t424 + t427 + t427;
-        let t433 = minus_s_left_bar_along_z * c_foot_along_z;
-        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t433 * t408;
-        let t436 = pose[1] * minus_rate_foot_along_z;
-        let t437 = minus_rate_foot_along_z * t436;
-        let t440 = acceleration[1] - (t437 - pose[1] * t424);
-        let t444 = pose[1] * (minus_rate_foot_along_z * t422);
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t430 + gdrive_vy_along_z * t440
-            + acceleration[2] - (t444 - 0.31 * t404 * t424 + t444);
-        let t451 = 9.81 + rate_dot_drive_along_z;
-        let t452 = gdrive_vx_along_z * t451;
-        let t453 = gdrive_vy_along_z * t451;
+        let t414 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t416 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
+        let t418 = t405 * t405 + t414 + t416 * t416;
+        let t421 = pose[1] * (minus_rate_foot_along_z * t405);
+        let t424 = acceleration[0] + pose[0] * t418 + t421 + t421;
+        let t427 = minus_s_left_bar_along_z * c_foot_along_z;
+        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t427 * t402;
+        let t430 = pose[1] * minus_rate_foot_along_z;
+        let t431 = minus_rate_foot_along_z * t430;
+        let t434 = acceleration[1] - (t431 - pose[1] * t418);
+        let t438 = pose[1] * (minus_rate_foot_along_z * t416);
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t424 + gdrive_vy_along_z * t434
+            + acceleration[2] - (t438 - 0.31 * t398 * t418 + t438);
+        let t445 = 9.81 + rate_dot_drive_along_z;
+        let t446 = gdrive_vx_along_z * t445;
+        let t447 = gdrive_vy_along_z * t445;
         let rate_drive_along_z = gdrive_vx_along_z * twist[0]
             + gdrive_vy_along_z * twist[1] + twist[2];
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t430
-            + minus_gfoot_vy_along_z * t440;
-        let t468 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
-        let t469 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
-        let t472 = c_foot_along_z * t420
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t424
+            + minus_gfoot_vy_along_z * t434;
+        let t462 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
+        let t463 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
+        let t466 = c_foot_along_z * t414
             + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
-        let t473 = gdrive_vx_along_z * t472;
-        let t474 = minus_s_foot_along_z * t451;
-        let t477 = gdrive_vy_along_z * t472;
-        let t482 = c_foot_along_z * minus_rate_dot_foot_along_z
-            - minus_s_foot_along_z * t420;
-        let t484 = c_foot_along_z * t451;
-        let t486 = gdrive_vx_along_z * t482 + minus_gfoot_vx_along_z * t484;
-        let t489 = gdrive_vy_along_z * t482 + minus_gfoot_vy_along_z * t484;
-        let t490 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t491 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t492 = minus_rate_left_bar_along_z * t491;
-        let t493 = t490 + t492;
-        let t495 = 3.225806451612903 * t436;
-        let t496 = minus_rate_left_bar_along_z * t495;
-        let t497 = c_left_bar_along_z * t496;
-        let t498 = minus_s_left_bar_along_z * t493 + t497;
-        let t499 = minus_gfoot_vx_along_z * t498;
-        let t501 = 10.40582726326743 * t437;
-        let t502 = minus_gfoot_vy_along_z * t498 - t501;
-        let t503 = t492 + t493;
-        let t505 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t506 = t496 - t505;
-        let t507 = t496 + t506;
-        let t509 = c_left_bar_along_z * t503 - minus_s_left_bar_along_z * t507;
-        let t510 = minus_gfoot_vx_along_z * t509;
-        let t513 = 10.40582726326743 * (t436 * t436);
-        let t514 = t491 * t491;
-        let t517 = minus_gfoot_vy_along_z * t509
-            + minus_gleft_bar_vy_along_z * (t513 - t514);
-        let t518 = t495 * t491;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t440;
-        let t520 = t518 + minus_rate_dot_left_bar_along_z;
-        let t522 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t525 = minus_s_left_bar_along_z * t520 + c_left_bar_along_z * (t522 - t513);
-        let t526 = minus_gfoot_vx_along_z * t525;
-        let t529 = minus_gfoot_vy_along_z * t525 + minus_gleft_bar_vy_along_z * t490;
-        let t531 = t497 + c_left_bar_along_z * t506;
-        let t532 = minus_gfoot_vx_along_z * t531;
-        let t534 = t501 - minus_gfoot_vy_along_z * t531;
-        let t536 = 10.40582726326743 * (t405 * acceleration[1]);
-        let t540 = minus_gfoot_vy_along_z * (3.225806451612903 * acceleration[1])
+        let t467 = gdrive_vx_along_z * t466;
+        let t468 = minus_s_foot_along_z * t445;
+        let t471 = gdrive_vy_along_z * t466;
+        let t476 = c_foot_along_z * minus_rate_dot_foot_along_z
+            - minus_s_foot_along_z * t414;
+        let t478 = c_foot_along_z * t445;
+        let t480 = gdrive_vx_along_z * t476 + minus_gfoot_vx_along_z * t478;
+        let t483 = gdrive_vy_along_z * t476 + minus_gfoot_vy_along_z * t478;
+        let t484 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t485 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t486 = minus_rate_left_bar_along_z * t485;
+        let t487 = t484 + t486;
+        let t489 = 3.225806451612903 * t430;
+        let t490 = minus_rate_left_bar_along_z * t489;
+        let t492 = minus_s_left_bar_along_z * t487 + c_left_bar_along_z * t490;
+        let t493 = minus_gfoot_vx_along_z * t492;
+        let t496 = minus_gfoot_vy_along_z * t492 - 10.40582726326743 * t431;
+        let t497 = t486 + t487;
+        let t499 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t501 = t490 + t490 - t499;
+        let t503 = c_left_bar_along_z * t497 - minus_s_left_bar_along_z * t501;
+        let t504 = minus_gfoot_vx_along_z * t503;
+        let t507 = 10.40582726326743 * (t430 * t430);
+        let t508 = t485 * t485;
+        let t511 = minus_gfoot_vy_along_z * t503
+            + minus_gleft_bar_vy_along_z * (t507 - t508);
+        let t512 = t489 * t485;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t434;
+        let t514 = t512 + minus_rate_dot_left_bar_along_z;
+        let t516 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t519 = minus_s_left_bar_along_z * t514 + c_left_bar_along_z * (t516 - t507);
+        let t520 = minus_gfoot_vx_along_z * t519;
+        let t523 = minus_gfoot_vy_along_z * t519 + minus_gleft_bar_vy_along_z * t484;
+        let t524 = t462 - t493;
+        let t525 = t463 - t496;
+        let t527 = 10.40582726326743 * (t399 * acceleration[1]);
+        let t531 = minus_gfoot_vy_along_z * (3.225806451612903 * acceleration[1])
             + 3.225806451612903 * minus_rate_dot_foot_along_z;
-        let t541 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
-        let t547 = minus_s_foot_along_z * t507 - (t404 * (t514 + t522) + t433 * t520);
-        let t550 = gdrive_vx_along_z * t547 - 3.225806451612903 * t452;
-        let t557 = gdrive_vy_along_z * t547
-            - minus_gfoot_vy_along_z * (c_left_bar_along_z * t474)
-            - minus_gleft_bar_vy_along_z * (minus_s_left_bar_along_z * t484);
-        let t564 = t404 * (minus_rate_dot_left_bar_along_z - t518) - t433 * (t513 + t522)
-            - minus_s_foot_along_z * t503;
-        let t566 = minus_s_left_bar_along_z * t474;
-        let t568 = gdrive_vx_along_z * t564 - minus_gfoot_vx_along_z * t566;
-        let t573 = gdrive_vy_along_z * t564 - minus_gfoot_vy_along_z * t566
-            + 3.225806451612903 * t484;
-        let t577 = t474 + 0.31 * t507 - 0.31 * t505;
+        let t532 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
+        let t538 = minus_s_foot_along_z * t501 - (t398 * (t508 + t516) + t427 * t514);
+        let t541 = gdrive_vx_along_z * t538 - 3.225806451612903 * t446;
+        let t548 = gdrive_vy_along_z * t538
+            - minus_gfoot_vy_along_z * (c_left_bar_along_z * t468)
+            - minus_gleft_bar_vy_along_z * (minus_s_left_bar_along_z * t478);
+        let t555 = t398 * (minus_rate_dot_left_bar_along_z - t512) - t427 * (t507 + t516)
+            - minus_s_foot_along_z * t497;
+        let t557 = minus_s_left_bar_along_z * t468;
+        let t559 = gdrive_vx_along_z * t555 - minus_gfoot_vx_along_z * t557;
+        let t564 = gdrive_vy_along_z * t555 - minus_gfoot_vy_along_z * t557
+            + 3.225806451612903 * t478;
+        let t568 = t468 + 0.31 * t501 - 0.31 * t499;
         Ok([
             [
                 rate_dot_drive_along_x, rate_dot_drive_along_x, rate_drive_along_x,
                 ::overact::math::sign(rate_drive_along_x), 1.0, 0.0, -t74, t84,
-                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t148, t167, -t84,
-                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t148, t167, -t84,
-                rate_dot_drive_along_x, 0.0, -t74, -t84, acceleration[0], t257, t257,
+                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t145, t164, -t84,
+                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t145, t164, -t84,
+                rate_dot_drive_along_x, 0.0, -t74, -t84, acceleration[0], t254, t254,
                 gdrive_vx_along_y * rate_drive_along_y,
                 ::overact::math::signed(gdrive_vx_along_y, rate_drive_along_y), gdrive_vx_along_y,
-                t271, -(t276 + minus_gfoot_vx_along_y * t279), t293, t257, t308, -t323, -t335, t340,
-                t345, t348, t361, t377, -t293, t257, t308, -t323, -t335, t340, t345, t348, t361,
-                t377, -t293, t257, t271,
-                minus_gleft_bar_vx_along_y * t226
-                    - (t276 + minus_gfoot_vx_along_y * t385),
-                -(t293 - 0.31 * t335),
+                t268, -(t273 + minus_gfoot_vx_along_y * t276), t290, t254, t305, -t320, -t332, t334,
+                t339, t342, t355, t371, -t290, t254, t305, -t320, -t332, t334, t339, t342, t355,
+                t371, -t290, t254, t268,
+                minus_gleft_bar_vx_along_y * t223
+                    - (t273 + minus_gfoot_vx_along_y * t379),
+                -(t290 - 0.31 * t332),
                 acceleration[0],
-                t452,
+                t446,
                 gdrive_vx_along_z * rate_dot_drive_along_z,
                 gdrive_vx_along_z * rate_drive_along_z,
                 ::overact::math::signed(gdrive_vx_along_z, rate_drive_along_z),
                 gdrive_vx_along_z,
-                t468,
-                -(t473 + minus_gfoot_vx_along_z * t474),
-                t486,
-                t452,
-                t499,
-                -t510,
-                -t526,
-                -t532,
-                t536,
+                t462,
+                -(t467 + minus_gfoot_vx_along_z * t468),
+                t480,
+                t446,
+                t493,
+                -t504,
+                -t520,
+                t524,
+                t527,
                 0.0,
-                t550,
-                t568,
-                -t486,
-                t452,
-                t499,
-                -t510,
-                -t526,
-                -t532,
-                t536,
+                t541,
+                t559,
+                -t480,
+                t446,
+                t493,
+                -t504,
+                -t520,
+                t524,
+                t527,
                 0.0,
-                t550,
-                t568,
-                -t486,
-                t452,
-                t468,
-                -(t473 + minus_gfoot_vx_along_z * t577),
-                -(t486 - 0.31 * t526),
+                t541,
+                t559,
+                -t480,
+                t446,
+                t462,
+                -(t467 + minus_gfoot_vx_along_z * t568),
+                -(t480 - 0.31 * t520),
                 acceleration[0],
                 acceleration[0],
             ],
             [
                 t56, t56, gdrive_vy_along_x * rate_drive_along_x,
                 ::overact::math::signed(gdrive_vy_along_x, rate_drive_along_x), gdrive_vy_along_x,
-                t70, -(t75 + minus_gfoot_vy_along_x * t76), t88, t56, t101, -t112, -t127, -t133,
-                t137, 0.0, t151, t171, -t88, t56, t101, -t112, -t127, -t133, t137, 0.0, t151, t171,
-                -t88, t56, t70, -(t75 + minus_gfoot_vy_along_x * t183), -(t88 - 0.31 * t127),
+                t70, -(t75 + minus_gfoot_vy_along_x * t76), t88, t56, t101, -t112, -t127, t131,
+                t134, 0.0, t148, t168, -t88, t56, t101, -t112, -t127, t131, t134, 0.0, t148, t168,
+                -t88, t56, t70, -(t75 + minus_gfoot_vy_along_x * t180), -(t88 - 0.31 * t127),
                 acceleration[1], rate_dot_drive_along_y, rate_dot_drive_along_y, rate_drive_along_y,
-                ::overact::math::sign(rate_drive_along_y), 1.0, 0.0, -t275, t287,
-                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t354, t371, -t287,
-                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t354, t371, -t287,
-                rate_dot_drive_along_y, 0.0, -t275, -t287, acceleration[1], t453,
+                ::overact::math::sign(rate_drive_along_y), 1.0, 0.0, -t272, t284,
+                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t348, t365, -t284,
+                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t348, t365, -t284,
+                rate_dot_drive_along_y, 0.0, -t272, -t284, acceleration[1], t447,
                 gdrive_vy_along_z * rate_dot_drive_along_z, gdrive_vy_along_z * rate_drive_along_z,
                 ::overact::math::signed(gdrive_vy_along_z, rate_drive_along_z), gdrive_vy_along_z,
-                t469, -(t477 + minus_gfoot_vy_along_z * t474), t489, t453, t502, -t517, -t529, t534,
-                t540, t541, t557, t573, -t489, t453, t502, -t517, -t529, t534, t540, t541, t557,
-                t573, -t489, t453, t469,
-                minus_gleft_bar_vy_along_z * t437
-                    - (t477 + minus_gfoot_vy_along_z * t577),
-                -(t489 - 0.31 * t529),
+                t463, -(t471 + minus_gfoot_vy_along_z * t468), t483, t447, t496, -t511, -t523, t525,
+                t531, t532, t548, t564, -t483, t447, t496, -t511, -t523, t525, t531, t532, t548,
+                t564, -t483, t447, t463,
+                minus_gleft_bar_vy_along_z * t431
+                    - (t471 + minus_gfoot_vy_along_z * t568),
+                -(t483 - 0.31 * t523),
                 acceleration[1],
                 acceleration[1],
             ],
             [
                 t57, t57, gdrive_vz_along_x * rate_drive_along_x,
                 ::overact::math::signed(gdrive_vz_along_x, rate_drive_along_x), gdrive_vz_along_x,
-                t71, -(t79 + minus_gfoot_vz_along_x * t76), t91, t57, t104, -t119, -t130, t135,
-                t141, t142, t160, t179, -t91, t57, t104, -t119, -t130, t135, t141, t142, t160, t179,
+                t71, -(t79 + minus_gfoot_vz_along_x * t76), t91, t57, t104, -t119, -t130, t132,
+                t138, t139, t157, t176, -t91, t57, t104, -t119, -t130, t132, t138, t139, t157, t176,
                 -t91, t57, t71,
-                minus_gleft_bar_vz_along_x * t50 - (t79 + minus_gfoot_vz_along_x * t183),
-                -(t91 - 0.31 * t130), -t200, t258, t258, gdrive_vz_along_y * rate_drive_along_y,
+                minus_gleft_bar_vz_along_x * t50 - (t79 + minus_gfoot_vz_along_x * t180),
+                -(t91 - 0.31 * t130), -t197, t255, t255, gdrive_vz_along_y * rate_drive_along_y,
                 ::overact::math::signed(gdrive_vz_along_y, rate_drive_along_y), gdrive_vz_along_y,
-                t272, -(t282 + minus_gfoot_vz_along_y * t279), t296, t258, t309, -t324, -t336,
-                -t341, t347, 0.0, t364, t380, -t296, t258, t309, -t324, -t336, -t341, t347, 0.0,
-                t364, t380, -t296, t258, t272, -(t282 + minus_gfoot_vz_along_y * t385),
-                -(t296 - 0.31 * t336), -t200, t451, rate_dot_drive_along_z, rate_drive_along_z,
-                ::overact::math::sign(rate_drive_along_z), 1.0, 0.0, -t472, t482, t451, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, t547, t564, -t482, t451, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t547,
-                t564, -t482, t451, 0.0, -t472, -t482, -t200, -t200,
+                t269, -(t279 + minus_gfoot_vz_along_y * t276), t293, t255, t306, -t321, -t333, t335,
+                t341, 0.0, t358, t374, -t293, t255, t306, -t321, -t333, t335, t341, 0.0, t358, t374,
+                -t293, t255, t269, -(t279 + minus_gfoot_vz_along_y * t379), -(t293 - 0.31 * t333),
+                -t197, t445, rate_dot_drive_along_z, rate_drive_along_z,
+                ::overact::math::sign(rate_drive_along_z), 1.0, 0.0, -t466, t476, t445, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, t538, t555, -t476, t445, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t538,
+                t555, -t476, t445, 0.0, -t466, -t476, -t197, -t197,
             ],
         ])
     }
@@ -1823,7 +1791,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 558 operations (185 additions, 367 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 455 intermediates.
+    /// 549 operations (185 additions, 358 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 446 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1833,12 +1801,16 @@ impl Orthoglide {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 100]; 3], ::overact::Error> {
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
+        let [(s_left_bar_along_x, c_left_bar_along_x),
+        (minus_c_foot_along_x, s_foot_along_x), (minus_c_foot_along_y, s_foot_along_y),
+        (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_z, s_foot_along_z),
+        (s_left_bar_along_z, c_left_bar_along_z)] = ::overact::math::sin_cos_all([
+            joints[2], joints[1], joints[5], joints[6], joints[9], joints[10],
+        ]);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
+        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
         let t2 = 0.31 * s_left_bar_along_x;
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
         let t5 = s_foot_along_x * c_left_bar_along_x;
         ::overact::guard::leg(t5, 1.0, "along_x")?;
         let t6 = 1.0 / t5;
@@ -1892,15 +1864,12 @@ impl Orthoglide {
         let t92 = t90 - t91;
         let t94 = 3.225806451612903 * t47;
         let t95 = minus_rate_left_bar_along_x * t94;
-        let t96 = c_left_bar_along_x * t95;
-        let t97 = s_left_bar_along_x * t92 + t96;
+        let t97 = s_left_bar_along_x * t92 + c_left_bar_along_x * t95;
         let t98 = minus_gfoot_vy_along_x * t97;
-        let t99 = 10.40582726326743 * t48;
-        let t101 = t99 - minus_gfoot_vz_along_x * t97;
+        let t101 = 10.40582726326743 * t48 - minus_gfoot_vz_along_x * t97;
         let t102 = t90 + t92;
         let t104 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t105 = t104 + t95;
-        let t106 = t95 + t105;
+        let t106 = t95 + t104 + t95;
         let t108 = c_left_bar_along_x * t102 - s_left_bar_along_x * t106;
         let t109 = minus_gfoot_vy_along_x * t108;
         let t112 = 10.40582726326743 * (t47 * t47);
@@ -1913,290 +1882,271 @@ impl Orthoglide {
         let t123 = s_left_bar_along_x * t119 + c_left_bar_along_x * (t24 - t112);
         let t124 = minus_gfoot_vy_along_x * t123;
         let t127 = minus_gleft_bar_vz_along_x * t91 - minus_gfoot_vz_along_x * t123;
-        let t129 = t96 + c_left_bar_along_x * t105;
-        let t130 = minus_gfoot_vy_along_x * t129;
-        let t132 = minus_gfoot_vz_along_x * t129 - t99;
-        let t134 = 10.40582726326743 * (t6 * acceleration[2]);
-        let t138 = minus_gfoot_vz_along_x * (3.225806451612903 * acceleration[2])
+        let t128 = t67 + t98;
+        let t129 = t68 - t101;
+        let t131 = 10.40582726326743 * (t6 * acceleration[2]);
+        let t135 = minus_gfoot_vz_along_x * (3.225806451612903 * acceleration[2])
             + 3.225806451612903 * minus_rate_dot_foot_along_x;
-        let t139 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
-        let t141 = t113 + t24;
-        let t145 = minus_c_foot_along_x * t106 - (t5 * t141 + t43 * t119);
-        let t148 = 3.225806451612903 * t53 - minus_gdrive_vy_along_x * t145;
-        let t155 = s_left_bar_along_x * t82 + 9.81 * c_left_bar_along_x;
-        let t157 = minus_gfoot_vz_along_x * (c_left_bar_along_x * t72)
-            - minus_gdrive_vz_along_x * t145 + minus_gleft_bar_vz_along_x * t155;
-        let t164 = t5 * (t117 + minus_rate_dot_left_bar_along_x) + t43 * (t112 + t24)
+        let t136 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
+        let t138 = t113 + t24;
+        let t142 = minus_c_foot_along_x * t106 - (t5 * t138 + t43 * t119);
+        let t145 = 3.225806451612903 * t53 - minus_gdrive_vy_along_x * t142;
+        let t152 = s_left_bar_along_x * t82 + 9.81 * c_left_bar_along_x;
+        let t154 = minus_gfoot_vz_along_x * (c_left_bar_along_x * t72)
+            - minus_gdrive_vz_along_x * t142 + minus_gleft_bar_vz_along_x * t152;
+        let t161 = t5 * (t117 + minus_rate_dot_left_bar_along_x) + t43 * (t112 + t24)
             + minus_c_foot_along_x * t102;
-        let t166 = s_left_bar_along_x * t72;
-        let t168 = minus_gdrive_vy_along_x * t164 + minus_gfoot_vy_along_x * t166;
-        let t171 = c_left_bar_along_x * t82 - 9.81 * s_left_bar_along_x;
-        let t176 = minus_gleft_bar_vz_along_x * t171
-            - (minus_gdrive_vz_along_x * t164 + minus_gfoot_vz_along_x * t166);
-        let t180 = 0.31 * t104 + t72 + 0.31 * t106;
-        let t197 = s_left_bar_along_x * (t171 - 0.31 * t141)
-            + c_left_bar_along_x * (0.31 * t119 - t155);
-        let (minus_c_foot_along_y, s_foot_along_y) = ::overact::math::sin_cos(joints[5]);
-        let (s_left_bar_along_y, c_left_bar_along_y) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let t202 = minus_c_foot_along_y * c_left_bar_along_y;
-        let t203 = 0.31 * t202;
-        let t204 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t204, 1.0, "along_y")?;
-        let t205 = 1.0 / t204;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t205;
-        let t208 = 1.0 / c_left_bar_along_y;
+        let t163 = s_left_bar_along_x * t72;
+        let t165 = minus_gdrive_vy_along_x * t161 + minus_gfoot_vy_along_x * t163;
+        let t168 = c_left_bar_along_x * t82 - 9.81 * s_left_bar_along_x;
+        let t173 = minus_gleft_bar_vz_along_x * t168
+            - (minus_gdrive_vz_along_x * t161 + minus_gfoot_vz_along_x * t163);
+        let t177 = 0.31 * t104 + t72 + 0.31 * t106;
+        let t194 = s_left_bar_along_x * (t168 - 0.31 * t138)
+            + c_left_bar_along_x * (0.31 * t119 - t152);
+        let t199 = minus_c_foot_along_y * c_left_bar_along_y;
+        let t200 = 0.31 * t199;
+        let t201 = s_foot_along_y * c_left_bar_along_y;
+        ::overact::guard::leg(t201, 1.0, "along_y")?;
+        let t202 = 1.0 / t201;
+        let minus_gfoot_vz_along_y = 3.225806451612903 * t202;
+        let t205 = 1.0 / c_left_bar_along_y;
         let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_c_foot_along_y * s_left_bar_along_y * t208);
-        let t212 = s_foot_along_y * s_left_bar_along_y;
-        let minus_gdrive_vx_along_y = t203 * minus_gfoot_vx_along_y + t212 * t208;
-        let t215 = 0.31 * s_left_bar_along_y;
+            * (minus_c_foot_along_y * s_left_bar_along_y * t205);
+        let t209 = s_foot_along_y * s_left_bar_along_y;
+        let minus_gdrive_vx_along_y = t200 * minus_gfoot_vx_along_y + t209 * t205;
+        let t212 = 0.31 * s_left_bar_along_y;
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t208;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t205;
         let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t221 = minus_c_foot_along_y * minus_rate_left_bar_along_y;
-        let t223 = t215 * (minus_rate_foot_along_y * t221);
-        let t225 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let t228 = s_foot_along_y * minus_rate_left_bar_along_y;
-        let t230 = t225 + t221 * t221 + t228 * t228;
-        let t236 = t215 * minus_rate_foot_along_y;
-        let t237 = minus_rate_foot_along_y * t236;
-        let t239 = acceleration[0] - (t215 * t230 - t237);
-        let minus_gdrive_vz_along_y = t202 * t205;
-        let t245 = t215 * (minus_rate_foot_along_y * t228);
-        let t248 = acceleration[2] - (t203 * t230 + t245 + t245);
-        let rate_dot_drive_along_y = acceleration[1] - (t223 - 0.31 * t204 * t230 + t223)
-            - minus_gdrive_vx_along_y * t239 - minus_gdrive_vz_along_y * t248;
-        let t251 = minus_gdrive_vx_along_y * rate_dot_drive_along_y;
-        let t252 = minus_gdrive_vz_along_y * rate_dot_drive_along_y;
+        let t218 = minus_c_foot_along_y * minus_rate_left_bar_along_y;
+        let t220 = t212 * (minus_rate_foot_along_y * t218);
+        let t222 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t225 = s_foot_along_y * minus_rate_left_bar_along_y;
+        let t227 = t222 + t218 * t218 + t225 * t225;
+        let t233 = t212 * minus_rate_foot_along_y;
+        let t234 = minus_rate_foot_along_y * t233;
+        let t236 = acceleration[0] - (t212 * t227 - t234);
+        let minus_gdrive_vz_along_y = t199 * t202;
+        let t242 = t212 * (minus_rate_foot_along_y * t225);
+        let t245 = acceleration[2] - (t200 * t227 + t242 + t242);
+        let rate_dot_drive_along_y = acceleration[1] - (t220 - 0.31 * t201 * t227 + t220)
+            - minus_gdrive_vx_along_y * t236 - minus_gdrive_vz_along_y * t245;
+        let t248 = minus_gdrive_vx_along_y * rate_dot_drive_along_y;
+        let t249 = minus_gdrive_vz_along_y * rate_dot_drive_along_y;
         let rate_drive_along_y = twist[1] - minus_gdrive_vx_along_y * twist[0]
             - minus_gdrive_vz_along_y * twist[2];
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t239
-            + minus_gfoot_vz_along_y * t248;
-        let t265 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
-        let t266 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
-        let t269 = 9.81 * s_foot_along_y + minus_c_foot_along_y * rate_dot_drive_along_y;
-        let t273 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
-            - s_foot_along_y * t225;
-        let t274 = minus_gdrive_vx_along_y * t273;
-        let t277 = minus_gdrive_vz_along_y * t273;
-        let t281 = s_foot_along_y * rate_dot_drive_along_y - 9.81 * minus_c_foot_along_y;
-        let t285 = s_foot_along_y * minus_rate_dot_foot_along_y
-            + minus_c_foot_along_y * t225;
-        let t287 = minus_gfoot_vx_along_y * t281 - minus_gdrive_vx_along_y * t285;
-        let t290 = minus_gfoot_vz_along_y * t281 - minus_gdrive_vz_along_y * t285;
-        let t291 = 10.40582726326743 * t237;
-        let t292 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t293 = minus_rate_left_bar_along_y * t292;
-        let t294 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t295 = t293 - t294;
-        let t297 = 3.225806451612903 * t236;
-        let t298 = minus_rate_left_bar_along_y * t297;
-        let t299 = c_left_bar_along_y * t298;
-        let t300 = s_left_bar_along_y * t295 + t299;
-        let t302 = t291 - minus_gfoot_vx_along_y * t300;
-        let t303 = minus_gfoot_vz_along_y * t300;
-        let t304 = t293 + t295;
-        let t306 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t307 = t306 + t298;
-        let t308 = t298 + t307;
-        let t310 = c_left_bar_along_y * t304 - s_left_bar_along_y * t308;
-        let t313 = 10.40582726326743 * (t236 * t236);
-        let t314 = t292 * t292;
-        let t317 = minus_gfoot_vx_along_y * t310
-            + minus_gleft_bar_vx_along_y * (t313 - t314);
-        let t318 = minus_gfoot_vz_along_y * t310;
-        let t320 = t297 * t292;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t239;
-        let t322 = t320 - minus_rate_dot_left_bar_along_y;
-        let t324 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t327 = s_left_bar_along_y * t322 + c_left_bar_along_y * (t324 - t313);
-        let t329 = minus_gleft_bar_vx_along_y * t294 - minus_gfoot_vx_along_y * t327;
-        let t330 = minus_gfoot_vz_along_y * t327;
-        let t332 = t299 + c_left_bar_along_y * t307;
-        let t334 = minus_gfoot_vx_along_y * t332 - t291;
-        let t335 = minus_gfoot_vz_along_y * t332;
-        let t339 = minus_gfoot_vx_along_y * (3.225806451612903 * acceleration[0])
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t236
+            + minus_gfoot_vz_along_y * t245;
+        let t262 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
+        let t263 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
+        let t266 = 9.81 * s_foot_along_y + minus_c_foot_along_y * rate_dot_drive_along_y;
+        let t270 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
+            - s_foot_along_y * t222;
+        let t271 = minus_gdrive_vx_along_y * t270;
+        let t274 = minus_gdrive_vz_along_y * t270;
+        let t278 = s_foot_along_y * rate_dot_drive_along_y - 9.81 * minus_c_foot_along_y;
+        let t282 = s_foot_along_y * minus_rate_dot_foot_along_y
+            + minus_c_foot_along_y * t222;
+        let t284 = minus_gfoot_vx_along_y * t278 - minus_gdrive_vx_along_y * t282;
+        let t287 = minus_gfoot_vz_along_y * t278 - minus_gdrive_vz_along_y * t282;
+        let t289 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t290 = minus_rate_left_bar_along_y * t289;
+        let t291 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t292 = t290 - t291;
+        let t294 = 3.225806451612903 * t233;
+        let t295 = minus_rate_left_bar_along_y * t294;
+        let t297 = s_left_bar_along_y * t292 + c_left_bar_along_y * t295;
+        let t299 = 10.40582726326743 * t234 - minus_gfoot_vx_along_y * t297;
+        let t300 = minus_gfoot_vz_along_y * t297;
+        let t301 = t290 + t292;
+        let t303 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t305 = t295 + t303 + t295;
+        let t307 = c_left_bar_along_y * t301 - s_left_bar_along_y * t305;
+        let t310 = 10.40582726326743 * (t233 * t233);
+        let t311 = t289 * t289;
+        let t314 = minus_gfoot_vx_along_y * t307
+            + minus_gleft_bar_vx_along_y * (t310 - t311);
+        let t315 = minus_gfoot_vz_along_y * t307;
+        let t317 = t294 * t289;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t236;
+        let t319 = t317 - minus_rate_dot_left_bar_along_y;
+        let t321 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t324 = s_left_bar_along_y * t319 + c_left_bar_along_y * (t321 - t310);
+        let t326 = minus_gleft_bar_vx_along_y * t291 - minus_gfoot_vx_along_y * t324;
+        let t327 = minus_gfoot_vz_along_y * t324;
+        let t328 = t262 - t299;
+        let t329 = t263 + t300;
+        let t333 = minus_gfoot_vx_along_y * (3.225806451612903 * acceleration[0])
             + 3.225806451612903 * minus_rate_dot_foot_along_y;
-        let t341 = 10.40582726326743 * (t205 * acceleration[0]);
-        let t342 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
-        let t343 = c_left_bar_along_y * t269;
-        let t350 = minus_c_foot_along_y * t308 - (t204 * (t314 + t324) + t212 * t322);
-        let t355 = minus_gfoot_vx_along_y * t343 - minus_gdrive_vx_along_y * t350
-            + minus_gleft_bar_vx_along_y * (s_left_bar_along_y * t281);
-        let t358 = minus_gfoot_vz_along_y * t343 - minus_gdrive_vz_along_y * t350;
-        let t366 = t204 * (t320 + minus_rate_dot_left_bar_along_y) + t212 * (t313 + t324)
-            + minus_c_foot_along_y * t304;
-        let t368 = s_left_bar_along_y * t269;
-        let t371 = 3.225806451612903 * t281
-            - (minus_gdrive_vx_along_y * t366 + minus_gfoot_vx_along_y * t368);
-        let t374 = minus_gdrive_vz_along_y * t366 + minus_gfoot_vz_along_y * t368;
-        let t378 = 0.31 * t306 + t269 + 0.31 * t308;
-        let (minus_c_foot_along_z, s_foot_along_z) = ::overact::math::sin_cos(joints[9]);
-        let (s_left_bar_along_z, c_left_bar_along_z) = ::overact::math::sin_cos(
-            joints[10],
-        );
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t393 = minus_c_foot_along_z * c_left_bar_along_z;
-        let t394 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t394, 1.0, "along_z")?;
-        let t395 = 1.0 / t394;
-        let minus_gdrive_vx_along_z = t393 * t395;
-        let t397 = 0.31 * s_left_bar_along_z;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t395;
-        let t401 = 1.0 / c_left_bar_along_z;
+        let t335 = 10.40582726326743 * (t202 * acceleration[0]);
+        let t336 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
+        let t337 = c_left_bar_along_y * t266;
+        let t344 = minus_c_foot_along_y * t305 - (t201 * (t311 + t321) + t209 * t319);
+        let t349 = minus_gfoot_vx_along_y * t337 - minus_gdrive_vx_along_y * t344
+            + minus_gleft_bar_vx_along_y * (s_left_bar_along_y * t278);
+        let t352 = minus_gfoot_vz_along_y * t337 - minus_gdrive_vz_along_y * t344;
+        let t360 = t201 * (t317 + minus_rate_dot_left_bar_along_y) + t209 * (t310 + t321)
+            + minus_c_foot_along_y * t301;
+        let t362 = s_left_bar_along_y * t266;
+        let t365 = 3.225806451612903 * t278
+            - (minus_gdrive_vx_along_y * t360 + minus_gfoot_vx_along_y * t362);
+        let t368 = minus_gdrive_vz_along_y * t360 + minus_gfoot_vz_along_y * t362;
+        let t372 = 0.31 * t303 + t266 + 0.31 * t305;
+        let t387 = minus_c_foot_along_z * c_left_bar_along_z;
+        let t388 = s_foot_along_z * c_left_bar_along_z;
+        ::overact::guard::leg(t388, 1.0, "along_z")?;
+        let t389 = 1.0 / t388;
+        let minus_gdrive_vx_along_z = t387 * t389;
+        let t391 = 0.31 * s_left_bar_along_z;
+        let minus_gfoot_vx_along_z = 3.225806451612903 * t389;
+        let t395 = 1.0 / c_left_bar_along_z;
         let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_c_foot_along_z * s_left_bar_along_z * t401);
+            * (minus_c_foot_along_z * s_left_bar_along_z * t395);
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t401;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t395;
         let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t408 = minus_c_foot_along_z * minus_rate_left_bar_along_z;
-        let t410 = t397 * (minus_rate_foot_along_z * t408);
-        let t412 = s_foot_along_z * minus_rate_left_bar_along_z;
-        let t414 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t417 = t412 * t412 + t414 + t408 * t408;
-        let t422 = 0.31 * t393;
-        let t425 = t397 * (minus_rate_foot_along_z * t412);
-        let t428 = acceleration[0] - (t422 * t417 + t425 + t425);
-        let t431 = s_foot_along_z * s_left_bar_along_z;
-        let minus_gdrive_vy_along_z = t422 * minus_gfoot_vy_along_z + t431 * t401;
-        let t435 = t397 * minus_rate_foot_along_z;
-        let t436 = minus_rate_foot_along_z * t435;
-        let t438 = acceleration[1] - (t397 * t417 - t436);
-        let rate_dot_drive_along_z = acceleration[2] - (t410 - 0.31 * t394 * t417 + t410)
-            - (minus_gdrive_vx_along_z * t428 + minus_gdrive_vy_along_z * t438);
-        let t442 = 9.81 + rate_dot_drive_along_z;
-        let t443 = minus_gdrive_vx_along_z * t442;
-        let t444 = minus_gdrive_vy_along_z * t442;
+        let t402 = minus_c_foot_along_z * minus_rate_left_bar_along_z;
+        let t404 = t391 * (minus_rate_foot_along_z * t402);
+        let t406 = s_foot_along_z * minus_rate_left_bar_along_z;
+        let t408 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t411 = t406 * t406 + t408 + t402 * t402;
+        let t416 = 0.31 * t387;
+        let t419 = t391 * (minus_rate_foot_along_z * t406);
+        let t422 = acceleration[0] - (t416 * t411 + t419 + t419);
+        let t425 = s_foot_along_z * s_left_bar_along_z;
+        let minus_gdrive_vy_along_z = t416 * minus_gfoot_vy_along_z + t425 * t395;
+        let t429 = t391 * minus_rate_foot_along_z;
+        let t430 = minus_rate_foot_along_z * t429;
+        let t432 = acceleration[1] - (t391 * t411 - t430);
+        let rate_dot_drive_along_z = acceleration[2] - (t404 - 0.31 * t388 * t411 + t404)
+            - (minus_gdrive_vx_along_z * t422 + minus_gdrive_vy_along_z * t432);
+        let t436 = 9.81 + rate_dot_drive_along_z;
+        let t437 = minus_gdrive_vx_along_z * t436;
+        let t438 = minus_gdrive_vy_along_z * t436;
         let rate_drive_along_z = twist[2]
             - (minus_gdrive_vx_along_z * twist[0] + minus_gdrive_vy_along_z * twist[1]);
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t428
-            + minus_gfoot_vy_along_z * t438;
-        let t459 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
-        let t460 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
-        let t461 = minus_c_foot_along_z * t442;
-        let t465 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
-            - s_foot_along_z * t414;
-        let t466 = minus_gdrive_vx_along_z * t465;
-        let t469 = minus_gdrive_vy_along_z * t465;
-        let t471 = s_foot_along_z * t442;
-        let t475 = s_foot_along_z * minus_rate_dot_foot_along_z
-            + minus_c_foot_along_z * t414;
-        let t477 = minus_gfoot_vx_along_z * t471 - minus_gdrive_vx_along_z * t475;
-        let t480 = minus_gfoot_vy_along_z * t471 - minus_gdrive_vy_along_z * t475;
-        let t481 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t482 = minus_rate_left_bar_along_z * t481;
-        let t483 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t484 = t482 - t483;
-        let t486 = 3.225806451612903 * t435;
-        let t487 = minus_rate_left_bar_along_z * t486;
-        let t488 = c_left_bar_along_z * t487;
-        let t489 = s_left_bar_along_z * t484 + t488;
-        let t490 = minus_gfoot_vx_along_z * t489;
-        let t491 = 10.40582726326743 * t436;
-        let t493 = t491 - minus_gfoot_vy_along_z * t489;
-        let t494 = t482 + t484;
-        let t496 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t497 = t496 + t487;
-        let t498 = t487 + t497;
-        let t500 = c_left_bar_along_z * t494 - s_left_bar_along_z * t498;
-        let t501 = minus_gfoot_vx_along_z * t500;
-        let t504 = 10.40582726326743 * (t435 * t435);
-        let t505 = t481 * t481;
-        let t508 = minus_gfoot_vy_along_z * t500
-            + minus_gleft_bar_vy_along_z * (t504 - t505);
-        let t509 = t486 * t481;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t438;
-        let t511 = t509 - minus_rate_dot_left_bar_along_z;
-        let t513 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t516 = s_left_bar_along_z * t511 + c_left_bar_along_z * (t513 - t504);
-        let t517 = minus_gfoot_vx_along_z * t516;
-        let t520 = minus_gleft_bar_vy_along_z * t483 - minus_gfoot_vy_along_z * t516;
-        let t522 = t488 + c_left_bar_along_z * t497;
-        let t523 = minus_gfoot_vx_along_z * t522;
-        let t525 = minus_gfoot_vy_along_z * t522 - t491;
-        let t527 = 10.40582726326743 * (t395 * acceleration[1]);
-        let t531 = minus_gfoot_vy_along_z * (3.225806451612903 * acceleration[1])
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t422
+            + minus_gfoot_vy_along_z * t432;
+        let t453 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
+        let t454 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
+        let t455 = minus_c_foot_along_z * t436;
+        let t459 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
+            - s_foot_along_z * t408;
+        let t460 = minus_gdrive_vx_along_z * t459;
+        let t463 = minus_gdrive_vy_along_z * t459;
+        let t465 = s_foot_along_z * t436;
+        let t469 = s_foot_along_z * minus_rate_dot_foot_along_z
+            + minus_c_foot_along_z * t408;
+        let t471 = minus_gfoot_vx_along_z * t465 - minus_gdrive_vx_along_z * t469;
+        let t474 = minus_gfoot_vy_along_z * t465 - minus_gdrive_vy_along_z * t469;
+        let t475 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t476 = minus_rate_left_bar_along_z * t475;
+        let t477 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t478 = t476 - t477;
+        let t480 = 3.225806451612903 * t429;
+        let t481 = minus_rate_left_bar_along_z * t480;
+        let t483 = s_left_bar_along_z * t478 + c_left_bar_along_z * t481;
+        let t484 = minus_gfoot_vx_along_z * t483;
+        let t487 = 10.40582726326743 * t430 - minus_gfoot_vy_along_z * t483;
+        let t488 = t476 + t478;
+        let t490 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t492 = t481 + t490 + t481;
+        let t494 = c_left_bar_along_z * t488 - s_left_bar_along_z * t492;
+        let t495 = minus_gfoot_vx_along_z * t494;
+        let t498 = 10.40582726326743 * (t429 * t429);
+        let t499 = t475 * t475;
+        let t502 = minus_gfoot_vy_along_z * t494
+            + minus_gleft_bar_vy_along_z * (t498 - t499);
+        let t503 = t480 * t475;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t432;
+        let t505 = t503 - minus_rate_dot_left_bar_along_z;
+        let t507 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t510 = s_left_bar_along_z * t505 + c_left_bar_along_z * (t507 - t498);
+        let t511 = minus_gfoot_vx_along_z * t510;
+        let t514 = minus_gleft_bar_vy_along_z * t477 - minus_gfoot_vy_along_z * t510;
+        let t515 = t453 + t484;
+        let t516 = t454 - t487;
+        let t518 = 10.40582726326743 * (t389 * acceleration[1]);
+        let t522 = minus_gfoot_vy_along_z * (3.225806451612903 * acceleration[1])
             + 3.225806451612903 * minus_rate_dot_foot_along_z;
-        let t532 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
-        let t539 = minus_c_foot_along_z * t498 - (t394 * (t505 + t513) + t431 * t511);
-        let t541 = 3.225806451612903 * t443 - minus_gdrive_vx_along_z * t539;
-        let t548 = minus_gfoot_vy_along_z * (c_left_bar_along_z * t461)
-            - minus_gdrive_vy_along_z * t539
-            + minus_gleft_bar_vy_along_z * (s_left_bar_along_z * t471);
-        let t555 = t394 * (t509 + minus_rate_dot_left_bar_along_z) + t431 * (t504 + t513)
-            + minus_c_foot_along_z * t494;
-        let t557 = s_left_bar_along_z * t461;
-        let t559 = minus_gdrive_vx_along_z * t555 + minus_gfoot_vx_along_z * t557;
-        let t564 = 3.225806451612903 * t471
-            - (minus_gdrive_vy_along_z * t555 + minus_gfoot_vy_along_z * t557);
-        let t568 = 0.31 * t496 + t461 + 0.31 * t498;
+        let t523 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
+        let t530 = minus_c_foot_along_z * t492 - (t388 * (t499 + t507) + t425 * t505);
+        let t532 = 3.225806451612903 * t437 - minus_gdrive_vx_along_z * t530;
+        let t539 = minus_gfoot_vy_along_z * (c_left_bar_along_z * t455)
+            - minus_gdrive_vy_along_z * t530
+            + minus_gleft_bar_vy_along_z * (s_left_bar_along_z * t465);
+        let t546 = t388 * (t503 + minus_rate_dot_left_bar_along_z) + t425 * (t498 + t507)
+            + minus_c_foot_along_z * t488;
+        let t548 = s_left_bar_along_z * t455;
+        let t550 = minus_gdrive_vx_along_z * t546 + minus_gfoot_vx_along_z * t548;
+        let t555 = 3.225806451612903 * t465
+            - (minus_gdrive_vy_along_z * t546 + minus_gfoot_vy_along_z * t548);
+        let t559 = 0.31 * t490 + t455 + 0.31 * t492;
         Ok([
             [
                 rate_dot_drive_along_x, rate_dot_drive_along_x, rate_drive_along_x,
                 ::overact::math::sign(rate_drive_along_x), 1.0, 0.0, t71, t81,
-                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t145, t164, -t81,
-                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t145, t164, -t81,
-                rate_dot_drive_along_x, 0.0, t71, -t81, acceleration[0], -t251, -t251,
+                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t142, t161, -t81,
+                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t142, t161, -t81,
+                rate_dot_drive_along_x, 0.0, t71, -t81, acceleration[0], -t248, -t248,
                 -(minus_gdrive_vx_along_y * rate_drive_along_y),
                 -::overact::math::signed(minus_gdrive_vx_along_y, rate_drive_along_y),
-                -minus_gdrive_vx_along_y, t265, minus_gfoot_vx_along_y * t269 - t274, t287, -t251,
-                t302, -t317, t329, t334, t339, t342, t355, t371, -t287, -t251, t302, -t317, t329,
-                t334, t339, t342, t355, t371, -t287, -t251, t265,
-                minus_gfoot_vx_along_y * t378 - t274 - minus_gleft_bar_vx_along_y * t237,
-                -(t287 + 0.31 * t329), acceleration[0], -t443,
+                -minus_gdrive_vx_along_y, t262, minus_gfoot_vx_along_y * t266 - t271, t284, -t248,
+                t299, -t314, t326, t328, t333, t336, t349, t365, -t284, -t248, t299, -t314, t326,
+                t328, t333, t336, t349, t365, -t284, -t248, t262,
+                minus_gfoot_vx_along_y * t372 - t271 - minus_gleft_bar_vx_along_y * t234,
+                -(t284 + 0.31 * t326), acceleration[0], -t437,
                 -(minus_gdrive_vx_along_z * rate_dot_drive_along_z),
                 -(minus_gdrive_vx_along_z * rate_drive_along_z),
                 -::overact::math::signed(minus_gdrive_vx_along_z, rate_drive_along_z),
-                -minus_gdrive_vx_along_z, t459, minus_gfoot_vx_along_z * t461 - t466, t477, -t443,
-                -t490, -t501, -t517, t523, t527, 0.0, t541, -t559, -t477, -t443, -t490, -t501,
-                -t517, t523, t527, 0.0, t541, -t559, -t477, -t443, t459,
-                minus_gfoot_vx_along_z * t568 - t466, -(t477 - 0.31 * t517), acceleration[0],
+                -minus_gdrive_vx_along_z, t453, minus_gfoot_vx_along_z * t455 - t460, t471, -t437,
+                -t484, -t495, -t511, t515, t518, 0.0, t532, -t550, -t471, -t437, -t484, -t495,
+                -t511, t515, t518, 0.0, t532, -t550, -t471, -t437, t453,
+                minus_gfoot_vx_along_z * t559 - t460, -(t471 - 0.31 * t511), acceleration[0],
                 acceleration[0],
             ],
             [
                 -t53, -t53, -(minus_gdrive_vy_along_x * rate_drive_along_x),
                 -::overact::math::signed(minus_gdrive_vy_along_x, rate_drive_along_x),
                 -minus_gdrive_vy_along_x, t67, minus_gfoot_vy_along_x * t72 - t74, t85, -t53, -t98,
-                -t109, -t124, t130, t134, 0.0, t148, -t168, -t85, -t53, -t98, -t109, -t124, t130,
-                t134, 0.0, t148, -t168, -t85, -t53, t67, minus_gfoot_vy_along_x * t180 - t74,
+                -t109, -t124, t128, t131, 0.0, t145, -t165, -t85, -t53, -t98, -t109, -t124, t128,
+                t131, 0.0, t145, -t165, -t85, -t53, t67, minus_gfoot_vy_along_x * t177 - t74,
                 -(t85 - 0.31 * t124), acceleration[1], rate_dot_drive_along_y,
                 rate_dot_drive_along_y, rate_drive_along_y,
-                ::overact::math::sign(rate_drive_along_y), 1.0, 0.0, t273, t285,
-                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t350, t366, -t285,
-                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t350, t366, -t285,
-                rate_dot_drive_along_y, 0.0, t273, -t285, acceleration[1], -t444,
+                ::overact::math::sign(rate_drive_along_y), 1.0, 0.0, t270, t282,
+                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t344, t360, -t282,
+                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t344, t360, -t282,
+                rate_dot_drive_along_y, 0.0, t270, -t282, acceleration[1], -t438,
                 -(minus_gdrive_vy_along_z * rate_dot_drive_along_z),
                 -(minus_gdrive_vy_along_z * rate_drive_along_z),
                 -::overact::math::signed(minus_gdrive_vy_along_z, rate_drive_along_z),
-                -minus_gdrive_vy_along_z, t460, minus_gfoot_vy_along_z * t461 - t469, t480, -t444,
-                t493, -t508, t520, t525, t531, t532, t548, t564, -t480, -t444, t493, -t508, t520,
-                t525, t531, t532, t548, t564, -t480, -t444, t460,
-                minus_gfoot_vy_along_z * t568 - t469 - minus_gleft_bar_vy_along_z * t436,
-                -(t480 + 0.31 * t520), acceleration[1], acceleration[1],
+                -minus_gdrive_vy_along_z, t454, minus_gfoot_vy_along_z * t455 - t463, t474, -t438,
+                t487, -t502, t514, t516, t522, t523, t539, t555, -t474, -t438, t487, -t502, t514,
+                t516, t522, t523, t539, t555, -t474, -t438, t454,
+                minus_gfoot_vy_along_z * t559 - t463 - minus_gleft_bar_vy_along_z * t430,
+                -(t474 + 0.31 * t514), acceleration[1], acceleration[1],
             ],
             [
                 -t54, -t54, -(minus_gdrive_vz_along_x * rate_drive_along_x),
                 -::overact::math::signed(minus_gdrive_vz_along_x, rate_drive_along_x),
                 -minus_gdrive_vz_along_x, t68, minus_gfoot_vz_along_x * t72 - t77, t88, -t54, t101,
-                -t116, t127, t132, t138, t139, t157, t176, -t88, -t54, t101, -t116, t127, t132,
-                t138, t139, t157, t176, -t88, -t54, t68,
-                minus_gfoot_vz_along_x * t180 - t77 - minus_gleft_bar_vz_along_x * t48,
-                -(t88 + 0.31 * t127), -t197, -t252, -t252,
+                -t116, t127, t129, t135, t136, t154, t173, -t88, -t54, t101, -t116, t127, t129,
+                t135, t136, t154, t173, -t88, -t54, t68,
+                minus_gfoot_vz_along_x * t177 - t77 - minus_gleft_bar_vz_along_x * t48,
+                -(t88 + 0.31 * t127), -t194, -t249, -t249,
                 -(minus_gdrive_vz_along_y * rate_drive_along_y),
                 -::overact::math::signed(minus_gdrive_vz_along_y, rate_drive_along_y),
-                -minus_gdrive_vz_along_y, t266, minus_gfoot_vz_along_y * t269 - t277, t290, -t252,
-                -t303, -t318, -t330, t335, t341, 0.0, t358, -t374, -t290, -t252, -t303, -t318,
-                -t330, t335, t341, 0.0, t358, -t374, -t290, -t252, t266,
-                minus_gfoot_vz_along_y * t378 - t277, -(t290 - 0.31 * t330), -t197, t442,
+                -minus_gdrive_vz_along_y, t263, minus_gfoot_vz_along_y * t266 - t274, t287, -t249,
+                -t300, -t315, -t327, t329, t335, 0.0, t352, -t368, -t287, -t249, -t300, -t315,
+                -t327, t329, t335, 0.0, t352, -t368, -t287, -t249, t263,
+                minus_gfoot_vz_along_y * t372 - t274, -(t287 - 0.31 * t327), -t194, t436,
                 rate_dot_drive_along_z, rate_drive_along_z,
-                ::overact::math::sign(rate_drive_along_z), 1.0, 0.0, t465, t475, t442, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, t539, t555, -t475, t442, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t539,
-                t555, -t475, t442, 0.0, t465, -t475, -t197, -t197,
+                ::overact::math::sign(rate_drive_along_z), 1.0, 0.0, t459, t469, t436, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, t530, t546, -t469, t436, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t530,
+                t546, -t469, t436, 0.0, t459, -t469, -t194, -t194,
             ],
         ])
     }
@@ -2211,7 +2161,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 645 operations (224 additions, 409 multiplications, 12 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 540 intermediates.
+    /// 636 operations (224 additions, 400 multiplications, 12 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 531 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2397,15 +2347,12 @@ impl Orthoglide {
         let t281 = t278 + t280;
         let t283 = 3.225806451612903 * t153;
         let t284 = minus_rate_left_bar_along_x * t283;
-        let t285 = c_left_bar_along_x * t284;
-        let t286 = minus_s_left_bar_along_x * t281 + t285;
+        let t286 = minus_s_left_bar_along_x * t281 + c_left_bar_along_x * t284;
         let t287 = minus_gfoot_vy_along_x * t286;
-        let t289 = 10.40582726326743 * t154;
-        let t290 = minus_gfoot_vz_along_x * t286 - t289;
+        let t290 = minus_gfoot_vz_along_x * t286 - 10.40582726326743 * t154;
         let t291 = t280 + t281;
         let t293 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t294 = t284 - t293;
-        let t295 = t284 + t294;
+        let t295 = t284 + t284 - t293;
         let t297 = c_left_bar_along_x * t291 - minus_s_left_bar_along_x * t295;
         let t298 = minus_gfoot_vy_along_x * t297;
         let t301 = 10.40582726326743 * (t153 * t153);
@@ -2417,310 +2364,301 @@ impl Orthoglide {
         let t312 = minus_s_left_bar_along_x * t308 + c_left_bar_along_x * (t131 - t301);
         let t313 = minus_gfoot_vy_along_x * t312;
         let t316 = minus_gfoot_vz_along_x * t312 + minus_gleft_bar_vz_along_x * t278;
-        let t318 = t285 + c_left_bar_along_x * t294;
-        let t319 = minus_gfoot_vy_along_x * t318;
-        let t321 = t289 - minus_gfoot_vz_along_x * t318;
-        let t323 = 10.40582726326743 * (t10 * t248);
-        let t327 = minus_gfoot_vz_along_x * (3.225806451612903 * t248)
+        let t317 = t256 - t287;
+        let t318 = t257 - t290;
+        let t320 = 10.40582726326743 * (t10 * t248);
+        let t324 = minus_gfoot_vz_along_x * (3.225806451612903 * t248)
             + 3.225806451612903 * minus_rate_dot_foot_along_x;
-        let t328 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
-        let t331 = c_left_bar_along_x * (c_foot_along_x * rate_dot_drive_along_x);
-        let t336 = minus_s_foot_along_x * t295
-            - (t9 * (3.225806451612903 * t331) + t20 * t308);
-        let t339 = gdrive_vy_along_x * t336 - 3.225806451612903 * t13;
-        let t346 = minus_s_left_bar_along_x * t272 - 9.81 * c_left_bar_along_x;
-        let t348 = gdrive_vz_along_x * t336
+        let t325 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
+        let t328 = c_left_bar_along_x * (c_foot_along_x * rate_dot_drive_along_x);
+        let t333 = minus_s_foot_along_x * t295
+            - (t9 * (3.225806451612903 * t328) + t20 * t308);
+        let t336 = gdrive_vy_along_x * t333 - 3.225806451612903 * t13;
+        let t343 = minus_s_left_bar_along_x * t272 - 9.81 * c_left_bar_along_x;
+        let t345 = gdrive_vz_along_x * t333
             - minus_gfoot_vz_along_x * (c_left_bar_along_x * t262)
-            - minus_gleft_bar_vz_along_x * t346;
-        let t355 = t9 * (minus_rate_dot_left_bar_along_x - t306) - t20 * (t301 + t131)
+            - minus_gleft_bar_vz_along_x * t343;
+        let t352 = t9 * (minus_rate_dot_left_bar_along_x - t306) - t20 * (t301 + t131)
             - minus_s_foot_along_x * t291;
-        let t357 = minus_s_left_bar_along_x * t262;
-        let t359 = gdrive_vy_along_x * t355 - minus_gfoot_vy_along_x * t357;
-        let t365 = c_left_bar_along_x * t272 + 31.64516129032258 * pose[2];
-        let t367 = gdrive_vz_along_x * t355 - minus_gfoot_vz_along_x * t357
-            + minus_gleft_bar_vz_along_x * t365;
-        let t371 = t262 + 0.31 * t295 - 0.31 * t293;
-        let t386 = t83 * t236 - t84 * t250 - t97 * t248;
-        let t392 = c_left_bar_along_x * (t346 - 0.31 * t308)
-            - minus_s_left_bar_along_x * (t365 - t331);
-        let t393 = gdrive_vx_along_y * actuator_accelerations[1];
-        let t394 = gdrive_vz_along_y * actuator_accelerations[1];
-        let t398 = t386 - t187;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t398
+        let t354 = minus_s_left_bar_along_x * t262;
+        let t356 = gdrive_vy_along_x * t352 - minus_gfoot_vy_along_x * t354;
+        let t362 = c_left_bar_along_x * t272 + 31.64516129032258 * pose[2];
+        let t364 = gdrive_vz_along_x * t352 - minus_gfoot_vz_along_x * t354
+            + minus_gleft_bar_vz_along_x * t362;
+        let t368 = t262 + 0.31 * t295 - 0.31 * t293;
+        let t383 = t83 * t236 - t84 * t250 - t97 * t248;
+        let t389 = c_left_bar_along_x * (t343 - 0.31 * t308)
+            - minus_s_left_bar_along_x * (t362 - t328);
+        let t390 = gdrive_vx_along_y * actuator_accelerations[1];
+        let t391 = gdrive_vz_along_y * actuator_accelerations[1];
+        let t395 = t383 - t187;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t395
             + minus_gfoot_vz_along_y * (t248 + t182);
-        let t403 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
-        let t404 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
-        let t407 = c_foot_along_y * t169
+        let t400 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
+        let t401 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
+        let t404 = c_foot_along_y * t169
             + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
-        let t408 = gdrive_vx_along_y * t407;
-        let t411 = minus_s_foot_along_y * actuator_accelerations[1]
+        let t405 = gdrive_vx_along_y * t404;
+        let t408 = minus_s_foot_along_y * actuator_accelerations[1]
             - 9.81 * c_foot_along_y;
-        let t414 = gdrive_vz_along_y * t407;
-        let t419 = c_foot_along_y * minus_rate_dot_foot_along_y
+        let t411 = gdrive_vz_along_y * t404;
+        let t416 = c_foot_along_y * minus_rate_dot_foot_along_y
             - minus_s_foot_along_y * t169;
-        let t423 = 9.81 * minus_s_foot_along_y
+        let t420 = 9.81 * minus_s_foot_along_y
             + c_foot_along_y * actuator_accelerations[1];
-        let t425 = gdrive_vx_along_y * t419 + minus_gfoot_vx_along_y * t423;
-        let t428 = gdrive_vz_along_y * t419 + minus_gfoot_vz_along_y * t423;
-        let t429 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t430 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t431 = minus_rate_left_bar_along_y * t430;
-        let t432 = t429 + t431;
-        let t434 = 3.225806451612903 * t184;
-        let t435 = minus_rate_left_bar_along_y * t434;
-        let t436 = c_left_bar_along_y * t435;
-        let t437 = minus_s_left_bar_along_y * t432 + t436;
-        let t439 = 10.40582726326743 * t185;
-        let t440 = minus_gfoot_vx_along_y * t437 - t439;
-        let t441 = minus_gfoot_vz_along_y * t437;
-        let t442 = t431 + t432;
-        let t444 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t445 = t435 - t444;
-        let t446 = t435 + t445;
-        let t448 = c_left_bar_along_y * t442 - minus_s_left_bar_along_y * t446;
-        let t451 = 10.40582726326743 * (t184 * t184);
-        let t452 = t430 * t430;
-        let t455 = minus_gfoot_vx_along_y * t448
-            + minus_gleft_bar_vx_along_y * (t451 - t452);
-        let t456 = minus_gfoot_vz_along_y * t448;
-        let t457 = t434 * t430;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t398;
-        let t459 = t457 + minus_rate_dot_left_bar_along_y;
-        let t461 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t464 = minus_s_left_bar_along_y * t459 + c_left_bar_along_y * (t461 - t451);
-        let t467 = minus_gfoot_vx_along_y * t464 + minus_gleft_bar_vx_along_y * t429;
-        let t468 = minus_gfoot_vz_along_y * t464;
-        let t470 = t436 + c_left_bar_along_y * t445;
-        let t472 = t439 - minus_gfoot_vx_along_y * t470;
-        let t473 = minus_gfoot_vz_along_y * t470;
-        let t477 = minus_gfoot_vx_along_y * (3.225806451612903 * t386)
+        let t422 = gdrive_vx_along_y * t416 + minus_gfoot_vx_along_y * t420;
+        let t425 = gdrive_vz_along_y * t416 + minus_gfoot_vz_along_y * t420;
+        let t426 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t427 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t428 = minus_rate_left_bar_along_y * t427;
+        let t429 = t426 + t428;
+        let t431 = 3.225806451612903 * t184;
+        let t432 = minus_rate_left_bar_along_y * t431;
+        let t434 = minus_s_left_bar_along_y * t429 + c_left_bar_along_y * t432;
+        let t437 = minus_gfoot_vx_along_y * t434 - 10.40582726326743 * t185;
+        let t438 = minus_gfoot_vz_along_y * t434;
+        let t439 = t428 + t429;
+        let t441 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t443 = t432 + t432 - t441;
+        let t445 = c_left_bar_along_y * t439 - minus_s_left_bar_along_y * t443;
+        let t448 = 10.40582726326743 * (t184 * t184);
+        let t449 = t427 * t427;
+        let t452 = minus_gfoot_vx_along_y * t445
+            + minus_gleft_bar_vx_along_y * (t448 - t449);
+        let t453 = minus_gfoot_vz_along_y * t445;
+        let t454 = t431 * t427;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t395;
+        let t456 = t454 + minus_rate_dot_left_bar_along_y;
+        let t458 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t461 = minus_s_left_bar_along_y * t456 + c_left_bar_along_y * (t458 - t448);
+        let t464 = minus_gfoot_vx_along_y * t461 + minus_gleft_bar_vx_along_y * t426;
+        let t465 = minus_gfoot_vz_along_y * t461;
+        let t466 = t400 - t437;
+        let t467 = t401 - t438;
+        let t471 = minus_gfoot_vx_along_y * (3.225806451612903 * t383)
             + 3.225806451612903 * minus_rate_dot_foot_along_y;
-        let t479 = 10.40582726326743 * (t64 * t386);
-        let t480 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
-        let t486 = minus_s_foot_along_y * t446 - (t63 * (t452 + t461) + t72 * t459);
-        let t488 = c_left_bar_along_y * t411;
-        let t493 = gdrive_vx_along_y * t486 - minus_gfoot_vx_along_y * t488
-            - minus_gleft_bar_vx_along_y * (minus_s_left_bar_along_y * t423);
-        let t496 = gdrive_vz_along_y * t486 - minus_gfoot_vz_along_y * t488;
-        let t503 = t63 * (minus_rate_dot_left_bar_along_y - t457) - t72 * (t451 + t461)
-            - minus_s_foot_along_y * t442;
-        let t505 = minus_s_left_bar_along_y * t411;
-        let t509 = gdrive_vx_along_y * t503 - minus_gfoot_vx_along_y * t505
-            + 3.225806451612903 * t423;
-        let t512 = gdrive_vz_along_y * t503 - minus_gfoot_vz_along_y * t505;
-        let t517 = t411 + 0.31 * t446 - 0.31 * t444;
-        let t527 = 9.81 + actuator_accelerations[2];
-        let t528 = gdrive_vx_along_z * t527;
-        let t529 = gdrive_vy_along_z * t527;
-        let t537 = t250 - t220;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t386 + t215)
-            + minus_gfoot_vy_along_z * t537;
-        let t540 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
-        let t541 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
-        let t544 = c_foot_along_z * t206
+        let t473 = 10.40582726326743 * (t64 * t383);
+        let t474 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
+        let t480 = minus_s_foot_along_y * t443 - (t63 * (t449 + t458) + t72 * t456);
+        let t482 = c_left_bar_along_y * t408;
+        let t487 = gdrive_vx_along_y * t480 - minus_gfoot_vx_along_y * t482
+            - minus_gleft_bar_vx_along_y * (minus_s_left_bar_along_y * t420);
+        let t490 = gdrive_vz_along_y * t480 - minus_gfoot_vz_along_y * t482;
+        let t497 = t63 * (minus_rate_dot_left_bar_along_y - t454) - t72 * (t448 + t458)
+            - minus_s_foot_along_y * t439;
+        let t499 = minus_s_left_bar_along_y * t408;
+        let t503 = gdrive_vx_along_y * t497 - minus_gfoot_vx_along_y * t499
+            + 3.225806451612903 * t420;
+        let t506 = gdrive_vz_along_y * t497 - minus_gfoot_vz_along_y * t499;
+        let t511 = t408 + 0.31 * t443 - 0.31 * t441;
+        let t521 = 9.81 + actuator_accelerations[2];
+        let t522 = gdrive_vx_along_z * t521;
+        let t523 = gdrive_vy_along_z * t521;
+        let t531 = t250 - t220;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t383 + t215)
+            + minus_gfoot_vy_along_z * t531;
+        let t534 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
+        let t535 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
+        let t538 = c_foot_along_z * t206
             + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
-        let t545 = gdrive_vx_along_z * t544;
-        let t546 = minus_s_foot_along_z * t527;
-        let t549 = gdrive_vy_along_z * t544;
-        let t554 = c_foot_along_z * minus_rate_dot_foot_along_z
+        let t539 = gdrive_vx_along_z * t538;
+        let t540 = minus_s_foot_along_z * t521;
+        let t543 = gdrive_vy_along_z * t538;
+        let t548 = c_foot_along_z * minus_rate_dot_foot_along_z
             - minus_s_foot_along_z * t206;
-        let t556 = c_foot_along_z * t527;
-        let t558 = gdrive_vx_along_z * t554 + minus_gfoot_vx_along_z * t556;
-        let t561 = gdrive_vy_along_z * t554 + minus_gfoot_vy_along_z * t556;
-        let t562 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t563 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t564 = minus_rate_left_bar_along_z * t563;
-        let t565 = t562 + t564;
-        let t567 = 3.225806451612903 * t217;
-        let t568 = minus_rate_left_bar_along_z * t567;
-        let t569 = c_left_bar_along_z * t568;
-        let t570 = minus_s_left_bar_along_z * t565 + t569;
-        let t571 = minus_gfoot_vx_along_z * t570;
-        let t573 = 10.40582726326743 * t218;
-        let t574 = minus_gfoot_vy_along_z * t570 - t573;
-        let t575 = t564 + t565;
-        let t577 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t578 = t568 - t577;
-        let t579 = t568 + t578;
-        let t581 = c_left_bar_along_z * t575 - minus_s_left_bar_along_z * t579;
-        let t582 = minus_gfoot_vx_along_z * t581;
-        let t585 = 10.40582726326743 * (t217 * t217);
-        let t586 = t563 * t563;
-        let t589 = minus_gfoot_vy_along_z * t581
-            + minus_gleft_bar_vy_along_z * (t585 - t586);
-        let t590 = t567 * t563;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t537;
-        let t592 = t590 + minus_rate_dot_left_bar_along_z;
-        let t594 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t597 = minus_s_left_bar_along_z * t592 + c_left_bar_along_z * (t594 - t585);
-        let t598 = minus_gfoot_vx_along_z * t597;
-        let t601 = minus_gfoot_vy_along_z * t597 + minus_gleft_bar_vy_along_z * t562;
-        let t603 = t569 + c_left_bar_along_z * t578;
-        let t604 = minus_gfoot_vx_along_z * t603;
-        let t606 = t573 - minus_gfoot_vy_along_z * t603;
-        let t608 = 10.40582726326743 * (t41 * t250);
-        let t612 = minus_gfoot_vy_along_z * (3.225806451612903 * t250)
+        let t550 = c_foot_along_z * t521;
+        let t552 = gdrive_vx_along_z * t548 + minus_gfoot_vx_along_z * t550;
+        let t555 = gdrive_vy_along_z * t548 + minus_gfoot_vy_along_z * t550;
+        let t556 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t557 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t558 = minus_rate_left_bar_along_z * t557;
+        let t559 = t556 + t558;
+        let t561 = 3.225806451612903 * t217;
+        let t562 = minus_rate_left_bar_along_z * t561;
+        let t564 = minus_s_left_bar_along_z * t559 + c_left_bar_along_z * t562;
+        let t565 = minus_gfoot_vx_along_z * t564;
+        let t568 = minus_gfoot_vy_along_z * t564 - 10.40582726326743 * t218;
+        let t569 = t558 + t559;
+        let t571 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t573 = t562 + t562 - t571;
+        let t575 = c_left_bar_along_z * t569 - minus_s_left_bar_along_z * t573;
+        let t576 = minus_gfoot_vx_along_z * t575;
+        let t579 = 10.40582726326743 * (t217 * t217);
+        let t580 = t557 * t557;
+        let t583 = minus_gfoot_vy_along_z * t575
+            + minus_gleft_bar_vy_along_z * (t579 - t580);
+        let t584 = t561 * t557;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t531;
+        let t586 = t584 + minus_rate_dot_left_bar_along_z;
+        let t588 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t591 = minus_s_left_bar_along_z * t586 + c_left_bar_along_z * (t588 - t579);
+        let t592 = minus_gfoot_vx_along_z * t591;
+        let t595 = minus_gfoot_vy_along_z * t591 + minus_gleft_bar_vy_along_z * t556;
+        let t596 = t534 - t565;
+        let t597 = t535 - t568;
+        let t599 = 10.40582726326743 * (t41 * t250);
+        let t603 = minus_gfoot_vy_along_z * (3.225806451612903 * t250)
             + 3.225806451612903 * minus_rate_dot_foot_along_z;
-        let t613 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
-        let t619 = minus_s_foot_along_z * t579 - (t40 * (t586 + t594) + t49 * t592);
-        let t622 = gdrive_vx_along_z * t619 - 3.225806451612903 * t528;
-        let t629 = gdrive_vy_along_z * t619
-            - minus_gfoot_vy_along_z * (c_left_bar_along_z * t546)
-            - minus_gleft_bar_vy_along_z * (minus_s_left_bar_along_z * t556);
-        let t636 = t40 * (minus_rate_dot_left_bar_along_z - t590) - t49 * (t585 + t594)
-            - minus_s_foot_along_z * t575;
-        let t638 = minus_s_left_bar_along_z * t546;
-        let t640 = gdrive_vx_along_z * t636 - minus_gfoot_vx_along_z * t638;
-        let t645 = gdrive_vy_along_z * t636 - minus_gfoot_vy_along_z * t638
-            + 3.225806451612903 * t556;
-        let t649 = t546 + 0.31 * t579 - 0.31 * t577;
+        let t604 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
+        let t610 = minus_s_foot_along_z * t573 - (t40 * (t580 + t588) + t49 * t586);
+        let t613 = gdrive_vx_along_z * t610 - 3.225806451612903 * t522;
+        let t620 = gdrive_vy_along_z * t610
+            - minus_gfoot_vy_along_z * (c_left_bar_along_z * t540)
+            - minus_gleft_bar_vy_along_z * (minus_s_left_bar_along_z * t550);
+        let t627 = t40 * (minus_rate_dot_left_bar_along_z - t584) - t49 * (t579 + t588)
+            - minus_s_foot_along_z * t569;
+        let t629 = minus_s_left_bar_along_z * t540;
+        let t631 = gdrive_vx_along_z * t627 - minus_gfoot_vx_along_z * t629;
+        let t636 = gdrive_vy_along_z * t627 - minus_gfoot_vy_along_z * t629
+            + 3.225806451612903 * t550;
+        let t640 = t540 + 0.31 * t573 - 0.31 * t571;
         Ok([
             [
                 actuator_accelerations[0], actuator_accelerations[0], actuator_velocities[0],
                 ::overact::math::sign(actuator_velocities[0]), 1.0, 0.0, -t260, t270,
-                actuator_accelerations[0], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t336, t355, -t270,
-                actuator_accelerations[0], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t336, t355, -t270,
-                actuator_accelerations[0], 0.0, -t260, -t270, t386, t393, t393, t112,
+                actuator_accelerations[0], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t333, t352, -t270,
+                actuator_accelerations[0], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t333, t352, -t270,
+                actuator_accelerations[0], 0.0, -t260, -t270, t383, t390, t390, t112,
                 ::overact::math::signed(gdrive_vx_along_y, actuator_velocities[1]),
-                gdrive_vx_along_y, t403, -(t408 + minus_gfoot_vx_along_y * t411), t425, t393, t440,
-                -t455, -t467, t472, t477, t480, t493, t509, -t425, t393, t440, -t455, -t467, t472,
-                t477, t480, t493, t509, -t425, t393, t403,
+                gdrive_vx_along_y, t400, -(t405 + minus_gfoot_vx_along_y * t408), t422, t390, t437,
+                -t452, -t464, t466, t471, t474, t487, t503, -t422, t390, t437, -t452, -t464, t466,
+                t471, t474, t487, t503, -t422, t390, t400,
                 minus_gleft_bar_vx_along_y * t185
-                    - (t408 + minus_gfoot_vx_along_y * t517),
-                -(t425 - 0.31 * t467),
-                t386,
-                t528,
+                    - (t405 + minus_gfoot_vx_along_y * t511),
+                -(t422 - 0.31 * t464),
+                t383,
+                t522,
                 gdrive_vx_along_z * actuator_accelerations[2],
                 t114,
                 ::overact::math::signed(gdrive_vx_along_z, actuator_velocities[2]),
                 gdrive_vx_along_z,
-                t540,
-                -(t545 + minus_gfoot_vx_along_z * t546),
-                t558,
-                t528,
-                t571,
-                -t582,
-                -t598,
-                -t604,
-                t608,
+                t534,
+                -(t539 + minus_gfoot_vx_along_z * t540),
+                t552,
+                t522,
+                t565,
+                -t576,
+                -t592,
+                t596,
+                t599,
                 0.0,
-                t622,
-                t640,
-                -t558,
-                t528,
-                t571,
-                -t582,
-                -t598,
-                -t604,
-                t608,
+                t613,
+                t631,
+                -t552,
+                t522,
+                t565,
+                -t576,
+                -t592,
+                t596,
+                t599,
                 0.0,
-                t622,
-                t640,
-                -t558,
-                t528,
-                t540,
-                -(t545 + minus_gfoot_vx_along_z * t649),
-                -(t558 - 0.31 * t598),
-                t386,
-                t386,
+                t613,
+                t631,
+                -t552,
+                t522,
+                t534,
+                -(t539 + minus_gfoot_vx_along_z * t640),
+                -(t552 - 0.31 * t592),
+                t383,
+                t383,
             ],
             [
                 t13, t13, t24, ::overact::math::signed(gdrive_vy_along_x, actuator_velocities[0]),
                 gdrive_vy_along_x, t256, -(t261 + minus_gfoot_vy_along_x * t262), t274, t13, t287,
-                -t298, -t313, -t319, t323, 0.0, t339, t359, -t274, t13, t287, -t298, -t313, -t319,
-                t323, 0.0, t339, t359, -t274, t13, t256, -(t261 + minus_gfoot_vy_along_x * t371),
+                -t298, -t313, t317, t320, 0.0, t336, t356, -t274, t13, t287, -t298, -t313, t317,
+                t320, 0.0, t336, t356, -t274, t13, t256, -(t261 + minus_gfoot_vy_along_x * t368),
                 -(t274 - 0.31 * t313), t250, actuator_accelerations[1], actuator_accelerations[1],
                 actuator_velocities[1], ::overact::math::sign(actuator_velocities[1]), 1.0, 0.0,
-                -t407, t419, actuator_accelerations[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t486, t503,
-                -t419, actuator_accelerations[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t486, t503, -t419,
-                actuator_accelerations[1], 0.0, -t407, -t419, t250, t529,
+                -t404, t416, actuator_accelerations[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t480, t497,
+                -t416, actuator_accelerations[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t480, t497, -t416,
+                actuator_accelerations[1], 0.0, -t404, -t416, t250, t523,
                 gdrive_vy_along_z * actuator_accelerations[2], t119,
                 ::overact::math::signed(gdrive_vy_along_z, actuator_velocities[2]),
-                gdrive_vy_along_z, t541, -(t549 + minus_gfoot_vy_along_z * t546), t561, t529, t574,
-                -t589, -t601, t606, t612, t613, t629, t645, -t561, t529, t574, -t589, -t601, t606,
-                t612, t613, t629, t645, -t561, t529, t541,
+                gdrive_vy_along_z, t535, -(t543 + minus_gfoot_vy_along_z * t540), t555, t523, t568,
+                -t583, -t595, t597, t603, t604, t620, t636, -t555, t523, t568, -t583, -t595, t597,
+                t603, t604, t620, t636, -t555, t523, t535,
                 minus_gleft_bar_vy_along_z * t218
-                    - (t549 + minus_gfoot_vy_along_z * t649),
-                -(t561 - 0.31 * t601),
+                    - (t543 + minus_gfoot_vy_along_z * t640),
+                -(t555 - 0.31 * t595),
                 t250,
                 t250,
             ],
             [
                 t23, t23, t25, ::overact::math::signed(gdrive_vz_along_x, actuator_velocities[0]),
                 gdrive_vz_along_x, t257, -(t265 + minus_gfoot_vz_along_x * t262), t277, t23, t290,
-                -t305, -t316, t321, t327, t328, t348, t367, -t277, t23, t290, -t305, -t316, t321,
-                t327, t328, t348, t367, -t277, t23, t257,
+                -t305, -t316, t318, t324, t325, t345, t364, -t277, t23, t290, -t305, -t316, t318,
+                t324, t325, t345, t364, -t277, t23, t257,
                 minus_gleft_bar_vz_along_x * t154
-                    - (t265 + minus_gfoot_vz_along_x * t371),
+                    - (t265 + minus_gfoot_vz_along_x * t368),
                 -(t277 - 0.31 * t316),
-                -t392,
-                t394,
-                t394,
+                -t389,
+                t391,
+                t391,
                 t109,
                 ::overact::math::signed(gdrive_vz_along_y, actuator_velocities[1]),
                 gdrive_vz_along_y,
-                t404,
-                -(t414 + minus_gfoot_vz_along_y * t411),
-                t428,
-                t394,
-                t441,
-                -t456,
-                -t468,
-                -t473,
-                t479,
+                t401,
+                -(t411 + minus_gfoot_vz_along_y * t408),
+                t425,
+                t391,
+                t438,
+                -t453,
+                -t465,
+                t467,
+                t473,
                 0.0,
-                t496,
-                t512,
-                -t428,
-                t394,
-                t441,
-                -t456,
-                -t468,
-                -t473,
-                t479,
+                t490,
+                t506,
+                -t425,
+                t391,
+                t438,
+                -t453,
+                -t465,
+                t467,
+                t473,
                 0.0,
-                t496,
-                t512,
-                -t428,
-                t394,
-                t404,
-                -(t414 + minus_gfoot_vz_along_y * t517),
-                -(t428 - 0.31 * t468),
-                -t392,
-                t527,
+                t490,
+                t506,
+                -t425,
+                t391,
+                t401,
+                -(t411 + minus_gfoot_vz_along_y * t511),
+                -(t425 - 0.31 * t465),
+                -t389,
+                t521,
                 actuator_accelerations[2],
                 actuator_velocities[2],
                 ::overact::math::sign(actuator_velocities[2]),
                 1.0,
                 0.0,
-                -t544,
-                t554,
-                t527,
+                -t538,
+                t548,
+                t521,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
-                t619,
-                t636,
-                -t554,
-                t527,
+                t610,
+                t627,
+                -t548,
+                t521,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
-                t619,
-                t636,
-                -t554,
-                t527,
+                t610,
+                t627,
+                -t548,
+                t521,
                 0.0,
-                -t544,
-                -t554,
-                -t392,
-                -t392,
+                -t538,
+                -t548,
+                -t389,
+                -t389,
             ],
         ])
     }
@@ -2734,7 +2672,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 726 operations (249 additions, 467 multiplications, 10 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 605 intermediates.
+    /// 711 operations (246 additions, 455 multiplications, 10 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 590 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2853,22 +2791,17 @@ impl Orthoglide {
         let t161 = t158 + t160;
         let t163 = 3.225806451612903 * t48;
         let t164 = minus_rate_left_bar_along_x * t163;
-        let t165 = c_left_bar_along_x * t164;
-        let t166 = minus_s_left_bar_along_x * t161 + t165;
+        let t166 = minus_s_left_bar_along_x * t161 + c_left_bar_along_x * t164;
         let t168 = minus_gleft_bar_vz_along_x * t115;
         let t169 = t163 * t159;
-        let t170 = t168 * t169;
-        let t171 = t117 * t166 + t170;
+        let t171 = t117 * t166 + t168 * t169;
         let t172 = minus_gleft_bar_vz_along_x * t124;
-        let t173 = t172 * t169;
-        let t175 = t173 - t130 * t166;
+        let t175 = t172 * t169 - t130 * t166;
         let t177 = minus_gleft_bar_vz_along_x * t138;
-        let t178 = t177 * t169;
-        let t179 = t140 * t166 + t178;
+        let t179 = t140 * t166 + t177 * t169;
         let t180 = t160 + t161;
         let t182 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t183 = t164 - t182;
-        let t184 = t164 + t183;
+        let t184 = t164 + t164 - t182;
         let t186 = c_left_bar_along_x * t180 - minus_s_left_bar_along_x * t184;
         let t189 = 10.40582726326743 * (t48 * t48);
         let t190 = t159 * t159;
@@ -2882,269 +2815,256 @@ impl Orthoglide {
         let t208 = t117 * t205 - t168 * t158;
         let t211 = t130 * t205 + t172 * t158;
         let t214 = t140 * t205 - t177 * t158;
-        let t216 = t165 + c_left_bar_along_x * t183;
-        let t218 = t117 * t216 + t170;
-        let t220 = t130 * t216 - t173;
-        let t222 = t140 * t216 + t178;
-        let t224 = 3.225806451612903 * acceleration[2];
-        let t226 = t168 * t182 - t117 * t224;
-        let t229 = t130 * t224 + t172 * t182;
-        let t232 = t177 * t182 - t140 * t224;
-        let t233 = t168 * minus_rate_dot_left_bar_along_x;
-        let t234 = t172 * minus_rate_dot_left_bar_along_x;
-        let t235 = t177 * minus_rate_dot_left_bar_along_x;
-        let t242 = c_left_bar_along_x * t142;
-        let t247 = minus_s_left_bar_along_x * t153 - 9.81 * c_left_bar_along_x;
-        let t249 = minus_s_foot_along_x * t184 - (t9 * (t190 + t28) + t45 * t201)
-            + t117 * t242 - t168 * t247;
-        let t252 = t130 * t242 + t172 * t247;
-        let t255 = t140 * t242 - t177 * t247;
-        let t263 = minus_s_left_bar_along_x * t142;
-        let t268 = c_left_bar_along_x * t153 + 31.64516129032258 * pose[2];
-        let t270 = t9 * (minus_rate_dot_left_bar_along_x - t169) - t45 * (t189 + t28)
-            - minus_s_foot_along_x * t180 + t117 * t263 + t168 * t268;
-        let t273 = t130 * t263 - t172 * t268;
-        let t276 = t140 * t263 + t177 * t268;
-        let t278 = t142 + 0.31 * t184;
-        let t280 = t278 - 0.31 * t182;
-        let t297 = t4 * t278;
-        let t302 = 0.31 * (t247 - 0.31 * t201);
-        let t304 = acceleration[0] + t117 * t297 - t168 * t302;
-        let t307 = t130 * t297 + t172 * t302;
-        let t310 = t140 * t297 - t177 * t302;
+        let t215 = t171 - t121;
+        let t216 = t131 + t175;
+        let t217 = t179 - t141;
+        let t219 = 3.225806451612903 * acceleration[2];
+        let t221 = t168 * t182 - t117 * t219;
+        let t224 = t130 * t219 + t172 * t182;
+        let t227 = t177 * t182 - t140 * t219;
+        let t228 = t168 * minus_rate_dot_left_bar_along_x;
+        let t229 = t172 * minus_rate_dot_left_bar_along_x;
+        let t230 = t177 * minus_rate_dot_left_bar_along_x;
+        let t237 = c_left_bar_along_x * t142;
+        let t242 = minus_s_left_bar_along_x * t153 - 9.81 * c_left_bar_along_x;
+        let t244 = minus_s_foot_along_x * t184 - (t9 * (t190 + t28) + t45 * t201)
+            + t117 * t237 - t168 * t242;
+        let t247 = t130 * t237 + t172 * t242;
+        let t250 = t140 * t237 - t177 * t242;
+        let t258 = minus_s_left_bar_along_x * t142;
+        let t263 = c_left_bar_along_x * t153 + 31.64516129032258 * pose[2];
+        let t265 = t9 * (minus_rate_dot_left_bar_along_x - t169) - t45 * (t189 + t28)
+            - minus_s_foot_along_x * t180 + t117 * t258 + t168 * t263;
+        let t268 = t130 * t258 - t172 * t263;
+        let t271 = t140 * t258 + t177 * t263;
+        let t273 = t142 + 0.31 * t184;
+        let t275 = t273 - 0.31 * t182;
+        let t292 = t4 * t273;
+        let t297 = 0.31 * (t242 - 0.31 * t201);
+        let t299 = acceleration[0] + t117 * t292 - t168 * t297;
+        let t302 = t130 * t292 + t172 * t297;
+        let t305 = t140 * t292 - t177 * t297;
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let t314 = pose[0] * minus_rate_foot_along_y;
-        let t315 = minus_rate_foot_along_y * t314;
-        let t316 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t309 = pose[0] * minus_rate_foot_along_y;
+        let t310 = minus_rate_foot_along_y * t309;
+        let t311 = minus_rate_foot_along_y * minus_rate_foot_along_y;
         let minus_gleft_bar_vx_along_y = 3.225806451612903 * t73;
         let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t319 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
-        let t322 = c_foot_along_y * minus_rate_left_bar_along_y;
-        let t324 = t316 + t319 * t319 + t322 * t322;
-        let t327 = acceleration[0] - (t315 - pose[0] * t324);
-        let t330 = pose[0] * (minus_rate_foot_along_y * t319);
-        let t339 = pose[0] * (minus_rate_foot_along_y * t322);
-        let t342 = acceleration[2] + pose[2] * t324 + t339 + t339;
-        let rate_dot_drive_along_y = gdrive_vx_along_y * t327 + acceleration[1]
-            - (t330 - 0.31 * t69 * t324 + t330) + gdrive_vz_along_y * t342;
+        let t314 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
+        let t317 = c_foot_along_y * minus_rate_left_bar_along_y;
+        let t319 = t311 + t314 * t314 + t317 * t317;
+        let t322 = acceleration[0] - (t310 - pose[0] * t319);
+        let t325 = pose[0] * (minus_rate_foot_along_y * t314);
+        let t334 = pose[0] * (minus_rate_foot_along_y * t317);
+        let t337 = acceleration[2] + pose[2] * t319 + t334 + t334;
+        let rate_dot_drive_along_y = gdrive_vx_along_y * t322 + acceleration[1]
+            - (t325 - 0.31 * t69 * t319 + t325) + gdrive_vz_along_y * t337;
         let rate_drive_along_y = gdrive_vx_along_y * twist[0] + twist[1]
             + gdrive_vz_along_y * twist[2];
-        let t350 = t105 * t112;
-        let t353 = minus_gfoot_vx_along_y * t350 + minus_gfoot_vz_along_y * t115;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t327
-            + minus_gfoot_vz_along_y * t342;
-        let t357 = t353 * minus_rate_dot_foot_along_y;
-        let t360 = (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t112;
-        let t363 = minus_gfoot_vx_along_y * t360 + minus_gfoot_vz_along_y * t124;
-        let t364 = t363 * minus_rate_dot_foot_along_y;
-        let t367 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t112;
-        let t370 = minus_gfoot_vx_along_y * t367 + minus_gfoot_vz_along_y * t138;
-        let t371 = t370 * minus_rate_dot_foot_along_y;
-        let t374 = minus_s_foot_along_y * rate_dot_drive_along_y - 9.81 * c_foot_along_y;
-        let t379 = c_foot_along_y * t316
+        let t345 = t105 * t112;
+        let t348 = minus_gfoot_vx_along_y * t345 + minus_gfoot_vz_along_y * t115;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t322
+            + minus_gfoot_vz_along_y * t337;
+        let t352 = t348 * minus_rate_dot_foot_along_y;
+        let t355 = (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t112;
+        let t358 = minus_gfoot_vx_along_y * t355 + minus_gfoot_vz_along_y * t124;
+        let t359 = t358 * minus_rate_dot_foot_along_y;
+        let t362 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t112;
+        let t365 = minus_gfoot_vx_along_y * t362 + minus_gfoot_vz_along_y * t138;
+        let t366 = t365 * minus_rate_dot_foot_along_y;
+        let t369 = minus_s_foot_along_y * rate_dot_drive_along_y - 9.81 * c_foot_along_y;
+        let t374 = c_foot_along_y * t311
             + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
-        let t384 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
-        let t385 = t353 * t384;
-        let t390 = c_foot_along_y * minus_rate_dot_foot_along_y
-            - minus_s_foot_along_y * t316 - t363 * t384;
-        let t391 = t370 * t384;
-        let t392 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t393 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t394 = minus_rate_left_bar_along_y * t393;
-        let t395 = t392 + t394;
-        let t397 = 3.225806451612903 * t314;
-        let t398 = minus_rate_left_bar_along_y * t397;
-        let t399 = c_left_bar_along_y * t398;
-        let t400 = minus_s_left_bar_along_y * t395 + t399;
-        let t402 = minus_gleft_bar_vx_along_y * t350;
-        let t403 = t397 * t393;
-        let t404 = t402 * t403;
-        let t405 = t353 * t400 - t404;
-        let t406 = minus_gleft_bar_vx_along_y * t360;
-        let t407 = t406 * t403;
-        let t409 = t407 - t363 * t400;
-        let t411 = minus_gleft_bar_vx_along_y * t367;
-        let t412 = t411 * t403;
-        let t413 = t370 * t400 - t412;
-        let t414 = t394 + t395;
-        let t416 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t417 = t398 - t416;
-        let t418 = t398 + t417;
-        let t420 = c_left_bar_along_y * t414 - minus_s_left_bar_along_y * t418;
-        let t423 = 10.40582726326743 * (t314 * t314);
-        let t424 = t393 * t393;
-        let t425 = t423 - t424;
-        let t427 = t353 * t420 + t402 * t425;
-        let t430 = t363 * t420 + t406 * t425;
-        let t433 = t370 * t420 + t411 * t425;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t327;
-        let t435 = t403 + minus_rate_dot_left_bar_along_y;
-        let t437 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t440 = minus_s_left_bar_along_y * t435 + c_left_bar_along_y * (t437 - t423);
-        let t443 = t353 * t440 + t402 * t392;
-        let t446 = t363 * t440 + t406 * t392;
-        let t449 = t370 * t440 + t411 * t392;
-        let t451 = t399 + c_left_bar_along_y * t417;
-        let t453 = t404 - t353 * t451;
-        let t455 = t363 * t451 - t407;
-        let t457 = t412 - t370 * t451;
-        let t458 = 3.225806451612903 * acceleration[0];
-        let t461 = t353 * t458 + t402 * t416;
-        let t464 = t363 * t458 + t406 * t416;
-        let t467 = t370 * t458 + t411 * t416;
-        let t468 = t402 * minus_rate_dot_left_bar_along_y;
-        let t469 = t406 * minus_rate_dot_left_bar_along_y;
-        let t470 = t411 * minus_rate_dot_left_bar_along_y;
-        let t471 = c_left_bar_along_y * t374;
-        let t473 = minus_s_left_bar_along_y * t384;
-        let t475 = t353 * t471 + t402 * t473;
-        let t485 = minus_s_foot_along_y * t418 - (t69 * (t424 + t437) + t77 * t435)
-            + t363 * t471 + t406 * t473;
-        let t488 = t370 * t471 + t411 * t473;
-        let t489 = c_left_bar_along_y * t384;
-        let t491 = minus_s_left_bar_along_y * t374;
-        let t493 = t402 * t489 - t353 * t491;
-        let t504 = t69 * (minus_rate_dot_left_bar_along_y - t403) - t77 * (t423 + t437)
-            - minus_s_foot_along_y * t414 + t363 * t491 - t406 * t489;
-        let t507 = t411 * t489 - t370 * t491;
-        let t512 = t374 + 0.31 * t418 - 0.31 * t416;
+        let t379 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
+        let t380 = t348 * t379;
+        let t385 = c_foot_along_y * minus_rate_dot_foot_along_y
+            - minus_s_foot_along_y * t311 - t358 * t379;
+        let t386 = t365 * t379;
+        let t387 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t388 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t389 = minus_rate_left_bar_along_y * t388;
+        let t390 = t387 + t389;
+        let t392 = 3.225806451612903 * t309;
+        let t393 = minus_rate_left_bar_along_y * t392;
+        let t395 = minus_s_left_bar_along_y * t390 + c_left_bar_along_y * t393;
+        let t397 = minus_gleft_bar_vx_along_y * t345;
+        let t398 = t392 * t388;
+        let t400 = t348 * t395 - t397 * t398;
+        let t401 = minus_gleft_bar_vx_along_y * t355;
+        let t404 = t401 * t398 - t358 * t395;
+        let t406 = minus_gleft_bar_vx_along_y * t362;
+        let t408 = t365 * t395 - t406 * t398;
+        let t409 = t389 + t390;
+        let t411 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t413 = t393 + t393 - t411;
+        let t415 = c_left_bar_along_y * t409 - minus_s_left_bar_along_y * t413;
+        let t418 = 10.40582726326743 * (t309 * t309);
+        let t419 = t388 * t388;
+        let t420 = t418 - t419;
+        let t422 = t348 * t415 + t397 * t420;
+        let t425 = t358 * t415 + t401 * t420;
+        let t428 = t365 * t415 + t406 * t420;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t322;
+        let t430 = t398 + minus_rate_dot_left_bar_along_y;
+        let t432 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t435 = minus_s_left_bar_along_y * t430 + c_left_bar_along_y * (t432 - t418);
+        let t438 = t348 * t435 + t397 * t387;
+        let t441 = t358 * t435 + t401 * t387;
+        let t444 = t365 * t435 + t406 * t387;
+        let t445 = t352 - t400;
+        let t446 = t359 + t404;
+        let t447 = t366 - t408;
+        let t448 = 3.225806451612903 * acceleration[0];
+        let t451 = t348 * t448 + t397 * t411;
+        let t454 = t358 * t448 + t401 * t411;
+        let t457 = t365 * t448 + t406 * t411;
+        let t458 = t397 * minus_rate_dot_left_bar_along_y;
+        let t459 = t401 * minus_rate_dot_left_bar_along_y;
+        let t460 = t406 * minus_rate_dot_left_bar_along_y;
+        let t461 = c_left_bar_along_y * t369;
+        let t463 = minus_s_left_bar_along_y * t379;
+        let t465 = t348 * t461 + t397 * t463;
+        let t475 = minus_s_foot_along_y * t413 - (t69 * (t419 + t432) + t77 * t430)
+            + t358 * t461 + t401 * t463;
+        let t478 = t365 * t461 + t406 * t463;
+        let t479 = c_left_bar_along_y * t379;
+        let t481 = minus_s_left_bar_along_y * t369;
+        let t483 = t397 * t479 - t348 * t481;
+        let t494 = t69 * (minus_rate_dot_left_bar_along_y - t398) - t77 * (t418 + t432)
+            - minus_s_foot_along_y * t409 + t358 * t481 - t401 * t479;
+        let t497 = t406 * t479 - t365 * t481;
+        let t502 = t369 + 0.31 * t413 - 0.31 * t411;
         let minus_gleft_bar_vy_along_z = 3.225806451612903 * t97;
         let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t530 = c_foot_along_z * minus_rate_left_bar_along_z;
+        let t520 = c_foot_along_z * minus_rate_left_bar_along_z;
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let t535 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t537 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
-        let t539 = t530 * t530 + t535 + t537 * t537;
-        let t542 = pose[1] * (minus_rate_foot_along_z * t530);
-        let t545 = acceleration[0] + pose[0] * t539 + t542 + t542;
-        let t547 = pose[1] * minus_rate_foot_along_z;
-        let t548 = minus_rate_foot_along_z * t547;
-        let t551 = acceleration[1] - (t548 - pose[1] * t539);
-        let t555 = pose[1] * (minus_rate_foot_along_z * t537);
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t545 + gdrive_vy_along_z * t551
-            + acceleration[2] - (t555 - 0.31 * t90 * t539 + t555);
-        let t562 = 9.81 + rate_dot_drive_along_z;
+        let t525 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t527 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
+        let t529 = t520 * t520 + t525 + t527 * t527;
+        let t532 = pose[1] * (minus_rate_foot_along_z * t520);
+        let t535 = acceleration[0] + pose[0] * t529 + t532 + t532;
+        let t537 = pose[1] * minus_rate_foot_along_z;
+        let t538 = minus_rate_foot_along_z * t537;
+        let t541 = acceleration[1] - (t538 - pose[1] * t529);
+        let t545 = pose[1] * (minus_rate_foot_along_z * t527);
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t535 + gdrive_vy_along_z * t541
+            + acceleration[2] - (t545 - 0.31 * t90 * t529 + t545);
+        let t552 = 9.81 + rate_dot_drive_along_z;
         let rate_drive_along_z = gdrive_vx_along_z * twist[0]
             + gdrive_vy_along_z * twist[1] + twist[2];
-        let t570 = minus_gfoot_vy_along_z * t113 - minus_gfoot_vx_along_z * t350;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t545
-            + minus_gfoot_vy_along_z * t551;
-        let t574 = t570 * minus_rate_dot_foot_along_z;
-        let t577 = minus_gfoot_vx_along_z * t360 - minus_gfoot_vy_along_z * t128;
-        let t578 = t577 * minus_rate_dot_foot_along_z;
-        let t581 = minus_gfoot_vy_along_z * t134 - minus_gfoot_vx_along_z * t367;
-        let t582 = t581 * minus_rate_dot_foot_along_z;
-        let t583 = minus_s_foot_along_z * t562;
-        let t589 = c_foot_along_z * t535
+        let t560 = minus_gfoot_vy_along_z * t113 - minus_gfoot_vx_along_z * t345;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t535
+            + minus_gfoot_vy_along_z * t541;
+        let t564 = t560 * minus_rate_dot_foot_along_z;
+        let t567 = minus_gfoot_vx_along_z * t355 - minus_gfoot_vy_along_z * t128;
+        let t568 = t567 * minus_rate_dot_foot_along_z;
+        let t571 = minus_gfoot_vy_along_z * t134 - minus_gfoot_vx_along_z * t362;
+        let t572 = t571 * minus_rate_dot_foot_along_z;
+        let t573 = minus_s_foot_along_z * t552;
+        let t579 = c_foot_along_z * t525
             + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
-        let t591 = c_foot_along_z * t562;
-        let t592 = t570 * t591;
-        let t593 = t577 * t591;
-        let t598 = c_foot_along_z * minus_rate_dot_foot_along_z
-            - minus_s_foot_along_z * t535 - t581 * t591;
-        let t599 = minus_gleft_bar_vy_along_z * t113;
-        let t600 = 3.225806451612903 * t547;
-        let t601 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t602 = t600 * t601;
-        let t603 = t599 * t602;
-        let t604 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t605 = minus_rate_left_bar_along_z * t601;
-        let t606 = t604 + t605;
-        let t608 = minus_rate_left_bar_along_z * t600;
-        let t609 = c_left_bar_along_z * t608;
-        let t610 = minus_s_left_bar_along_z * t606 + t609;
-        let t612 = t603 - t570 * t610;
-        let t614 = minus_gleft_bar_vy_along_z * t128;
-        let t615 = t614 * t602;
-        let t616 = t577 * t610 + t615;
-        let t617 = minus_gleft_bar_vy_along_z * t134;
-        let t618 = t617 * t602;
-        let t620 = t618 - t581 * t610;
-        let t621 = t605 + t606;
-        let t623 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t624 = t608 - t623;
-        let t625 = t608 + t624;
-        let t627 = c_left_bar_along_z * t621 - minus_s_left_bar_along_z * t625;
-        let t630 = 10.40582726326743 * (t547 * t547);
-        let t631 = t601 * t601;
-        let t632 = t630 - t631;
-        let t634 = t570 * t627 + t599 * t632;
-        let t637 = t577 * t627 - t614 * t632;
-        let t640 = t581 * t627 + t617 * t632;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t551;
-        let t642 = t602 + minus_rate_dot_left_bar_along_z;
-        let t644 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t647 = minus_s_left_bar_along_z * t642 + c_left_bar_along_z * (t644 - t630);
-        let t650 = t570 * t647 + t599 * t604;
-        let t653 = t577 * t647 - t614 * t604;
-        let t656 = t581 * t647 + t617 * t604;
-        let t658 = t609 + c_left_bar_along_z * t624;
-        let t660 = t570 * t658 - t603;
-        let t662 = t577 * t658 + t615;
-        let t664 = t581 * t658 - t618;
-        let t665 = 3.225806451612903 * acceleration[1];
-        let t668 = t570 * t665 + t599 * t623;
-        let t671 = t614 * t623 - t577 * t665;
-        let t674 = t581 * t665 + t617 * t623;
-        let t675 = t599 * minus_rate_dot_left_bar_along_z;
-        let t676 = t614 * minus_rate_dot_left_bar_along_z;
-        let t677 = t617 * minus_rate_dot_left_bar_along_z;
-        let t678 = c_left_bar_along_z * t583;
-        let t680 = minus_s_left_bar_along_z * t591;
-        let t682 = t570 * t678 + t599 * t680;
-        let t685 = t577 * t678 - t614 * t680;
-        let t695 = minus_s_foot_along_z * t625 - (t90 * (t631 + t644) + t101 * t642)
-            + t581 * t678 + t617 * t680;
-        let t696 = minus_s_left_bar_along_z * t583;
-        let t698 = c_left_bar_along_z * t591;
-        let t700 = t570 * t696 - t599 * t698;
-        let t703 = t577 * t696 + t614 * t698;
-        let t714 = t90 * (minus_rate_dot_left_bar_along_z - t602) - t101 * (t630 + t644)
-            - minus_s_foot_along_z * t621 + t581 * t696 - t617 * t698;
-        let t718 = t583 + 0.31 * t625 - 0.31 * t623;
+        let t581 = c_foot_along_z * t552;
+        let t582 = t560 * t581;
+        let t583 = t567 * t581;
+        let t588 = c_foot_along_z * minus_rate_dot_foot_along_z
+            - minus_s_foot_along_z * t525 - t571 * t581;
+        let t589 = minus_gleft_bar_vy_along_z * t113;
+        let t590 = 3.225806451612903 * t537;
+        let t591 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t592 = t590 * t591;
+        let t594 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t595 = minus_rate_left_bar_along_z * t591;
+        let t596 = t594 + t595;
+        let t598 = minus_rate_left_bar_along_z * t590;
+        let t600 = minus_s_left_bar_along_z * t596 + c_left_bar_along_z * t598;
+        let t602 = t589 * t592 - t560 * t600;
+        let t604 = minus_gleft_bar_vy_along_z * t128;
+        let t606 = t567 * t600 + t604 * t592;
+        let t607 = minus_gleft_bar_vy_along_z * t134;
+        let t610 = t607 * t592 - t571 * t600;
+        let t611 = t595 + t596;
+        let t613 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t615 = t598 + t598 - t613;
+        let t617 = c_left_bar_along_z * t611 - minus_s_left_bar_along_z * t615;
+        let t620 = 10.40582726326743 * (t537 * t537);
+        let t621 = t591 * t591;
+        let t622 = t620 - t621;
+        let t624 = t560 * t617 + t589 * t622;
+        let t627 = t567 * t617 - t604 * t622;
+        let t630 = t571 * t617 + t607 * t622;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t541;
+        let t632 = t592 + minus_rate_dot_left_bar_along_z;
+        let t634 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t637 = minus_s_left_bar_along_z * t632 + c_left_bar_along_z * (t634 - t620);
+        let t640 = t560 * t637 + t589 * t594;
+        let t643 = t567 * t637 - t604 * t594;
+        let t646 = t571 * t637 + t607 * t594;
+        let t647 = t564 + t602;
+        let t648 = t606 - t568;
+        let t649 = t572 + t610;
+        let t650 = 3.225806451612903 * acceleration[1];
+        let t653 = t560 * t650 + t589 * t613;
+        let t656 = t604 * t613 - t567 * t650;
+        let t659 = t571 * t650 + t607 * t613;
+        let t660 = t589 * minus_rate_dot_left_bar_along_z;
+        let t661 = t604 * minus_rate_dot_left_bar_along_z;
+        let t662 = t607 * minus_rate_dot_left_bar_along_z;
+        let t663 = c_left_bar_along_z * t573;
+        let t665 = minus_s_left_bar_along_z * t581;
+        let t667 = t560 * t663 + t589 * t665;
+        let t670 = t567 * t663 - t604 * t665;
+        let t680 = minus_s_foot_along_z * t615 - (t90 * (t621 + t634) + t101 * t632)
+            + t571 * t663 + t607 * t665;
+        let t681 = minus_s_left_bar_along_z * t573;
+        let t683 = c_left_bar_along_z * t581;
+        let t685 = t560 * t681 - t589 * t683;
+        let t688 = t567 * t681 + t604 * t683;
+        let t699 = t90 * (minus_rate_dot_left_bar_along_z - t592) - t101 * (t620 + t634)
+            - minus_s_foot_along_z * t611 + t571 * t681 - t607 * t683;
+        let t703 = t573 + 0.31 * t615 - 0.31 * t613;
         Ok([
             [
                 rate_dot_drive_along_x, rate_dot_drive_along_x, rate_drive_along_x,
                 ::overact::math::sign(rate_drive_along_x), 1.0, -t121, t117 * t142 - t146, t155,
-                rate_dot_drive_along_x, -t171, t193, t208, t218, t226, t233, t249, t270, -t155,
-                rate_dot_drive_along_x, -t171, t193, t208, t218, t226, t233, t249, t270, -t155,
-                rate_dot_drive_along_x, -t121, t117 * t280 - t146 + t168 * t49,
-                -(t155 + 0.31 * t208), t304, 0.0, 0.0, 0.0, 0.0, 0.0, t357, -(t353 * t374), t385,
-                0.0, t405, -t427, -t443, t453, t461, t468, -t475, t493, -t385, 0.0, t405, -t427,
-                -t443, t453, t461, t468, -t475, t493, -t385, 0.0, t357, t402 * t315 - t353 * t512,
-                -(t385 - 0.31 * t443), t304, 0.0, 0.0, 0.0, 0.0, 0.0, -t574, t570 * t583, -t592,
-                0.0, t612, t634, t650, t660, -t668, -t675, t682, t700, t592, 0.0, t612, t634, t650,
-                t660, -t668, -t675, t682, t700, t592, 0.0, -t574, t570 * t718 - t599 * t548,
-                -(0.31 * t650 - t592), t304, t304,
+                rate_dot_drive_along_x, -t171, t193, t208, t215, t221, t228, t244, t265, -t155,
+                rate_dot_drive_along_x, -t171, t193, t208, t215, t221, t228, t244, t265, -t155,
+                rate_dot_drive_along_x, -t121, t117 * t275 - t146 + t168 * t49,
+                -(t155 + 0.31 * t208), t299, 0.0, 0.0, 0.0, 0.0, 0.0, t352, -(t348 * t369), t380,
+                0.0, t400, -t422, -t438, t445, t451, t458, -t465, t483, -t380, 0.0, t400, -t422,
+                -t438, t445, t451, t458, -t465, t483, -t380, 0.0, t352, t397 * t310 - t348 * t502,
+                -(t380 - 0.31 * t438), t299, 0.0, 0.0, 0.0, 0.0, 0.0, -t564, t560 * t573, -t582,
+                0.0, t602, t624, t640, -t647, -t653, -t660, t667, t685, t582, 0.0, t602, t624, t640,
+                -t647, -t653, -t660, t667, t685, t582, 0.0, -t564, t560 * t703 - t589 * t538,
+                -(0.31 * t640 - t582), t299, t299,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t131, t130 * t142, -t156, 0.0, t175, t196, t211, t220,
-                -t229, -t234, t252, t273, t156, 0.0, t175, t196, t211, t220, -t229, -t234, t252,
-                t273, t156, 0.0, -t131, t130 * t280 - t172 * t49, -(0.31 * t211 - t156), t307,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t131, t130 * t142, -t156, 0.0, t175, t196, t211, -t216,
+                -t224, -t229, t247, t268, t156, 0.0, t175, t196, t211, -t216, -t224, -t229, t247,
+                t268, t156, 0.0, -t131, t130 * t275 - t172 * t49, -(0.31 * t211 - t156), t302,
                 rate_dot_drive_along_y, rate_dot_drive_along_y, rate_drive_along_y,
-                ::overact::math::sign(rate_drive_along_y), 1.0, -t364, t363 * t374 - t379, t390,
-                rate_dot_drive_along_y, t409, t430, t446, t455, -t464, -t469, t485, t504, -t390,
-                rate_dot_drive_along_y, t409, t430, t446, t455, -t464, -t469, t485, t504, -t390,
-                rate_dot_drive_along_y, -t364, t363 * t512 - t379 - t406 * t315,
-                -(t390 + 0.31 * t446), t307, 0.0, 0.0, 0.0, 0.0, 0.0, -t578, t577 * t583, -t593,
-                0.0, -t616, t637, t653, t662, t671, t676, t685, t703, t593, 0.0, -t616, t637, t653,
-                t662, t671, t676, t685, t703, t593, 0.0, -t578, t577 * t718 + t614 * t548,
-                -(0.31 * t653 - t593), t307, t307,
+                ::overact::math::sign(rate_drive_along_y), 1.0, -t359, t358 * t369 - t374, t385,
+                rate_dot_drive_along_y, t404, t425, t441, -t446, -t454, -t459, t475, t494, -t385,
+                rate_dot_drive_along_y, t404, t425, t441, -t446, -t454, -t459, t475, t494, -t385,
+                rate_dot_drive_along_y, -t359, t358 * t502 - t374 - t401 * t310,
+                -(t385 + 0.31 * t441), t302, 0.0, 0.0, 0.0, 0.0, 0.0, -t568, t567 * t573, -t583,
+                0.0, -t606, t627, t643, t648, t656, t661, t670, t688, t583, 0.0, -t606, t627, t643,
+                t648, t656, t661, t670, t688, t583, 0.0, -t568, t567 * t703 + t604 * t538,
+                -(0.31 * t643 - t583), t302, t302,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t141, t140 * t142, -t157, 0.0, -t179, t199, t214, t222,
-                t232, t235, t255, t276, t157, 0.0, -t179, t199, t214, t222, t232, t235, t255, t276,
-                t157, 0.0, -t141, t140 * t280 + t177 * t49, -(0.31 * t214 - t157), t310, 0.0, 0.0,
-                0.0, 0.0, 0.0, t371, -(t370 * t374), t391, 0.0, t413, -t433, -t449, t457, t467,
-                t470, -t488, t507, -t391, 0.0, t413, -t433, -t449, t457, t467, t470, -t488, t507,
-                -t391, 0.0, t371, t411 * t315 - t370 * t512, -(t391 - 0.31 * t449), t310, t562,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t141, t140 * t142, -t157, 0.0, -t179, t199, t214, t217,
+                t227, t230, t250, t271, t157, 0.0, -t179, t199, t214, t217, t227, t230, t250, t271,
+                t157, 0.0, -t141, t140 * t275 + t177 * t49, -(0.31 * t214 - t157), t305, 0.0, 0.0,
+                0.0, 0.0, 0.0, t366, -(t365 * t369), t386, 0.0, t408, -t428, -t444, t447, t457,
+                t460, -t478, t497, -t386, 0.0, t408, -t428, -t444, t447, t457, t460, -t478, t497,
+                -t386, 0.0, t366, t406 * t310 - t365 * t502, -(t386 - 0.31 * t444), t305, t552,
                 rate_dot_drive_along_z, rate_drive_along_z,
-                ::overact::math::sign(rate_drive_along_z), 1.0, -t582, t581 * t583 - t589, t598,
-                t562, t620, t640, t656, t664, -t674, -t677, t695, t714, -t598, t562, t620, t640,
-                t656, t664, -t674, -t677, t695, t714, -t598, t562, -t582,
-                t581 * t718 - t589 - t617 * t548, -(t598 + 0.31 * t656), t310, t310,
+                ::overact::math::sign(rate_drive_along_z), 1.0, -t572, t571 * t573 - t579, t588,
+                t552, t610, t630, t646, -t649, -t659, -t662, t680, t699, -t588, t552, t610, t630,
+                t646, -t649, -t659, -t662, t680, t699, -t588, t552, -t572,
+                t571 * t703 - t579 - t607 * t538, -(t588 + 0.31 * t646), t305, t305,
             ],
         ])
     }
@@ -3159,7 +3079,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 715 operations (243 additions, 465 multiplications, 7 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 600 intermediates.
+    /// 700 operations (240 additions, 453 multiplications, 7 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 585 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3169,12 +3089,16 @@ impl Orthoglide {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 100]; 3], ::overact::Error> {
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
+        let [(s_left_bar_along_x, c_left_bar_along_x),
+        (minus_c_foot_along_x, s_foot_along_x), (minus_c_foot_along_y, s_foot_along_y),
+        (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_z, s_foot_along_z),
+        (s_left_bar_along_z, c_left_bar_along_z)] = ::overact::math::sin_cos_all([
+            joints[2], joints[1], joints[5], joints[6], joints[9], joints[10],
+        ]);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
+        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
         let t2 = 0.31 * s_left_bar_along_x;
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
         let t5 = s_foot_along_x * c_left_bar_along_x;
         ::overact::guard::leg(t5, 1.0, "along_x")?;
         let t6 = 1.0 / t5;
@@ -3206,11 +3130,6 @@ impl Orthoglide {
             - minus_gdrive_vy_along_x * t39 - minus_gdrive_vz_along_x * t50;
         let rate_drive_along_x = twist[0] - minus_gdrive_vy_along_x * twist[1]
             - minus_gdrive_vz_along_x * twist[2];
-        let (minus_c_foot_along_y, s_foot_along_y) = ::overact::math::sin_cos(joints[5]);
-        let (s_left_bar_along_y, c_left_bar_along_y) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
         let t62 = minus_c_foot_along_y * c_left_bar_along_y;
         let t63 = 0.31 * t62;
         let t64 = s_foot_along_y * c_left_bar_along_y;
@@ -3223,11 +3142,6 @@ impl Orthoglide {
         let t72 = s_foot_along_y * s_left_bar_along_y;
         let minus_gdrive_vx_along_y = t63 * minus_gfoot_vx_along_y + t72 * t68;
         let minus_gdrive_vz_along_y = t62 * t65;
-        let (minus_c_foot_along_z, s_foot_along_z) = ::overact::math::sin_cos(joints[9]);
-        let (s_left_bar_along_z, c_left_bar_along_z) = ::overact::math::sin_cos(
-            joints[10],
-        );
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
         let t80 = minus_c_foot_along_z * c_left_bar_along_z;
         let t81 = s_foot_along_z * c_left_bar_along_z;
         ::overact::guard::leg(t81, 1.0, "along_z")?;
@@ -3278,24 +3192,19 @@ impl Orthoglide {
         let t151 = 3.225806451612903 * t47;
         let t152 = c_left_bar_along_x * minus_rate_foot_along_x;
         let t153 = t151 * t152;
-        let t154 = t150 * t153;
         let t155 = minus_rate_left_bar_along_x * t152;
         let t156 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
         let t157 = t155 - t156;
         let t159 = minus_rate_left_bar_along_x * t151;
-        let t160 = c_left_bar_along_x * t159;
-        let t161 = s_left_bar_along_x * t157 + t160;
-        let t163 = t154 - t109 * t161;
+        let t161 = s_left_bar_along_x * t157 + c_left_bar_along_x * t159;
+        let t163 = t150 * t153 - t109 * t161;
         let t164 = minus_gleft_bar_vz_along_x * t120;
-        let t165 = t164 * t153;
-        let t167 = t165 - t122 * t161;
+        let t167 = t164 * t153 - t122 * t161;
         let t168 = minus_gleft_bar_vz_along_x * t130;
-        let t169 = t168 * t153;
-        let t171 = t169 - t132 * t161;
+        let t171 = t168 * t153 - t132 * t161;
         let t172 = t155 + t157;
         let t174 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t175 = t174 + t159;
-        let t176 = t159 + t175;
+        let t176 = t159 + t174 + t159;
         let t178 = c_left_bar_along_x * t172 - s_left_bar_along_x * t176;
         let t181 = 10.40582726326743 * (t47 * t47);
         let t182 = t152 * t152;
@@ -3309,273 +3218,260 @@ impl Orthoglide {
         let t200 = t150 * t156 - t109 * t198;
         let t203 = t164 * t156 - t122 * t198;
         let t206 = t168 * t156 - t132 * t198;
-        let t208 = t160 + c_left_bar_along_x * t175;
-        let t210 = t109 * t208 - t154;
-        let t212 = t122 * t208 - t165;
-        let t214 = t132 * t208 - t169;
-        let t215 = 3.225806451612903 * acceleration[2];
-        let t218 = t109 * t215 + t150 * t174;
-        let t221 = t122 * t215 + t164 * t174;
-        let t224 = t132 * t215 + t168 * t174;
-        let t225 = t150 * minus_rate_dot_left_bar_along_x;
-        let t226 = t164 * minus_rate_dot_left_bar_along_x;
-        let t227 = t168 * minus_rate_dot_left_bar_along_x;
-        let t234 = c_left_bar_along_x * t137;
-        let t239 = s_left_bar_along_x * t145 + 9.81 * c_left_bar_along_x;
-        let t241 = minus_c_foot_along_x * t176 - (t5 * (t182 + t24) + t43 * t194)
-            + t109 * t234 + t150 * t239;
-        let t244 = t122 * t234 + t164 * t239;
-        let t247 = t132 * t234 + t168 * t239;
-        let t255 = s_left_bar_along_x * t137;
-        let t260 = c_left_bar_along_x * t145 - 9.81 * s_left_bar_along_x;
-        let t262 = t5 * (t153 + minus_rate_dot_left_bar_along_x) + t43 * (t181 + t24)
-            + minus_c_foot_along_x * t172 - t109 * t255 + t150 * t260;
-        let t265 = t164 * t260 - t122 * t255;
-        let t268 = t168 * t260 - t132 * t255;
-        let t271 = t137 + 0.31 * t176;
-        let t272 = 0.31 * t174 + t271;
-        let t290 = 0.31 * c_left_bar_along_x * t271;
-        let t295 = 0.31 * (0.31 * t194 - t239);
-        let t297 = acceleration[0] + t109 * t290 - t150 * t295;
-        let t300 = t122 * t290 - t164 * t295;
-        let t303 = t132 * t290 - t168 * t295;
-        let t304 = 0.31 * s_left_bar_along_y;
+        let t207 = t113 - t163;
+        let t208 = t123 - t167;
+        let t209 = t133 - t171;
+        let t210 = 3.225806451612903 * acceleration[2];
+        let t213 = t109 * t210 + t150 * t174;
+        let t216 = t122 * t210 + t164 * t174;
+        let t219 = t132 * t210 + t168 * t174;
+        let t220 = t150 * minus_rate_dot_left_bar_along_x;
+        let t221 = t164 * minus_rate_dot_left_bar_along_x;
+        let t222 = t168 * minus_rate_dot_left_bar_along_x;
+        let t229 = c_left_bar_along_x * t137;
+        let t234 = s_left_bar_along_x * t145 + 9.81 * c_left_bar_along_x;
+        let t236 = minus_c_foot_along_x * t176 - (t5 * (t182 + t24) + t43 * t194)
+            + t109 * t229 + t150 * t234;
+        let t239 = t122 * t229 + t164 * t234;
+        let t242 = t132 * t229 + t168 * t234;
+        let t250 = s_left_bar_along_x * t137;
+        let t255 = c_left_bar_along_x * t145 - 9.81 * s_left_bar_along_x;
+        let t257 = t5 * (t153 + minus_rate_dot_left_bar_along_x) + t43 * (t181 + t24)
+            + minus_c_foot_along_x * t172 - t109 * t250 + t150 * t255;
+        let t260 = t164 * t255 - t122 * t250;
+        let t263 = t168 * t255 - t132 * t250;
+        let t266 = t137 + 0.31 * t176;
+        let t267 = 0.31 * t174 + t266;
+        let t285 = 0.31 * c_left_bar_along_x * t266;
+        let t290 = 0.31 * (0.31 * t194 - t234);
+        let t292 = acceleration[0] + t109 * t285 - t150 * t290;
+        let t295 = t122 * t285 - t164 * t290;
+        let t298 = t132 * t285 - t168 * t290;
+        let t299 = 0.31 * s_left_bar_along_y;
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
         let minus_gleft_bar_vx_along_y = 3.225806451612903 * t68;
         let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t310 = minus_c_foot_along_y * minus_rate_left_bar_along_y;
-        let t312 = t304 * (minus_rate_foot_along_y * t310);
-        let t314 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let t317 = s_foot_along_y * minus_rate_left_bar_along_y;
-        let t319 = t314 + t310 * t310 + t317 * t317;
-        let t325 = t304 * minus_rate_foot_along_y;
-        let t326 = minus_rate_foot_along_y * t325;
-        let t328 = acceleration[0] - (t304 * t319 - t326);
-        let t333 = t304 * (minus_rate_foot_along_y * t317);
-        let t336 = acceleration[2] - (t63 * t319 + t333 + t333);
-        let rate_dot_drive_along_y = acceleration[1] - (t312 - 0.31 * t64 * t319 + t312)
-            - minus_gdrive_vx_along_y * t328 - minus_gdrive_vz_along_y * t336;
+        let t305 = minus_c_foot_along_y * minus_rate_left_bar_along_y;
+        let t307 = t299 * (minus_rate_foot_along_y * t305);
+        let t309 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t312 = s_foot_along_y * minus_rate_left_bar_along_y;
+        let t314 = t309 + t305 * t305 + t312 * t312;
+        let t320 = t299 * minus_rate_foot_along_y;
+        let t321 = minus_rate_foot_along_y * t320;
+        let t323 = acceleration[0] - (t299 * t314 - t321);
+        let t328 = t299 * (minus_rate_foot_along_y * t312);
+        let t331 = acceleration[2] - (t63 * t314 + t328 + t328);
+        let rate_dot_drive_along_y = acceleration[1] - (t307 - 0.31 * t64 * t314 + t307)
+            - minus_gdrive_vx_along_y * t323 - minus_gdrive_vz_along_y * t331;
         let rate_drive_along_y = twist[1] - minus_gdrive_vx_along_y * twist[0]
             - minus_gdrive_vz_along_y * twist[2];
-        let t344 = t97 * t104;
-        let t347 = minus_gfoot_vx_along_y * t344 + minus_gfoot_vz_along_y * t107;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t328
-            + minus_gfoot_vz_along_y * t336;
-        let t351 = t347 * minus_rate_dot_foot_along_y;
-        let t354 = (minus_gdrive_vy_along_x
+        let t339 = t97 * t104;
+        let t342 = minus_gfoot_vx_along_y * t339 + minus_gfoot_vz_along_y * t107;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t323
+            + minus_gfoot_vz_along_y * t331;
+        let t346 = t342 * minus_rate_dot_foot_along_y;
+        let t349 = (minus_gdrive_vy_along_x
             + minus_gdrive_vz_along_x * minus_gdrive_vy_along_z) * t104;
-        let t357 = minus_gfoot_vx_along_y * t354 + minus_gfoot_vz_along_y * t120;
-        let t358 = t357 * minus_rate_dot_foot_along_y;
-        let t361 = (minus_gdrive_vy_along_x * minus_gdrive_vz_along_y
+        let t352 = minus_gfoot_vx_along_y * t349 + minus_gfoot_vz_along_y * t120;
+        let t353 = t352 * minus_rate_dot_foot_along_y;
+        let t356 = (minus_gdrive_vy_along_x * minus_gdrive_vz_along_y
             + minus_gdrive_vz_along_x) * t104;
-        let t364 = minus_gfoot_vx_along_y * t361 + minus_gfoot_vz_along_y * t130;
-        let t365 = t364 * minus_rate_dot_foot_along_y;
-        let t368 = 9.81 * s_foot_along_y + minus_c_foot_along_y * rate_dot_drive_along_y;
-        let t372 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
-            - s_foot_along_y * t314;
-        let t378 = s_foot_along_y * rate_dot_drive_along_y - 9.81 * minus_c_foot_along_y;
-        let t379 = t347 * t378;
-        let t384 = s_foot_along_y * minus_rate_dot_foot_along_y
-            + minus_c_foot_along_y * t314 + t357 * t378;
-        let t385 = t364 * t378;
-        let t386 = minus_gleft_bar_vx_along_y * t344;
-        let t387 = 3.225806451612903 * t325;
-        let t388 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t389 = t387 * t388;
-        let t390 = t386 * t389;
-        let t391 = minus_rate_left_bar_along_y * t388;
-        let t392 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t393 = t391 - t392;
-        let t395 = minus_rate_left_bar_along_y * t387;
-        let t396 = c_left_bar_along_y * t395;
-        let t397 = s_left_bar_along_y * t393 + t396;
-        let t399 = t390 - t347 * t397;
-        let t400 = minus_gleft_bar_vx_along_y * t354;
-        let t401 = t400 * t389;
-        let t403 = t401 - t357 * t397;
-        let t404 = minus_gleft_bar_vx_along_y * t361;
-        let t405 = t404 * t389;
-        let t407 = t405 - t364 * t397;
-        let t408 = t391 + t393;
-        let t410 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t411 = t410 + t395;
-        let t412 = t395 + t411;
-        let t414 = c_left_bar_along_y * t408 - s_left_bar_along_y * t412;
-        let t417 = 10.40582726326743 * (t325 * t325);
-        let t418 = t388 * t388;
-        let t419 = t417 - t418;
-        let t421 = t347 * t414 + t386 * t419;
-        let t424 = t357 * t414 + t400 * t419;
-        let t427 = t364 * t414 + t404 * t419;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t328;
-        let t430 = t389 - minus_rate_dot_left_bar_along_y;
-        let t432 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t435 = s_left_bar_along_y * t430 + c_left_bar_along_y * (t432 - t417);
-        let t437 = t386 * t392 - t347 * t435;
-        let t440 = t400 * t392 - t357 * t435;
-        let t443 = t404 * t392 - t364 * t435;
-        let t445 = t396 + c_left_bar_along_y * t411;
-        let t447 = t347 * t445 - t390;
-        let t449 = t357 * t445 - t401;
-        let t451 = t364 * t445 - t405;
-        let t452 = 3.225806451612903 * acceleration[0];
-        let t455 = t347 * t452 + t386 * t410;
-        let t458 = t357 * t452 + t400 * t410;
-        let t461 = t364 * t452 + t404 * t410;
-        let t462 = t386 * minus_rate_dot_left_bar_along_y;
-        let t463 = t400 * minus_rate_dot_left_bar_along_y;
-        let t464 = t404 * minus_rate_dot_left_bar_along_y;
-        let t465 = c_left_bar_along_y * t368;
-        let t467 = s_left_bar_along_y * t378;
-        let t469 = t347 * t465 + t386 * t467;
-        let t479 = minus_c_foot_along_y * t412 - (t64 * (t418 + t432) + t72 * t430)
-            + t357 * t465 + t400 * t467;
-        let t482 = t364 * t465 + t404 * t467;
-        let t483 = c_left_bar_along_y * t378;
-        let t485 = s_left_bar_along_y * t368;
-        let t487 = t386 * t483 - t347 * t485;
-        let t498 = t64 * (t389 + minus_rate_dot_left_bar_along_y) + t72 * (t417 + t432)
-            + minus_c_foot_along_y * t408 - t357 * t485 + t400 * t483;
-        let t501 = t404 * t483 - t364 * t485;
-        let t505 = 0.31 * t410 + t368 + 0.31 * t412;
-        let t522 = 0.31 * s_left_bar_along_z;
+        let t359 = minus_gfoot_vx_along_y * t356 + minus_gfoot_vz_along_y * t130;
+        let t360 = t359 * minus_rate_dot_foot_along_y;
+        let t363 = 9.81 * s_foot_along_y + minus_c_foot_along_y * rate_dot_drive_along_y;
+        let t367 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
+            - s_foot_along_y * t309;
+        let t373 = s_foot_along_y * rate_dot_drive_along_y - 9.81 * minus_c_foot_along_y;
+        let t374 = t342 * t373;
+        let t379 = s_foot_along_y * minus_rate_dot_foot_along_y
+            + minus_c_foot_along_y * t309 + t352 * t373;
+        let t380 = t359 * t373;
+        let t381 = minus_gleft_bar_vx_along_y * t339;
+        let t382 = 3.225806451612903 * t320;
+        let t383 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t384 = t382 * t383;
+        let t386 = minus_rate_left_bar_along_y * t383;
+        let t387 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t388 = t386 - t387;
+        let t390 = minus_rate_left_bar_along_y * t382;
+        let t392 = s_left_bar_along_y * t388 + c_left_bar_along_y * t390;
+        let t394 = t381 * t384 - t342 * t392;
+        let t395 = minus_gleft_bar_vx_along_y * t349;
+        let t398 = t395 * t384 - t352 * t392;
+        let t399 = minus_gleft_bar_vx_along_y * t356;
+        let t402 = t399 * t384 - t359 * t392;
+        let t403 = t386 + t388;
+        let t405 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t407 = t390 + t405 + t390;
+        let t409 = c_left_bar_along_y * t403 - s_left_bar_along_y * t407;
+        let t412 = 10.40582726326743 * (t320 * t320);
+        let t413 = t383 * t383;
+        let t414 = t412 - t413;
+        let t416 = t342 * t409 + t381 * t414;
+        let t419 = t352 * t409 + t395 * t414;
+        let t422 = t359 * t409 + t399 * t414;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t323;
+        let t425 = t384 - minus_rate_dot_left_bar_along_y;
+        let t427 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t430 = s_left_bar_along_y * t425 + c_left_bar_along_y * (t427 - t412);
+        let t432 = t381 * t387 - t342 * t430;
+        let t435 = t395 * t387 - t352 * t430;
+        let t438 = t399 * t387 - t359 * t430;
+        let t439 = t346 - t394;
+        let t440 = t353 - t398;
+        let t441 = t360 - t402;
+        let t442 = 3.225806451612903 * acceleration[0];
+        let t445 = t342 * t442 + t381 * t405;
+        let t448 = t352 * t442 + t395 * t405;
+        let t451 = t359 * t442 + t399 * t405;
+        let t452 = t381 * minus_rate_dot_left_bar_along_y;
+        let t453 = t395 * minus_rate_dot_left_bar_along_y;
+        let t454 = t399 * minus_rate_dot_left_bar_along_y;
+        let t455 = c_left_bar_along_y * t363;
+        let t457 = s_left_bar_along_y * t373;
+        let t459 = t342 * t455 + t381 * t457;
+        let t469 = minus_c_foot_along_y * t407 - (t64 * (t413 + t427) + t72 * t425)
+            + t352 * t455 + t395 * t457;
+        let t472 = t359 * t455 + t399 * t457;
+        let t473 = c_left_bar_along_y * t373;
+        let t475 = s_left_bar_along_y * t363;
+        let t477 = t381 * t473 - t342 * t475;
+        let t488 = t64 * (t384 + minus_rate_dot_left_bar_along_y) + t72 * (t412 + t427)
+            + minus_c_foot_along_y * t403 - t352 * t475 + t395 * t473;
+        let t491 = t399 * t473 - t359 * t475;
+        let t495 = 0.31 * t405 + t363 + 0.31 * t407;
+        let t512 = 0.31 * s_left_bar_along_z;
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
         let minus_gleft_bar_vy_along_z = 3.225806451612903 * t89;
         let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t528 = minus_c_foot_along_z * minus_rate_left_bar_along_z;
-        let t530 = t522 * (minus_rate_foot_along_z * t528);
-        let t532 = s_foot_along_z * minus_rate_left_bar_along_z;
-        let t534 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t537 = t532 * t532 + t534 + t528 * t528;
-        let t544 = t522 * (minus_rate_foot_along_z * t532);
-        let t547 = acceleration[0] - (t86 * t537 + t544 + t544);
-        let t550 = t522 * minus_rate_foot_along_z;
-        let t551 = minus_rate_foot_along_z * t550;
-        let t553 = acceleration[1] - (t522 * t537 - t551);
-        let rate_dot_drive_along_z = acceleration[2] - (t530 - 0.31 * t81 * t537 + t530)
-            - (minus_gdrive_vx_along_z * t547 + minus_gdrive_vy_along_z * t553);
-        let t557 = 9.81 + rate_dot_drive_along_z;
+        let t518 = minus_c_foot_along_z * minus_rate_left_bar_along_z;
+        let t520 = t512 * (minus_rate_foot_along_z * t518);
+        let t522 = s_foot_along_z * minus_rate_left_bar_along_z;
+        let t524 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t527 = t522 * t522 + t524 + t518 * t518;
+        let t534 = t512 * (minus_rate_foot_along_z * t522);
+        let t537 = acceleration[0] - (t86 * t527 + t534 + t534);
+        let t540 = t512 * minus_rate_foot_along_z;
+        let t541 = minus_rate_foot_along_z * t540;
+        let t543 = acceleration[1] - (t512 * t527 - t541);
+        let rate_dot_drive_along_z = acceleration[2] - (t520 - 0.31 * t81 * t527 + t520)
+            - (minus_gdrive_vx_along_z * t537 + minus_gdrive_vy_along_z * t543);
+        let t547 = 9.81 + rate_dot_drive_along_z;
         let rate_drive_along_z = twist[2]
             - (minus_gdrive_vx_along_z * twist[0] + minus_gdrive_vy_along_z * twist[1]);
-        let t565 = minus_gfoot_vx_along_z * t344 + minus_gfoot_vy_along_z * t105;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t547
-            + minus_gfoot_vy_along_z * t553;
-        let t569 = t565 * minus_rate_dot_foot_along_z;
-        let t572 = minus_gfoot_vx_along_z * t354 + minus_gfoot_vy_along_z * t116;
-        let t573 = t572 * minus_rate_dot_foot_along_z;
-        let t576 = minus_gfoot_vx_along_z * t361 + minus_gfoot_vy_along_z * t126;
-        let t577 = t576 * minus_rate_dot_foot_along_z;
-        let t578 = minus_c_foot_along_z * t557;
-        let t583 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
-            - s_foot_along_z * t534;
-        let t586 = s_foot_along_z * t557;
-        let t587 = t565 * t586;
-        let t588 = t572 * t586;
-        let t593 = s_foot_along_z * minus_rate_dot_foot_along_z
-            + minus_c_foot_along_z * t534 + t576 * t586;
-        let t594 = minus_gleft_bar_vy_along_z * t105;
-        let t595 = 3.225806451612903 * t550;
-        let t596 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t597 = t595 * t596;
-        let t598 = t594 * t597;
-        let t599 = minus_rate_left_bar_along_z * t596;
-        let t600 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t601 = t599 - t600;
-        let t603 = minus_rate_left_bar_along_z * t595;
-        let t604 = c_left_bar_along_z * t603;
-        let t605 = s_left_bar_along_z * t601 + t604;
-        let t607 = t598 - t565 * t605;
-        let t608 = minus_gleft_bar_vy_along_z * t116;
-        let t609 = t608 * t597;
-        let t611 = t609 - t572 * t605;
-        let t612 = minus_gleft_bar_vy_along_z * t126;
-        let t613 = t612 * t597;
-        let t615 = t613 - t576 * t605;
-        let t616 = t599 + t601;
-        let t618 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t619 = t618 + t603;
-        let t620 = t603 + t619;
-        let t622 = c_left_bar_along_z * t616 - s_left_bar_along_z * t620;
-        let t625 = 10.40582726326743 * (t550 * t550);
-        let t626 = t596 * t596;
-        let t627 = t625 - t626;
-        let t629 = t565 * t622 + t594 * t627;
-        let t632 = t572 * t622 + t608 * t627;
-        let t635 = t576 * t622 + t612 * t627;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t553;
-        let t638 = t597 - minus_rate_dot_left_bar_along_z;
-        let t640 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t643 = s_left_bar_along_z * t638 + c_left_bar_along_z * (t640 - t625);
-        let t645 = t594 * t600 - t565 * t643;
-        let t648 = t608 * t600 - t572 * t643;
-        let t651 = t612 * t600 - t576 * t643;
-        let t653 = t604 + c_left_bar_along_z * t619;
-        let t655 = t565 * t653 - t598;
-        let t657 = t572 * t653 - t609;
-        let t659 = t576 * t653 - t613;
-        let t660 = 3.225806451612903 * acceleration[1];
-        let t663 = t565 * t660 + t594 * t618;
-        let t666 = t572 * t660 + t608 * t618;
-        let t669 = t576 * t660 + t612 * t618;
-        let t670 = t594 * minus_rate_dot_left_bar_along_z;
-        let t671 = t608 * minus_rate_dot_left_bar_along_z;
-        let t672 = t612 * minus_rate_dot_left_bar_along_z;
-        let t673 = c_left_bar_along_z * t578;
-        let t675 = s_left_bar_along_z * t586;
-        let t677 = t565 * t673 + t594 * t675;
-        let t680 = t572 * t673 + t608 * t675;
-        let t690 = minus_c_foot_along_z * t620 - (t81 * (t626 + t640) + t93 * t638)
-            + t576 * t673 + t612 * t675;
-        let t691 = c_left_bar_along_z * t586;
-        let t693 = s_left_bar_along_z * t578;
-        let t695 = t594 * t691 - t565 * t693;
-        let t698 = t608 * t691 - t572 * t693;
-        let t709 = t81 * (t597 + minus_rate_dot_left_bar_along_z) + t93 * (t625 + t640)
-            + minus_c_foot_along_z * t616 - t576 * t693 + t612 * t691;
-        let t713 = 0.31 * t618 + t578 + 0.31 * t620;
+        let t555 = minus_gfoot_vx_along_z * t339 + minus_gfoot_vy_along_z * t105;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t537
+            + minus_gfoot_vy_along_z * t543;
+        let t559 = t555 * minus_rate_dot_foot_along_z;
+        let t562 = minus_gfoot_vx_along_z * t349 + minus_gfoot_vy_along_z * t116;
+        let t563 = t562 * minus_rate_dot_foot_along_z;
+        let t566 = minus_gfoot_vx_along_z * t356 + minus_gfoot_vy_along_z * t126;
+        let t567 = t566 * minus_rate_dot_foot_along_z;
+        let t568 = minus_c_foot_along_z * t547;
+        let t573 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
+            - s_foot_along_z * t524;
+        let t576 = s_foot_along_z * t547;
+        let t577 = t555 * t576;
+        let t578 = t562 * t576;
+        let t583 = s_foot_along_z * minus_rate_dot_foot_along_z
+            + minus_c_foot_along_z * t524 + t566 * t576;
+        let t584 = minus_gleft_bar_vy_along_z * t105;
+        let t585 = 3.225806451612903 * t540;
+        let t586 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t587 = t585 * t586;
+        let t589 = minus_rate_left_bar_along_z * t586;
+        let t590 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t591 = t589 - t590;
+        let t593 = minus_rate_left_bar_along_z * t585;
+        let t595 = s_left_bar_along_z * t591 + c_left_bar_along_z * t593;
+        let t597 = t584 * t587 - t555 * t595;
+        let t598 = minus_gleft_bar_vy_along_z * t116;
+        let t601 = t598 * t587 - t562 * t595;
+        let t602 = minus_gleft_bar_vy_along_z * t126;
+        let t605 = t602 * t587 - t566 * t595;
+        let t606 = t589 + t591;
+        let t608 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t610 = t593 + t608 + t593;
+        let t612 = c_left_bar_along_z * t606 - s_left_bar_along_z * t610;
+        let t615 = 10.40582726326743 * (t540 * t540);
+        let t616 = t586 * t586;
+        let t617 = t615 - t616;
+        let t619 = t555 * t612 + t584 * t617;
+        let t622 = t562 * t612 + t598 * t617;
+        let t625 = t566 * t612 + t602 * t617;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t543;
+        let t628 = t587 - minus_rate_dot_left_bar_along_z;
+        let t630 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t633 = s_left_bar_along_z * t628 + c_left_bar_along_z * (t630 - t615);
+        let t635 = t584 * t590 - t555 * t633;
+        let t638 = t598 * t590 - t562 * t633;
+        let t641 = t602 * t590 - t566 * t633;
+        let t642 = t559 - t597;
+        let t643 = t563 - t601;
+        let t644 = t567 - t605;
+        let t645 = 3.225806451612903 * acceleration[1];
+        let t648 = t555 * t645 + t584 * t608;
+        let t651 = t562 * t645 + t598 * t608;
+        let t654 = t566 * t645 + t602 * t608;
+        let t655 = t584 * minus_rate_dot_left_bar_along_z;
+        let t656 = t598 * minus_rate_dot_left_bar_along_z;
+        let t657 = t602 * minus_rate_dot_left_bar_along_z;
+        let t658 = c_left_bar_along_z * t568;
+        let t660 = s_left_bar_along_z * t576;
+        let t662 = t555 * t658 + t584 * t660;
+        let t665 = t562 * t658 + t598 * t660;
+        let t675 = minus_c_foot_along_z * t610 - (t81 * (t616 + t630) + t93 * t628)
+            + t566 * t658 + t602 * t660;
+        let t676 = c_left_bar_along_z * t576;
+        let t678 = s_left_bar_along_z * t568;
+        let t680 = t584 * t676 - t555 * t678;
+        let t683 = t598 * t676 - t562 * t678;
+        let t694 = t81 * (t587 + minus_rate_dot_left_bar_along_z) + t93 * (t615 + t630)
+            + minus_c_foot_along_z * t606 - t566 * t678 + t602 * t676;
+        let t698 = 0.31 * t608 + t568 + 0.31 * t610;
         Ok([
             [
                 rate_dot_drive_along_x, rate_dot_drive_along_x, rate_drive_along_x,
                 ::overact::math::sign(rate_drive_along_x), 1.0, t113, t136 + t109 * t137, t147,
-                rate_dot_drive_along_x, t163, -t185, t200, t210, t218, t225, t241, t262, -t147,
-                rate_dot_drive_along_x, t163, -t185, t200, t210, t218, t225, t241, t262, -t147,
-                rate_dot_drive_along_x, t113, t136 + t109 * t272 - t150 * t48,
-                -(t147 + 0.31 * t200), t297, 0.0, 0.0, 0.0, 0.0, 0.0, t351, t347 * t368, t379, 0.0,
-                t399, -t421, t437, t447, t455, t462, t469, t487, -t379, 0.0, t399, -t421, t437,
-                t447, t455, t462, t469, t487, -t379, 0.0, t351, t347 * t505 - t386 * t326,
-                -(t379 + 0.31 * t437), t297, 0.0, 0.0, 0.0, 0.0, 0.0, t569, t565 * t578, t587, 0.0,
-                t607, -t629, t645, t655, t663, t670, t677, t695, -t587, 0.0, t607, -t629, t645,
-                t655, t663, t670, t677, t695, -t587, 0.0, t569, t565 * t713 - t594 * t551,
-                -(t587 + 0.31 * t645), t297, t297,
+                rate_dot_drive_along_x, t163, -t185, t200, t207, t213, t220, t236, t257, -t147,
+                rate_dot_drive_along_x, t163, -t185, t200, t207, t213, t220, t236, t257, -t147,
+                rate_dot_drive_along_x, t113, t136 + t109 * t267 - t150 * t48,
+                -(t147 + 0.31 * t200), t292, 0.0, 0.0, 0.0, 0.0, 0.0, t346, t342 * t363, t374, 0.0,
+                t394, -t416, t432, t439, t445, t452, t459, t477, -t374, 0.0, t394, -t416, t432,
+                t439, t445, t452, t459, t477, -t374, 0.0, t346, t342 * t495 - t381 * t321,
+                -(t374 + 0.31 * t432), t292, 0.0, 0.0, 0.0, 0.0, 0.0, t559, t555 * t568, t577, 0.0,
+                t597, -t619, t635, t642, t648, t655, t662, t680, -t577, 0.0, t597, -t619, t635,
+                t642, t648, t655, t662, t680, -t577, 0.0, t559, t555 * t698 - t584 * t541,
+                -(t577 + 0.31 * t635), t292, t292,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, t123, t122 * t137, t148, 0.0, t167, -t188, t203, t212,
-                t221, t226, t244, t265, -t148, 0.0, t167, -t188, t203, t212, t221, t226, t244, t265,
-                -t148, 0.0, t123, t122 * t272 - t164 * t48, -(t148 + 0.31 * t203), t300,
+                0.0, 0.0, 0.0, 0.0, 0.0, t123, t122 * t137, t148, 0.0, t167, -t188, t203, t208,
+                t216, t221, t239, t260, -t148, 0.0, t167, -t188, t203, t208, t216, t221, t239, t260,
+                -t148, 0.0, t123, t122 * t267 - t164 * t48, -(t148 + 0.31 * t203), t295,
                 rate_dot_drive_along_y, rate_dot_drive_along_y, rate_drive_along_y,
-                ::overact::math::sign(rate_drive_along_y), 1.0, t358, t372 + t357 * t368, t384,
-                rate_dot_drive_along_y, t403, -t424, t440, t449, t458, t463, t479, t498, -t384,
-                rate_dot_drive_along_y, t403, -t424, t440, t449, t458, t463, t479, t498, -t384,
-                rate_dot_drive_along_y, t358, t372 + t357 * t505 - t400 * t326,
-                -(t384 + 0.31 * t440), t300, 0.0, 0.0, 0.0, 0.0, 0.0, t573, t572 * t578, t588, 0.0,
-                t611, -t632, t648, t657, t666, t671, t680, t698, -t588, 0.0, t611, -t632, t648,
-                t657, t666, t671, t680, t698, -t588, 0.0, t573, t572 * t713 - t608 * t551,
-                -(t588 + 0.31 * t648), t300, t300,
+                ::overact::math::sign(rate_drive_along_y), 1.0, t353, t367 + t352 * t363, t379,
+                rate_dot_drive_along_y, t398, -t419, t435, t440, t448, t453, t469, t488, -t379,
+                rate_dot_drive_along_y, t398, -t419, t435, t440, t448, t453, t469, t488, -t379,
+                rate_dot_drive_along_y, t353, t367 + t352 * t495 - t395 * t321,
+                -(t379 + 0.31 * t435), t295, 0.0, 0.0, 0.0, 0.0, 0.0, t563, t562 * t568, t578, 0.0,
+                t601, -t622, t638, t643, t651, t656, t665, t683, -t578, 0.0, t601, -t622, t638,
+                t643, t651, t656, t665, t683, -t578, 0.0, t563, t562 * t698 - t598 * t541,
+                -(t578 + 0.31 * t638), t295, t295,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, t133, t132 * t137, t149, 0.0, t171, -t191, t206, t214,
-                t224, t227, t247, t268, -t149, 0.0, t171, -t191, t206, t214, t224, t227, t247, t268,
-                -t149, 0.0, t133, t132 * t272 - t168 * t48, -(t149 + 0.31 * t206), t303, 0.0, 0.0,
-                0.0, 0.0, 0.0, t365, t364 * t368, t385, 0.0, t407, -t427, t443, t451, t461, t464,
-                t482, t501, -t385, 0.0, t407, -t427, t443, t451, t461, t464, t482, t501, -t385, 0.0,
-                t365, t364 * t505 - t404 * t326, -(t385 + 0.31 * t443), t303, t557,
+                0.0, 0.0, 0.0, 0.0, 0.0, t133, t132 * t137, t149, 0.0, t171, -t191, t206, t209,
+                t219, t222, t242, t263, -t149, 0.0, t171, -t191, t206, t209, t219, t222, t242, t263,
+                -t149, 0.0, t133, t132 * t267 - t168 * t48, -(t149 + 0.31 * t206), t298, 0.0, 0.0,
+                0.0, 0.0, 0.0, t360, t359 * t363, t380, 0.0, t402, -t422, t438, t441, t451, t454,
+                t472, t491, -t380, 0.0, t402, -t422, t438, t441, t451, t454, t472, t491, -t380, 0.0,
+                t360, t359 * t495 - t399 * t321, -(t380 + 0.31 * t438), t298, t547,
                 rate_dot_drive_along_z, rate_drive_along_z,
-                ::overact::math::sign(rate_drive_along_z), 1.0, t577, t583 + t576 * t578, t593,
-                t557, t615, -t635, t651, t659, t669, t672, t690, t709, -t593, t557, t615, -t635,
-                t651, t659, t669, t672, t690, t709, -t593, t557, t577,
-                t583 + t576 * t713 - t612 * t551, -(t593 + 0.31 * t651), t303, t303,
+                ::overact::math::sign(rate_drive_along_z), 1.0, t567, t573 + t566 * t568, t583,
+                t547, t605, -t625, t641, t644, t654, t657, t675, t694, -t583, t547, t605, -t625,
+                t641, t644, t654, t657, t675, t694, -t583, t547, t567,
+                t573 + t566 * t698 - t602 * t541, -(t583 + 0.31 * t641), t298, t298,
             ],
         ])
     }
@@ -3590,7 +3486,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 805 operations (282 additions, 510 multiplications, 13 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 690 intermediates.
+    /// 790 operations (279 additions, 498 multiplications, 13 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 675 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3786,22 +3682,17 @@ impl Orthoglide {
         let t305 = t302 + t304;
         let t307 = 3.225806451612903 * t162;
         let t308 = minus_rate_left_bar_along_x * t307;
-        let t309 = c_left_bar_along_x * t308;
-        let t310 = minus_s_left_bar_along_x * t305 + t309;
+        let t310 = minus_s_left_bar_along_x * t305 + c_left_bar_along_x * t308;
         let t312 = minus_gleft_bar_vz_along_x * t77;
         let t313 = t307 * t303;
-        let t314 = t312 * t313;
-        let t315 = t79 * t310 + t314;
+        let t315 = t79 * t310 + t312 * t313;
         let t316 = minus_gleft_bar_vz_along_x * t268;
-        let t317 = t316 * t313;
-        let t319 = t317 - t274 * t310;
+        let t319 = t316 * t313 - t274 * t310;
         let t321 = minus_gleft_bar_vz_along_x * t282;
-        let t322 = t321 * t313;
-        let t323 = t284 * t310 + t322;
+        let t323 = t284 * t310 + t321 * t313;
         let t324 = t304 + t305;
         let t326 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t327 = t308 - t326;
-        let t328 = t308 + t327;
+        let t328 = t308 + t308 - t326;
         let t330 = c_left_bar_along_x * t324 - minus_s_left_bar_along_x * t328;
         let t333 = 10.40582726326743 * (t162 * t162);
         let t335 = t333 - t303 * t303;
@@ -3814,242 +3705,229 @@ impl Orthoglide {
         let t352 = t79 * t349 - t312 * t302;
         let t355 = t274 * t349 + t316 * t302;
         let t358 = t284 * t349 - t321 * t302;
-        let t360 = t309 + c_left_bar_along_x * t327;
-        let t362 = t79 * t360 + t314;
-        let t364 = t274 * t360 - t317;
-        let t366 = t284 * t360 + t322;
-        let t368 = 3.225806451612903 * t257;
-        let t370 = t312 * t326 - t79 * t368;
-        let t373 = t274 * t368 + t316 * t326;
-        let t376 = t321 * t326 - t284 * t368;
-        let t377 = t312 * minus_rate_dot_left_bar_along_x;
-        let t378 = t316 * minus_rate_dot_left_bar_along_x;
-        let t379 = t321 * minus_rate_dot_left_bar_along_x;
-        let t388 = c_left_bar_along_x * t286;
-        let t390 = minus_s_foot_along_x * t328
+        let t359 = t315 - t265;
+        let t360 = t275 + t319;
+        let t361 = t323 - t285;
+        let t363 = 3.225806451612903 * t257;
+        let t365 = t312 * t326 - t79 * t363;
+        let t368 = t274 * t363 + t316 * t326;
+        let t371 = t321 * t326 - t284 * t363;
+        let t372 = t312 * minus_rate_dot_left_bar_along_x;
+        let t373 = t316 * minus_rate_dot_left_bar_along_x;
+        let t374 = t321 * minus_rate_dot_left_bar_along_x;
+        let t383 = c_left_bar_along_x * t286;
+        let t385 = minus_s_foot_along_x * t328
             - (t10
                 * (3.225806451612903
                     * (c_left_bar_along_x * (c_foot_along_x * rate_dot_drive_along_x)))
-                + t67 * t345) + t79 * t388;
-        let t393 = minus_s_left_bar_along_x * t297 - 9.81 * c_left_bar_along_x;
-        let t395 = t390 - t312 * t393;
-        let t398 = t274 * t388 + t316 * t393;
-        let t401 = t284 * t388 - t321 * t393;
-        let t409 = minus_s_left_bar_along_x * t286;
-        let t414 = c_left_bar_along_x * t297 + 31.64516129032258 * pose[2];
-        let t416 = t10 * (minus_rate_dot_left_bar_along_x - t313) - t67 * (t333 + t140)
-            - minus_s_foot_along_x * t324 + t79 * t409 + t312 * t414;
-        let t419 = t274 * t409 - t316 * t414;
-        let t422 = t284 * t409 + t321 * t414;
-        let t424 = t286 + 0.31 * t328;
-        let t426 = t424 - 0.31 * t326;
-        let t447 = t91 * t245 - t92 * t259 - t104 * t257;
-        let t448 = t5 * t424;
-        let t453 = 0.31 * (t393 - 0.31 * t345);
-        let t455 = t447 + t79 * t448 - t312 * t453;
-        let t458 = t274 * t448 + t316 * t453;
-        let t461 = t284 * t448 - t321 * t453;
-        let t463 = t57 * t74;
-        let t466 = minus_gfoot_vx_along_y * t463 + minus_gfoot_vz_along_y * t77;
-        let t467 = t447 - t196;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t467
+                + t67 * t345) + t79 * t383;
+        let t388 = minus_s_left_bar_along_x * t297 - 9.81 * c_left_bar_along_x;
+        let t390 = t385 - t312 * t388;
+        let t393 = t274 * t383 + t316 * t388;
+        let t396 = t284 * t383 - t321 * t388;
+        let t404 = minus_s_left_bar_along_x * t286;
+        let t409 = c_left_bar_along_x * t297 + 31.64516129032258 * pose[2];
+        let t411 = t10 * (minus_rate_dot_left_bar_along_x - t313) - t67 * (t333 + t140)
+            - minus_s_foot_along_x * t324 + t79 * t404 + t312 * t409;
+        let t414 = t274 * t404 - t316 * t409;
+        let t417 = t284 * t404 + t321 * t409;
+        let t419 = t286 + 0.31 * t328;
+        let t421 = t419 - 0.31 * t326;
+        let t442 = t91 * t245 - t92 * t259 - t104 * t257;
+        let t443 = t5 * t419;
+        let t448 = 0.31 * (t388 - 0.31 * t345);
+        let t450 = t442 + t79 * t443 - t312 * t448;
+        let t453 = t274 * t443 + t316 * t448;
+        let t456 = t284 * t443 - t321 * t448;
+        let t458 = t57 * t74;
+        let t461 = minus_gfoot_vx_along_y * t458 + minus_gfoot_vz_along_y * t77;
+        let t462 = t442 - t196;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t462
             + minus_gfoot_vz_along_y * (t257 + t191);
-        let t472 = t466 * minus_rate_dot_foot_along_y;
-        let t475 = (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t74;
-        let t478 = minus_gfoot_vx_along_y * t475 + minus_gfoot_vz_along_y * t268;
-        let t479 = t478 * minus_rate_dot_foot_along_y;
-        let t482 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t74;
-        let t485 = minus_gfoot_vx_along_y * t482 + minus_gfoot_vz_along_y * t282;
-        let t486 = t485 * minus_rate_dot_foot_along_y;
-        let t489 = minus_s_foot_along_y * actuator_accelerations[1]
+        let t467 = t461 * minus_rate_dot_foot_along_y;
+        let t470 = (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t74;
+        let t473 = minus_gfoot_vx_along_y * t470 + minus_gfoot_vz_along_y * t268;
+        let t474 = t473 * minus_rate_dot_foot_along_y;
+        let t477 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t74;
+        let t480 = minus_gfoot_vx_along_y * t477 + minus_gfoot_vz_along_y * t282;
+        let t481 = t480 * minus_rate_dot_foot_along_y;
+        let t484 = minus_s_foot_along_y * actuator_accelerations[1]
             - 9.81 * c_foot_along_y;
-        let t494 = c_foot_along_y * t178
+        let t489 = c_foot_along_y * t178
             + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
-        let t499 = 9.81 * minus_s_foot_along_y
+        let t494 = 9.81 * minus_s_foot_along_y
             + c_foot_along_y * actuator_accelerations[1];
-        let t500 = t466 * t499;
-        let t505 = c_foot_along_y * minus_rate_dot_foot_along_y
-            - minus_s_foot_along_y * t178 - t478 * t499;
-        let t506 = t485 * t499;
-        let t507 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t508 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t509 = minus_rate_left_bar_along_y * t508;
-        let t510 = t507 + t509;
-        let t512 = 3.225806451612903 * t193;
-        let t513 = minus_rate_left_bar_along_y * t512;
-        let t514 = c_left_bar_along_y * t513;
-        let t515 = minus_s_left_bar_along_y * t510 + t514;
-        let t517 = minus_gleft_bar_vx_along_y * t463;
-        let t518 = t512 * t508;
-        let t519 = t517 * t518;
-        let t520 = t466 * t515 - t519;
-        let t521 = minus_gleft_bar_vx_along_y * t475;
-        let t522 = t521 * t518;
-        let t524 = t522 - t478 * t515;
-        let t526 = minus_gleft_bar_vx_along_y * t482;
-        let t527 = t526 * t518;
-        let t528 = t485 * t515 - t527;
-        let t529 = t509 + t510;
-        let t531 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t532 = t513 - t531;
-        let t533 = t513 + t532;
-        let t535 = c_left_bar_along_y * t529 - minus_s_left_bar_along_y * t533;
-        let t538 = 10.40582726326743 * (t193 * t193);
-        let t539 = t508 * t508;
-        let t540 = t538 - t539;
-        let t542 = t466 * t535 + t517 * t540;
-        let t545 = t478 * t535 + t521 * t540;
-        let t548 = t485 * t535 + t526 * t540;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t467;
-        let t550 = t518 + minus_rate_dot_left_bar_along_y;
-        let t552 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t555 = minus_s_left_bar_along_y * t550 + c_left_bar_along_y * (t552 - t538);
-        let t558 = t466 * t555 + t517 * t507;
-        let t561 = t478 * t555 + t521 * t507;
-        let t564 = t485 * t555 + t526 * t507;
-        let t566 = t514 + c_left_bar_along_y * t532;
-        let t568 = t519 - t466 * t566;
-        let t570 = t478 * t566 - t522;
-        let t572 = t527 - t485 * t566;
-        let t573 = 3.225806451612903 * t447;
-        let t576 = t466 * t573 + t517 * t531;
-        let t579 = t478 * t573 + t521 * t531;
-        let t582 = t485 * t573 + t526 * t531;
-        let t583 = t517 * minus_rate_dot_left_bar_along_y;
-        let t584 = t521 * minus_rate_dot_left_bar_along_y;
-        let t585 = t526 * minus_rate_dot_left_bar_along_y;
-        let t586 = c_left_bar_along_y * t489;
-        let t588 = minus_s_left_bar_along_y * t499;
-        let t590 = t466 * t586 + t517 * t588;
-        let t600 = minus_s_foot_along_y * t533 - (t21 * (t539 + t552) + t29 * t550)
-            + t478 * t586 + t521 * t588;
-        let t603 = t485 * t586 + t526 * t588;
-        let t604 = c_left_bar_along_y * t499;
-        let t606 = minus_s_left_bar_along_y * t489;
-        let t608 = t517 * t604 - t466 * t606;
-        let t619 = t21 * (minus_rate_dot_left_bar_along_y - t518) - t29 * (t538 + t552)
-            - minus_s_foot_along_y * t529 + t478 * t606 - t521 * t604;
-        let t622 = t526 * t604 - t485 * t606;
-        let t627 = t489 + 0.31 * t533 - 0.31 * t531;
-        let t643 = 9.81 + actuator_accelerations[2];
-        let t647 = minus_gfoot_vy_along_z * t75 - minus_gfoot_vx_along_z * t463;
-        let t650 = t259 - t229;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t447 + t224)
-            + minus_gfoot_vy_along_z * t650;
-        let t653 = t647 * minus_rate_dot_foot_along_z;
-        let t656 = minus_gfoot_vx_along_z * t475 - minus_gfoot_vy_along_z * t272;
-        let t657 = t656 * minus_rate_dot_foot_along_z;
-        let t660 = minus_gfoot_vy_along_z * t278 - minus_gfoot_vx_along_z * t482;
-        let t661 = t660 * minus_rate_dot_foot_along_z;
-        let t662 = minus_s_foot_along_z * t643;
-        let t668 = c_foot_along_z * t215
+        let t495 = t461 * t494;
+        let t500 = c_foot_along_y * minus_rate_dot_foot_along_y
+            - minus_s_foot_along_y * t178 - t473 * t494;
+        let t501 = t480 * t494;
+        let t502 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t503 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t504 = minus_rate_left_bar_along_y * t503;
+        let t505 = t502 + t504;
+        let t507 = 3.225806451612903 * t193;
+        let t508 = minus_rate_left_bar_along_y * t507;
+        let t510 = minus_s_left_bar_along_y * t505 + c_left_bar_along_y * t508;
+        let t512 = minus_gleft_bar_vx_along_y * t458;
+        let t513 = t507 * t503;
+        let t515 = t461 * t510 - t512 * t513;
+        let t516 = minus_gleft_bar_vx_along_y * t470;
+        let t519 = t516 * t513 - t473 * t510;
+        let t521 = minus_gleft_bar_vx_along_y * t477;
+        let t523 = t480 * t510 - t521 * t513;
+        let t524 = t504 + t505;
+        let t526 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t528 = t508 + t508 - t526;
+        let t530 = c_left_bar_along_y * t524 - minus_s_left_bar_along_y * t528;
+        let t533 = 10.40582726326743 * (t193 * t193);
+        let t534 = t503 * t503;
+        let t535 = t533 - t534;
+        let t537 = t461 * t530 + t512 * t535;
+        let t540 = t473 * t530 + t516 * t535;
+        let t543 = t480 * t530 + t521 * t535;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t462;
+        let t545 = t513 + minus_rate_dot_left_bar_along_y;
+        let t547 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t550 = minus_s_left_bar_along_y * t545 + c_left_bar_along_y * (t547 - t533);
+        let t553 = t461 * t550 + t512 * t502;
+        let t556 = t473 * t550 + t516 * t502;
+        let t559 = t480 * t550 + t521 * t502;
+        let t560 = t467 - t515;
+        let t561 = t474 + t519;
+        let t562 = t481 - t523;
+        let t563 = 3.225806451612903 * t442;
+        let t566 = t461 * t563 + t512 * t526;
+        let t569 = t473 * t563 + t516 * t526;
+        let t572 = t480 * t563 + t521 * t526;
+        let t573 = t512 * minus_rate_dot_left_bar_along_y;
+        let t574 = t516 * minus_rate_dot_left_bar_along_y;
+        let t575 = t521 * minus_rate_dot_left_bar_along_y;
+        let t576 = c_left_bar_along_y * t484;
+        let t578 = minus_s_left_bar_along_y * t494;
+        let t580 = t461 * t576 + t512 * t578;
+        let t590 = minus_s_foot_along_y * t528 - (t21 * (t534 + t547) + t29 * t545)
+            + t473 * t576 + t516 * t578;
+        let t593 = t480 * t576 + t521 * t578;
+        let t594 = c_left_bar_along_y * t494;
+        let t596 = minus_s_left_bar_along_y * t484;
+        let t598 = t512 * t594 - t461 * t596;
+        let t609 = t21 * (minus_rate_dot_left_bar_along_y - t513) - t29 * (t533 + t547)
+            - minus_s_foot_along_y * t524 + t473 * t596 - t516 * t594;
+        let t612 = t521 * t594 - t480 * t596;
+        let t617 = t484 + 0.31 * t528 - 0.31 * t526;
+        let t633 = 9.81 + actuator_accelerations[2];
+        let t637 = minus_gfoot_vy_along_z * t75 - minus_gfoot_vx_along_z * t458;
+        let t640 = t259 - t229;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t442 + t224)
+            + minus_gfoot_vy_along_z * t640;
+        let t643 = t637 * minus_rate_dot_foot_along_z;
+        let t646 = minus_gfoot_vx_along_z * t470 - minus_gfoot_vy_along_z * t272;
+        let t647 = t646 * minus_rate_dot_foot_along_z;
+        let t650 = minus_gfoot_vy_along_z * t278 - minus_gfoot_vx_along_z * t477;
+        let t651 = t650 * minus_rate_dot_foot_along_z;
+        let t652 = minus_s_foot_along_z * t633;
+        let t658 = c_foot_along_z * t215
             + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
-        let t670 = c_foot_along_z * t643;
-        let t671 = t647 * t670;
-        let t672 = t656 * t670;
-        let t677 = c_foot_along_z * minus_rate_dot_foot_along_z
-            - minus_s_foot_along_z * t215 - t660 * t670;
-        let t678 = minus_gleft_bar_vy_along_z * t75;
-        let t679 = 3.225806451612903 * t226;
-        let t680 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t681 = t679 * t680;
-        let t682 = t678 * t681;
-        let t683 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t684 = minus_rate_left_bar_along_z * t680;
-        let t685 = t683 + t684;
-        let t687 = minus_rate_left_bar_along_z * t679;
-        let t688 = c_left_bar_along_z * t687;
-        let t689 = minus_s_left_bar_along_z * t685 + t688;
-        let t691 = t682 - t647 * t689;
-        let t693 = minus_gleft_bar_vy_along_z * t272;
-        let t694 = t693 * t681;
-        let t695 = t656 * t689 + t694;
-        let t696 = minus_gleft_bar_vy_along_z * t278;
-        let t697 = t696 * t681;
-        let t699 = t697 - t660 * t689;
-        let t700 = t684 + t685;
-        let t702 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t703 = t687 - t702;
-        let t704 = t687 + t703;
-        let t706 = c_left_bar_along_z * t700 - minus_s_left_bar_along_z * t704;
-        let t709 = 10.40582726326743 * (t226 * t226);
-        let t710 = t680 * t680;
-        let t711 = t709 - t710;
-        let t713 = t647 * t706 + t678 * t711;
-        let t716 = t656 * t706 - t693 * t711;
-        let t719 = t660 * t706 + t696 * t711;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t650;
-        let t721 = t681 + minus_rate_dot_left_bar_along_z;
-        let t723 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t726 = minus_s_left_bar_along_z * t721 + c_left_bar_along_z * (t723 - t709);
-        let t729 = t647 * t726 + t678 * t683;
-        let t732 = t656 * t726 - t693 * t683;
-        let t735 = t660 * t726 + t696 * t683;
-        let t737 = t688 + c_left_bar_along_z * t703;
-        let t739 = t647 * t737 - t682;
-        let t741 = t656 * t737 + t694;
-        let t743 = t660 * t737 - t697;
-        let t744 = 3.225806451612903 * t259;
-        let t747 = t647 * t744 + t678 * t702;
-        let t750 = t693 * t702 - t656 * t744;
-        let t753 = t660 * t744 + t696 * t702;
-        let t754 = t678 * minus_rate_dot_left_bar_along_z;
-        let t755 = t693 * minus_rate_dot_left_bar_along_z;
-        let t756 = t696 * minus_rate_dot_left_bar_along_z;
-        let t757 = c_left_bar_along_z * t662;
-        let t759 = minus_s_left_bar_along_z * t670;
-        let t761 = t647 * t757 + t678 * t759;
-        let t764 = t656 * t757 - t693 * t759;
-        let t774 = minus_s_foot_along_z * t704 - (t42 * (t710 + t723) + t53 * t721)
-            + t660 * t757 + t696 * t759;
-        let t775 = minus_s_left_bar_along_z * t662;
-        let t777 = c_left_bar_along_z * t670;
-        let t779 = t647 * t775 - t678 * t777;
-        let t782 = t656 * t775 + t693 * t777;
-        let t793 = t42 * (minus_rate_dot_left_bar_along_z - t681) - t53 * (t709 + t723)
-            - minus_s_foot_along_z * t700 + t660 * t775 - t696 * t777;
-        let t797 = t662 + 0.31 * t704 - 0.31 * t702;
+        let t660 = c_foot_along_z * t633;
+        let t661 = t637 * t660;
+        let t662 = t646 * t660;
+        let t667 = c_foot_along_z * minus_rate_dot_foot_along_z
+            - minus_s_foot_along_z * t215 - t650 * t660;
+        let t668 = minus_gleft_bar_vy_along_z * t75;
+        let t669 = 3.225806451612903 * t226;
+        let t670 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t671 = t669 * t670;
+        let t673 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t674 = minus_rate_left_bar_along_z * t670;
+        let t675 = t673 + t674;
+        let t677 = minus_rate_left_bar_along_z * t669;
+        let t679 = minus_s_left_bar_along_z * t675 + c_left_bar_along_z * t677;
+        let t681 = t668 * t671 - t637 * t679;
+        let t683 = minus_gleft_bar_vy_along_z * t272;
+        let t685 = t646 * t679 + t683 * t671;
+        let t686 = minus_gleft_bar_vy_along_z * t278;
+        let t689 = t686 * t671 - t650 * t679;
+        let t690 = t674 + t675;
+        let t692 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t694 = t677 + t677 - t692;
+        let t696 = c_left_bar_along_z * t690 - minus_s_left_bar_along_z * t694;
+        let t699 = 10.40582726326743 * (t226 * t226);
+        let t700 = t670 * t670;
+        let t701 = t699 - t700;
+        let t703 = t637 * t696 + t668 * t701;
+        let t706 = t646 * t696 - t683 * t701;
+        let t709 = t650 * t696 + t686 * t701;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t640;
+        let t711 = t671 + minus_rate_dot_left_bar_along_z;
+        let t713 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t716 = minus_s_left_bar_along_z * t711 + c_left_bar_along_z * (t713 - t699);
+        let t719 = t637 * t716 + t668 * t673;
+        let t722 = t646 * t716 - t683 * t673;
+        let t725 = t650 * t716 + t686 * t673;
+        let t726 = t643 + t681;
+        let t727 = t685 - t647;
+        let t728 = t651 + t689;
+        let t729 = 3.225806451612903 * t259;
+        let t732 = t637 * t729 + t668 * t692;
+        let t735 = t683 * t692 - t646 * t729;
+        let t738 = t650 * t729 + t686 * t692;
+        let t739 = t668 * minus_rate_dot_left_bar_along_z;
+        let t740 = t683 * minus_rate_dot_left_bar_along_z;
+        let t741 = t686 * minus_rate_dot_left_bar_along_z;
+        let t742 = c_left_bar_along_z * t652;
+        let t744 = minus_s_left_bar_along_z * t660;
+        let t746 = t637 * t742 + t668 * t744;
+        let t749 = t646 * t742 - t683 * t744;
+        let t759 = minus_s_foot_along_z * t694 - (t42 * (t700 + t713) + t53 * t711)
+            + t650 * t742 + t686 * t744;
+        let t760 = minus_s_left_bar_along_z * t652;
+        let t762 = c_left_bar_along_z * t660;
+        let t764 = t637 * t760 - t668 * t762;
+        let t767 = t646 * t760 + t683 * t762;
+        let t778 = t42 * (minus_rate_dot_left_bar_along_z - t671) - t53 * (t699 + t713)
+            - minus_s_foot_along_z * t690 + t650 * t760 - t686 * t762;
+        let t782 = t652 + 0.31 * t694 - 0.31 * t692;
         Ok([
             [
                 actuator_accelerations[0], actuator_accelerations[0], actuator_velocities[0],
                 ::overact::math::sign(actuator_velocities[0]), 1.0, -t265, t79 * t286 - t290, t299,
-                actuator_accelerations[0], -t315, t337, t352, t362, t370, t377, t395, t416, -t299,
-                actuator_accelerations[0], -t315, t337, t352, t362, t370, t377, t395, t416, -t299,
-                actuator_accelerations[0], -t265, t79 * t426 - t290 + t312 * t163,
-                -(t299 + 0.31 * t352), t455, 0.0, 0.0, 0.0, 0.0, 0.0, t472, -(t466 * t489), t500,
-                0.0, t520, -t542, -t558, t568, t576, t583, -t590, t608, -t500, 0.0, t520, -t542,
-                -t558, t568, t576, t583, -t590, t608, -t500, 0.0, t472, t517 * t194 - t466 * t627,
-                -(t500 - 0.31 * t558), t455, 0.0, 0.0, 0.0, 0.0, 0.0, -t653, t647 * t662, -t671,
-                0.0, t691, t713, t729, t739, -t747, -t754, t761, t779, t671, 0.0, t691, t713, t729,
-                t739, -t747, -t754, t761, t779, t671, 0.0, -t653, t647 * t797 - t678 * t227,
-                -(0.31 * t729 - t671), t455, t455,
+                actuator_accelerations[0], -t315, t337, t352, t359, t365, t372, t390, t411, -t299,
+                actuator_accelerations[0], -t315, t337, t352, t359, t365, t372, t390, t411, -t299,
+                actuator_accelerations[0], -t265, t79 * t421 - t290 + t312 * t163,
+                -(t299 + 0.31 * t352), t450, 0.0, 0.0, 0.0, 0.0, 0.0, t467, -(t461 * t484), t495,
+                0.0, t515, -t537, -t553, t560, t566, t573, -t580, t598, -t495, 0.0, t515, -t537,
+                -t553, t560, t566, t573, -t580, t598, -t495, 0.0, t467, t512 * t194 - t461 * t617,
+                -(t495 - 0.31 * t553), t450, 0.0, 0.0, 0.0, 0.0, 0.0, -t643, t637 * t652, -t661,
+                0.0, t681, t703, t719, -t726, -t732, -t739, t746, t764, t661, 0.0, t681, t703, t719,
+                -t726, -t732, -t739, t746, t764, t661, 0.0, -t643, t637 * t782 - t668 * t227,
+                -(0.31 * t719 - t661), t450, t450,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t275, t274 * t286, -t300, 0.0, t319, t340, t355, t364,
-                -t373, -t378, t398, t419, t300, 0.0, t319, t340, t355, t364, -t373, -t378, t398,
-                t419, t300, 0.0, -t275, t274 * t426 - t316 * t163, -(0.31 * t355 - t300), t458,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t275, t274 * t286, -t300, 0.0, t319, t340, t355, -t360,
+                -t368, -t373, t393, t414, t300, 0.0, t319, t340, t355, -t360, -t368, -t373, t393,
+                t414, t300, 0.0, -t275, t274 * t421 - t316 * t163, -(0.31 * t355 - t300), t453,
                 actuator_accelerations[1], actuator_accelerations[1], actuator_velocities[1],
-                ::overact::math::sign(actuator_velocities[1]), 1.0, -t479, t478 * t489 - t494, t505,
-                actuator_accelerations[1], t524, t545, t561, t570, -t579, -t584, t600, t619, -t505,
-                actuator_accelerations[1], t524, t545, t561, t570, -t579, -t584, t600, t619, -t505,
-                actuator_accelerations[1], -t479, t478 * t627 - t494 - t521 * t194,
-                -(t505 + 0.31 * t561), t458, 0.0, 0.0, 0.0, 0.0, 0.0, -t657, t656 * t662, -t672,
-                0.0, -t695, t716, t732, t741, t750, t755, t764, t782, t672, 0.0, -t695, t716, t732,
-                t741, t750, t755, t764, t782, t672, 0.0, -t657, t656 * t797 + t693 * t227,
-                -(0.31 * t732 - t672), t458, t458,
+                ::overact::math::sign(actuator_velocities[1]), 1.0, -t474, t473 * t484 - t489, t500,
+                actuator_accelerations[1], t519, t540, t556, -t561, -t569, -t574, t590, t609, -t500,
+                actuator_accelerations[1], t519, t540, t556, -t561, -t569, -t574, t590, t609, -t500,
+                actuator_accelerations[1], -t474, t473 * t617 - t489 - t516 * t194,
+                -(t500 + 0.31 * t556), t453, 0.0, 0.0, 0.0, 0.0, 0.0, -t647, t646 * t652, -t662,
+                0.0, -t685, t706, t722, t727, t735, t740, t749, t767, t662, 0.0, -t685, t706, t722,
+                t727, t735, t740, t749, t767, t662, 0.0, -t647, t646 * t782 + t683 * t227,
+                -(0.31 * t722 - t662), t453, t453,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t285, t284 * t286, -t301, 0.0, -t323, t343, t358, t366,
-                t376, t379, t401, t422, t301, 0.0, -t323, t343, t358, t366, t376, t379, t401, t422,
-                t301, 0.0, -t285, t284 * t426 + t321 * t163, -(0.31 * t358 - t301), t461, 0.0, 0.0,
-                0.0, 0.0, 0.0, t486, -(t485 * t489), t506, 0.0, t528, -t548, -t564, t572, t582,
-                t585, -t603, t622, -t506, 0.0, t528, -t548, -t564, t572, t582, t585, -t603, t622,
-                -t506, 0.0, t486, t526 * t194 - t485 * t627, -(t506 - 0.31 * t564), t461, t643,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t285, t284 * t286, -t301, 0.0, -t323, t343, t358, t361,
+                t371, t374, t396, t417, t301, 0.0, -t323, t343, t358, t361, t371, t374, t396, t417,
+                t301, 0.0, -t285, t284 * t421 + t321 * t163, -(0.31 * t358 - t301), t456, 0.0, 0.0,
+                0.0, 0.0, 0.0, t481, -(t480 * t484), t501, 0.0, t523, -t543, -t559, t562, t572,
+                t575, -t593, t612, -t501, 0.0, t523, -t543, -t559, t562, t572, t575, -t593, t612,
+                -t501, 0.0, t481, t521 * t194 - t480 * t617, -(t501 - 0.31 * t559), t456, t633,
                 actuator_accelerations[2], actuator_velocities[2],
-                ::overact::math::sign(actuator_velocities[2]), 1.0, -t661, t660 * t662 - t668, t677,
-                t643, t699, t719, t735, t743, -t753, -t756, t774, t793, -t677, t643, t699, t719,
-                t735, t743, -t753, -t756, t774, t793, -t677, t643, -t661,
-                t660 * t797 - t668 - t696 * t227, -(t677 + 0.31 * t735), t461, t461,
+                ::overact::math::sign(actuator_velocities[2]), 1.0, -t651, t650 * t652 - t658, t667,
+                t633, t689, t709, t725, -t728, -t738, -t741, t759, t778, -t667, t633, t689, t709,
+                t725, -t728, -t738, -t741, t759, t778, -t667, t633, -t651,
+                t650 * t782 - t658 - t686 * t227, -(t667 + 0.31 * t725), t456, t456,
             ],
         ])
     }
@@ -4417,11 +4295,15 @@ impl Orthoglide {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
+        let [(s_left_bar_along_x, c_left_bar_along_x),
+        (minus_c_foot_along_x, s_foot_along_x), (minus_c_foot_along_y, s_foot_along_y),
+        (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_z, s_foot_along_z),
+        (s_left_bar_along_z, c_left_bar_along_z)] = ::overact::math::sin_cos_all([
+            joints[2], joints[1], joints[5], joints[6], joints[9], joints[10],
+        ]);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
+        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
         let t4 = 0.31 * s_left_bar_along_x;
         let t5 = s_foot_along_x * c_left_bar_along_x;
         ::overact::guard::leg(t5, 1.0, "along_x")?;
@@ -4463,11 +4345,6 @@ impl Orthoglide {
         let t73 = s_left_bar_along_x * (t56 - 0.31 * (t58 + t24))
             + c_left_bar_along_x
                 * (0.31 * t66 - (s_left_bar_along_x * t53 + 9.81 * c_left_bar_along_x));
-        let (minus_c_foot_along_y, s_foot_along_y) = ::overact::math::sin_cos(joints[5]);
-        let (s_left_bar_along_y, c_left_bar_along_y) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
         let t80 = minus_c_foot_along_y * c_left_bar_along_y;
         let t81 = 0.31 * t80;
         let t82 = s_foot_along_y * c_left_bar_along_y;
@@ -4497,11 +4374,6 @@ impl Orthoglide {
         let t126 = acceleration[2] - (t81 * t108 + t123 + t123);
         let rate_dot_drive_along_y = acceleration[1] - (t101 - 0.31 * t82 * t108 + t101)
             - minus_gdrive_vx_along_y * t117 - minus_gdrive_vz_along_y * t126;
-        let (minus_c_foot_along_z, s_foot_along_z) = ::overact::math::sin_cos(joints[9]);
-        let (s_left_bar_along_z, c_left_bar_along_z) = ::overact::math::sin_cos(
-            joints[10],
-        );
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
         let t135 = minus_c_foot_along_z * c_left_bar_along_z;
         let t136 = s_foot_along_z * c_left_bar_along_z;
         ::overact::guard::leg(t136, 1.0, "along_z")?;
@@ -5507,21 +5379,20 @@ impl Orthoglide {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
-        let (minus_c_foot_along_y, s_foot_along_y) = ::overact::math::sin_cos(joints[5]);
-        let (s_left_bar_along_y, c_left_bar_along_y) = ::overact::math::sin_cos(
-            joints[6],
-        );
+        let [(minus_c_foot_along_y, s_foot_along_y),
+        (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_z, s_foot_along_z),
+        (s_left_bar_along_z, c_left_bar_along_z), (minus_c_foot_along_x, s_foot_along_x),
+        (s_left_bar_along_x, c_left_bar_along_x)] = ::overact::math::sin_cos_all([
+            joints[5], joints[6], joints[9], joints[10], joints[1], joints[2],
+        ]);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
+        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
         let t4 = minus_c_foot_along_y * c_left_bar_along_y;
         let t5 = s_foot_along_y * c_left_bar_along_y;
         ::overact::guard::leg(t5, 1.0, "along_y")?;
         let t6 = 1.0 / t5;
         let minus_gdrive_vz_along_y = t4 * t6;
-        let (minus_c_foot_along_z, s_foot_along_z) = ::overact::math::sin_cos(joints[9]);
-        let (s_left_bar_along_z, c_left_bar_along_z) = ::overact::math::sin_cos(
-            joints[10],
-        );
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
         let t12 = minus_c_foot_along_z * c_left_bar_along_z;
         let t13 = 0.31 * t12;
         let t14 = s_foot_along_z * c_left_bar_along_z;
@@ -5534,11 +5405,6 @@ impl Orthoglide {
         let t22 = s_foot_along_z * s_left_bar_along_z;
         let minus_gdrive_vy_along_z = t13 * minus_gfoot_vy_along_z + t22 * t18;
         let t26 = 1.0 - minus_gdrive_vz_along_y * minus_gdrive_vy_along_z;
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
-        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
         let t31 = minus_c_foot_along_x * c_left_bar_along_x;
         let t32 = s_foot_along_x * c_left_bar_along_x;
         ::overact::guard::leg(t32, 1.0, "along_x")?;
@@ -6338,11 +6204,11 @@ impl Orthoglide {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 1]; 3], ::overact::Error> {
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
+        let [(s_left_bar_along_x, c_left_bar_along_x),
+        (minus_c_foot_along_x, s_foot_along_x)] = ::overact::math::sin_cos_all([
+            joints[2], joints[1],
+        ]);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
         let t4 = 0.31 * s_left_bar_along_x;
         let t5 = s_foot_along_x * c_left_bar_along_x;
         ::overact::guard::leg(t5, 1.0, "along_x")?;
@@ -7268,12 +7134,16 @@ impl Orthoglide {
         acceleration: &[f64; 3],
         parameters: &[f64; 101],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let (s_left_bar_along_x, c_left_bar_along_x) = ::overact::math::sin_cos(
-            joints[2],
-        );
+        let [(s_left_bar_along_x, c_left_bar_along_x),
+        (minus_c_foot_along_x, s_foot_along_x), (minus_c_foot_along_y, s_foot_along_y),
+        (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_z, s_foot_along_z),
+        (s_left_bar_along_z, c_left_bar_along_z)] = ::overact::math::sin_cos_all([
+            joints[2], joints[1], joints[5], joints[6], joints[9], joints[10],
+        ]);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
+        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
         let t2 = 0.31 * s_left_bar_along_x;
-        let (minus_c_foot_along_x, s_foot_along_x) = ::overact::math::sin_cos(joints[1]);
         let t5 = s_foot_along_x * c_left_bar_along_x;
         ::overact::guard::leg(t5, 1.0, "along_x")?;
         let t6 = 1.0 / t5;
@@ -7366,11 +7236,6 @@ impl Orthoglide {
         let t182 = parameters[30] * minus_rate_dot_foot_along_x - parameters[31] * t25
             + parameters[32] * t180;
         let t185 = t162 + s_foot_along_x * t174 + minus_c_foot_along_x * t182;
-        let (minus_c_foot_along_y, s_foot_along_y) = ::overact::math::sin_cos(joints[5]);
-        let (s_left_bar_along_y, c_left_bar_along_y) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
         let t190 = minus_c_foot_along_y * c_left_bar_along_y;
         let t191 = 0.31 * t190;
         let t192 = s_foot_along_y * c_left_bar_along_y;
@@ -7498,11 +7363,6 @@ impl Orthoglide {
         let t496 = t471 - parameters[48] * t302 - parameters[49] * t288 + t486
             - parameters[58] * t302 - parameters[59] * t288
             - (t203 * t361 + t454 * (acceleration[0] * parameters[65]));
-        let (minus_c_foot_along_z, s_foot_along_z) = ::overact::math::sin_cos(joints[9]);
-        let (s_left_bar_along_z, c_left_bar_along_z) = ::overact::math::sin_cos(
-            joints[10],
-        );
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
         let t504 = minus_c_foot_along_z * c_left_bar_along_z;
         let t505 = s_foot_along_z * c_left_bar_along_z;
         ::overact::guard::leg(t505, 1.0, "along_z")?;

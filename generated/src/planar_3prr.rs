@@ -375,20 +375,18 @@ impl Planar3Prr {
         pose: &[f64; 3],
         joints: &[f64; 9],
     ) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
+        let [(s2_leg2, c2_leg2), (s2_leg3, c2_leg3), (s2_leg1, c2_leg1), (s_phi, c_phi),
+        ] = ::overact::math::sin_cos_all([joints[4], joints[7], joints[1], pose[2]]);
         ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
+        ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
         let t5 = 1.0 / s2_leg2;
         let g1_vx_leg2 = (0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2) * t5;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
         let t12 = 1.0 / s2_leg3;
         let g1_vx_leg3 = (0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3) * t12;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
         let g1_vy_leg1 = c2_leg1 / s2_leg1;
         let minus_g1_vy_leg2 = (0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2) * t5;
         let minus_g1_vy_leg3 = (0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3) * t12;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let g1_wz_leg1 = 0.08 * c_phi - g1_vy_leg1 * (0.08 * s_phi);
         let t31 = 0.06928203230275509 * s_phi;
         let t32 = 0.04 * c_phi;
@@ -512,9 +510,9 @@ impl Planar3Prr {
         _pose: &[f64; 3],
         joints: &[f64; 9],
     ) -> [[f64; 9]; 9] {
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
+        let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
+            joints[1], joints[4], joints[7],
+        ]);
         [
             [-1.0, -(0.34 * c2_leg1), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
             [0.0, -(0.34 * s2_leg1), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -580,18 +578,16 @@ impl Planar3Prr {
         pose: &[f64; 3],
         joints: &[f64; 9],
     ) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3), (s_phi, c_phi),
+        ] = ::overact::math::sin_cos_all([joints[1], joints[4], joints[7], pose[2]]);
         ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
-        let t2 = 0.34 * s2_leg1;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
         ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t7 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
         ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
+        let t2 = 0.34 * s2_leg1;
+        let t7 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
         let t13 = 0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3;
         let t18 = 0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2;
         let t22 = 0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let g1_vy_leg1 = c2_leg1 / s2_leg1;
         let g1_wz_leg1 = 0.08 * c_phi - g1_vy_leg1 * (0.08 * s_phi);
         let t33 = 1.0 / s2_leg2;
@@ -626,9 +622,9 @@ impl Planar3Prr {
         _pose: &[f64; 3],
         joints: &[f64; 9],
     ) -> [[f64; 3]; 3] {
-        let s2_leg1 = ::overact::math::sin_cos(joints[1]).0;
-        let s2_leg2 = ::overact::math::sin_cos(joints[4]).0;
-        let s2_leg3 = ::overact::math::sin_cos(joints[7]).0;
+        let [(s2_leg1, _), (s2_leg2, _), (s2_leg3, _)] = ::overact::math::sin_cos_all([
+            joints[1], joints[4], joints[7],
+        ]);
         [
             [-(0.34 * s2_leg1), 0.0, 0.0], [0.0, -(0.34 * s2_leg2), 0.0],
             [0.0, 0.0, -(0.34 * s2_leg3)],
@@ -1265,14 +1261,16 @@ impl Planar3Prr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 37]; 3], ::overact::Error> {
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let [(s_phi, c_phi), (s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
+        ] = ::overact::math::sin_cos_all([pose[2], joints[1], joints[4], joints[7]]);
+        ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
         let t2 = 0.08 * c_phi;
         let t3 = t2 * acceleration[2];
         let t5 = 0.08 * s_phi;
         let t6 = t5 * twist[2];
         let t7 = twist[2] * t6;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
         let t11 = 1.0 / s2_leg1;
         let g1_vy_leg1 = c2_leg1 * t11;
         let t13 = t5 * acceleration[2];
@@ -1294,8 +1292,6 @@ impl Planar3Prr {
         let t49 = s2_leg1 * t23 + c2_leg1 * minus_rate_dot_2_leg1;
         let t57 = 2.9411764705882355 * t17;
         let t66 = minus_rate_2_leg1 + twist[2];
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
         let t74 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
         let t75 = 1.0 / s2_leg2;
         let g1_vx_leg2 = t74 * t75;
@@ -1332,8 +1328,6 @@ impl Planar3Prr {
         let t144 = c2_leg2 * minus_rate_dot_1_leg2;
         let t154 = 2.9411764705882355 * t131;
         let t166 = twist[2] - rate_2_leg2;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
         let t175 = 0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3;
         let t176 = 1.0 / s2_leg3;
         let g1_vx_leg3 = t175 * t176;
@@ -1957,14 +1951,16 @@ impl Planar3Prr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 37]; 3], ::overact::Error> {
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let [(s_phi, c_phi), (s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
+        ] = ::overact::math::sin_cos_all([pose[2], joints[1], joints[4], joints[7]]);
+        ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
         let t2 = 0.08 * c_phi;
         let t3 = t2 * acceleration[2];
         let t5 = 0.08 * s_phi;
         let t6 = t5 * twist[2];
         let t7 = twist[2] * t6;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
         let t11 = 1.0 / s2_leg1;
         let g1_vy_leg1 = c2_leg1 * t11;
         let t13 = t5 * acceleration[2];
@@ -1978,8 +1974,6 @@ impl Planar3Prr {
         let minus_rate_dot_1_leg1 = acceleration[0] - t3 + t7 - g1_vy_leg1 * t17
             - t23 * (0.34 * t11);
         let rate_1_leg1 = g1_vy_leg1 * t21 - (twist[0] - t15);
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
         let t35 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
         let t36 = 1.0 / s2_leg2;
         let g1_vx_leg2 = t35 * t36;
@@ -1992,8 +1986,6 @@ impl Planar3Prr {
         let t47 = 0.06928203230275509 * c_phi;
         let t48 = t46 - t47;
         let g1_wz_leg2 = g1_vx_leg2 * t40 - minus_g1_vy_leg2 * t48;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
         let t55 = 0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3;
         let t56 = 1.0 / s2_leg3;
         let g1_vx_leg3 = t55 * t56;
@@ -2606,7 +2598,11 @@ impl Planar3Prr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 28]; 3], ::overact::Error> {
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let [(s_phi, c_phi), (s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
+        ] = ::overact::math::sin_cos_all([pose[2], joints[1], joints[4], joints[7]]);
+        ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
         let t2 = 0.08 * c_phi;
         let t3 = t2 * twist[2];
         let t4 = twist[2] * t3;
@@ -2617,8 +2613,6 @@ impl Planar3Prr {
         let t10 = t5 * twist[2];
         let t11 = twist[2] * t10;
         let t13 = 12.5 * (t9 - t11);
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
         let t24 = 1.0 / s2_leg1;
         let g1_vy_leg1 = c2_leg1 * t24;
         let t27 = acceleration[1] - t6 - t4;
@@ -2630,8 +2624,6 @@ impl Planar3Prr {
         let minus_rate_dot_1_leg1 = acceleration[0] - t9 + t11 - t28
             - t33 * (0.34 * t24);
         let g1_wz_leg1 = t2 - g1_vy_leg1 * t5;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
         let t45 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
         let t46 = 1.0 / s2_leg2;
         let g1_vx_leg2 = t45 * t46;
@@ -2656,8 +2648,6 @@ impl Planar3Prr {
         let minus_rate_dot_1_leg2 = t46 * t79;
         let minus_g1_vy_leg2 = t50 * t46;
         let g1_wz_leg2 = g1_vx_leg2 * t58 - minus_g1_vy_leg2 * t53;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
         let t92 = 0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3;
         let t93 = 1.0 / s2_leg3;
         let g1_vx_leg3 = t92 * t93;
@@ -3208,13 +3198,14 @@ impl Planar3Prr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 28]; 3], ::overact::Error> {
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
+        let [(s2_leg2, c2_leg2), (s2_leg3, c2_leg3), (s_phi, c_phi), (s2_leg1, c2_leg1),
+        ] = ::overact::math::sin_cos_all([joints[4], joints[7], pose[2], joints[1]]);
         ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
+        ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
         let t4 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
         let t5 = 1.0 / s2_leg2;
         let g1_vx_leg2 = t4 * t5;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
         let t11 = 0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3;
         let t12 = 1.0 / s2_leg3;
         let minus_g1_vy_leg3 = t11 * t12;
@@ -3222,10 +3213,7 @@ impl Planar3Prr {
         let minus_g1_vy_leg2 = t17 * t5;
         let t21 = 0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3;
         let g1_vx_leg3 = t21 * t12;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t27 = 0.08 * c_phi;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
         let t30 = 1.0 / s2_leg1;
         let g1_vy_leg1 = c2_leg1 * t30;
         let t32 = 0.08 * s_phi;
@@ -3936,17 +3924,16 @@ impl Planar3Prr {
         acceleration: &[f64; 3],
         parameters: &[f64; 37],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3), (s_phi, c_phi),
+        ] = ::overact::math::sin_cos_all([joints[1], joints[4], joints[7], pose[2]]);
         ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
         let t2 = 1.0 / s2_leg1;
         let g1_vy_leg1 = c2_leg1 * t2;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
         let t9 = 0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2;
         let t10 = 1.0 / s2_leg2;
         let minus_g1_vy_leg2 = t9 * t10;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
         let t18 = 0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3;
         let t19 = 1.0 / s2_leg3;
         let minus_g1_vy_leg3 = t18 * t19;
@@ -3964,7 +3951,6 @@ impl Planar3Prr {
             + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t34 * t40;
         ::overact::guard::platform(t42, 2.5803571428562737, "actuators")?;
         let t43 = 1.0 / t42;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t46 = 0.08 * s_phi;
         let t47 = t46 * twist[2];
         let t48 = twist[1] - t47;

@@ -425,27 +425,24 @@ impl Planar3Rrr {
         joints: &[f64; 9],
     ) -> Result<[[f64; 3]; 3], ::overact::Error> {
         let t0 = joints[0] + joints[1];
-        let (s12_leg1, c12_leg1) = ::overact::math::sin_cos(t0);
-        let s2_leg1 = ::overact::math::sin_cos(joints[1]).0;
+        let t6 = joints[3] + joints[4];
+        let t15 = joints[6] + joints[7];
+        let [(s12_leg1, c12_leg1), (s2_leg1, _), (s12_leg2, c12_leg2), (s2_leg2, _),
+        (s12_leg3, c12_leg3), (s2_leg3, _), (s_phi, c_phi)] = ::overact::math::sin_cos_all([
+            t0, joints[1], t6, joints[4], t15, joints[7], pose[2],
+        ]);
         ::overact::guard::leg(s2_leg1, 0.9757809372497493, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.9757809372497493, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.9757809372497493, "leg3")?;
         let t4 = 5.0 / s2_leg1;
         let minus_g1_vx_leg1 = s12_leg1 * t4;
-        let t6 = joints[3] + joints[4];
-        let (s12_leg2, c12_leg2) = ::overact::math::sin_cos(t6);
-        let s2_leg2 = ::overact::math::sin_cos(joints[4]).0;
-        ::overact::guard::leg(s2_leg2, 0.9757809372497493, "leg2")?;
         let t13 = 5.0 / s2_leg2;
         let g1_vx_leg2 = (0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2) * t13;
-        let t15 = joints[6] + joints[7];
-        let (s12_leg3, c12_leg3) = ::overact::math::sin_cos(t15);
-        let s2_leg3 = ::overact::math::sin_cos(joints[7]).0;
-        ::overact::guard::leg(s2_leg3, 0.9757809372497493, "leg3")?;
         let t22 = 5.0 / s2_leg3;
         let g1_vx_leg3 = (0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3) * t22;
         let g1_vy_leg1 = c12_leg1 * t4;
         let minus_g1_vy_leg2 = (0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2) * t13;
         let minus_g1_vy_leg3 = (0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3) * t22;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let g1_wz_leg1 = minus_g1_vx_leg1 * (0.1 * c_phi) - g1_vy_leg1 * (0.1 * s_phi);
         let t40 = 0.08660254037844387 * s_phi;
         let t41 = 0.05 * c_phi;
@@ -578,17 +575,15 @@ impl Planar3Rrr {
         _pose: &[f64; 3],
         joints: &[f64; 9],
     ) -> [[f64; 9]; 9] {
-        let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(joints[0]);
         let t2 = joints[0] + joints[1];
-        let (s12_leg1, c12_leg1) = ::overact::math::sin_cos(t2);
-        let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(joints[3]);
         let t16 = joints[3] + joints[4];
-        let (s12_leg2, c12_leg2) = ::overact::math::sin_cos(t16);
+        let t39 = joints[6] + joints[7];
+        let [(s1_leg1, c1_leg1), (s12_leg1, c12_leg1), (s1_leg2, c1_leg2),
+        (s12_leg2, c12_leg2), (s1_leg3, c1_leg3), (s12_leg3, c12_leg3)] = ::overact::math::sin_cos_all([
+            joints[0], t2, joints[3], t16, joints[6], t39,
+        ]);
         let t21 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
         let t29 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
-        let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(joints[6]);
-        let t39 = joints[6] + joints[7];
-        let (s12_leg3, c12_leg3) = ::overact::math::sin_cos(t39);
         let t44 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
         let t52 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
         [
@@ -661,24 +656,23 @@ impl Planar3Rrr {
         joints: &[f64; 9],
     ) -> Result<[[f64; 3]; 3], ::overact::Error> {
         let t0 = joints[0] + joints[1];
-        let (s12_leg1, c12_leg1) = ::overact::math::sin_cos(t0);
         let t4 = joints[3] + joints[4];
-        let (s12_leg2, c12_leg2) = ::overact::math::sin_cos(t4);
-        let t9 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
         let t11 = joints[6] + joints[7];
-        let (s12_leg3, c12_leg3) = ::overact::math::sin_cos(t11);
+        let [(s12_leg1, c12_leg1), (s12_leg2, c12_leg2), (s12_leg3, c12_leg3),
+        (s2_leg1, _), (s_phi, c_phi), (s2_leg2, _), (s2_leg3, _)] = ::overact::math::sin_cos_all([
+            t0, t4, t11, joints[1], pose[2], joints[4], joints[7],
+        ]);
+        ::overact::guard::leg(s2_leg1, 0.9757809372497493, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.9757809372497493, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.9757809372497493, "leg3")?;
+        let t9 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
         let t16 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
         let t21 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
         let t25 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
-        let s2_leg1 = ::overact::math::sin_cos(joints[1]).0;
-        ::overact::guard::leg(s2_leg1, 0.9757809372497493, "leg1")?;
         let t29 = 5.0 / s2_leg1;
         let minus_g1_vx_leg1 = s12_leg1 * t29;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let g1_vy_leg1 = c12_leg1 * t29;
         let g1_wz_leg1 = minus_g1_vx_leg1 * (0.1 * c_phi) - g1_vy_leg1 * (0.1 * s_phi);
-        let s2_leg2 = ::overact::math::sin_cos(joints[4]).0;
-        ::overact::guard::leg(s2_leg2, 0.9757809372497493, "leg2")?;
         let t42 = 5.0 / s2_leg2;
         let g1_vx_leg2 = t9 * t42;
         let t44 = 0.08660254037844387 * s_phi;
@@ -687,8 +681,6 @@ impl Planar3Rrr {
         let t49 = 0.05 * s_phi;
         let t50 = 0.08660254037844387 * c_phi;
         let g1_wz_leg2 = g1_vx_leg2 * (t44 + t45) - minus_g1_vy_leg2 * (t49 - t50);
-        let s2_leg3 = ::overact::math::sin_cos(joints[7]).0;
-        ::overact::guard::leg(s2_leg3, 0.9757809372497493, "leg3")?;
         let t57 = 5.0 / s2_leg3;
         let minus_g1_vy_leg3 = t25 * t57;
         let g1_vx_leg3 = t16 * t57;
@@ -713,9 +705,9 @@ impl Planar3Rrr {
         _pose: &[f64; 3],
         joints: &[f64; 9],
     ) -> [[f64; 3]; 3] {
-        let s2_leg1 = ::overact::math::sin_cos(joints[1]).0;
-        let s2_leg2 = ::overact::math::sin_cos(joints[4]).0;
-        let s2_leg3 = ::overact::math::sin_cos(joints[7]).0;
+        let [(s2_leg1, _), (s2_leg2, _), (s2_leg3, _)] = ::overact::math::sin_cos_all([
+            joints[1], joints[4], joints[7],
+        ]);
         [
             [-(0.04 * s2_leg1), 0.0, 0.0], [0.0, -(0.04 * s2_leg2), 0.0],
             [0.0, 0.0, -(0.04 * s2_leg3)],
@@ -1471,14 +1463,17 @@ impl Planar3Rrr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 37]; 3], ::overact::Error> {
-        let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
+        let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s_phi, c_phi), (s1_leg2, c1_leg2),
+        (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
+            joints[0], joints[1], pose[2], joints[3], joints[4], joints[6], joints[7],
+        ]);
         ::overact::guard::leg(s2_leg1, 0.9757809372497493, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.9757809372497493, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.9757809372497493, "leg3")?;
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
         let t10 = 5.0 / s2_leg1;
         let minus_g1_vx_leg1 = s12_leg1 * t10;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t14 = 0.1 * s_phi;
         let t15 = t14 * acceleration[2];
         let t17 = 0.1 * c_phi;
@@ -1514,9 +1509,6 @@ impl Planar3Rrr {
         let t84 = c_phi * acceleration[0] + s_phi * acceleration[1];
         let t104 = rate_2_leg1 - rate_1_leg1;
         let t110 = twist[2] - rate_2_leg1;
-        let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.9757809372497493, "leg2")?;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
         let t127 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
@@ -1559,9 +1551,6 @@ impl Planar3Rrr {
         let t211 = s2_leg2 * t192 - c2_leg2 * (0.2 * minus_rate_dot_1_leg2);
         let t233 = rate_2_leg2 - rate_1_leg2;
         let t239 = twist[2] - rate_2_leg2;
-        let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.9757809372497493, "leg3")?;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
         let t256 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
@@ -2214,13 +2203,16 @@ impl Planar3Rrr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 37]; 3], ::overact::Error> {
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_leg1, c2_leg1), (s1_leg1, c1_leg1), (s_phi, c_phi), (s1_leg2, c1_leg2),
+        (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
+            joints[1], joints[0], pose[2], joints[3], joints[4], joints[6], joints[7],
+        ]);
         ::overact::guard::leg(s2_leg1, 0.9757809372497493, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.9757809372497493, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.9757809372497493, "leg3")?;
         let t2 = 5.0 / s2_leg1;
-        let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(joints[0]);
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t13 = 0.1 * s_phi;
         let t14 = t13 * acceleration[2];
         let t16 = 0.1 * c_phi;
@@ -2244,9 +2236,6 @@ impl Planar3Rrr {
         let t43 = rate_1_leg1 * rate_1_leg1;
         let t44 = 0.2 * c2_leg1;
         let rate_dot_1_leg1 = t2 * (t37 + t43 * t44);
-        let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.9757809372497493, "leg2")?;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
         let t61 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
@@ -2261,9 +2250,6 @@ impl Planar3Rrr {
         let t73 = 0.08660254037844387 * c_phi;
         let t74 = t72 - t73;
         let g1_wz_leg2 = g1_vx_leg2 * t66 - minus_g1_vy_leg2 * t74;
-        let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.9757809372497493, "leg3")?;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
         let t89 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
@@ -2937,7 +2923,13 @@ impl Planar3Rrr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 28]; 3], ::overact::Error> {
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let [(s_phi, c_phi), (s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
+        (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
+            pose[2], joints[0], joints[1], joints[3], joints[4], joints[6], joints[7],
+        ]);
+        ::overact::guard::leg(s2_leg1, 0.9757809372497493, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.9757809372497493, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.9757809372497493, "leg3")?;
         let t2 = 0.1 * c_phi;
         let t3 = t2 * twist[2];
         let t4 = twist[2] * t3;
@@ -2948,9 +2940,6 @@ impl Planar3Rrr {
         let t10 = t5 * twist[2];
         let t11 = twist[2] * t10;
         let t13 = 10.0 * (t9 - t11);
-        let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.9757809372497493, "leg1")?;
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
         let t30 = 5.0 / s2_leg1;
@@ -2970,9 +2959,6 @@ impl Planar3Rrr {
         let t54 = 0.2 * c2_leg1;
         let rate_dot_1_leg1 = t30 * (t48 + t53 * t54);
         let g1_wz_leg1 = minus_g1_vx_leg1 * t2 - g1_vy_leg1 * t5;
-        let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.9757809372497493, "leg2")?;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
         let t76 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
@@ -3004,9 +2990,6 @@ impl Planar3Rrr {
         let t122 = 0.2 * c2_leg2;
         let minus_rate_dot_1_leg2 = t77 * (t116 - t121 * t122);
         let g1_wz_leg2 = g1_vx_leg2 * t89 - minus_g1_vy_leg2 * t84;
-        let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.9757809372497493, "leg3")?;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
         let t144 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
@@ -3624,17 +3607,18 @@ impl Planar3Rrr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 28]; 3], ::overact::Error> {
-        let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
+        let [(s1_leg2, c1_leg2), (s2_leg2, c2_leg2), (s1_leg3, c1_leg3),
+        (s2_leg3, c2_leg3), (s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s_phi, c_phi)] = ::overact::math::sin_cos_all([
+            joints[3], joints[4], joints[6], joints[7], joints[0], joints[1], pose[2],
+        ]);
         ::overact::guard::leg(s2_leg2, 0.9757809372497493, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.9757809372497493, "leg3")?;
+        ::overact::guard::leg(s2_leg1, 0.9757809372497493, "leg1")?;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
         let t12 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
         let t13 = 5.0 / s2_leg2;
         let g1_vx_leg2 = t12 * t13;
-        let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.9757809372497493, "leg3")?;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
         let t27 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
@@ -3644,14 +3628,10 @@ impl Planar3Rrr {
         let minus_g1_vy_leg2 = t33 * t13;
         let t37 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
         let g1_vx_leg3 = t37 * t28;
-        let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.9757809372497493, "leg1")?;
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
         let t51 = 5.0 / s2_leg1;
         let minus_g1_vx_leg1 = s12_leg1 * t51;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t55 = 0.1 * c_phi;
         let g1_vy_leg1 = c12_leg1 * t51;
         let t58 = 0.1 * s_phi;
@@ -4790,24 +4770,22 @@ impl Planar3Rrr {
         acceleration: &[f64; 3],
         parameters: &[f64; 41],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
+        let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
+        (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3), (s_phi, c_phi)] = ::overact::math::sin_cos_all([
+            joints[0], joints[1], joints[3], joints[4], joints[6], joints[7], pose[2],
+        ]);
         ::overact::guard::leg(s2_leg1, 0.9757809372497493, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.9757809372497493, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.9757809372497493, "leg3")?;
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
         let t10 = 5.0 / s2_leg1;
         let g1_vy_leg1 = c12_leg1 * t10;
-        let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(joints[3]);
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.9757809372497493, "leg2")?;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
         let t25 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
         let t26 = 5.0 / s2_leg2;
         let minus_g1_vy_leg2 = t25 * t26;
-        let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(joints[6]);
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.9757809372497493, "leg3")?;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
         let t42 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
@@ -4829,7 +4807,6 @@ impl Planar3Rrr {
             + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t60 * t67;
         ::overact::guard::platform(t69, 39.38461538461541, "actuators")?;
         let t70 = 1.0 / t69;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t73 = 0.1 * s_phi;
         let t76 = 0.1 * c_phi;
         let t77 = t76 * twist[2];

@@ -455,27 +455,26 @@ impl Planar4Prr {
         pose: &[f64; 3],
         joints: &[f64; 12],
     ) -> Result<[[f64; 3]; 4], ::overact::Error> {
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
+        (s2_leg4, c2_leg4), (s_phi, c_phi)] = ::overact::math::sin_cos_all([
+            joints[1], joints[4], joints[7], joints[10], pose[2],
+        ]);
         ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
+        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
         let t3 = 0.7071067811865476 / s2_leg1;
         let g1_vx_leg1 = (c2_leg1 - s2_leg1) * t3;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
         let t8 = 0.7071067811865476 / s2_leg2;
         let minus_g1_vx_leg2 = (c2_leg2 + s2_leg2) * t8;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
         let t13 = 0.7071067811865476 / s2_leg3;
         let g1_vx_leg3 = (s2_leg3 - c2_leg3) * t13;
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
         let t18 = 0.7071067811865476 / s2_leg4;
         let g1_vx_leg4 = (c2_leg4 + s2_leg4) * t18;
         let g1_vy_leg1 = (s2_leg1 + c2_leg1) * t3;
         let minus_g1_vy_leg2 = (s2_leg2 - c2_leg2) * t8;
         let minus_g1_vy_leg3 = (s2_leg3 + c2_leg3) * t13;
         let minus_g1_vy_leg4 = (c2_leg4 - s2_leg4) * t18;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t31 = 0.05656854249492381 * (c_phi - s_phi);
         let t34 = 0.05656854249492381 * (s_phi + c_phi);
         let g1_wz_leg1 = g1_vy_leg1 * t31 - g1_vx_leg1 * t34;
@@ -620,10 +619,10 @@ impl Planar4Prr {
         _pose: &[f64; 3],
         joints: &[f64; 12],
     ) -> [[f64; 12]; 12] {
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
+        let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
+        (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
+            joints[1], joints[4], joints[7], joints[10],
+        ]);
         [
             [
                 -0.7071067811865476, -(0.2404163056034262 * (s2_leg1 + c2_leg1)), 0.0, 0.0, 0.0,
@@ -702,17 +701,17 @@ impl Planar4Prr {
         pose: &[f64; 3],
         joints: &[f64; 12],
     ) -> Result<[[f64; 3]; 4], ::overact::Error> {
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
+        (s2_leg4, c2_leg4), (s_phi, c_phi)] = ::overact::math::sin_cos_all([
+            joints[1], joints[4], joints[7], joints[10], pose[2],
+        ]);
         ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
-        let t2 = c2_leg1 - s2_leg1;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
         ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
-        let t6 = c2_leg2 + s2_leg2;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
         ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
-        let t10 = s2_leg3 - c2_leg3;
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
         ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
+        let t2 = c2_leg1 - s2_leg1;
+        let t6 = c2_leg2 + s2_leg2;
+        let t10 = s2_leg3 - c2_leg3;
         let t14 = c2_leg4 + s2_leg4;
         let t16 = s2_leg1 + c2_leg1;
         let t18 = s2_leg2 - c2_leg2;
@@ -720,7 +719,6 @@ impl Planar4Prr {
         let t22 = c2_leg4 - s2_leg4;
         let t25 = 0.7071067811865476 / s2_leg1;
         let g1_vy_leg1 = t16 * t25;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t30 = 0.05656854249492381 * (c_phi - s_phi);
         let g1_vx_leg1 = t2 * t25;
         let t34 = 0.05656854249492381 * (s_phi + c_phi);
@@ -767,10 +765,9 @@ impl Planar4Prr {
         _pose: &[f64; 3],
         joints: &[f64; 12],
     ) -> [[f64; 4]; 4] {
-        let s2_leg1 = ::overact::math::sin_cos(joints[1]).0;
-        let s2_leg2 = ::overact::math::sin_cos(joints[4]).0;
-        let s2_leg3 = ::overact::math::sin_cos(joints[7]).0;
-        let s2_leg4 = ::overact::math::sin_cos(joints[10]).0;
+        let [(s2_leg1, _), (s2_leg2, _), (s2_leg3, _), (s2_leg4, _)] = ::overact::math::sin_cos_all([
+            joints[1], joints[4], joints[7], joints[10],
+        ]);
         [
             [-(0.34 * s2_leg1), 0.0, 0.0, 0.0], [0.0, -(0.34 * s2_leg2), 0.0, 0.0],
             [0.0, 0.0, -(0.34 * s2_leg3), 0.0], [0.0, 0.0, 0.0, -(0.34 * s2_leg4)],
@@ -1538,13 +1535,18 @@ impl Planar4Prr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 48]; 3], ::overact::Error> {
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_leg1, c2_leg1), (s_phi, c_phi), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
+        (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
+            joints[1], pose[2], joints[4], joints[7], joints[10],
+        ]);
         ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
+        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
         let t2 = c2_leg1 - s2_leg1;
         let t3 = 1.0 / s2_leg1;
         let t4 = 0.7071067811865476 * t3;
         let g1_vx_leg1 = t2 * t4;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t8 = s_phi + c_phi;
         let t9 = 0.05656854249492381 * t8;
         let t10 = t9 * acceleration[2];
@@ -1584,8 +1586,6 @@ impl Planar4Prr {
         let t88 = ::overact::math::signed(minus_g2_vx_leg1, minus_rate_2_leg1);
         let t90 = minus_rate_2_leg1 + twist[2];
         let t91 = ::overact::math::signed(minus_g2_vx_leg1, t90);
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
         let t96 = c2_leg2 + s2_leg2;
         let t97 = 1.0 / s2_leg2;
         let t98 = 0.7071067811865476 * t97;
@@ -1620,8 +1620,6 @@ impl Planar4Prr {
         let t172 = ::overact::math::signed(g2_vx_leg2, rate_2_leg2);
         let t174 = twist[2] - rate_2_leg2;
         let t175 = ::overact::math::signed(g2_vx_leg2, t174);
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
         let t180 = s2_leg3 - c2_leg3;
         let t181 = 1.0 / s2_leg3;
         let t182 = 0.7071067811865476 * t181;
@@ -1655,8 +1653,6 @@ impl Planar4Prr {
         let t253 = ::overact::math::signed(g2_vx_leg3, rate_2_leg3);
         let t255 = twist[2] - rate_2_leg3;
         let t256 = ::overact::math::signed(g2_vx_leg3, t255);
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
         let t261 = c2_leg4 + s2_leg4;
         let t262 = 1.0 / s2_leg4;
         let t263 = 0.7071067811865476 * t262;
@@ -2392,13 +2388,18 @@ impl Planar4Prr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 48]; 3], ::overact::Error> {
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_leg1, c2_leg1), (s_phi, c_phi), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
+        (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
+            joints[1], pose[2], joints[4], joints[7], joints[10],
+        ]);
         ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
+        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
         let t2 = c2_leg1 - s2_leg1;
         let t3 = 1.0 / s2_leg1;
         let t4 = 0.7071067811865476 * t3;
         let g1_vx_leg1 = t2 * t4;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t8 = s_phi + c_phi;
         let t9 = 0.05656854249492381 * t8;
         let t10 = t9 * acceleration[2];
@@ -2423,14 +2424,10 @@ impl Planar4Prr {
         let rate_dot_1_leg1 = g1_vx_leg1 * t27 + g1_vy_leg1 * t37;
         let rate_1_leg1 = g1_vx_leg1 * t20 + g1_vy_leg1 * t22;
         let g2_wz_leg1 = 0.11764705882352941 * (t3 * t8 - t3 * t12);
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
         let t50 = c2_leg2 + s2_leg2;
         let t51 = 1.0 / s2_leg2;
         let t52 = 0.7071067811865476 * t51;
         let minus_g1_vx_leg2 = t50 * t52;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
         let t56 = s2_leg3 + c2_leg3;
         let t57 = 1.0 / s2_leg3;
         let t58 = 0.7071067811865476 * t57;
@@ -2506,8 +2503,6 @@ impl Planar4Prr {
         let t289 = c2_leg3 * minus_rate_dot_1_leg3;
         let t297 = s2_leg3 * minus_rate_dot_1_leg3;
         let t307 = twist[2] - rate_2_leg3;
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
         let t315 = c2_leg4 + s2_leg4;
         let t316 = 1.0 / s2_leg4;
         let t317 = 0.7071067811865476 * t316;
@@ -3220,12 +3215,17 @@ impl Planar4Prr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 36]; 3], ::overact::Error> {
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let [(s_phi, c_phi), (s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
+        (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
+            pose[2], joints[1], joints[4], joints[7], joints[10],
+        ]);
+        ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
+        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
         let t2 = twist[2] * twist[2];
         let t5 = c_phi * t2 + s_phi * acceleration[2];
         let t8 = c_phi * acceleration[2] - s_phi * t2;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
         let t17 = c2_leg1 - s2_leg1;
         let t18 = 1.0 / s2_leg1;
         let t19 = 0.7071067811865476 * t18;
@@ -3253,8 +3253,6 @@ impl Planar4Prr {
         let t50 = acceleration[1] + t44 - t46 + t48 * t38;
         let rate_dot_1_leg1 = g1_vx_leg1 * t40 + g1_vy_leg1 * t50;
         let g1_wz_leg1 = g1_vy_leg1 * t26 - g1_vx_leg1 * t22;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
         let t61 = c2_leg2 + s2_leg2;
         let t62 = 1.0 / s2_leg2;
         let t63 = 0.7071067811865476 * t62;
@@ -3271,8 +3269,6 @@ impl Planar4Prr {
         let rate_dot_1_leg2 = t63 * (t67 * t74 - (t61 * t77 + t79 * t81));
         let minus_g1_vy_leg2 = t79 * t63;
         let g1_wz_leg2 = t22 * minus_g1_vy_leg2 + t26 * minus_g1_vx_leg2;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
         let t95 = s2_leg3 - c2_leg3;
         let t96 = 1.0 / s2_leg3;
         let t97 = 0.7071067811865476 * t96;
@@ -3288,8 +3284,6 @@ impl Planar4Prr {
         let minus_rate_dot_1_leg3 = t97 * (t99 * t101 - t95 * t104 - t67 * t113);
         let minus_g1_vy_leg3 = t99 * t97;
         let g1_wz_leg3 = t26 * minus_g1_vy_leg3 + t22 * g1_vx_leg3;
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
         let t126 = c2_leg4 + s2_leg4;
         let t127 = 1.0 / s2_leg4;
         let t128 = 0.7071067811865476 * t127;
@@ -3988,14 +3982,18 @@ impl Planar4Prr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 36]; 3], ::overact::Error> {
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
+        let [(s2_leg2, c2_leg2), (s2_leg3, c2_leg3), (s2_leg1, c2_leg1), (s_phi, c_phi),
+        (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
+            joints[4], joints[7], joints[1], pose[2], joints[10],
+        ]);
         ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
+        ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
+        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
         let t2 = c2_leg2 + s2_leg2;
         let t3 = 1.0 / s2_leg2;
         let t4 = 0.7071067811865476 * t3;
         let minus_g1_vx_leg2 = t2 * t4;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
         let t8 = s2_leg3 + c2_leg3;
         let t9 = 1.0 / s2_leg3;
         let t10 = 0.7071067811865476 * t9;
@@ -4004,13 +4002,10 @@ impl Planar4Prr {
         let minus_g1_vy_leg2 = t13 * t4;
         let t15 = s2_leg3 - c2_leg3;
         let g1_vx_leg3 = t15 * t10;
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
         let t21 = s2_leg1 + c2_leg1;
         let t22 = 1.0 / s2_leg1;
         let t23 = 0.7071067811865476 * t22;
         let g1_vy_leg1 = t21 * t23;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t27 = c_phi - s_phi;
         let t28 = 0.05656854249492381 * t27;
         let t30 = c2_leg1 - s2_leg1;
@@ -4076,8 +4071,6 @@ impl Planar4Prr {
         let rate_2_leg3 = g2_vx_leg3 * t190 + g2_vx_leg3 * t192;
         let t195 = rate_2_leg3 * rate_2_leg3;
         let minus_rate_dot_1_leg3 = t10 * (t8 * t183 - t15 * t186 - t164 * t195);
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
         let t201 = c2_leg4 + s2_leg4;
         let t202 = 1.0 / s2_leg4;
         let t203 = 0.7071067811865476 * t202;
@@ -5002,13 +4995,18 @@ impl Planar4Prr {
         acceleration: &[f64; 3],
         parameters: &[f64; 48],
     ) -> Result<[f64; 4], ::overact::Error> {
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_leg1, c2_leg1), (s_phi, c_phi), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
+        (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
+            joints[1], pose[2], joints[4], joints[7], joints[10],
+        ]);
         ::overact::guard::leg(s2_leg1, 0.7624400821657583, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
+        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
         let t2 = c2_leg1 - s2_leg1;
         let t3 = 1.0 / s2_leg1;
         let t4 = 0.7071067811865476 * t3;
         let g1_vx_leg1 = t2 * t4;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t8 = s_phi + c_phi;
         let t9 = 0.05656854249492381 * t8;
         let t10 = t9 * acceleration[2];
@@ -5049,8 +5047,6 @@ impl Planar4Prr {
             - parameters[7] * t57
             - ::overact::math::signed(parameters[9], minus_rate_2_leg1) - t79;
         let t81 = minus_g2_vx_leg1 * t80;
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
         let t85 = 1.0 / s2_leg2;
         let g2_vx_leg2 = 2.079725827019258 * t85;
         let t89 = acceleration[0] - t31 + t33;
@@ -5086,8 +5082,6 @@ impl Planar4Prr {
             - parameters[13] * minus_rate_1_leg2
             - ::overact::math::signed(parameters[14], minus_rate_1_leg2) + parameters[15]
             + t154;
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
         let t161 = s2_leg3 - c2_leg3;
         let t162 = 1.0 / s2_leg3;
         let t163 = 0.7071067811865476 * t162;
@@ -5121,8 +5115,6 @@ impl Planar4Prr {
             - (parameters[27] * minus_rate_dot_2_leg3 + parameters[28] * t212)
             + ::overact::math::signed(parameters[31], rate_2_leg3) - t227;
         let t229 = g2_vx_leg3 * t228;
-        let (s2_leg4, c2_leg4) = ::overact::math::sin_cos(joints[10]);
-        ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
         let t234 = c2_leg4 + s2_leg4;
         let t235 = 1.0 / s2_leg4;
         let t236 = 0.7071067811865476 * t235;

@@ -372,7 +372,10 @@ impl Rx90 {
         joint_velocities: &[f64; 6],
         joint_accelerations: &[f64; 6],
     ) -> [[f64; 73]; 6] {
-        let (s2_arm, c2_arm) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
+        (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
+            joints[1], joints[2], joints[3], joints[4], joints[5],
+        ]);
         let t3 = s2_arm * joint_accelerations[0];
         let t4 = c2_arm * joint_velocities[0];
         let t5 = joint_velocities[1] * t4;
@@ -391,7 +394,6 @@ impl Rx90 {
         let t29 = c2_arm * t17;
         let t35 = 9.81 * c2_arm;
         let t36 = 9.81 * s2_arm;
-        let (s3_arm, c3_arm) = ::overact::math::sin_cos(joints[2]);
         let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
         let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
         let t51 = c3_arm * t4 - s3_arm * t8;
@@ -425,7 +427,6 @@ impl Rx90 {
         let t116 = t74 + t80;
         let t121 = c3_arm * t108 + s3_arm * t104;
         let t122 = t99 * t88 - t97 * t116 - t121;
-        let (s4_arm, c4_arm) = ::overact::math::sin_cos(joints[3]);
         let t130 = s23_arm * c4_arm;
         let t136 = s4_arm * t57 + c4_arm * t58;
         let t138 = c4_arm * t53 - s4_arm * t77 - joint_velocities[3] * t136;
@@ -484,7 +485,6 @@ impl Rx90 {
         let t275 = t222 * t210 - t248 * t207;
         let t280 = t248 * t228 + t222 * t230 + t97 * t214;
         let t281 = 0.45 * t217;
-        let (s5_arm, c5_arm) = ::overact::math::sin_cos(joints[4]);
         let t287 = t130 * c5_arm + c23_arm * s5_arm;
         let t293 = c5_arm * t144 - s5_arm * t143;
         let t295 = c5_arm * t138 + s5_arm * t173 + joint_velocities[4] * t293;
@@ -539,7 +539,6 @@ impl Rx90 {
         let t453 = t414 * t369 - t410 * t434 + t230 * t321 - t452;
         let t459 = t423 * t369 + t425 * t434 + t260 * t321 + t452;
         let t460 = s5_arm * t222;
-        let (s6_arm, c6_arm) = ::overact::math::sin_cos(joints[5]);
         let t466 = t287 * c6_arm - t140 * s6_arm;
         let t472 = s6_arm * t302 + c6_arm * t303;
         let t474 = c6_arm * t295 - s6_arm * t344 - joint_velocities[5] * t472;
@@ -691,7 +690,10 @@ impl Rx90 {
         joint_velocities: &[f64; 6],
         joint_accelerations: &[f64; 6],
     ) -> [[f64; 58]; 6] {
-        let (s2_arm, c2_arm) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
+        (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
+            joints[1], joints[2], joints[3], joints[4], joints[5],
+        ]);
         let t3 = s2_arm * joint_accelerations[0];
         let t4 = c2_arm * joint_velocities[0];
         let t5 = joint_velocities[1] * t4;
@@ -708,7 +710,6 @@ impl Rx90 {
         let t25 = joint_velocities[1] * joint_velocities[1];
         let t34 = 9.81 * c2_arm;
         let t35 = 9.81 * s2_arm;
-        let (s3_arm, c3_arm) = ::overact::math::sin_cos(joints[2]);
         let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
         let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
         let t50 = c3_arm * t4 - s3_arm * t8;
@@ -739,7 +740,6 @@ impl Rx90 {
         let t108 = c3_arm * t102 - s3_arm * t106;
         let t114 = t73 + t79;
         let t119 = c3_arm * t106 + s3_arm * t102;
-        let (s4_arm, c4_arm) = ::overact::math::sin_cos(joints[3]);
         let t124 = s23_arm * c4_arm;
         let t130 = s4_arm * t56 + c4_arm * t57;
         let t132 = c4_arm * t52 - s4_arm * t76 - joint_velocities[3] * t130;
@@ -789,7 +789,6 @@ impl Rx90 {
         let t240 = c4_arm * t209 - s4_arm * t212;
         let t249 = s4_arm * t206;
         let t252 = 0.45 * s4_arm;
-        let (s5_arm, c5_arm) = ::overact::math::sin_cos(joints[4]);
         let t261 = t124 * c5_arm + c23_arm * s5_arm;
         let t267 = c5_arm * t138 - s5_arm * t137;
         let t269 = c5_arm * t132 + s5_arm * t167 + joint_velocities[4] * t267;
@@ -835,7 +834,6 @@ impl Rx90 {
         let t403 = t305 + t321;
         let t410 = c5_arm * t240 + s5_arm * t206;
         let t421 = t214 * t286 + c4_arm * t410;
-        let (s6_arm, c6_arm) = ::overact::math::sin_cos(joints[5]);
         let t435 = t261 * c6_arm - t134 * s6_arm;
         let t441 = s6_arm * t276 + c6_arm * t277;
         let t443 = c6_arm * t269 - s6_arm * t318 - joint_velocities[5] * t441;
@@ -994,7 +992,10 @@ impl Rx90 {
         joint_accelerations: &[f64; 6],
         parameters: &[f64; 73],
     ) -> [f64; 6] {
-        let (s2_arm, c2_arm) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
+        (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
+            joints[1], joints[2], joints[3], joints[4], joints[5],
+        ]);
         let t10 = s2_arm * joint_accelerations[0];
         let t11 = c2_arm * joint_velocities[0];
         let t12 = joint_velocities[1] * t11;
@@ -1020,7 +1021,6 @@ impl Rx90 {
             + ::overact::math::signed(parameters[3], joint_velocities[0]) + parameters[4]
             + s2_arm * (t32 + parameters[10] * t12)
             + c2_arm * (t48 - parameters[10] * t16);
-        let (s3_arm, c3_arm) = ::overact::math::sin_cos(joints[2]);
         let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
         let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
         let t67 = c3_arm * t11 - s3_arm * t15;
@@ -1060,7 +1060,6 @@ impl Rx90 {
             * (parameters[23] * t81 + parameters[24] * t116
                 - parameters[25] * (joint_velocities[0] * joint_velocities[0])
                 + parameters[26] * t99);
-        let (s4_arm, c4_arm) = ::overact::math::sin_cos(joints[3]);
         let t153 = s23_arm * c4_arm;
         let t159 = s4_arm * t73 + c4_arm * t74;
         let t161 = c4_arm * t69 - s4_arm * t85 - joint_velocities[3] * t159;
@@ -1111,7 +1110,6 @@ impl Rx90 {
             - parameters[40] * t202;
         let t275 = t53 + t138 - t148 + t153 * t204 - t206 * t228 + c23_arm * t248
             - (t253 * t261 + t263 * t271);
-        let (s5_arm, c5_arm) = ::overact::math::sin_cos(joints[4]);
         let t278 = s5_arm * t253;
         let t281 = c5_arm * t165 + s5_arm * t166;
         let t284 = c5_arm * t166 - s5_arm * t165;
@@ -1158,7 +1156,6 @@ impl Rx90 {
             - parameters[52] * t328;
         let t403 = t278 * t308 - t310 * t330 + t263 * t341 + t346 * t362 + t366 * t382
             + t206 * t400;
-        let (s6_arm, c6_arm) = ::overact::math::sin_cos(joints[5]);
         let t410 = t322 + joint_accelerations[5];
         let t413 = c6_arm * t281 - s6_arm * t290;
         let t416 = s6_arm * t281 + c6_arm * t290;
@@ -1282,11 +1279,13 @@ impl Rx90 {
     /// 737 operations (328 additions, 409 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 0 signs, 726 intermediates.
     #[must_use]
     pub fn mass_matrix(joints: &[f64; 6], parameters: &[f64; 73]) -> [[f64; 6]; 6] {
-        let (s2_arm, c2_arm) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
+        (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
+            joints[1], joints[2], joints[3], joints[4], joints[5],
+        ]);
         let t12 = parameters[0] + parameters[1]
             + s2_arm * (s2_arm * parameters[5] + c2_arm * parameters[6])
             + c2_arm * (s2_arm * parameters[6] + c2_arm * parameters[8]);
-        let (s3_arm, c3_arm) = ::overact::math::sin_cos(joints[2]);
         let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
         let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
         let t24 = 0.45 * c2_arm;
@@ -1296,7 +1295,6 @@ impl Rx90 {
             + c23_arm
                 * (s23_arm * parameters[18] + c23_arm * parameters[20]
                     + parameters[23] * t24);
-        let (s4_arm, c4_arm) = ::overact::math::sin_cos(joints[3]);
         let t45 = s23_arm * c4_arm;
         let t47 = s23_arm * s4_arm;
         let t53 = 0.45 * (s23_arm - c2_arm);
@@ -1319,7 +1317,6 @@ impl Rx90 {
             - t24
                 * (s23_arm * parameters[24] - c23_arm * parameters[23]
                     - parameters[26] * t24) + t67 + c23_arm * t76 - t91;
-        let (s5_arm, c5_arm) = ::overact::math::sin_cos(joints[4]);
         let t96 = s5_arm * t63;
         let t100 = t45 * c5_arm + c23_arm * s5_arm;
         let t106 = c5_arm * t63;
@@ -1340,7 +1337,6 @@ impl Rx90 {
             + t54
                 * (t100 * parameters[52] - t109 * parameters[51] + parameters[54] * t54)
             + t133 + t143 + t47 * t153;
-        let (s6_arm, c6_arm) = ::overact::math::sin_cos(joints[5]);
         let t162 = s6_arm * t106 - c6_arm * t54;
         let t166 = t100 * c6_arm - t47 * s6_arm;
         let t174 = c6_arm * t106 + s6_arm * t54;
@@ -1535,7 +1531,10 @@ impl Rx90 {
         joint_velocities: &[f64; 6],
         parameters: &[f64; 73],
     ) -> [f64; 6] {
-        let (s2_arm, c2_arm) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
+        (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
+            joints[1], joints[2], joints[3], joints[4], joints[5],
+        ]);
         let t6 = c2_arm * joint_velocities[0];
         let t7 = joint_velocities[1] * t6;
         let t9 = s2_arm * joint_velocities[0];
@@ -1552,7 +1551,6 @@ impl Rx90 {
             + ::overact::math::signed(parameters[3], joint_velocities[0]) + parameters[4]
             + s2_arm * (t23 + parameters[10] * t7)
             + c2_arm * (t38 - parameters[10] * t10);
-        let (s3_arm, c3_arm) = ::overact::math::sin_cos(joints[2]);
         let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
         let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
         let t57 = c3_arm * t6 - s3_arm * t9;
@@ -1587,7 +1585,6 @@ impl Rx90 {
             * (parameters[23] * t69 + parameters[24] * t102
                 - parameters[25] * (joint_velocities[0] * joint_velocities[0])
                 + parameters[26] * t85);
-        let (s4_arm, c4_arm) = ::overact::math::sin_cos(joints[3]);
         let t139 = 0.45 * (s23_arm - c2_arm);
         let t140 = c4_arm * t139;
         let t143 = c4_arm * t66 - s4_arm * t78;
@@ -1636,7 +1633,6 @@ impl Rx90 {
             - parameters[38] * t189;
         let t255 = t43 + t123 - t133 + t140 * t171 - t173 * t191 + t194 * t214
             - t216 * t233 + c23_arm * t251;
-        let (s5_arm, c5_arm) = ::overact::math::sin_cos(joints[4]);
         let t258 = s5_arm * t173;
         let t261 = c5_arm * t143 + s5_arm * t151;
         let t264 = c5_arm * t151 - s5_arm * t143;
@@ -1682,7 +1678,6 @@ impl Rx90 {
             - parameters[52] * t307;
         let t382 = t258 * t287 - t289 * t309 + t140 * t320 + t325 * t341 + t345 * t361
             + t216 * t379;
-        let (s6_arm, c6_arm) = ::overact::math::sin_cos(joints[5]);
         let t388 = c6_arm * t261 - s6_arm * t269;
         let t389 = t264 + joint_velocities[5];
         let t390 = t388 * t389;

@@ -115,7 +115,7 @@ impl Spherical3Rrr {
                 "xx_platformR",
                 "xx_platform",
                 &[
-                    ("zz_distal_leg1", 0.9999999999995213), ("zz_distal_leg2", 0.9999999999886359),
+                    ("zz_distal_leg1", 0.9999999999995209), ("zz_distal_leg2", 0.9999999999886359),
                 ],
             ),
             BaseParameter::new("xy_platform", "xy_platform", &[]),
@@ -124,7 +124,7 @@ impl Spherical3Rrr {
                 "yy_platformR",
                 "yy_platform",
                 &[
-                    ("zz_distal_leg2", 0.9999999999962863), ("zz_distal_leg3", 0.9999999999949397),
+                    ("zz_distal_leg2", 0.9999999999962862), ("zz_distal_leg3", 0.99999999999494),
                 ],
             ),
             BaseParameter::new("yz_platform", "yz_platform", &[]),
@@ -132,7 +132,7 @@ impl Spherical3Rrr {
                 "zz_platformR",
                 "zz_platform",
                 &[
-                    ("zz_distal_leg1", 0.9999999999914265), ("zz_distal_leg3", 0.9999999999967923),
+                    ("zz_distal_leg1", 0.9999999999914264), ("zz_distal_leg3", 0.9999999999967922),
                 ],
             ),
             BaseParameter::new(
@@ -143,12 +143,12 @@ impl Spherical3Rrr {
             BaseParameter::new(
                 "my_platformR",
                 "my_platform",
-                &[("my_distal_leg1", -1.0000000000095053)],
+                &[("my_distal_leg1", -1.0000000000095048)],
             ),
             BaseParameter::new(
                 "mz_platformR",
                 "mz_platform",
-                &[("my_distal_leg2", -0.9999999999974564)],
+                &[("my_distal_leg2", -0.9999999999974563)],
             ),
             BaseParameter::new(
                 "zz_proximal_leg1R",
@@ -189,17 +189,17 @@ impl Spherical3Rrr {
             BaseParameter::new(
                 "xx_distal_leg1R",
                 "xx_distal_leg1",
-                &[("yy_distal_leg1", -1.0), ("zz_distal_leg1", -0.9999999999948108)],
+                &[("yy_distal_leg1", -1.0), ("zz_distal_leg1", -0.9999999999948109)],
             ),
             BaseParameter::new(
                 "xx_distal_leg2R",
                 "xx_distal_leg2",
-                &[("yy_distal_leg2", -1.0), ("zz_distal_leg2", -0.999999999987705)],
+                &[("yy_distal_leg2", -1.0), ("zz_distal_leg2", -0.9999999999877046)],
             ),
             BaseParameter::new(
                 "xx_distal_leg3R",
                 "xx_distal_leg3",
-                &[("yy_distal_leg3", -1.0), ("zz_distal_leg3", -0.9999999999939144)],
+                &[("yy_distal_leg3", -1.0), ("zz_distal_leg3", -0.9999999999939143)],
             ),
             BaseParameter::new("xy_distal_leg1", "xy_distal_leg1", &[]),
             BaseParameter::new("xy_distal_leg2", "xy_distal_leg2", &[]),
@@ -238,6 +238,7 @@ impl Spherical3Rrr {
         let t10 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
         ::overact::guard::reach(t10, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t10);
+        ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
         let t13 = 1.0 / (t5 * c_distal_leg1);
         let t14 = 2.0 * pose[2];
         let t15 = pose[3] * t14;
@@ -257,6 +258,7 @@ impl Spherical3Rrr {
         let t37 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
         ::overact::guard::reach(t37, "leg2")?;
         let c_distal_leg2 = ::overact::math::sqrt(t37);
+        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
         let t40 = 1.0 / (t34 * c_distal_leg2);
         let s_proximal_leg2 = t40 * (t27 * t34);
         let c_proximal_leg2 = t40 * (t34 * t34);
@@ -267,6 +269,7 @@ impl Spherical3Rrr {
         let t54 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
         ::overact::guard::reach(t54, "leg3")?;
         let c_distal_leg3 = ::overact::math::sqrt(t54);
+        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
         let t57 = 1.0 / (t31 * c_distal_leg3);
         let s_proximal_leg3 = t57 * (t31 * t48);
         let c_proximal_leg3 = t57 * (t31 * t31);
@@ -345,71 +348,59 @@ impl Spherical3Rrr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 71 operations (17 additions, 48 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 68 intermediates.
+    /// 56 operations (14 additions, 36 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 53 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian(pose: &[f64; 4]) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let t0 = 2.0 * pose[2];
-        let t1 = pose[3] * t0;
-        let t2 = 2.0 * pose[1];
-        let t3 = pose[0] * t2;
-        let minus_s_distal_leg2 = t1 - t3;
-        let t6 = 1.0 - pose[1] * t2;
-        let t7 = pose[2] * t0;
-        let t8 = t6 - t7;
+        let t0 = 2.0 * pose[1];
+        let t2 = 1.0 - pose[1] * t0;
+        let t3 = 2.0 * pose[2];
+        let t4 = pose[2] * t3;
+        let t5 = t2 - t4;
+        let t6 = pose[3] * t3;
+        let t7 = pose[0] * t0;
+        let minus_s_distal_leg2 = t6 - t7;
         let t10 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
         ::overact::guard::reach(t10, "leg2")?;
         let c_distal_leg2 = ::overact::math::sqrt(t10);
-        let t13 = 1.0 / (t8 * c_distal_leg2);
-        let t14 = pose[3] * t2;
-        let t15 = pose[0] * t0;
-        let t16 = t14 + t15;
-        let s_proximal_leg2 = t13 * (t16 * t8);
-        let c_proximal_leg2 = t13 * (t8 * t8);
-        let t23 = t16 * s_proximal_leg2 + t8 * c_proximal_leg2;
-        ::overact::guard::leg(t23, 1.0, "leg2")?;
-        let t24 = 1.0 / t23;
-        let gwrist_wx_leg2 = s_proximal_leg2 * t24;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
+        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
+        let t13 = 1.0 / (t5 * c_distal_leg2);
+        let t14 = pose[3] * t0;
+        let t15 = pose[0] * t3;
+        let s_proximal_leg2 = t13 * ((t14 + t15) * t5);
+        let t19 = minus_s_distal_leg2 / c_distal_leg2;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t19;
+        let t22 = 2.0 * pose[3];
+        let t23 = pose[3] * t22;
+        let t24 = 1.0 - t4 - t23;
         let minus_s_distal_leg3 = t14 - t15;
-        let t29 = 2.0 * pose[3];
-        let t30 = pose[3] * t29;
-        let t31 = 1.0 - t7 - t30;
-        let t33 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t33, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t33);
-        let t36 = 1.0 / (t31 * c_distal_leg3);
-        let c_proximal_leg3 = t36 * (t31 * t31);
-        let t40 = pose[2] * t2;
-        let t41 = pose[0] * t29;
-        let t42 = t40 + t41;
-        let s_proximal_leg3 = t36 * (t31 * t42);
-        let t46 = t31 * c_proximal_leg3 + t42 * s_proximal_leg3;
-        ::overact::guard::leg(t46, 1.0, "leg3")?;
-        let t47 = 1.0 / t46;
-        let gwrist_wx_leg3 = c_proximal_leg3 * t47;
-        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
-        let minus_s_distal_leg1 = t40 - t41;
-        let t51 = t6 - t30;
-        let t53 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t53, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t53);
-        let t56 = 1.0 / (t51 * c_distal_leg1);
-        let c_proximal_leg1 = t56 * (t51 * t51);
-        let t60 = t1 + t3;
-        let s_proximal_leg1 = t56 * (t51 * t60);
-        let t64 = t51 * c_proximal_leg1 + t60 * s_proximal_leg1;
-        ::overact::guard::leg(t64, 1.0, "leg1")?;
-        let t65 = 1.0 / t64;
-        let gwrist_wy_leg1 = c_proximal_leg1 * t65;
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
-        let gwrist_wy_leg3 = s_proximal_leg3 * t47;
-        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
-        let gwrist_wz_leg1 = s_proximal_leg1 * t65;
-        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
-        let gwrist_wz_leg2 = c_proximal_leg2 * t24;
-        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
+        let t27 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t27, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t27);
+        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
+        let t30 = 1.0 / (t24 * c_distal_leg3);
+        let c_proximal_leg3 = t30 * (t24 * t24);
+        let t33 = minus_s_distal_leg3 / c_distal_leg3;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t33;
+        let t35 = t2 - t23;
+        let t36 = pose[2] * t0;
+        let t37 = pose[0] * t22;
+        let minus_s_distal_leg1 = t36 - t37;
+        let t40 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t40, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t40);
+        ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
+        let t43 = 1.0 / (t35 * c_distal_leg1);
+        let c_proximal_leg1 = t43 * (t35 * t35);
+        let t46 = minus_s_distal_leg1 / c_distal_leg1;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t46;
+        let s_proximal_leg3 = t30 * (t24 * (t36 + t37));
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t33;
+        let s_proximal_leg1 = t43 * (t35 * (t6 + t7));
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t46;
+        let c_proximal_leg2 = t13 * (t5 * t5);
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t19;
         Ok([
             [1.0, -minus_gproximal_wy_leg1, -minus_gproximal_wz_leg1],
             [-minus_gproximal_wx_leg2, 1.0, -minus_gproximal_wz_leg2],
@@ -424,7 +415,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 15 operations (0 additions, 12 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 21 intermediates.
+    /// 9 operations (0 additions, 6 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 15 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -432,36 +423,26 @@ impl Spherical3Rrr {
         _pose: &[f64; 4],
         joints: &[f64; 9],
     ) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
+        let [(minus_s_proximal_leg2, minus_c_proximal_leg2),
+        (c_distal_leg2, minus_s_distal_leg2),
+        (minus_s_proximal_leg3, minus_c_proximal_leg3),
+        (c_distal_leg3, minus_s_distal_leg3),
+        (minus_s_proximal_leg1, minus_c_proximal_leg1),
+        (c_distal_leg1, minus_s_distal_leg1)] = ::overact::math::sin_cos_all([
+            joints[3], joints[4], joints[6], joints[7], joints[0], joints[1],
+        ]);
         ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let t4 = 1.0 / minus_s_distal_leg2;
-        let gwrist_wx_leg2 = minus_s_proximal_leg2 * t4;
-        let gproximal_wx_leg2 = c_distal_leg2 * gwrist_wx_leg2;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
         ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t11 = 1.0 / minus_s_distal_leg3;
-        let gwrist_wx_leg3 = minus_c_proximal_leg3 * t11;
-        let gproximal_wx_leg3 = c_distal_leg3 * gwrist_wx_leg3;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
         ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let t18 = 1.0 / minus_s_distal_leg1;
-        let gwrist_wy_leg1 = minus_c_proximal_leg1 * t18;
-        let gproximal_wy_leg1 = c_distal_leg1 * gwrist_wy_leg1;
-        let gwrist_wy_leg3 = minus_s_proximal_leg3 * t11;
-        let gproximal_wy_leg3 = c_distal_leg3 * gwrist_wy_leg3;
-        let gwrist_wz_leg1 = minus_s_proximal_leg1 * t18;
-        let gproximal_wz_leg1 = c_distal_leg1 * gwrist_wz_leg1;
-        let gwrist_wz_leg2 = minus_c_proximal_leg2 * t4;
-        let gproximal_wz_leg2 = c_distal_leg2 * gwrist_wz_leg2;
+        let t4 = c_distal_leg2 / minus_s_distal_leg2;
+        let gproximal_wx_leg2 = minus_s_proximal_leg2 * t4;
+        let t10 = c_distal_leg3 / minus_s_distal_leg3;
+        let gproximal_wx_leg3 = minus_c_proximal_leg3 * t10;
+        let t16 = c_distal_leg1 / minus_s_distal_leg1;
+        let gproximal_wy_leg1 = minus_c_proximal_leg1 * t16;
+        let gproximal_wy_leg3 = minus_s_proximal_leg3 * t10;
+        let gproximal_wz_leg1 = minus_s_proximal_leg1 * t16;
+        let gproximal_wz_leg2 = minus_c_proximal_leg2 * t4;
         Ok([
             [1.0, gproximal_wy_leg1, gproximal_wz_leg1],
             [gproximal_wx_leg2, 1.0, gproximal_wz_leg2],
@@ -475,111 +456,99 @@ impl Spherical3Rrr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 148 operations (51 additions, 88 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 142 intermediates.
+    /// 133 operations (48 additions, 76 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 127 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn jacobian(pose: &[f64; 4]) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let t0 = 2.0 * pose[2];
-        let t1 = pose[3] * t0;
-        let t2 = 2.0 * pose[1];
-        let t3 = pose[0] * t2;
-        let minus_s_distal_leg2 = t1 - t3;
-        let t6 = 1.0 - pose[1] * t2;
-        let t7 = pose[2] * t0;
-        let t8 = t6 - t7;
+        let t0 = 2.0 * pose[1];
+        let t2 = 1.0 - pose[1] * t0;
+        let t3 = 2.0 * pose[2];
+        let t4 = pose[2] * t3;
+        let t5 = t2 - t4;
+        let t6 = pose[3] * t3;
+        let t7 = pose[0] * t0;
+        let minus_s_distal_leg2 = t6 - t7;
         let t10 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
         ::overact::guard::reach(t10, "leg2")?;
         let c_distal_leg2 = ::overact::math::sqrt(t10);
-        let t13 = 1.0 / (t8 * c_distal_leg2);
-        let t14 = pose[3] * t2;
-        let t15 = pose[0] * t0;
-        let t16 = t14 + t15;
-        let s_proximal_leg2 = t13 * (t16 * t8);
-        let c_proximal_leg2 = t13 * (t8 * t8);
-        let t23 = t16 * s_proximal_leg2 + t8 * c_proximal_leg2;
-        ::overact::guard::leg(t23, 1.0, "leg2")?;
-        let t24 = 1.0 / t23;
-        let gwrist_wx_leg2 = s_proximal_leg2 * t24;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
+        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
+        let t13 = 1.0 / (t5 * c_distal_leg2);
+        let t14 = pose[3] * t0;
+        let t15 = pose[0] * t3;
+        let s_proximal_leg2 = t13 * ((t14 + t15) * t5);
+        let t19 = minus_s_distal_leg2 / c_distal_leg2;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t19;
+        let t24 = 2.0 * pose[3];
+        let t25 = pose[3] * t24;
+        let t26 = 1.0 - t4 - t25;
         let minus_s_distal_leg3 = t14 - t15;
-        let t31 = 2.0 * pose[3];
-        let t32 = pose[3] * t31;
-        let t33 = 1.0 - t7 - t32;
-        let t35 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t35, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t35);
-        let t38 = 1.0 / (t33 * c_distal_leg3);
-        let c_proximal_leg3 = t38 * (t33 * t33);
-        let t42 = pose[2] * t2;
-        let t43 = pose[0] * t31;
-        let t44 = t42 + t43;
-        let s_proximal_leg3 = t38 * (t33 * t44);
-        let t48 = t33 * c_proximal_leg3 + t44 * s_proximal_leg3;
-        ::overact::guard::leg(t48, 1.0, "leg3")?;
-        let t49 = 1.0 / t48;
-        let gwrist_wx_leg3 = c_proximal_leg3 * t49;
-        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
-        let t53 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+        let t29 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t29, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t29);
+        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
+        let t32 = 1.0 / (t26 * c_distal_leg3);
+        let c_proximal_leg3 = t32 * (t26 * t26);
+        let t35 = minus_s_distal_leg3 / c_distal_leg3;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t35;
+        let t38 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
-        ::overact::guard::platform(t53, 1.0, "actuators")?;
-        let t54 = 1.0 / t53;
-        let gwrist_wy_leg3 = s_proximal_leg3 * t49;
-        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
-        let minus_s_distal_leg1 = t42 - t43;
-        let t59 = t6 - t32;
-        let t61 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t61, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t61);
-        let t64 = 1.0 / (t59 * c_distal_leg1);
-        let c_proximal_leg1 = t64 * (t59 * t59);
-        let t68 = t1 + t3;
-        let s_proximal_leg1 = t64 * (t59 * t68);
-        let t72 = t59 * c_proximal_leg1 + t68 * s_proximal_leg1;
-        ::overact::guard::leg(t72, 1.0, "leg1")?;
-        let t73 = 1.0 / t72;
-        let gwrist_wy_leg1 = c_proximal_leg1 * t73;
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
-        let t77 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+        ::overact::guard::platform(t38, 1.0, "actuators")?;
+        let t39 = 1.0 / t38;
+        let t40 = pose[2] * t0;
+        let t41 = pose[0] * t24;
+        let s_proximal_leg3 = t32 * (t26 * (t40 + t41));
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t35;
+        let t47 = t2 - t25;
+        let minus_s_distal_leg1 = t40 - t41;
+        let t50 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t50, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t50);
+        ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
+        let t53 = 1.0 / (t47 * c_distal_leg1);
+        let c_proximal_leg1 = t53 * (t47 * t47);
+        let t56 = minus_s_distal_leg1 / c_distal_leg1;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t56;
+        let t59 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
-        let t78 = t77 * t54;
-        let t84 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t77 * t78;
-        ::overact::guard::platform(t84, 1.0, "actuators")?;
-        let t85 = 1.0 / t84;
-        let t86 = minus_gproximal_wy_leg1 + t78;
-        let gwrist_wz_leg1 = s_proximal_leg1 * t73;
-        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
-        let gwrist_wz_leg2 = c_proximal_leg2 * t24;
-        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
-        let t97 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+        let t60 = t59 * t39;
+        let t66 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t59 * t60;
+        ::overact::guard::platform(t66, 1.0, "actuators")?;
+        let t67 = 1.0 / t66;
+        let t68 = minus_gproximal_wy_leg1 + t60;
+        let s_proximal_leg1 = t53 * (t47 * (t6 + t7));
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t56;
+        let c_proximal_leg2 = t13 * (t5 * t5);
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t19;
+        let t82 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
             - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
-        let t98 = t97 * t54;
-        let t100 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
-            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t77 * t98;
-        let t101 = t100 * t85;
-        let t109 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t97 * t98
-            - t100 * t101;
-        ::overact::guard::platform(t109, 1.0, "actuators")?;
-        let t110 = 1.0 / t109;
-        let t114 = t110 * (t101 * t86 - (minus_gproximal_wz_leg1 + t98));
-        let t116 = t85 * t86 + t101 * t114;
-        let t123 = 1.0 + minus_gproximal_wx_leg2 * t78;
-        let t129 = t110
-            * (minus_gproximal_wx_leg2 * t98 - minus_gproximal_wz_leg2 - t101 * t123);
-        let t131 = t85 * t123 - t101 * t129;
-        let t138 = minus_gproximal_wx_leg3 * t78 - minus_gproximal_wy_leg3;
-        let t144 = t110 * (1.0 + minus_gproximal_wx_leg3 * t98 - t101 * t138);
-        let t146 = t85 * t138 - t101 * t144;
+        let t83 = t82 * t39;
+        let t85 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t59 * t83;
+        let t86 = t85 * t67;
+        let t94 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t82 * t83
+            - t85 * t86;
+        ::overact::guard::platform(t94, 1.0, "actuators")?;
+        let t95 = 1.0 / t94;
+        let t99 = t95 * (t86 * t68 - (minus_gproximal_wz_leg1 + t83));
+        let t101 = t67 * t68 + t86 * t99;
+        let t108 = 1.0 + minus_gproximal_wx_leg2 * t60;
+        let t114 = t95
+            * (minus_gproximal_wx_leg2 * t83 - minus_gproximal_wz_leg2 - t86 * t108);
+        let t116 = t67 * t108 - t86 * t114;
+        let t123 = minus_gproximal_wx_leg3 * t60 - minus_gproximal_wy_leg3;
+        let t129 = t95 * (1.0 + minus_gproximal_wx_leg3 * t83 - t86 * t123);
+        let t131 = t67 * t123 - t86 * t129;
         Ok([
             [
-                t54 + t78 * t116 - t98 * t114,
-                -(minus_gproximal_wx_leg2 * t54 + t78 * t131 + t98 * t129),
-                -(minus_gproximal_wx_leg3 * t54 + t78 * t146 + t98 * t144),
+                t39 + t60 * t101 - t83 * t99,
+                -(minus_gproximal_wx_leg2 * t39 + t60 * t116 + t83 * t114),
+                -(minus_gproximal_wx_leg3 * t39 + t60 * t131 + t83 * t129),
             ],
-            [-t116, t131, t146],
-            [t114, t129, t144],
+            [-t101, t116, t131],
+            [t99, t114, t129],
         ])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -596,18 +565,14 @@ impl Spherical3Rrr {
         _pose: &[f64; 4],
         joints: &[f64; 9],
     ) -> [[f64; 9]; 9] {
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
+        let [(minus_s_proximal_leg1, minus_c_proximal_leg1),
+        (c_distal_leg1, minus_s_distal_leg1),
+        (minus_s_proximal_leg2, minus_c_proximal_leg2),
+        (c_distal_leg2, minus_s_distal_leg2),
+        (minus_s_proximal_leg3, minus_c_proximal_leg3),
+        (c_distal_leg3, minus_s_distal_leg3)] = ::overact::math::sin_cos_all([
+            joints[0], joints[1], joints[3], joints[4], joints[6], joints[7],
+        ]);
         [
             [1.0, 0.0, -c_distal_leg1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
             [
@@ -665,38 +630,47 @@ impl Spherical3Rrr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 6 operations (0 additions, 6 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 9 intermediates.
-    #[must_use]
+    /// 15 operations (0 additions, 12 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 18 intermediates.
+    ///
+    /// # Errors
+    /// A pose out of reach, or a singular configuration.
     pub fn closure_platform_jacobian_from_joints(
         _pose: &[f64; 4],
         joints: &[f64; 9],
-    ) -> [[f64; 3]; 3] {
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        [
+    ) -> Result<[[f64; 3]; 3], ::overact::Error> {
+        let [(c_distal_leg1, minus_s_distal_leg1), (c_distal_leg2, minus_s_distal_leg2),
+        (minus_s_proximal_leg2, minus_c_proximal_leg2),
+        (c_distal_leg3, minus_s_distal_leg3),
+        (minus_s_proximal_leg3, minus_c_proximal_leg3),
+        (minus_s_proximal_leg1, minus_c_proximal_leg1)] = ::overact::math::sin_cos_all([
+            joints[1], joints[4], joints[3], joints[7], joints[6], joints[0],
+        ]);
+        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
+        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
+        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
+        let t6 = c_distal_leg2 / minus_s_distal_leg2;
+        let gproximal_wx_leg2 = minus_s_proximal_leg2 * t6;
+        let t13 = c_distal_leg3 / minus_s_distal_leg3;
+        let gproximal_wx_leg3 = minus_c_proximal_leg3 * t13;
+        let t18 = c_distal_leg1 / minus_s_distal_leg1;
+        let gproximal_wy_leg1 = minus_c_proximal_leg1 * t18;
+        let gproximal_wy_leg3 = minus_s_proximal_leg3 * t13;
+        let gproximal_wz_leg1 = minus_s_proximal_leg1 * t18;
+        let gproximal_wz_leg2 = minus_c_proximal_leg2 * t6;
+        Ok([
             [
-                -minus_s_distal_leg1, -(minus_c_proximal_leg1 * c_distal_leg1),
-                -(minus_s_proximal_leg1 * c_distal_leg1),
+                -minus_s_distal_leg1, -(minus_s_distal_leg1 * gproximal_wy_leg1),
+                -(minus_s_distal_leg1 * gproximal_wz_leg1),
             ],
             [
-                -(minus_s_proximal_leg2 * c_distal_leg2), -minus_s_distal_leg2,
-                -(minus_c_proximal_leg2 * c_distal_leg2),
+                -(minus_s_distal_leg2 * gproximal_wx_leg2), -minus_s_distal_leg2,
+                -(minus_s_distal_leg2 * gproximal_wz_leg2),
             ],
             [
-                -(minus_c_proximal_leg3 * c_distal_leg3), -(minus_s_proximal_leg3 * c_distal_leg3),
-                -minus_s_distal_leg3,
+                -(minus_s_distal_leg3 * gproximal_wx_leg3),
+                -(minus_s_distal_leg3 * gproximal_wy_leg3), -minus_s_distal_leg3,
             ],
-        ]
+        ])
     }
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
     ///
@@ -712,9 +686,8 @@ impl Spherical3Rrr {
         _pose: &[f64; 4],
         joints: &[f64; 9],
     ) -> [[f64; 3]; 3] {
-        let minus_s_distal_leg1 = ::overact::math::sin_cos(joints[1]).1;
-        let minus_s_distal_leg2 = ::overact::math::sin_cos(joints[4]).1;
-        let minus_s_distal_leg3 = ::overact::math::sin_cos(joints[7]).1;
+        let [(_, minus_s_distal_leg1), (_, minus_s_distal_leg2), (_, minus_s_distal_leg3),
+        ] = ::overact::math::sin_cos_all([joints[1], joints[4], joints[7]]);
         [
             [minus_s_distal_leg1, 0.0, 0.0], [0.0, minus_s_distal_leg2, 0.0],
             [0.0, 0.0, minus_s_distal_leg3],
@@ -728,7 +701,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 9.
     ///
-    /// 107 operations (29 additions, 72 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 101 intermediates.
+    /// 80 operations (23 additions, 51 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 74 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -741,85 +714,60 @@ impl Spherical3Rrr {
         let t2 = 2.0 * pose[3];
         let t3 = pose[0] * t2;
         let minus_s_distal_leg1 = t1 - t3;
-        let t6 = 1.0 - pose[1] * t0;
-        let t7 = pose[3] * t2;
-        let t8 = t6 - t7;
-        let t10 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t10, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t10);
-        let t13 = 1.0 / (t8 * c_distal_leg1);
-        let c_proximal_leg1 = t13 * (t8 * t8);
-        let t17 = 2.0 * pose[2];
-        let t18 = pose[3] * t17;
-        let t19 = pose[0] * t0;
-        let t20 = t18 + t19;
-        let s_proximal_leg1 = t13 * (t8 * t20);
-        let t24 = t8 * c_proximal_leg1 + t20 * s_proximal_leg1;
-        ::overact::guard::leg(t24, 1.0, "leg1")?;
-        let t25 = 1.0 / t24;
-        let gwrist_wy_leg1 = c_proximal_leg1 * t25;
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
-        let gwrist_wz_leg1 = s_proximal_leg1 * t25;
-        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
-        let rate_proximal_leg1 = twist[0] - minus_gproximal_wy_leg1 * twist[1]
-            - minus_gproximal_wz_leg1 * twist[2];
-        let gdistal_wz_leg1 = t8 * t25;
-        let minus_gdistal_wy_leg1 = t20 * t25;
-        let rate_distal_leg1 = gdistal_wz_leg1 * twist[2]
-            - minus_gdistal_wy_leg1 * twist[1];
-        let rate_wrist_leg1 = gwrist_wy_leg1 * twist[1] + gwrist_wz_leg1 * twist[2];
-        let minus_s_distal_leg2 = t18 - t19;
-        let t43 = pose[2] * t17;
-        let t44 = t6 - t43;
-        let t46 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t46, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t46);
-        let t49 = 1.0 / (t44 * c_distal_leg2);
-        let t50 = pose[3] * t0;
-        let t51 = pose[0] * t17;
-        let t52 = t50 + t51;
-        let s_proximal_leg2 = t49 * (t52 * t44);
-        let c_proximal_leg2 = t49 * (t44 * t44);
-        let t59 = t52 * s_proximal_leg2 + t44 * c_proximal_leg2;
-        ::overact::guard::leg(t59, 1.0, "leg2")?;
-        let t60 = 1.0 / t59;
-        let gwrist_wx_leg2 = s_proximal_leg2 * t60;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
-        let gwrist_wz_leg2 = c_proximal_leg2 * t60;
-        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
-        let rate_proximal_leg2 = twist[1] - minus_gproximal_wx_leg2 * twist[0]
-            - minus_gproximal_wz_leg2 * twist[2];
-        let gdistal_wx_leg2 = t44 * t60;
-        let minus_gdistal_wz_leg2 = t52 * t60;
-        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
-            - minus_gdistal_wz_leg2 * twist[2];
-        let rate_wrist_leg2 = gwrist_wx_leg2 * twist[0] + gwrist_wz_leg2 * twist[2];
-        let minus_s_distal_leg3 = t50 - t51;
-        let t79 = 1.0 - t43 - t7;
-        let t81 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t81, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t81);
-        let t84 = 1.0 / (t79 * c_distal_leg3);
-        let c_proximal_leg3 = t84 * (t79 * t79);
-        let t88 = t1 + t3;
-        let s_proximal_leg3 = t84 * (t79 * t88);
-        let t92 = t79 * c_proximal_leg3 + t88 * s_proximal_leg3;
-        ::overact::guard::leg(t92, 1.0, "leg3")?;
-        let t93 = 1.0 / t92;
-        let gwrist_wx_leg3 = c_proximal_leg3 * t93;
-        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
-        let gwrist_wy_leg3 = s_proximal_leg3 * t93;
-        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
-        let rate_proximal_leg3 = twist[2]
-            - (minus_gproximal_wx_leg3 * twist[0] + minus_gproximal_wy_leg3 * twist[1]);
-        let gdistal_wy_leg3 = t79 * t93;
-        let minus_gdistal_wx_leg3 = t88 * t93;
-        let rate_distal_leg3 = gdistal_wy_leg3 * twist[1]
-            - minus_gdistal_wx_leg3 * twist[0];
-        let rate_wrist_leg3 = gwrist_wx_leg3 * twist[0] + gwrist_wy_leg3 * twist[1];
+        let t6 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t6, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t6);
+        ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
+        let t8 = 1.0 / c_distal_leg1;
+        let t11 = 1.0 - pose[1] * t0;
+        let t12 = pose[3] * t2;
+        let t13 = t11 - t12;
+        let t15 = 1.0 / (t13 * c_distal_leg1);
+        let c_proximal_leg1 = t15 * (t13 * t13);
+        let t19 = 2.0 * pose[2];
+        let t20 = pose[3] * t19;
+        let t21 = pose[0] * t0;
+        let s_proximal_leg1 = t15 * (t13 * (t20 + t21));
+        let t26 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
+        let rate_proximal_leg1 = twist[0] - minus_s_distal_leg1 * t8 * t26;
+        let minus_rate_distal_leg1 = s_proximal_leg1 * twist[1]
+            - c_proximal_leg1 * twist[2];
+        let rate_wrist_leg1 = t8 * t26;
+        let minus_s_distal_leg2 = t20 - t21;
+        let t35 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t35, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t35);
+        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
+        let t37 = 1.0 / c_distal_leg2;
+        let t39 = pose[2] * t19;
+        let t40 = t11 - t39;
+        let t42 = 1.0 / (t40 * c_distal_leg2);
+        let t43 = pose[3] * t0;
+        let t44 = pose[0] * t19;
+        let s_proximal_leg2 = t42 * ((t43 + t44) * t40);
+        let c_proximal_leg2 = t42 * (t40 * t40);
+        let t52 = s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2];
+        let rate_proximal_leg2 = twist[1] - minus_s_distal_leg2 * t37 * t52;
+        let minus_rate_distal_leg2 = s_proximal_leg2 * twist[2]
+            - c_proximal_leg2 * twist[0];
+        let rate_wrist_leg2 = t37 * t52;
+        let minus_s_distal_leg3 = t43 - t44;
+        let t61 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t61, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t61);
+        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
+        let t63 = 1.0 / c_distal_leg3;
+        let t66 = 1.0 - t39 - t12;
+        let t68 = 1.0 / (t66 * c_distal_leg3);
+        let c_proximal_leg3 = t68 * (t66 * t66);
+        let s_proximal_leg3 = t68 * (t66 * (t1 + t3));
+        let t76 = c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1];
+        let rate_proximal_leg3 = twist[2] - minus_s_distal_leg3 * t63 * t76;
+        let rate_distal_leg3 = c_proximal_leg3 * twist[1] - s_proximal_leg3 * twist[0];
+        let rate_wrist_leg3 = t63 * t76;
         Ok([
-            rate_proximal_leg1, rate_distal_leg1, rate_wrist_leg1, rate_proximal_leg2,
-            rate_distal_leg2, rate_wrist_leg2, rate_proximal_leg3, rate_distal_leg3,
+            rate_proximal_leg1, -minus_rate_distal_leg1, rate_wrist_leg1, rate_proximal_leg2,
+            -minus_rate_distal_leg2, rate_wrist_leg2, rate_proximal_leg3, rate_distal_leg3,
             rate_wrist_leg3,
         ])
     }
@@ -832,7 +780,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 9.
     ///
-    /// 199 operations (65 additions, 128 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 193 intermediates.
+    /// 128 operations (44 additions, 78 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 122 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -852,118 +800,78 @@ impl Spherical3Rrr {
         let t10 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
         ::overact::guard::reach(t10, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t10);
+        ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
         let t13 = 1.0 / (t5 * c_distal_leg1);
-        let t14 = 2.0 * pose[2];
-        let t15 = pose[3] * t14;
-        let t16 = pose[0] * t0;
-        let t17 = t15 + t16;
-        let s_proximal_leg1 = t13 * (t5 * t17);
         let c_proximal_leg1 = t13 * (t5 * t5);
-        let t24 = t5 * c_proximal_leg1 + t17 * s_proximal_leg1;
-        ::overact::guard::leg(t24, 1.0, "leg1")?;
-        let t25 = 1.0 / t24;
-        let gdistal_wz_leg1 = t5 * t25;
-        let minus_gdistal_wy_leg1 = t17 * t25;
-        let rate_distal_leg1 = gdistal_wz_leg1 * twist[2]
-            - minus_gdistal_wy_leg1 * twist[1];
-        let t31 = s_proximal_leg1 * rate_distal_leg1;
-        let gwrist_wy_leg1 = c_proximal_leg1 * t25;
-        let gwrist_wz_leg1 = s_proximal_leg1 * t25;
-        let rate_wrist_leg1 = gwrist_wy_leg1 * twist[1] + gwrist_wz_leg1 * twist[2];
-        let t37 = t17 * rate_wrist_leg1;
-        let t39 = c_proximal_leg1 * rate_distal_leg1;
-        let t40 = t5 * rate_wrist_leg1;
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
-        let t45 = minus_s_distal_leg1 * rate_wrist_leg1;
-        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
-        let rate_proximal_leg1 = twist[0] - minus_gproximal_wy_leg1 * twist[1]
-            - minus_gproximal_wz_leg1 * twist[2];
-        let t56 = acceleration[1]
-            - (t39 * t45 - rate_proximal_leg1 * t37 - rate_proximal_leg1 * t39);
-        let t64 = acceleration[2]
-            - (rate_proximal_leg1 * t40 + t31 * t45 - rate_proximal_leg1 * t31);
-        let rate_dot_proximal_leg1 = acceleration[0] + t31 * t37 + t39 * t40
-            - minus_gproximal_wy_leg1 * t56 - minus_gproximal_wz_leg1 * t64;
-        let rate_dot_distal_leg1 = gdistal_wz_leg1 * t64 - minus_gdistal_wy_leg1 * t56;
-        let rate_dot_wrist_leg1 = gwrist_wy_leg1 * t56 + gwrist_wz_leg1 * t64;
-        let t73 = pose[2] * t14;
-        let t74 = t2 - t73;
-        let minus_s_distal_leg2 = t15 - t16;
-        let t77 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t77, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t77);
-        let t80 = 1.0 / (t74 * c_distal_leg2);
-        let t81 = pose[3] * t0;
-        let t82 = pose[0] * t14;
-        let t83 = t81 + t82;
-        let s_proximal_leg2 = t80 * (t83 * t74);
-        let c_proximal_leg2 = t80 * (t74 * t74);
-        let t90 = t83 * s_proximal_leg2 + t74 * c_proximal_leg2;
-        ::overact::guard::leg(t90, 1.0, "leg2")?;
-        let t91 = 1.0 / t90;
-        let gdistal_wx_leg2 = t74 * t91;
-        let minus_gdistal_wz_leg2 = t83 * t91;
-        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
-            - minus_gdistal_wz_leg2 * twist[2];
-        let t97 = s_proximal_leg2 * rate_distal_leg2;
-        let gwrist_wx_leg2 = s_proximal_leg2 * t91;
-        let gwrist_wz_leg2 = c_proximal_leg2 * t91;
-        let rate_wrist_leg2 = gwrist_wx_leg2 * twist[0] + gwrist_wz_leg2 * twist[2];
-        let t103 = t83 * rate_wrist_leg2;
-        let t105 = c_proximal_leg2 * rate_distal_leg2;
-        let t106 = t74 * rate_wrist_leg2;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
-        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
-        let rate_proximal_leg2 = twist[1] - minus_gproximal_wx_leg2 * twist[0]
-            - minus_gproximal_wz_leg2 * twist[2];
-        let t117 = minus_s_distal_leg2 * rate_wrist_leg2;
-        let t122 = acceleration[0]
-            - (rate_proximal_leg2 * t106 + t97 * t117 - rate_proximal_leg2 * t97);
-        let t130 = acceleration[2]
-            - (t105 * t117 - rate_proximal_leg2 * t103 - rate_proximal_leg2 * t105);
-        let rate_dot_proximal_leg2 = acceleration[1] + t97 * t103 + t105 * t106
-            - minus_gproximal_wx_leg2 * t122 - minus_gproximal_wz_leg2 * t130;
-        let rate_dot_distal_leg2 = gdistal_wx_leg2 * t122 - minus_gdistal_wz_leg2 * t130;
-        let rate_dot_wrist_leg2 = gwrist_wx_leg2 * t122 + gwrist_wz_leg2 * t130;
-        let t140 = 1.0 - t73 - t4;
-        let minus_s_distal_leg3 = t81 - t82;
-        let t143 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t143, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t143);
-        let t146 = 1.0 / (t140 * c_distal_leg3);
-        let t147 = t6 + t7;
-        let s_proximal_leg3 = t146 * (t140 * t147);
-        let c_proximal_leg3 = t146 * (t140 * t140);
-        let t154 = t140 * c_proximal_leg3 + t147 * s_proximal_leg3;
-        ::overact::guard::leg(t154, 1.0, "leg3")?;
-        let t155 = 1.0 / t154;
-        let gdistal_wy_leg3 = t140 * t155;
-        let minus_gdistal_wx_leg3 = t147 * t155;
-        let rate_distal_leg3 = gdistal_wy_leg3 * twist[1]
-            - minus_gdistal_wx_leg3 * twist[0];
-        let t161 = s_proximal_leg3 * rate_distal_leg3;
-        let gwrist_wx_leg3 = c_proximal_leg3 * t155;
-        let gwrist_wy_leg3 = s_proximal_leg3 * t155;
-        let rate_wrist_leg3 = gwrist_wx_leg3 * twist[0] + gwrist_wy_leg3 * twist[1];
-        let t167 = t147 * rate_wrist_leg3;
-        let t169 = c_proximal_leg3 * rate_distal_leg3;
-        let t170 = t140 * rate_wrist_leg3;
-        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
-        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
-        let t178 = minus_gproximal_wx_leg3 * twist[0]
-            + minus_gproximal_wy_leg3 * twist[1];
-        let rate_proximal_leg3 = twist[2] - t178;
-        let t185 = acceleration[0]
-            - (t178 * t169 - rate_proximal_leg3 * t167 - rate_proximal_leg3 * t169);
-        let t192 = acceleration[1]
-            - (rate_proximal_leg3 * t170 + t178 * t161 - rate_proximal_leg3 * t161);
-        let rate_dot_proximal_leg3 = acceleration[2] + t161 * t167 + t169 * t170
-            - (minus_gproximal_wx_leg3 * t185 + minus_gproximal_wy_leg3 * t192);
-        let rate_dot_distal_leg3 = gdistal_wy_leg3 * t192 - minus_gdistal_wx_leg3 * t185;
-        let rate_dot_wrist_leg3 = gwrist_wx_leg3 * t185 + gwrist_wy_leg3 * t192;
+        let t17 = 2.0 * pose[2];
+        let t18 = pose[3] * t17;
+        let t19 = pose[0] * t0;
+        let s_proximal_leg1 = t13 * (t5 * (t18 + t19));
+        let t24 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
+        let minus_rate_distal_leg1 = s_proximal_leg1 * twist[1]
+            - c_proximal_leg1 * twist[2];
+        let t30 = 1.0 / c_distal_leg1;
+        let t31 = minus_s_distal_leg1 * t30;
+        let t35 = t31 * t24;
+        let rate_proximal_leg1 = twist[0] - t35;
+        let t40 = c_proximal_leg1 * acceleration[1] + s_proximal_leg1 * acceleration[2]
+            + minus_rate_distal_leg1 * t35 - minus_rate_distal_leg1 * rate_proximal_leg1;
+        let rate_dot_proximal_leg1 = acceleration[0] - t24 * minus_rate_distal_leg1
+            - t31 * t40;
+        let minus_rate_dot_distal_leg1 = s_proximal_leg1 * acceleration[1]
+            - c_proximal_leg1 * acceleration[2] + t24 * rate_proximal_leg1;
+        let rate_dot_wrist_leg1 = t30 * t40;
+        let t49 = pose[2] * t17;
+        let t50 = t2 - t49;
+        let minus_s_distal_leg2 = t18 - t19;
+        let t53 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t53, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t53);
+        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
+        let t56 = 1.0 / (t50 * c_distal_leg2);
+        let t57 = pose[3] * t0;
+        let t58 = pose[0] * t17;
+        let s_proximal_leg2 = t56 * ((t57 + t58) * t50);
+        let c_proximal_leg2 = t56 * (t50 * t50);
+        let t66 = s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2];
+        let minus_rate_distal_leg2 = s_proximal_leg2 * twist[2]
+            - c_proximal_leg2 * twist[0];
+        let t72 = 1.0 / c_distal_leg2;
+        let t73 = minus_s_distal_leg2 * t72;
+        let t77 = t73 * t66;
+        let rate_proximal_leg2 = twist[1] - t77;
+        let t82 = s_proximal_leg2 * acceleration[0] + c_proximal_leg2 * acceleration[2]
+            + minus_rate_distal_leg2 * t77 - minus_rate_distal_leg2 * rate_proximal_leg2;
+        let rate_dot_proximal_leg2 = acceleration[1] - t66 * minus_rate_distal_leg2
+            - t73 * t82;
+        let minus_rate_dot_distal_leg2 = s_proximal_leg2 * acceleration[2]
+            - c_proximal_leg2 * acceleration[0] + t66 * rate_proximal_leg2;
+        let rate_dot_wrist_leg2 = t72 * t82;
+        let t92 = 1.0 - t49 - t4;
+        let minus_s_distal_leg3 = t57 - t58;
+        let t95 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t95, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t95);
+        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
+        let t98 = 1.0 / (t92 * c_distal_leg3);
+        let c_proximal_leg3 = t98 * (t92 * t92);
+        let s_proximal_leg3 = t98 * (t92 * (t6 + t7));
+        let t106 = c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1];
+        let rate_distal_leg3 = c_proximal_leg3 * twist[1] - s_proximal_leg3 * twist[0];
+        let t112 = 1.0 / c_distal_leg3;
+        let t113 = minus_s_distal_leg3 * t112;
+        let t117 = t113 * t106;
+        let rate_proximal_leg3 = twist[2] - t117;
+        let t122 = c_proximal_leg3 * acceleration[0] + s_proximal_leg3 * acceleration[1]
+            + rate_distal_leg3 * rate_proximal_leg3 - rate_distal_leg3 * t117;
+        let rate_dot_proximal_leg3 = acceleration[2] + t106 * rate_distal_leg3
+            - t113 * t122;
+        let rate_dot_distal_leg3 = c_proximal_leg3 * acceleration[1]
+            - s_proximal_leg3 * acceleration[0] - t106 * rate_proximal_leg3;
+        let rate_dot_wrist_leg3 = t112 * t122;
         Ok([
-            rate_dot_proximal_leg1, rate_dot_distal_leg1, rate_dot_wrist_leg1,
-            rate_dot_proximal_leg2, rate_dot_distal_leg2, rate_dot_wrist_leg2,
+            rate_dot_proximal_leg1, -minus_rate_dot_distal_leg1, rate_dot_wrist_leg1,
+            rate_dot_proximal_leg2, -minus_rate_dot_distal_leg2, rate_dot_wrist_leg2,
             rate_dot_proximal_leg3, rate_dot_distal_leg3, rate_dot_wrist_leg3,
         ])
     }
@@ -975,7 +883,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 132 operations (45 additions, 78 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 132 intermediates.
+    /// 117 operations (42 additions, 66 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 117 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -983,99 +891,87 @@ impl Spherical3Rrr {
         pose: &[f64; 4],
         actuator_velocities: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let t0 = 2.0 * pose[2];
-        let t1 = pose[3] * t0;
-        let t2 = 2.0 * pose[1];
-        let t3 = pose[0] * t2;
-        let minus_s_distal_leg2 = t1 - t3;
-        let t6 = 1.0 - pose[1] * t2;
-        let t7 = pose[2] * t0;
-        let t8 = t6 - t7;
+        let t0 = 2.0 * pose[1];
+        let t2 = 1.0 - pose[1] * t0;
+        let t3 = 2.0 * pose[2];
+        let t4 = pose[2] * t3;
+        let t5 = t2 - t4;
+        let t6 = pose[3] * t3;
+        let t7 = pose[0] * t0;
+        let minus_s_distal_leg2 = t6 - t7;
         let t10 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
         ::overact::guard::reach(t10, "leg2")?;
         let c_distal_leg2 = ::overact::math::sqrt(t10);
-        let t13 = 1.0 / (t8 * c_distal_leg2);
-        let t14 = pose[3] * t2;
-        let t15 = pose[0] * t0;
-        let t16 = t14 + t15;
-        let s_proximal_leg2 = t13 * (t16 * t8);
-        let c_proximal_leg2 = t13 * (t8 * t8);
-        let t23 = t16 * s_proximal_leg2 + t8 * c_proximal_leg2;
-        ::overact::guard::leg(t23, 1.0, "leg2")?;
-        let t24 = 1.0 / t23;
-        let gwrist_wx_leg2 = s_proximal_leg2 * t24;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
+        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
+        let t13 = 1.0 / (t5 * c_distal_leg2);
+        let t14 = pose[3] * t0;
+        let t15 = pose[0] * t3;
+        let s_proximal_leg2 = t13 * ((t14 + t15) * t5);
+        let t19 = minus_s_distal_leg2 / c_distal_leg2;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t19;
+        let t24 = 2.0 * pose[3];
+        let t25 = pose[3] * t24;
+        let t26 = 1.0 - t4 - t25;
         let minus_s_distal_leg3 = t14 - t15;
-        let t31 = 2.0 * pose[3];
-        let t32 = pose[3] * t31;
-        let t33 = 1.0 - t7 - t32;
-        let t35 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t35, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t35);
-        let t38 = 1.0 / (t33 * c_distal_leg3);
-        let c_proximal_leg3 = t38 * (t33 * t33);
-        let t42 = pose[2] * t2;
-        let t43 = pose[0] * t31;
-        let t44 = t42 + t43;
-        let s_proximal_leg3 = t38 * (t33 * t44);
-        let t48 = t33 * c_proximal_leg3 + t44 * s_proximal_leg3;
-        ::overact::guard::leg(t48, 1.0, "leg3")?;
-        let t49 = 1.0 / t48;
-        let gwrist_wx_leg3 = c_proximal_leg3 * t49;
-        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
-        let t53 = actuator_velocities[0]
+        let t29 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t29, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t29);
+        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
+        let t32 = 1.0 / (t26 * c_distal_leg3);
+        let c_proximal_leg3 = t32 * (t26 * t26);
+        let t35 = minus_s_distal_leg3 / c_distal_leg3;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t35;
+        let t38 = actuator_velocities[0]
             - minus_gproximal_wx_leg2 * actuator_velocities[1]
             - minus_gproximal_wx_leg3 * actuator_velocities[2];
-        let t57 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+        let t42 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
-        ::overact::guard::platform(t57, 1.0, "actuators")?;
-        let t58 = 1.0 / t57;
-        let gwrist_wy_leg3 = s_proximal_leg3 * t49;
-        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
-        let minus_s_distal_leg1 = t42 - t43;
-        let t64 = t6 - t32;
-        let t66 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t66, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t66);
-        let t69 = 1.0 / (t64 * c_distal_leg1);
-        let c_proximal_leg1 = t69 * (t64 * t64);
-        let t73 = t1 + t3;
-        let s_proximal_leg1 = t69 * (t64 * t73);
-        let t77 = t64 * c_proximal_leg1 + t73 * s_proximal_leg1;
-        ::overact::guard::leg(t77, 1.0, "leg1")?;
-        let t78 = 1.0 / t77;
-        let gwrist_wy_leg1 = c_proximal_leg1 * t78;
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
-        let t82 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+        ::overact::guard::platform(t42, 1.0, "actuators")?;
+        let t43 = 1.0 / t42;
+        let t45 = pose[2] * t0;
+        let t46 = pose[0] * t24;
+        let s_proximal_leg3 = t32 * (t26 * (t45 + t46));
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t35;
+        let t52 = t2 - t25;
+        let minus_s_distal_leg1 = t45 - t46;
+        let t55 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t55, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t55);
+        ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
+        let t58 = 1.0 / (t52 * c_distal_leg1);
+        let c_proximal_leg1 = t58 * (t52 * t52);
+        let t61 = minus_s_distal_leg1 / c_distal_leg1;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t61;
+        let t64 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
-        let t83 = t82 * t58;
-        let t89 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t82 * t83;
-        ::overact::guard::platform(t89, 1.0, "actuators")?;
-        let t90 = 1.0 / t89;
-        let t96 = actuator_velocities[1]
+        let t65 = t64 * t43;
+        let t71 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t64 * t65;
+        ::overact::guard::platform(t71, 1.0, "actuators")?;
+        let t72 = 1.0 / t71;
+        let t78 = actuator_velocities[1]
             - minus_gproximal_wy_leg1 * actuator_velocities[0]
-            - minus_gproximal_wy_leg3 * actuator_velocities[2] - t53 * t83;
-        let gwrist_wz_leg1 = s_proximal_leg1 * t78;
-        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
-        let gwrist_wz_leg2 = c_proximal_leg2 * t24;
-        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
-        let t107 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wy_leg3 * actuator_velocities[2] - t38 * t65;
+        let s_proximal_leg1 = t58 * (t52 * (t6 + t7));
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t61;
+        let c_proximal_leg2 = t13 * (t5 * t5);
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t19;
+        let t92 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
             - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
-        let t108 = t107 * t58;
-        let t110 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
-            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t82 * t108;
-        let t111 = t110 * t90;
-        let t119 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t107 * t108
-            - t110 * t111;
-        ::overact::guard::platform(t119, 1.0, "actuators")?;
-        let t128 = (actuator_velocities[2]
+        let t93 = t92 * t43;
+        let t95 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t64 * t93;
+        let t96 = t95 * t72;
+        let t104 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t92 * t93
+            - t95 * t96;
+        ::overact::guard::platform(t104, 1.0, "actuators")?;
+        let t113 = (actuator_velocities[2]
             - (minus_gproximal_wz_leg1 * actuator_velocities[0]
-                + minus_gproximal_wz_leg2 * actuator_velocities[1]) - t53 * t108
-            - t111 * t96) / t119;
-        let t130 = t90 * t96 - t111 * t128;
-        Ok([t53 * t58 - t83 * t130 - t108 * t128, t130, t128])
+                + minus_gproximal_wz_leg2 * actuator_velocities[1]) - t38 * t93
+            - t96 * t78) / t104;
+        let t115 = t72 * t78 - t96 * t113;
+        Ok([t38 * t43 - t65 * t115 - t93 * t113, t115, t113])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1086,7 +982,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 236 operations (81 additions, 146 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 236 intermediates.
+    /// 162 operations (60 additions, 93 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 162 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1096,150 +992,110 @@ impl Spherical3Rrr {
         actuator_accelerations: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
         let t0 = 2.0 * pose[1];
-        let t2 = 1.0 - pose[1] * t0;
-        let t3 = 2.0 * pose[3];
-        let t4 = pose[3] * t3;
-        let t5 = t2 - t4;
-        let t6 = pose[2] * t0;
-        let t7 = pose[0] * t3;
-        let minus_s_distal_leg1 = t6 - t7;
-        let t10 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t10, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t10);
-        let t13 = 1.0 / (t5 * c_distal_leg1);
-        let t14 = 2.0 * pose[2];
-        let t15 = pose[3] * t14;
-        let t16 = pose[0] * t0;
-        let t17 = t15 + t16;
-        let s_proximal_leg1 = t13 * (t5 * t17);
-        let c_proximal_leg1 = t13 * (t5 * t5);
-        let t24 = t5 * c_proximal_leg1 + t17 * s_proximal_leg1;
-        ::overact::guard::leg(t24, 1.0, "leg1")?;
-        let t25 = 1.0 / t24;
-        let gdistal_wz_leg1 = t5 * t25;
-        let minus_gdistal_wy_leg1 = t17 * t25;
-        let rate_distal_leg1 = gdistal_wz_leg1 * twist[2]
-            - minus_gdistal_wy_leg1 * twist[1];
-        let t31 = s_proximal_leg1 * rate_distal_leg1;
-        let gwrist_wy_leg1 = c_proximal_leg1 * t25;
-        let gwrist_wz_leg1 = s_proximal_leg1 * t25;
-        let rate_wrist_leg1 = gwrist_wy_leg1 * twist[1] + gwrist_wz_leg1 * twist[2];
-        let t37 = t17 * rate_wrist_leg1;
-        let t39 = c_proximal_leg1 * rate_distal_leg1;
-        let t40 = t5 * rate_wrist_leg1;
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
-        let t44 = minus_s_distal_leg1 * rate_wrist_leg1;
-        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
-        let rate_proximal_leg1 = twist[0] - minus_gproximal_wy_leg1 * twist[1]
-            - minus_gproximal_wz_leg1 * twist[2];
-        let t56 = t31 * t37 + t39 * t40
-            + minus_gproximal_wy_leg1
-                * (t39 * t44 - rate_proximal_leg1 * t37 - rate_proximal_leg1 * t39);
-        let rate_dot_proximal_leg1 = t56
-            + minus_gproximal_wz_leg1
-                * (rate_proximal_leg1 * t40 + t31 * t44 - rate_proximal_leg1 * t31);
-        let t64 = actuator_accelerations[0] - rate_dot_proximal_leg1;
-        let minus_s_distal_leg2 = t15 - t16;
-        let t66 = pose[2] * t14;
-        let t67 = t2 - t66;
-        let t69 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t69, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t69);
-        let t72 = 1.0 / (t67 * c_distal_leg2);
-        let t73 = pose[3] * t0;
-        let t74 = pose[0] * t14;
-        let t75 = t73 + t74;
-        let s_proximal_leg2 = t72 * (t75 * t67);
-        let c_proximal_leg2 = t72 * (t67 * t67);
-        let t82 = t75 * s_proximal_leg2 + t67 * c_proximal_leg2;
-        ::overact::guard::leg(t82, 1.0, "leg2")?;
-        let t83 = 1.0 / t82;
-        let gwrist_wx_leg2 = s_proximal_leg2 * t83;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
-        let gwrist_wz_leg2 = c_proximal_leg2 * t83;
-        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
-        let rate_proximal_leg2 = twist[1] - minus_gproximal_wx_leg2 * twist[0]
-            - minus_gproximal_wz_leg2 * twist[2];
-        let rate_wrist_leg2 = gwrist_wx_leg2 * twist[0] + gwrist_wz_leg2 * twist[2];
-        let t95 = t67 * rate_wrist_leg2;
-        let gdistal_wx_leg2 = t67 * t83;
-        let minus_gdistal_wz_leg2 = t75 * t83;
-        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
-            - minus_gdistal_wz_leg2 * twist[2];
-        let t102 = s_proximal_leg2 * rate_distal_leg2;
-        let t103 = minus_s_distal_leg2 * rate_wrist_leg2;
-        let t109 = t75 * rate_wrist_leg2;
-        let t111 = c_proximal_leg2 * rate_distal_leg2;
-        let t114 = minus_gproximal_wx_leg2
-            * (rate_proximal_leg2 * t95 + t102 * t103 - rate_proximal_leg2 * t102)
-            + t102 * t109 + t111 * t95;
-        let rate_dot_proximal_leg2 = t114
-            + minus_gproximal_wz_leg2
-                * (t111 * t103 - rate_proximal_leg2 * t109 - rate_proximal_leg2 * t111);
-        let t122 = actuator_accelerations[1] - rate_dot_proximal_leg2;
-        let minus_s_distal_leg3 = t73 - t74;
-        let t127 = 1.0 - t66 - t4;
-        let t129 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t129, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t129);
-        let t132 = 1.0 / (t127 * c_distal_leg3);
-        let c_proximal_leg3 = t132 * (t127 * t127);
-        let t136 = t6 + t7;
-        let s_proximal_leg3 = t132 * (t127 * t136);
-        let t140 = t127 * c_proximal_leg3 + t136 * s_proximal_leg3;
-        ::overact::guard::leg(t140, 1.0, "leg3")?;
-        let t141 = 1.0 / t140;
-        let gwrist_wx_leg3 = c_proximal_leg3 * t141;
-        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
-        let gwrist_wy_leg3 = s_proximal_leg3 * t141;
-        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
-        let t148 = minus_gproximal_wx_leg3 * twist[0]
-            + minus_gproximal_wy_leg3 * twist[1];
-        let gdistal_wy_leg3 = t127 * t141;
-        let minus_gdistal_wx_leg3 = t136 * t141;
-        let rate_distal_leg3 = gdistal_wy_leg3 * twist[1]
-            - minus_gdistal_wx_leg3 * twist[0];
-        let t154 = c_proximal_leg3 * rate_distal_leg3;
-        let rate_proximal_leg3 = twist[2] - t148;
-        let rate_wrist_leg3 = gwrist_wx_leg3 * twist[0] + gwrist_wy_leg3 * twist[1];
-        let t160 = t136 * rate_wrist_leg3;
-        let t166 = t127 * rate_wrist_leg3;
-        let t168 = s_proximal_leg3 * rate_distal_leg3;
-        let t174 = minus_gproximal_wx_leg3
-            * (t148 * t154 - rate_proximal_leg3 * t160 - rate_proximal_leg3 * t154)
-            + minus_gproximal_wy_leg3
-                * (rate_proximal_leg3 * t166 + t148 * t168 - rate_proximal_leg3 * t168);
-        let rate_dot_proximal_leg3 = t174 + t168 * t160 + t154 * t166;
-        let t179 = actuator_accelerations[2] - rate_dot_proximal_leg3;
-        let t181 = t64 - minus_gproximal_wx_leg2 * t122 - minus_gproximal_wx_leg3 * t179;
-        let t185 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+        let t1 = pose[2] * t0;
+        let t2 = 2.0 * pose[3];
+        let t3 = pose[0] * t2;
+        let minus_s_distal_leg1 = t1 - t3;
+        let t6 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t6, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t6);
+        ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
+        let t8 = minus_s_distal_leg1 / c_distal_leg1;
+        let t10 = 1.0 - pose[1] * t0;
+        let t11 = pose[3] * t2;
+        let t12 = t10 - t11;
+        let t14 = 1.0 / (t12 * c_distal_leg1);
+        let t15 = 2.0 * pose[2];
+        let t16 = pose[3] * t15;
+        let t17 = pose[0] * t0;
+        let s_proximal_leg1 = t14 * (t12 * (t16 + t17));
+        let c_proximal_leg1 = t14 * (t12 * t12);
+        let minus_rate_distal_leg1 = s_proximal_leg1 * twist[1]
+            - c_proximal_leg1 * twist[2];
+        let t28 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
+        let t29 = t8 * t28;
+        let rate_proximal_leg1 = twist[0] - t29;
+        let minus_rate_dot_proximal_leg1 = t8
+            * (minus_rate_distal_leg1 * t29
+                - minus_rate_distal_leg1 * rate_proximal_leg1)
+            + t28 * minus_rate_distal_leg1;
+        let t37 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
+        let t38 = pose[2] * t15;
+        let t39 = t10 - t38;
+        let minus_s_distal_leg2 = t16 - t17;
+        let t42 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t42, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t42);
+        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
+        let t45 = 1.0 / (t39 * c_distal_leg2);
+        let t46 = pose[3] * t0;
+        let t47 = pose[0] * t15;
+        let s_proximal_leg2 = t45 * ((t46 + t47) * t39);
+        let t51 = minus_s_distal_leg2 / c_distal_leg2;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t51;
+        let c_proximal_leg2 = t45 * (t39 * t39);
+        let minus_rate_distal_leg2 = s_proximal_leg2 * twist[2]
+            - c_proximal_leg2 * twist[0];
+        let t60 = s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2];
+        let t61 = t51 * t60;
+        let rate_proximal_leg2 = twist[1] - t61;
+        let minus_rate_dot_proximal_leg2 = t51
+            * (minus_rate_distal_leg2 * t61
+                - minus_rate_distal_leg2 * rate_proximal_leg2)
+            + t60 * minus_rate_distal_leg2;
+        let t69 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
+        let t73 = 1.0 - t38 - t11;
+        let minus_s_distal_leg3 = t46 - t47;
+        let t76 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t76, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t76);
+        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
+        let t79 = 1.0 / (t73 * c_distal_leg3);
+        let c_proximal_leg3 = t79 * (t73 * t73);
+        let t82 = minus_s_distal_leg3 / c_distal_leg3;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t82;
+        let s_proximal_leg3 = t79 * (t73 * (t1 + t3));
+        let rate_distal_leg3 = c_proximal_leg3 * twist[1] - s_proximal_leg3 * twist[0];
+        let t92 = c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1];
+        let t93 = t82 * t92;
+        let rate_proximal_leg3 = twist[2] - t93;
+        let minus_rate_dot_proximal_leg3 = t82
+            * (rate_distal_leg3 * rate_proximal_leg3 - rate_distal_leg3 * t93)
+            - t92 * rate_distal_leg3;
+        let t101 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let t103 = t37 - minus_gproximal_wx_leg2 * t69 - minus_gproximal_wx_leg3 * t101;
+        let t107 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
-        ::overact::guard::platform(t185, 1.0, "actuators")?;
-        let t186 = 1.0 / t185;
-        let t190 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+        ::overact::guard::platform(t107, 1.0, "actuators")?;
+        let t108 = 1.0 / t107;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t82;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t8;
+        let t114 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
-        let t191 = t190 * t186;
-        let t197 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t190 * t191;
-        ::overact::guard::platform(t197, 1.0, "actuators")?;
-        let t198 = 1.0 / t197;
-        let t204 = t122 - minus_gproximal_wy_leg1 * t64 - minus_gproximal_wy_leg3 * t179
-            - t181 * t191;
-        let t211 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+        let t115 = t114 * t108;
+        let t121 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t114 * t115;
+        ::overact::guard::platform(t121, 1.0, "actuators")?;
+        let t122 = 1.0 / t121;
+        let t128 = t69 - minus_gproximal_wy_leg1 * t37 - minus_gproximal_wy_leg3 * t101
+            - t103 * t115;
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t8;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t51;
+        let t137 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
             - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
-        let t212 = t211 * t186;
-        let t214 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
-            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t190 * t212;
-        let t215 = t214 * t198;
-        let t223 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t211 * t212
-            - t214 * t215;
-        ::overact::guard::platform(t223, 1.0, "actuators")?;
-        let t232 = (t179
-            - (minus_gproximal_wz_leg1 * t64 + minus_gproximal_wz_leg2 * t122)
-            - t181 * t212 - t215 * t204) / t223;
-        let t234 = t198 * t204 - t215 * t232;
-        Ok([t181 * t186 - t191 * t234 - t212 * t232, t234, t232])
+        let t138 = t137 * t108;
+        let t140 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t114 * t138;
+        let t141 = t140 * t122;
+        let t149 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t137 * t138
+            - t140 * t141;
+        ::overact::guard::platform(t149, 1.0, "actuators")?;
+        let t158 = (t101
+            - (minus_gproximal_wz_leg1 * t37 + minus_gproximal_wz_leg2 * t69)
+            - t103 * t138 - t141 * t128) / t149;
+        let t160 = t122 * t128 - t141 * t158;
+        Ok([t103 * t108 - t115 * t160 - t138 * t158, t160, t158])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1251,7 +1107,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 54.
     /// Columns: `PARAMETERS`.
     ///
-    /// 564 operations (201 additions, 357 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 444 intermediates.
+    /// 500 operations (179 additions, 315 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 380 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1271,309 +1127,319 @@ impl Spherical3Rrr {
         let t10 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
         ::overact::guard::reach(t10, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t10);
+        ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
         let t13 = 1.0 / (t5 * c_distal_leg1);
-        let t14 = 2.0 * pose[2];
-        let t15 = pose[3] * t14;
-        let t16 = pose[0] * t0;
-        let t17 = t15 + t16;
-        let s_proximal_leg1 = t13 * (t5 * t17);
         let c_proximal_leg1 = t13 * (t5 * t5);
-        let t24 = t5 * c_proximal_leg1 + t17 * s_proximal_leg1;
-        ::overact::guard::leg(t24, 1.0, "leg1")?;
-        let t25 = 1.0 / t24;
-        let gdistal_wz_leg1 = t5 * t25;
-        let minus_gdistal_wy_leg1 = t17 * t25;
-        let rate_distal_leg1 = gdistal_wz_leg1 * twist[2]
-            - minus_gdistal_wy_leg1 * twist[1];
-        let t31 = s_proximal_leg1 * rate_distal_leg1;
-        let gwrist_wy_leg1 = c_proximal_leg1 * t25;
-        let gwrist_wz_leg1 = s_proximal_leg1 * t25;
-        let rate_wrist_leg1 = gwrist_wy_leg1 * twist[1] + gwrist_wz_leg1 * twist[2];
-        let t37 = t17 * rate_wrist_leg1;
-        let t39 = c_proximal_leg1 * rate_distal_leg1;
-        let t40 = t5 * rate_wrist_leg1;
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
-        let t45 = minus_s_distal_leg1 * rate_wrist_leg1;
-        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
-        let rate_proximal_leg1 = twist[0] - minus_gproximal_wy_leg1 * twist[1]
-            - minus_gproximal_wz_leg1 * twist[2];
-        let t56 = acceleration[1]
-            - (t39 * t45 - rate_proximal_leg1 * t37 - rate_proximal_leg1 * t39);
-        let t64 = acceleration[2]
-            - (rate_proximal_leg1 * t40 + t31 * t45 - rate_proximal_leg1 * t31);
-        let rate_dot_proximal_leg1 = acceleration[0] + t31 * t37 + t39 * t40
-            - minus_gproximal_wy_leg1 * t56 - minus_gproximal_wz_leg1 * t64;
-        let t67 = minus_gproximal_wy_leg1 * rate_dot_proximal_leg1;
-        let t68 = minus_gproximal_wz_leg1 * rate_dot_proximal_leg1;
-        let t69 = 9.81 * c_proximal_leg1;
-        let t71 = minus_gproximal_wz_leg1 * t69;
-        let t72 = 9.81 * s_proximal_leg1;
-        let t73 = minus_gproximal_wz_leg1 * t72;
-        let t79 = c_distal_leg1 * rate_dot_proximal_leg1;
-        let t80 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t81 = rate_distal_leg1 * t80;
-        let t82 = t79 + t81;
-        let t84 = c_distal_leg1 * rate_proximal_leg1;
-        let t85 = rate_distal_leg1 * t84;
-        let t87 = c_distal_leg1 * t82 + minus_s_distal_leg1 * t85;
-        let t88 = t84 * t80;
-        let t91 = minus_gdistal_wy_leg1 * t88 - minus_gproximal_wy_leg1 * t87;
-        let t94 = minus_gproximal_wz_leg1 * t87 + gdistal_wz_leg1 * t88;
-        let t97 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
-        let t101 = minus_s_distal_leg1 * (t81 + t82) - c_distal_leg1 * (t85 + t85 - t97);
-        let t103 = t84 * t84;
-        let t104 = t80 * t80;
-        let t105 = t103 - t104;
-        let rate_dot_distal_leg1 = gdistal_wz_leg1 * t64 - minus_gdistal_wy_leg1 * t56;
-        let t116 = rate_distal_leg1 * rate_distal_leg1;
-        let t119 = c_distal_leg1 * (t88 + rate_dot_distal_leg1)
-            + minus_s_distal_leg1 * (t116 - t103);
-        let t133 = minus_s_distal_leg1 * (t88 - rate_dot_distal_leg1)
-            - c_distal_leg1 * (t104 - t116);
-        let t143 = 9.81 * (minus_s_distal_leg1 * c_proximal_leg1);
-        let t144 = 9.81 * t17;
-        let minus_s_distal_leg2 = t15 - t16;
-        let t154 = pose[2] * t14;
-        let t155 = t2 - t154;
-        let t157 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t157, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t157);
-        let t160 = 1.0 / (t155 * c_distal_leg2);
-        let t161 = pose[3] * t0;
-        let t162 = pose[0] * t14;
-        let t163 = t161 + t162;
-        let s_proximal_leg2 = t160 * (t163 * t155);
-        let c_proximal_leg2 = t160 * (t155 * t155);
-        let t170 = t163 * s_proximal_leg2 + t155 * c_proximal_leg2;
-        ::overact::guard::leg(t170, 1.0, "leg2")?;
-        let t171 = 1.0 / t170;
-        let gwrist_wx_leg2 = s_proximal_leg2 * t171;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
-        let gdistal_wx_leg2 = t155 * t171;
-        let minus_gdistal_wz_leg2 = t163 * t171;
-        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
-            - minus_gdistal_wz_leg2 * twist[2];
-        let t179 = s_proximal_leg2 * rate_distal_leg2;
-        let gwrist_wz_leg2 = c_proximal_leg2 * t171;
-        let rate_wrist_leg2 = gwrist_wx_leg2 * twist[0] + gwrist_wz_leg2 * twist[2];
-        let t184 = t163 * rate_wrist_leg2;
-        let t186 = c_proximal_leg2 * rate_distal_leg2;
-        let t187 = t155 * rate_wrist_leg2;
-        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
-        let rate_proximal_leg2 = twist[1] - minus_gproximal_wx_leg2 * twist[0]
-            - minus_gproximal_wz_leg2 * twist[2];
-        let t197 = minus_s_distal_leg2 * rate_wrist_leg2;
-        let t202 = acceleration[0]
-            - (rate_proximal_leg2 * t187 + t179 * t197 - rate_proximal_leg2 * t179);
-        let t210 = acceleration[2]
-            - (t186 * t197 - rate_proximal_leg2 * t184 - rate_proximal_leg2 * t186);
-        let rate_dot_proximal_leg2 = acceleration[1] + t179 * t184 + t186 * t187
-            - minus_gproximal_wx_leg2 * t202 - minus_gproximal_wz_leg2 * t210;
-        let t213 = minus_gproximal_wx_leg2 * rate_dot_proximal_leg2;
-        let t214 = minus_gproximal_wz_leg2 * rate_dot_proximal_leg2;
-        let t215 = 9.81 * s_proximal_leg2;
-        let t217 = minus_gproximal_wz_leg2 * t215;
-        let t218 = 9.81 * c_proximal_leg2;
-        let t219 = minus_gproximal_wz_leg2 * t218;
-        let t225 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t226 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t227 = rate_distal_leg2 * t226;
-        let t228 = t225 + t227;
-        let t230 = c_distal_leg2 * rate_proximal_leg2;
-        let t231 = rate_distal_leg2 * t230;
-        let t233 = c_distal_leg2 * t228 + minus_s_distal_leg2 * t231;
-        let t235 = t230 * t226;
-        let t237 = minus_gproximal_wx_leg2 * t233 + gdistal_wx_leg2 * t235;
-        let t240 = minus_gdistal_wz_leg2 * t235 - minus_gproximal_wz_leg2 * t233;
-        let t241 = t230 * t230;
-        let t242 = t226 * t226;
-        let t243 = t241 - t242;
-        let t247 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t251 = minus_s_distal_leg2 * (t227 + t228)
-            - c_distal_leg2 * (t231 + t231 - t247);
-        let rate_dot_distal_leg2 = gdistal_wx_leg2 * t202 - minus_gdistal_wz_leg2 * t210;
-        let t262 = rate_distal_leg2 * rate_distal_leg2;
-        let t265 = c_distal_leg2 * (t235 + rate_dot_distal_leg2)
-            + minus_s_distal_leg2 * (t262 - t241);
-        let t279 = minus_s_distal_leg2 * (t235 - rate_dot_distal_leg2)
-            - c_distal_leg2 * (t242 - t262);
-        let t289 = 9.81 * (minus_s_distal_leg2 * s_proximal_leg2);
-        let t291 = 9.81 * t155;
-        let minus_s_distal_leg3 = t161 - t162;
-        let t301 = 1.0 - t154 - t4;
-        let t303 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t303, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t303);
-        let t306 = 1.0 / (t301 * c_distal_leg3);
-        let c_proximal_leg3 = t306 * (t301 * t301);
-        let t310 = t6 + t7;
-        let s_proximal_leg3 = t306 * (t301 * t310);
-        let t314 = t301 * c_proximal_leg3 + t310 * s_proximal_leg3;
-        ::overact::guard::leg(t314, 1.0, "leg3")?;
-        let t315 = 1.0 / t314;
-        let gwrist_wx_leg3 = c_proximal_leg3 * t315;
-        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
-        let gdistal_wy_leg3 = t301 * t315;
-        let minus_gdistal_wx_leg3 = t310 * t315;
-        let rate_distal_leg3 = gdistal_wy_leg3 * twist[1]
-            - minus_gdistal_wx_leg3 * twist[0];
-        let t323 = s_proximal_leg3 * rate_distal_leg3;
-        let gwrist_wy_leg3 = s_proximal_leg3 * t315;
-        let rate_wrist_leg3 = gwrist_wx_leg3 * twist[0] + gwrist_wy_leg3 * twist[1];
-        let t328 = t310 * rate_wrist_leg3;
-        let t330 = c_proximal_leg3 * rate_distal_leg3;
-        let t331 = t301 * rate_wrist_leg3;
-        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
-        let t338 = minus_gproximal_wx_leg3 * twist[0]
-            + minus_gproximal_wy_leg3 * twist[1];
-        let rate_proximal_leg3 = twist[2] - t338;
-        let t345 = acceleration[0]
-            - (t338 * t330 - rate_proximal_leg3 * t328 - rate_proximal_leg3 * t330);
-        let t352 = acceleration[1]
-            - (rate_proximal_leg3 * t331 + t338 * t323 - rate_proximal_leg3 * t323);
-        let rate_dot_proximal_leg3 = acceleration[2] + t323 * t328 + t330 * t331
-            - (minus_gproximal_wx_leg3 * t345 + minus_gproximal_wy_leg3 * t352);
-        let t356 = minus_gproximal_wx_leg3 * rate_dot_proximal_leg3;
-        let t357 = minus_gproximal_wy_leg3 * rate_dot_proximal_leg3;
-        let t363 = c_distal_leg3 * rate_proximal_leg3;
-        let t364 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t365 = t363 * t364;
-        let t367 = c_distal_leg3 * rate_dot_proximal_leg3;
-        let t368 = rate_distal_leg3 * t364;
-        let t369 = t367 + t368;
-        let t371 = rate_distal_leg3 * t363;
-        let t373 = c_distal_leg3 * t369 + minus_s_distal_leg3 * t371;
-        let t375 = minus_gdistal_wx_leg3 * t365 - minus_gproximal_wx_leg3 * t373;
-        let t378 = minus_gproximal_wy_leg3 * t373 + gdistal_wy_leg3 * t365;
-        let t381 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let t385 = minus_s_distal_leg3 * (t368 + t369)
-            - c_distal_leg3 * (t371 + t371 - t381);
-        let t387 = t363 * t363;
-        let t388 = t364 * t364;
-        let t389 = t387 - t388;
-        let rate_dot_distal_leg3 = gdistal_wy_leg3 * t352 - minus_gdistal_wx_leg3 * t345;
-        let t400 = rate_distal_leg3 * rate_distal_leg3;
-        let t403 = c_distal_leg3 * (t365 + rate_dot_distal_leg3)
-            + minus_s_distal_leg3 * (t400 - t387);
-        let t418 = minus_s_distal_leg3 * (t365 - rate_dot_distal_leg3)
-            - c_distal_leg3 * (t388 - t400);
-        let t426 = 9.81 * minus_s_distal_leg3;
-        let t429 = 9.81 * c_distal_leg3;
-        let t436 = t301 * acceleration[0] + t310 * acceleration[1]
-            + minus_s_distal_leg3 * acceleration[2];
-        let t442 = t301 * twist[0] + t310 * twist[1] + minus_s_distal_leg3 * twist[2];
-        let t447 = t163 * twist[0] + minus_s_distal_leg2 * twist[1] + t155 * twist[2];
-        let t448 = t442 * t447;
-        let t449 = minus_s_distal_leg1 * t448;
-        let t455 = minus_s_distal_leg1 * twist[0] + t5 * twist[1] + t17 * twist[2];
-        let t456 = t442 * t455;
-        let t457 = t163 * t456;
-        let t460 = t5 * t448;
-        let t462 = minus_s_distal_leg2 * t456;
-        let t465 = t17 * t448;
-        let t467 = t155 * t456;
-        let t469 = t455 * t447;
-        let t470 = t469 + t436;
-        let t476 = minus_s_distal_leg1 * acceleration[0] + t5 * acceleration[1]
-            + t17 * acceleration[2];
-        let t477 = t448 - t476;
-        let t480 = t442 * t442;
-        let t481 = t455 * t455;
-        let t482 = t480 - t481;
-        let t499 = t163 * acceleration[0] + minus_s_distal_leg2 * acceleration[1]
-            + t155 * acceleration[2];
-        let t500 = t456 + t499;
-        let t502 = t447 * t447;
-        let t503 = t502 - t480;
-        let t506 = t469 - t436;
-        let t520 = t301 * t469;
-        let t524 = t310 * t469;
-        let t528 = minus_s_distal_leg3 * t469;
-        let t531 = t481 - t502;
-        let t533 = t456 - t499;
-        let t536 = t448 + t476;
+        let t17 = 2.0 * pose[2];
+        let t18 = pose[3] * t17;
+        let t19 = pose[0] * t0;
+        let t20 = t18 + t19;
+        let s_proximal_leg1 = t13 * (t5 * t20);
+        let t24 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
+        let minus_rate_distal_leg1 = s_proximal_leg1 * twist[1]
+            - c_proximal_leg1 * twist[2];
+        let t30 = 1.0 / c_distal_leg1;
+        let t31 = minus_s_distal_leg1 * t30;
+        let t35 = t31 * t24;
+        let rate_proximal_leg1 = twist[0] - t35;
+        let t40 = c_proximal_leg1 * acceleration[1] + s_proximal_leg1 * acceleration[2]
+            + minus_rate_distal_leg1 * t35 - minus_rate_distal_leg1 * rate_proximal_leg1;
+        let rate_dot_proximal_leg1 = acceleration[0] - t24 * minus_rate_distal_leg1
+            - t31 * t40;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t31;
+        let t44 = minus_gproximal_wy_leg1 * rate_dot_proximal_leg1;
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t31;
+        let t46 = minus_gproximal_wz_leg1 * rate_dot_proximal_leg1;
+        let t47 = 9.81 * c_proximal_leg1;
+        let t49 = minus_gproximal_wz_leg1 * t47;
+        let t50 = 9.81 * s_proximal_leg1;
+        let t51 = minus_gproximal_wz_leg1 * t50;
+        let t57 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t58 = minus_rate_distal_leg1 * t57;
+        let t59 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t60 = t58 - t59;
+        let t62 = c_distal_leg1 * rate_proximal_leg1;
+        let t63 = minus_rate_distal_leg1 * t62;
+        let t65 = c_distal_leg1 * t60 + minus_s_distal_leg1 * t63;
+        let t67 = t62 * t57;
+        let t69 = minus_gproximal_wy_leg1 * t65 + s_proximal_leg1 * t67;
+        let t72 = minus_gproximal_wz_leg1 * t65 - c_proximal_leg1 * t67;
+        let t73 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t74 = t73 + t63;
+        let t79 = c_distal_leg1 * (t63 + t74) - minus_s_distal_leg1 * (t58 + t60);
+        let t81 = t62 * t62;
+        let t82 = t57 * t57;
+        let t83 = t81 - t82;
+        let minus_rate_dot_distal_leg1 = s_proximal_leg1 * acceleration[1]
+            - c_proximal_leg1 * acceleration[2] + t24 * rate_proximal_leg1;
+        let t96 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t99 = c_distal_leg1 * (t67 - minus_rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t96 - t81);
+        let t113 = minus_s_distal_leg1 * (t67 + minus_rate_dot_distal_leg1)
+            - c_distal_leg1 * (t82 - t96);
+        let t123 = 9.81 * (minus_s_distal_leg1 * c_proximal_leg1);
+        let t132 = 9.81 * t5;
+        let t138 = pose[2] * t17;
+        let t139 = t2 - t138;
+        let minus_s_distal_leg2 = t18 - t19;
+        let t142 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t142, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t142);
+        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
+        let t145 = 1.0 / (t139 * c_distal_leg2);
+        let t146 = pose[3] * t0;
+        let t147 = pose[0] * t17;
+        let t148 = t146 + t147;
+        let s_proximal_leg2 = t145 * (t148 * t139);
+        let t151 = 1.0 / c_distal_leg2;
+        let t152 = minus_s_distal_leg2 * t151;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t152;
+        let c_proximal_leg2 = t145 * (t139 * t139);
+        let t158 = s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2];
+        let minus_rate_distal_leg2 = s_proximal_leg2 * twist[2]
+            - c_proximal_leg2 * twist[0];
+        let t167 = t152 * t158;
+        let rate_proximal_leg2 = twist[1] - t167;
+        let t172 = s_proximal_leg2 * acceleration[0] + c_proximal_leg2 * acceleration[2]
+            + minus_rate_distal_leg2 * t167
+            - minus_rate_distal_leg2 * rate_proximal_leg2;
+        let rate_dot_proximal_leg2 = acceleration[1] - t158 * minus_rate_distal_leg2
+            - t152 * t172;
+        let t175 = minus_gproximal_wx_leg2 * rate_dot_proximal_leg2;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t152;
+        let t177 = minus_gproximal_wz_leg2 * rate_dot_proximal_leg2;
+        let t178 = 9.81 * s_proximal_leg2;
+        let t180 = minus_gproximal_wz_leg2 * t178;
+        let t181 = 9.81 * c_proximal_leg2;
+        let t182 = minus_gproximal_wz_leg2 * t181;
+        let t188 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t189 = minus_rate_distal_leg2 * t188;
+        let t190 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t191 = t189 - t190;
+        let t193 = c_distal_leg2 * rate_proximal_leg2;
+        let t194 = minus_rate_distal_leg2 * t193;
+        let t196 = c_distal_leg2 * t191 + minus_s_distal_leg2 * t194;
+        let t198 = t193 * t188;
+        let t200 = minus_gproximal_wx_leg2 * t196 - c_proximal_leg2 * t198;
+        let t203 = minus_gproximal_wz_leg2 * t196 + s_proximal_leg2 * t198;
+        let t204 = t193 * t193;
+        let t205 = t188 * t188;
+        let t206 = t204 - t205;
+        let t208 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t209 = t208 + t194;
+        let t214 = c_distal_leg2 * (t194 + t209) - minus_s_distal_leg2 * (t189 + t191);
+        let minus_rate_dot_distal_leg2 = s_proximal_leg2 * acceleration[2]
+            - c_proximal_leg2 * acceleration[0] + t158 * rate_proximal_leg2;
+        let t227 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t230 = c_distal_leg2 * (t198 - minus_rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t227 - t204);
+        let t244 = minus_s_distal_leg2 * (t198 + minus_rate_dot_distal_leg2)
+            - c_distal_leg2 * (t205 - t227);
+        let t254 = 9.81 * (minus_s_distal_leg2 * s_proximal_leg2);
+        let t263 = 9.81 * t148;
+        let t270 = 1.0 - t138 - t4;
+        let minus_s_distal_leg3 = t146 - t147;
+        let t273 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t273, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t273);
+        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
+        let t276 = 1.0 / (t270 * c_distal_leg3);
+        let c_proximal_leg3 = t276 * (t270 * t270);
+        let t279 = 1.0 / c_distal_leg3;
+        let t280 = minus_s_distal_leg3 * t279;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t280;
+        let t283 = t6 + t7;
+        let s_proximal_leg3 = t276 * (t270 * t283);
+        let t287 = c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1];
+        let rate_distal_leg3 = c_proximal_leg3 * twist[1] - s_proximal_leg3 * twist[0];
+        let t296 = t280 * t287;
+        let rate_proximal_leg3 = twist[2] - t296;
+        let t301 = c_proximal_leg3 * acceleration[0] + s_proximal_leg3 * acceleration[1]
+            + rate_distal_leg3 * rate_proximal_leg3 - rate_distal_leg3 * t296;
+        let rate_dot_proximal_leg3 = acceleration[2] + t287 * rate_distal_leg3
+            - t280 * t301;
+        let t304 = minus_gproximal_wx_leg3 * rate_dot_proximal_leg3;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t280;
+        let t306 = minus_gproximal_wy_leg3 * rate_dot_proximal_leg3;
+        let t312 = c_distal_leg3 * rate_proximal_leg3;
+        let t313 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t314 = t312 * t313;
+        let t316 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t317 = rate_distal_leg3 * t313;
+        let t318 = t316 + t317;
+        let t320 = rate_distal_leg3 * t312;
+        let t322 = c_distal_leg3 * t318 + minus_s_distal_leg3 * t320;
+        let t324 = s_proximal_leg3 * t314 - minus_gproximal_wx_leg3 * t322;
+        let t327 = minus_gproximal_wy_leg3 * t322 + c_proximal_leg3 * t314;
+        let t330 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t331 = t320 - t330;
+        let t334 = minus_s_distal_leg3 * (t317 + t318) - c_distal_leg3 * (t320 + t331);
+        let t336 = t312 * t312;
+        let t337 = t313 * t313;
+        let t338 = t336 - t337;
+        let rate_dot_distal_leg3 = c_proximal_leg3 * acceleration[1]
+            - s_proximal_leg3 * acceleration[0] - t287 * rate_proximal_leg3;
+        let t351 = rate_distal_leg3 * rate_distal_leg3;
+        let t354 = c_distal_leg3 * (t314 + rate_dot_distal_leg3)
+            + minus_s_distal_leg3 * (t351 - t336);
+        let t369 = minus_s_distal_leg3 * (t314 - rate_dot_distal_leg3)
+            - c_distal_leg3 * (t337 - t351);
+        let rate_dot_wrist_leg3 = t279 * t301;
+        let t384 = rate_dot_wrist_leg3 - t331;
+        let rate_wrist_leg2 = t151 * t158;
+        let t387 = t188 + rate_wrist_leg2;
+        let rate_wrist_leg3 = t279 * t287;
+        let t389 = t313 + rate_wrist_leg3;
+        let t390 = t387 * t389;
+        let t391 = minus_s_distal_leg1 * t390;
+        let rate_wrist_leg1 = t30 * t24;
+        let t394 = t57 + rate_wrist_leg1;
+        let t395 = t394 * t389;
+        let t396 = t148 * t395;
+        let t399 = t5 * t390;
+        let t401 = minus_s_distal_leg2 * t395;
+        let t404 = t20 * t390;
+        let t406 = t139 * t395;
+        let t408 = t394 * t387;
+        let t409 = t408 + t384;
+        let rate_dot_wrist_leg1 = t30 * t40;
+        let t412 = t74 + rate_dot_wrist_leg1;
+        let t413 = t390 - t412;
+        let t416 = t389 * t389;
+        let t417 = t394 * t394;
+        let t418 = t416 - t417;
+        let rate_dot_wrist_leg2 = t151 * t172;
+        let t432 = t209 + rate_dot_wrist_leg2;
+        let t433 = t395 + t432;
+        let t435 = t387 * t387;
+        let t436 = t435 - t416;
+        let t439 = t408 - t384;
+        let t453 = t270 * t408;
+        let t457 = t283 * t408;
+        let t461 = minus_s_distal_leg3 * t408;
+        let t464 = t417 - t435;
+        let t466 = t395 - t432;
+        let t469 = t390 + t412;
+        let t491 = 9.81 * t20;
+        let t493 = 9.81 * t139;
+        let t500 = 9.81 * minus_s_distal_leg3;
         Ok([
             [
-                rate_dot_proximal_leg1, -t69, t72, rate_dot_proximal_leg1, rate_proximal_leg1,
-                ::overact::math::sign(rate_proximal_leg1), 1.0, t87, t101, -t119,
-                rate_dot_proximal_leg1 - t87, t133, 0.0, t143, -(9.81 * t5), -t72, -t213,
-                -(minus_gproximal_wx_leg2 * t215), -t217, -t213,
+                rate_dot_proximal_leg1, -t47, t50, rate_dot_proximal_leg1, rate_proximal_leg1,
+                ::overact::math::sign(rate_proximal_leg1), 1.0, -t65, t79, -t99,
+                rate_dot_proximal_leg1 + t65, t113, 0.0, t123, -t132, -t50, -t175,
+                -(minus_gproximal_wx_leg2 * t178), -t180, -t175,
                 -(minus_gproximal_wx_leg2 * rate_proximal_leg2),
                 -::overact::math::signed(minus_gproximal_wx_leg2, rate_proximal_leg2),
-                -minus_gproximal_wx_leg2, -t237,
-                gdistal_wx_leg2 * t243 - minus_gproximal_wx_leg2 * t251,
-                minus_gproximal_wx_leg2 * t265 - gdistal_wx_leg2 * t225, t237 - t213,
-                -(minus_gproximal_wx_leg2 * t279 + gdistal_wx_leg2 * t247),
-                gdistal_wx_leg2 * rate_dot_distal_leg2,
-                minus_gproximal_wx_leg2 * t289 - gdistal_wx_leg2 * t291,
-                -(9.81 * minus_s_distal_leg2), t217, -t356, -t356,
+                -minus_gproximal_wx_leg2, t200,
+                c_proximal_leg2 * t206 - minus_gproximal_wx_leg2 * t214,
+                minus_gproximal_wx_leg2 * t230 - c_proximal_leg2 * t190, -(t175 + t200),
+                -(minus_gproximal_wx_leg2 * t244 + c_proximal_leg2 * t208),
+                -(c_proximal_leg2 * minus_rate_dot_distal_leg2),
+                minus_gproximal_wx_leg2 * t254 - 9.81 * (t139 * c_proximal_leg2),
+                -(minus_gproximal_wx_leg2 * t263
+                    + c_proximal_leg2
+                        * (9.81 * (minus_s_distal_leg2 * c_proximal_leg2))),
+                t180,
+                -t304,
+                -t304,
                 -(minus_gproximal_wx_leg3 * rate_proximal_leg3),
                 -::overact::math::signed(minus_gproximal_wx_leg3, rate_proximal_leg3),
-                -minus_gproximal_wx_leg3, t375,
-                -(minus_gproximal_wx_leg3 * t385 + minus_gdistal_wx_leg3 * t389),
-                minus_gproximal_wx_leg3 * t403 + minus_gdistal_wx_leg3 * t367, -(t356 + t375),
-                minus_gdistal_wx_leg3 * t381 - minus_gproximal_wx_leg3 * t418,
-                -(minus_gdistal_wx_leg3 * rate_dot_distal_leg3), minus_gdistal_wx_leg3 * t426,
-                -(minus_gdistal_wx_leg3 * t429), t301 * t436 + t449 - t457,
-                minus_s_distal_leg1 * t470 - t301 * t477 + t163 * t482,
-                t301 * t500 + minus_s_distal_leg1 * t503 - t163 * t506,
-                minus_s_distal_leg1 * t476 - t520 + t457,
-                t301 * t531 - minus_s_distal_leg1 * t533 + t163 * t536, t520 - t449 + t163 * t499,
-                t163 * t144 - minus_s_distal_leg1 * t291, t301 * t291 - t163 * t426,
-                minus_s_distal_leg1 * t426 - t301 * t144,
+                -minus_gproximal_wx_leg3,
+                t324,
+                -(minus_gproximal_wx_leg3 * t334 + s_proximal_leg3 * t338),
+                minus_gproximal_wx_leg3 * t354 + s_proximal_leg3 * t316,
+                -(t304 + t324),
+                s_proximal_leg3 * t330 - minus_gproximal_wx_leg3 * t369,
+                -(s_proximal_leg3 * rate_dot_distal_leg3),
+                9.81 * (minus_s_distal_leg3 * s_proximal_leg3),
+                -(9.81 * t283),
+                t270 * t384 + t391 - t396,
+                minus_s_distal_leg1 * t409 - t270 * t413 + t148 * t418,
+                t270 * t433 + minus_s_distal_leg1 * t436 - t148 * t439,
+                minus_s_distal_leg1 * t412 - t453 + t396,
+                t270 * t464 - minus_s_distal_leg1 * t466 + t148 * t469,
+                t453 - t391 + t148 * t432,
+                t148 * t491 - minus_s_distal_leg1 * t493,
+                t270 * t493 - t148 * t500,
+                minus_s_distal_leg1 * t500 - t270 * t491,
             ],
             [
-                -t67, minus_gproximal_wy_leg1 * t69, -t71, -t67,
+                -t44, minus_gproximal_wy_leg1 * t47, -t49, -t44,
                 -(minus_gproximal_wy_leg1 * rate_proximal_leg1),
                 -::overact::math::signed(minus_gproximal_wy_leg1, rate_proximal_leg1),
-                -minus_gproximal_wy_leg1, t91,
-                -(minus_gproximal_wy_leg1 * t101 + minus_gdistal_wy_leg1 * t105),
-                minus_gproximal_wy_leg1 * t119 + minus_gdistal_wy_leg1 * t79, -(t67 + t91),
-                minus_gdistal_wy_leg1 * t97 - minus_gproximal_wy_leg1 * t133,
-                -(minus_gdistal_wy_leg1 * rate_dot_distal_leg1),
-                minus_gdistal_wy_leg1 * t144 - minus_gproximal_wy_leg1 * t143,
-                9.81 * minus_s_distal_leg1, t71, rate_dot_proximal_leg2, t215, t218,
-                rate_dot_proximal_leg2, rate_proximal_leg2,
-                ::overact::math::sign(rate_proximal_leg2), 1.0, t233, t251, -t265,
-                rate_dot_proximal_leg2 - t233, t279, 0.0, -t289, 9.81 * t163, -t218, -t357, -t357,
+                -minus_gproximal_wy_leg1, t69,
+                -(minus_gproximal_wy_leg1 * t79 + s_proximal_leg1 * t83),
+                minus_gproximal_wy_leg1 * t99 + s_proximal_leg1 * t59, -(t44 + t69),
+                s_proximal_leg1 * t73 - minus_gproximal_wy_leg1 * t113,
+                s_proximal_leg1 * minus_rate_dot_distal_leg1,
+                9.81 * (t20 * s_proximal_leg1) - minus_gproximal_wy_leg1 * t123,
+                minus_gproximal_wy_leg1 * t132
+                    + s_proximal_leg1 * (9.81 * (minus_s_distal_leg1 * s_proximal_leg1)),
+                t49,
+                rate_dot_proximal_leg2,
+                t178,
+                t181,
+                rate_dot_proximal_leg2,
+                rate_proximal_leg2,
+                ::overact::math::sign(rate_proximal_leg2),
+                1.0,
+                -t196,
+                t214,
+                -t230,
+                rate_dot_proximal_leg2 + t196,
+                t244,
+                0.0,
+                -t254,
+                t263,
+                -t181,
+                -t306,
+                -t306,
                 -(minus_gproximal_wy_leg3 * rate_proximal_leg3),
                 -::overact::math::signed(minus_gproximal_wy_leg3, rate_proximal_leg3),
-                -minus_gproximal_wy_leg3, -t378,
-                gdistal_wy_leg3 * t389 - minus_gproximal_wy_leg3 * t385,
-                minus_gproximal_wy_leg3 * t403 - gdistal_wy_leg3 * t367, t378 - t357,
-                -(minus_gproximal_wy_leg3 * t418 + gdistal_wy_leg3 * t381),
-                gdistal_wy_leg3 * rate_dot_distal_leg3, -(gdistal_wy_leg3 * t426),
-                gdistal_wy_leg3 * t429, t310 * t436 + t460 - t462,
-                t5 * t470 - t310 * t477 + minus_s_distal_leg2 * t482,
-                t310 * t500 + t5 * t503 - minus_s_distal_leg2 * t506, t5 * t476 - t524 + t462,
-                t310 * t531 - t5 * t533 + minus_s_distal_leg2 * t536,
-                t524 - t460 + minus_s_distal_leg2 * t499, minus_s_distal_leg2 * t144 - t5 * t291,
-                t310 * t291 - minus_s_distal_leg2 * t426, t5 * t426 - t310 * t144,
+                -minus_gproximal_wy_leg3,
+                -t327,
+                c_proximal_leg3 * t338 - minus_gproximal_wy_leg3 * t334,
+                minus_gproximal_wy_leg3 * t354 - c_proximal_leg3 * t316,
+                t327 - t306,
+                -(minus_gproximal_wy_leg3 * t369 + c_proximal_leg3 * t330),
+                c_proximal_leg3 * rate_dot_distal_leg3,
+                -(9.81 * (minus_s_distal_leg3 * c_proximal_leg3)),
+                9.81 * t270,
+                t283 * t384 + t399 - t401,
+                t5 * t409 - t283 * t413 + minus_s_distal_leg2 * t418,
+                t283 * t433 + t5 * t436 - minus_s_distal_leg2 * t439,
+                t5 * t412 - t457 + t401,
+                t283 * t464 - t5 * t466 + minus_s_distal_leg2 * t469,
+                t457 - t399 + minus_s_distal_leg2 * t432,
+                minus_s_distal_leg2 * t491 - t5 * t493,
+                t283 * t493 - minus_s_distal_leg2 * t500,
+                t5 * t500 - t283 * t491,
             ],
             [
-                -t68, t71, -t73, -t68, -(minus_gproximal_wz_leg1 * rate_proximal_leg1),
+                -t46, t49, -t51, -t46, -(minus_gproximal_wz_leg1 * rate_proximal_leg1),
                 -::overact::math::signed(minus_gproximal_wz_leg1, rate_proximal_leg1),
-                -minus_gproximal_wz_leg1, -t94,
-                gdistal_wz_leg1 * t105 - minus_gproximal_wz_leg1 * t101,
-                minus_gproximal_wz_leg1 * t119 - gdistal_wz_leg1 * t79, t94 - t68,
-                -(minus_gproximal_wz_leg1 * t133 + gdistal_wz_leg1 * t97),
-                gdistal_wz_leg1 * rate_dot_distal_leg1,
-                -(minus_gproximal_wz_leg1 * t143 + gdistal_wz_leg1 * t144), 0.0, t73, -t214, -t217,
-                -t219, -t214, -(minus_gproximal_wz_leg2 * rate_proximal_leg2),
+                -minus_gproximal_wz_leg1, t72,
+                c_proximal_leg1 * t83 - minus_gproximal_wz_leg1 * t79,
+                minus_gproximal_wz_leg1 * t99 - c_proximal_leg1 * t59, -(t46 + t72),
+                -(minus_gproximal_wz_leg1 * t113 + c_proximal_leg1 * t73),
+                -(c_proximal_leg1 * minus_rate_dot_distal_leg1),
+                -(minus_gproximal_wz_leg1 * t123 + 9.81 * (t5 * s_proximal_leg1)), 0.0, t51, -t177,
+                -t180, -t182, -t177, -(minus_gproximal_wz_leg2 * rate_proximal_leg2),
                 -::overact::math::signed(minus_gproximal_wz_leg2, rate_proximal_leg2),
-                -minus_gproximal_wz_leg2, t240,
-                -(minus_gproximal_wz_leg2 * t251 + minus_gdistal_wz_leg2 * t243),
-                minus_gproximal_wz_leg2 * t265 + minus_gdistal_wz_leg2 * t225, -(t214 + t240),
-                minus_gdistal_wz_leg2 * t247 - minus_gproximal_wz_leg2 * t279,
-                -(minus_gdistal_wz_leg2 * rate_dot_distal_leg2),
-                minus_gproximal_wz_leg2 * t289 + minus_gdistal_wz_leg2 * t291, 0.0, t219,
+                -minus_gproximal_wz_leg2, t203,
+                -(minus_gproximal_wz_leg2 * t214 + s_proximal_leg2 * t206),
+                minus_gproximal_wz_leg2 * t230 + s_proximal_leg2 * t190, -(t177 + t203),
+                s_proximal_leg2 * t208 - minus_gproximal_wz_leg2 * t244,
+                s_proximal_leg2 * minus_rate_dot_distal_leg2,
+                minus_gproximal_wz_leg2 * t254 + 9.81 * (t148 * c_proximal_leg2), 0.0, t182,
                 rate_dot_proximal_leg3, rate_dot_proximal_leg3, rate_proximal_leg3,
-                ::overact::math::sign(rate_proximal_leg3), 1.0, t373, t385, -t403,
-                rate_dot_proximal_leg3 - t373, t418, 0.0, 0.0, 0.0,
-                minus_s_distal_leg3 * t436 + t465 - t467,
-                t17 * t470 - minus_s_distal_leg3 * t477 + t155 * t482,
-                minus_s_distal_leg3 * t500 + t17 * t503 - t155 * t506, t17 * t476 - t528 + t467,
-                minus_s_distal_leg3 * t531 - t17 * t533 + t155 * t536, t528 - t465 + t155 * t499,
+                ::overact::math::sign(rate_proximal_leg3), 1.0, t322, t334, -t354,
+                rate_dot_proximal_leg3 - t322, t369, 0.0, 0.0, 0.0,
+                minus_s_distal_leg3 * t384 + t404 - t406,
+                t20 * t409 - minus_s_distal_leg3 * t413 + t139 * t418,
+                minus_s_distal_leg3 * t433 + t20 * t436 - t139 * t439, t20 * t412 - t461 + t406,
+                minus_s_distal_leg3 * t464 - t20 * t466 + t139 * t469, t461 - t404 + t139 * t432,
                 0.0, 0.0, 0.0,
             ],
         ])
@@ -1589,7 +1455,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 54.
     /// Columns: `PARAMETERS`.
     ///
-    /// 538 operations (196 additions, 339 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 427 intermediates.
+    /// 479 operations (180 additions, 296 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 368 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1599,299 +1465,272 @@ impl Spherical3Rrr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 54]; 3], ::overact::Error> {
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let rate_distal_leg1 = minus_c_proximal_leg1 * twist[2]
-            - minus_s_proximal_leg1 * twist[1];
-        let t5 = minus_s_proximal_leg1 * rate_distal_leg1;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
+        let [(minus_s_proximal_leg1, minus_c_proximal_leg1),
+        (c_distal_leg1, minus_s_distal_leg1),
+        (minus_s_proximal_leg2, minus_c_proximal_leg2),
+        (c_distal_leg2, minus_s_distal_leg2),
+        (minus_s_proximal_leg3, minus_c_proximal_leg3),
+        (c_distal_leg3, minus_s_distal_leg3)] = ::overact::math::sin_cos_all([
+            joints[0], joints[1], joints[3], joints[4], joints[6], joints[7],
+        ]);
         ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t8 = minus_s_proximal_leg1 * minus_s_distal_leg1;
-        let t9 = 1.0 / minus_s_distal_leg1;
-        let gwrist_wy_leg1 = minus_c_proximal_leg1 * t9;
-        let gwrist_wz_leg1 = minus_s_proximal_leg1 * t9;
-        let rate_wrist_leg1 = gwrist_wy_leg1 * twist[1] + gwrist_wz_leg1 * twist[2];
-        let t15 = t8 * rate_wrist_leg1;
-        let t17 = minus_c_proximal_leg1 * rate_distal_leg1;
-        let t18 = minus_c_proximal_leg1 * minus_s_distal_leg1;
-        let t19 = t18 * rate_wrist_leg1;
-        let gproximal_wy_leg1 = c_distal_leg1 * gwrist_wy_leg1;
-        let gproximal_wz_leg1 = c_distal_leg1 * gwrist_wz_leg1;
-        let rate_proximal_leg1 = twist[0] + gproximal_wy_leg1 * twist[1]
-            + gproximal_wz_leg1 * twist[2];
-        let t30 = c_distal_leg1 * rate_wrist_leg1;
-        let t35 = acceleration[1] + rate_proximal_leg1 * t17 + t17 * t30
-            + rate_proximal_leg1 * t15;
-        let t43 = acceleration[2]
-            - (rate_proximal_leg1 * t19 - t5 * t30 - rate_proximal_leg1 * t5);
-        let rate_dot_proximal_leg1 = acceleration[0] + t5 * t15 + t17 * t19
-            + gproximal_wy_leg1 * t35 + gproximal_wz_leg1 * t43;
-        let t46 = gproximal_wy_leg1 * rate_dot_proximal_leg1;
-        let t47 = gproximal_wz_leg1 * rate_dot_proximal_leg1;
-        let t48 = 9.81 * minus_c_proximal_leg1;
-        let t50 = gproximal_wz_leg1 * t48;
-        let t51 = 9.81 * minus_s_proximal_leg1;
-        let t52 = gproximal_wz_leg1 * t51;
-        let t58 = c_distal_leg1 * rate_proximal_leg1;
-        let t59 = rate_distal_leg1 * t58;
-        let t60 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
-        let t61 = t59 - t60;
-        let t63 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t64 = rate_distal_leg1 * t63;
-        let t66 = minus_s_distal_leg1 * t61 + c_distal_leg1 * t64;
-        let t68 = t63 * t58;
-        let t70 = gproximal_wy_leg1 * t66 + minus_s_proximal_leg1 * t68;
-        let t73 = minus_c_proximal_leg1 * t68 - gproximal_wz_leg1 * t66;
-        let t76 = c_distal_leg1 * rate_dot_proximal_leg1;
-        let t80 = c_distal_leg1 * (t59 + t61) - minus_s_distal_leg1 * (t64 + t76 + t64);
-        let t82 = t63 * t63;
-        let t83 = t58 * t58;
-        let t84 = t82 - t83;
-        let t90 = rate_distal_leg1 * rate_distal_leg1;
-        let rate_dot_distal_leg1 = minus_c_proximal_leg1 * t43
-            - minus_s_proximal_leg1 * t35;
-        let t98 = c_distal_leg1 * (t90 - t82)
-            - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t68);
-        let t112 = c_distal_leg1 * (t68 + rate_dot_distal_leg1)
-            - minus_s_distal_leg1 * (t83 - t90);
-        let t122 = 9.81 * (minus_c_proximal_leg1 * c_distal_leg1);
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
         ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let t137 = 1.0 / minus_s_distal_leg2;
-        let gwrist_wx_leg2 = minus_s_proximal_leg2 * t137;
-        let gproximal_wx_leg2 = c_distal_leg2 * gwrist_wx_leg2;
-        let gwrist_wz_leg2 = minus_c_proximal_leg2 * t137;
-        let gproximal_wz_leg2 = c_distal_leg2 * gwrist_wz_leg2;
-        let rate_proximal_leg2 = gproximal_wx_leg2 * twist[0] + twist[1]
-            + gproximal_wz_leg2 * twist[2];
-        let t146 = minus_c_proximal_leg2 * minus_s_distal_leg2;
-        let rate_wrist_leg2 = gwrist_wx_leg2 * twist[0] + gwrist_wz_leg2 * twist[2];
-        let t150 = t146 * rate_wrist_leg2;
-        let rate_distal_leg2 = minus_c_proximal_leg2 * twist[0]
-            - minus_s_proximal_leg2 * twist[2];
-        let t155 = minus_s_proximal_leg2 * rate_distal_leg2;
-        let t156 = c_distal_leg2 * rate_wrist_leg2;
-        let t161 = acceleration[0]
-            - (rate_proximal_leg2 * t150 - t155 * t156 - rate_proximal_leg2 * t155);
-        let t163 = minus_s_proximal_leg2 * minus_s_distal_leg2;
-        let t164 = t163 * rate_wrist_leg2;
-        let t166 = minus_c_proximal_leg2 * rate_distal_leg2;
-        let t176 = acceleration[2] + rate_proximal_leg2 * t166 + t166 * t156
-            + rate_proximal_leg2 * t164;
-        let rate_dot_proximal_leg2 = gproximal_wx_leg2 * t161 + acceleration[1]
-            + t155 * t164 + t166 * t150 + gproximal_wz_leg2 * t176;
-        let t179 = gproximal_wx_leg2 * rate_dot_proximal_leg2;
-        let t180 = gproximal_wz_leg2 * rate_dot_proximal_leg2;
-        let t181 = 9.81 * minus_s_proximal_leg2;
-        let t183 = gproximal_wz_leg2 * t181;
-        let t184 = 9.81 * minus_c_proximal_leg2;
-        let t185 = gproximal_wz_leg2 * t184;
-        let t191 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t192 = c_distal_leg2 * rate_proximal_leg2;
-        let t193 = t191 * t192;
-        let t195 = rate_distal_leg2 * t192;
-        let t196 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t197 = t195 - t196;
-        let t199 = rate_distal_leg2 * t191;
-        let t201 = minus_s_distal_leg2 * t197 + c_distal_leg2 * t199;
-        let t203 = minus_c_proximal_leg2 * t193 - gproximal_wx_leg2 * t201;
-        let t206 = gproximal_wz_leg2 * t201 + minus_s_proximal_leg2 * t193;
-        let t209 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t213 = c_distal_leg2 * (t195 + t197)
-            - minus_s_distal_leg2 * (t199 + t209 + t199);
-        let t215 = t191 * t191;
-        let t216 = t192 * t192;
-        let t217 = t215 - t216;
-        let t223 = rate_distal_leg2 * rate_distal_leg2;
-        let rate_dot_distal_leg2 = minus_c_proximal_leg2 * t161
-            - minus_s_proximal_leg2 * t176;
-        let t231 = c_distal_leg2 * (t223 - t215)
-            - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t193);
-        let t245 = c_distal_leg2 * (t193 + rate_dot_distal_leg2)
-            - minus_s_distal_leg2 * (t216 - t223);
-        let t255 = 9.81 * (minus_s_proximal_leg2 * c_distal_leg2);
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
         ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t270 = 1.0 / minus_s_distal_leg3;
-        let gwrist_wx_leg3 = minus_c_proximal_leg3 * t270;
-        let gproximal_wx_leg3 = c_distal_leg3 * gwrist_wx_leg3;
-        let gwrist_wy_leg3 = minus_s_proximal_leg3 * t270;
-        let gproximal_wy_leg3 = c_distal_leg3 * gwrist_wy_leg3;
-        let t277 = gproximal_wx_leg3 * twist[0] + gproximal_wy_leg3 * twist[1];
-        let rate_proximal_leg3 = t277 + twist[2];
+        let t4 = minus_c_proximal_leg1 * twist[1] + minus_s_proximal_leg1 * twist[2];
+        let minus_rate_distal_leg1 = minus_s_proximal_leg1 * twist[1]
+            - minus_c_proximal_leg1 * twist[2];
+        let t12 = c_distal_leg1 / minus_s_distal_leg1;
+        let t13 = t12 * t4;
+        let rate_proximal_leg1 = t13 + twist[0];
+        let rate_dot_proximal_leg1 = acceleration[0] - t4 * minus_rate_distal_leg1
+            - t12
+                * (minus_rate_distal_leg1 * rate_proximal_leg1
+                    + minus_rate_distal_leg1 * t13
+                    - (minus_c_proximal_leg1 * acceleration[1]
+                        + minus_s_proximal_leg1 * acceleration[2]));
+        let gproximal_wy_leg1 = minus_c_proximal_leg1 * t12;
+        let t25 = gproximal_wy_leg1 * rate_dot_proximal_leg1;
+        let gproximal_wz_leg1 = minus_s_proximal_leg1 * t12;
+        let t27 = gproximal_wz_leg1 * rate_dot_proximal_leg1;
+        let t28 = 9.81 * minus_c_proximal_leg1;
+        let t30 = gproximal_wz_leg1 * t28;
+        let t31 = 9.81 * minus_s_proximal_leg1;
+        let t32 = gproximal_wz_leg1 * t31;
+        let t38 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t39 = c_distal_leg1 * rate_proximal_leg1;
+        let t40 = minus_rate_distal_leg1 * t39;
+        let t41 = t38 + t40;
+        let t43 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t44 = minus_rate_distal_leg1 * t43;
+        let t46 = minus_s_distal_leg1 * t41 + c_distal_leg1 * t44;
+        let t48 = t43 * t39;
+        let t50 = gproximal_wy_leg1 * t46 - minus_s_proximal_leg1 * t48;
+        let t53 = gproximal_wz_leg1 * t46 + minus_c_proximal_leg1 * t48;
+        let t54 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t60 = minus_s_distal_leg1 * (t44 - (t54 - t44))
+            - c_distal_leg1 * (t40 + t41);
+        let t62 = t43 * t43;
+        let t63 = t39 * t39;
+        let t64 = t62 - t63;
+        let minus_rate_dot_distal_leg1 = minus_s_proximal_leg1 * acceleration[1]
+            - minus_c_proximal_leg1 * acceleration[2] + t4 * rate_proximal_leg1;
+        let t77 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t80 = minus_s_distal_leg1 * (t48 + minus_rate_dot_distal_leg1)
+            + c_distal_leg1 * (t77 - t62);
+        let t94 = minus_s_distal_leg1 * (t63 - t77)
+            + c_distal_leg1 * (minus_rate_dot_distal_leg1 - t48);
+        let t103 = c_distal_leg1 * t28;
+        let t104 = minus_s_distal_leg1 * t31;
+        let t117 = c_distal_leg2 / minus_s_distal_leg2;
+        let gproximal_wx_leg2 = minus_s_proximal_leg2 * t117;
+        let t121 = minus_s_proximal_leg2 * twist[0] + minus_c_proximal_leg2 * twist[2];
+        let minus_rate_distal_leg2 = minus_s_proximal_leg2 * twist[2]
+            - minus_c_proximal_leg2 * twist[0];
+        let t127 = t117 * t121;
+        let rate_proximal_leg2 = t127 + twist[1];
+        let rate_dot_proximal_leg2 = acceleration[1] - t121 * minus_rate_distal_leg2
+            - t117
+                * (minus_rate_distal_leg2 * rate_proximal_leg2
+                    + minus_rate_distal_leg2 * t127
+                    - (minus_s_proximal_leg2 * acceleration[0]
+                        + minus_c_proximal_leg2 * acceleration[2]));
+        let t138 = gproximal_wx_leg2 * rate_dot_proximal_leg2;
+        let gproximal_wz_leg2 = minus_c_proximal_leg2 * t117;
+        let t140 = gproximal_wz_leg2 * rate_dot_proximal_leg2;
+        let t141 = 9.81 * minus_s_proximal_leg2;
+        let t143 = gproximal_wz_leg2 * t141;
+        let t144 = 9.81 * minus_c_proximal_leg2;
+        let t145 = gproximal_wz_leg2 * t144;
+        let t151 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t152 = c_distal_leg2 * rate_proximal_leg2;
+        let t153 = minus_rate_distal_leg2 * t152;
+        let t154 = t151 + t153;
+        let t156 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t157 = minus_rate_distal_leg2 * t156;
+        let t159 = minus_s_distal_leg2 * t154 + c_distal_leg2 * t157;
+        let t161 = t156 * t152;
+        let t163 = gproximal_wx_leg2 * t159 + minus_c_proximal_leg2 * t161;
+        let t166 = gproximal_wz_leg2 * t159 - minus_s_proximal_leg2 * t161;
+        let t167 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t173 = minus_s_distal_leg2 * (t157 - (t167 - t157))
+            - c_distal_leg2 * (t153 + t154);
+        let t175 = t156 * t156;
+        let t176 = t152 * t152;
+        let t177 = t175 - t176;
+        let minus_rate_dot_distal_leg2 = minus_s_proximal_leg2 * acceleration[2]
+            - minus_c_proximal_leg2 * acceleration[0] + t121 * rate_proximal_leg2;
+        let t190 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t193 = minus_s_distal_leg2 * (t161 + minus_rate_dot_distal_leg2)
+            + c_distal_leg2 * (t190 - t175);
+        let t208 = minus_s_distal_leg2 * (t176 - t190)
+            + c_distal_leg2 * (minus_rate_dot_distal_leg2 - t161);
+        let t216 = c_distal_leg2 * t141;
+        let t218 = minus_s_distal_leg2 * t144;
+        let t230 = c_distal_leg3 / minus_s_distal_leg3;
+        let gproximal_wx_leg3 = minus_c_proximal_leg3 * t230;
         let rate_distal_leg3 = minus_c_proximal_leg3 * twist[1]
             - minus_s_proximal_leg3 * twist[0];
-        let t282 = minus_c_proximal_leg3 * rate_distal_leg3;
-        let t285 = minus_s_proximal_leg3 * minus_s_distal_leg3;
-        let rate_wrist_leg3 = gwrist_wx_leg3 * twist[0] + gwrist_wy_leg3 * twist[1];
-        let t289 = t285 * rate_wrist_leg3;
-        let t293 = acceleration[0] + rate_proximal_leg3 * t282 + t277 * t282
-            + rate_proximal_leg3 * t289;
-        let t295 = minus_c_proximal_leg3 * minus_s_distal_leg3;
-        let t296 = t295 * rate_wrist_leg3;
-        let t298 = minus_s_proximal_leg3 * rate_distal_leg3;
-        let t303 = acceleration[1]
-            - (rate_proximal_leg3 * t296 - t277 * t298 - rate_proximal_leg3 * t298);
-        let rate_dot_proximal_leg3 = gproximal_wx_leg3 * t293 + gproximal_wy_leg3 * t303
-            + acceleration[2] + t298 * t289 + t282 * t296;
-        let t311 = gproximal_wx_leg3 * rate_dot_proximal_leg3;
-        let t312 = gproximal_wy_leg3 * rate_dot_proximal_leg3;
-        let t318 = c_distal_leg3 * rate_proximal_leg3;
-        let t319 = rate_distal_leg3 * t318;
-        let t320 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let t321 = t319 - t320;
-        let t323 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t324 = rate_distal_leg3 * t323;
-        let t326 = minus_s_distal_leg3 * t321 + c_distal_leg3 * t324;
-        let t328 = t323 * t318;
-        let t330 = gproximal_wx_leg3 * t326 + minus_s_proximal_leg3 * t328;
-        let t333 = minus_c_proximal_leg3 * t328 - gproximal_wy_leg3 * t326;
-        let t336 = c_distal_leg3 * rate_dot_proximal_leg3;
-        let t340 = c_distal_leg3 * (t319 + t321)
-            - minus_s_distal_leg3 * (t324 + t336 + t324);
-        let t342 = t323 * t323;
-        let t343 = t318 * t318;
-        let t344 = t342 - t343;
-        let t352 = t298 * t298 + t282 * t282;
-        let rate_dot_distal_leg3 = minus_c_proximal_leg3 * t303
-            - minus_s_proximal_leg3 * t293;
-        let t360 = c_distal_leg3 * (t352 - t342)
-            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t328);
-        let t374 = c_distal_leg3 * (t328 + rate_dot_distal_leg3)
-            - minus_s_distal_leg3 * (t343 - t352);
-        let t389 = 2.0 * pose[2];
-        let t390 = pose[2] * t389;
-        let t392 = 2.0 * pose[3];
-        let t393 = pose[3] * t392;
-        let t394 = 1.0 - t390 - t393;
-        let t396 = 2.0 * pose[1];
-        let t397 = pose[2] * t396;
-        let t398 = pose[0] * t392;
-        let t399 = t397 + t398;
-        let t402 = pose[3] * t396;
-        let t403 = pose[0] * t389;
-        let t404 = t402 - t403;
-        let t406 = t394 * acceleration[0] + t399 * acceleration[1]
-            + t404 * acceleration[2];
-        let t408 = t397 - t398;
-        let t413 = t394 * twist[0] + t399 * twist[1] + t404 * twist[2];
-        let t414 = t402 + t403;
-        let t416 = pose[3] * t389;
-        let t417 = pose[0] * t396;
-        let t418 = t416 - t417;
-        let t422 = 1.0 - pose[1] * t396;
-        let t423 = t422 - t390;
-        let t425 = t414 * twist[0] + t418 * twist[1] + t423 * twist[2];
-        let t426 = t413 * t425;
-        let t427 = t408 * t426;
-        let t430 = t422 - t393;
-        let t433 = t416 + t417;
-        let t435 = t408 * twist[0] + t430 * twist[1] + t433 * twist[2];
-        let t436 = t413 * t435;
-        let t437 = t414 * t436;
-        let t440 = t430 * t426;
-        let t442 = t418 * t436;
-        let t445 = t433 * t426;
-        let t447 = t423 * t436;
-        let t449 = t435 * t425;
-        let t450 = t449 + t406;
-        let t456 = t408 * acceleration[0] + t430 * acceleration[1]
-            + t433 * acceleration[2];
-        let t457 = t426 - t456;
-        let t460 = t413 * t413;
-        let t461 = t435 * t435;
-        let t462 = t460 - t461;
-        let t479 = t414 * acceleration[0] + t418 * acceleration[1]
-            + t423 * acceleration[2];
-        let t480 = t436 + t479;
-        let t482 = t425 * t425;
-        let t483 = t482 - t460;
-        let t486 = t449 - t406;
-        let t500 = t394 * t449;
-        let t504 = t399 * t449;
-        let t508 = t404 * t449;
-        let t511 = t461 - t482;
-        let t513 = t436 - t479;
-        let t516 = t426 + t456;
-        let t538 = 9.81 * t433;
-        let t540 = 9.81 * t423;
-        let t547 = 9.81 * t404;
+        let t240 = minus_c_proximal_leg3 * twist[0] + minus_s_proximal_leg3 * twist[1];
+        let t241 = t230 * t240;
+        let rate_proximal_leg3 = t241 + twist[2];
+        let rate_dot_proximal_leg3 = t230
+            * (minus_c_proximal_leg3 * acceleration[0]
+                + minus_s_proximal_leg3 * acceleration[1]
+                + rate_distal_leg3 * rate_proximal_leg3 + rate_distal_leg3 * t241)
+            + acceleration[2] + t240 * rate_distal_leg3;
+        let t251 = gproximal_wx_leg3 * rate_dot_proximal_leg3;
+        let gproximal_wy_leg3 = minus_s_proximal_leg3 * t230;
+        let t253 = gproximal_wy_leg3 * rate_dot_proximal_leg3;
+        let t259 = c_distal_leg3 * rate_proximal_leg3;
+        let t260 = rate_distal_leg3 * t259;
+        let t261 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t262 = t260 - t261;
+        let t264 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t265 = rate_distal_leg3 * t264;
+        let t267 = minus_s_distal_leg3 * t262 + c_distal_leg3 * t265;
+        let t269 = t264 * t259;
+        let t271 = gproximal_wx_leg3 * t267 + minus_s_proximal_leg3 * t269;
+        let t274 = minus_c_proximal_leg3 * t269 - gproximal_wy_leg3 * t267;
+        let t277 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t281 = c_distal_leg3 * (t260 + t262)
+            - minus_s_distal_leg3 * (t265 + t277 + t265);
+        let t283 = t264 * t264;
+        let t284 = t259 * t259;
+        let t285 = t283 - t284;
+        let t291 = rate_distal_leg3 * rate_distal_leg3;
+        let rate_dot_distal_leg3 = minus_c_proximal_leg3 * acceleration[1]
+            - minus_s_proximal_leg3 * acceleration[0] - t240 * rate_proximal_leg3;
+        let t301 = c_distal_leg3 * (t291 - t283)
+            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t269);
+        let t315 = c_distal_leg3 * (t269 + rate_dot_distal_leg3)
+            - minus_s_distal_leg3 * (t284 - t291);
+        let t324 = 9.81 * c_distal_leg3;
+        let t327 = 9.81 * minus_s_distal_leg3;
+        let t330 = 2.0 * pose[2];
+        let t331 = pose[2] * t330;
+        let t333 = 2.0 * pose[3];
+        let t334 = pose[3] * t333;
+        let t335 = 1.0 - t331 - t334;
+        let t337 = 2.0 * pose[1];
+        let t338 = pose[2] * t337;
+        let t339 = pose[0] * t333;
+        let t340 = t338 + t339;
+        let t343 = pose[3] * t337;
+        let t344 = pose[0] * t330;
+        let t345 = t343 - t344;
+        let t347 = t335 * acceleration[0] + t340 * acceleration[1]
+            + t345 * acceleration[2];
+        let t349 = t338 - t339;
+        let t354 = t335 * twist[0] + t340 * twist[1] + t345 * twist[2];
+        let t355 = t343 + t344;
+        let t357 = pose[3] * t330;
+        let t358 = pose[0] * t337;
+        let t359 = t357 - t358;
+        let t363 = 1.0 - pose[1] * t337;
+        let t364 = t363 - t331;
+        let t366 = t355 * twist[0] + t359 * twist[1] + t364 * twist[2];
+        let t367 = t354 * t366;
+        let t368 = t349 * t367;
+        let t371 = t363 - t334;
+        let t374 = t357 + t358;
+        let t376 = t349 * twist[0] + t371 * twist[1] + t374 * twist[2];
+        let t377 = t354 * t376;
+        let t378 = t355 * t377;
+        let t381 = t371 * t367;
+        let t383 = t359 * t377;
+        let t386 = t374 * t367;
+        let t388 = t364 * t377;
+        let t390 = t376 * t366;
+        let t391 = t390 + t347;
+        let t397 = t349 * acceleration[0] + t371 * acceleration[1]
+            + t374 * acceleration[2];
+        let t398 = t367 - t397;
+        let t401 = t354 * t354;
+        let t402 = t376 * t376;
+        let t403 = t401 - t402;
+        let t420 = t355 * acceleration[0] + t359 * acceleration[1]
+            + t364 * acceleration[2];
+        let t421 = t377 + t420;
+        let t423 = t366 * t366;
+        let t424 = t423 - t401;
+        let t427 = t390 - t347;
+        let t441 = t335 * t390;
+        let t445 = t340 * t390;
+        let t449 = t345 * t390;
+        let t452 = t402 - t423;
+        let t454 = t377 - t420;
+        let t457 = t367 + t397;
+        let t479 = 9.81 * t374;
+        let t481 = 9.81 * t364;
+        let t488 = 9.81 * t345;
         Ok([
             [
-                rate_dot_proximal_leg1, -t48, t51, rate_dot_proximal_leg1, rate_proximal_leg1,
-                ::overact::math::sign(rate_proximal_leg1), 1.0, -t66, t80, t98,
-                rate_dot_proximal_leg1 + t66, t112, 0.0, -t122, -(9.81 * t18), -t51, t179,
-                gproximal_wx_leg2 * t181, t183, t179, gproximal_wx_leg2 * rate_proximal_leg2,
+                rate_dot_proximal_leg1, -t28, t31, rate_dot_proximal_leg1, rate_proximal_leg1,
+                ::overact::math::sign(rate_proximal_leg1), 1.0, t46, t60, t80,
+                rate_dot_proximal_leg1 - t46, -t94, 0.0, -t103, -(minus_s_distal_leg1 * t28), -t31,
+                t138, gproximal_wx_leg2 * t141, t143, t138, gproximal_wx_leg2 * rate_proximal_leg2,
                 ::overact::math::signed(gproximal_wx_leg2, rate_proximal_leg2), gproximal_wx_leg2,
-                t203, gproximal_wx_leg2 * t213 + minus_c_proximal_leg2 * t217,
-                gproximal_wx_leg2 * t231 - minus_c_proximal_leg2 * t196, t179 - t203,
-                gproximal_wx_leg2 * t245 + minus_c_proximal_leg2 * t209,
-                minus_c_proximal_leg2 * rate_dot_distal_leg2,
-                gproximal_wx_leg2 * t255 - 9.81 * (minus_c_proximal_leg2 * t146),
-                9.81 * c_distal_leg2, -t183, t311, t311, gproximal_wx_leg3 * rate_proximal_leg3,
+                t163, gproximal_wx_leg2 * t173 + minus_c_proximal_leg2 * t177,
+                gproximal_wx_leg2 * t193 - minus_c_proximal_leg2 * t151, t138 - t163,
+                minus_c_proximal_leg2 * t167 - gproximal_wx_leg2 * t208,
+                -(minus_c_proximal_leg2 * minus_rate_dot_distal_leg2),
+                gproximal_wx_leg2 * t216 - minus_c_proximal_leg2 * t218, 9.81 * c_distal_leg2,
+                -t143, t251, t251, gproximal_wx_leg3 * rate_proximal_leg3,
                 ::overact::math::signed(gproximal_wx_leg3, rate_proximal_leg3), gproximal_wx_leg3,
-                -t330, gproximal_wx_leg3 * t340 - minus_s_proximal_leg3 * t344,
-                gproximal_wx_leg3 * t360 + minus_s_proximal_leg3 * t320, t311 + t330,
-                gproximal_wx_leg3 * t374 - minus_s_proximal_leg3 * t336,
-                -(minus_s_proximal_leg3 * rate_dot_distal_leg3),
-                -(9.81 * (minus_s_proximal_leg3 * c_distal_leg3)), -(9.81 * t285),
-                t394 * t406 + t427 - t437, t408 * t450 - t394 * t457 + t414 * t462,
-                t394 * t480 + t408 * t483 - t414 * t486, t408 * t456 - t500 + t437,
-                t394 * t511 - t408 * t513 + t414 * t516, t500 - t427 + t414 * t479,
-                t414 * t538 - t408 * t540, t394 * t540 - t414 * t547, t408 * t547 - t394 * t538,
+                -t271, gproximal_wx_leg3 * t281 - minus_s_proximal_leg3 * t285,
+                gproximal_wx_leg3 * t301 + minus_s_proximal_leg3 * t261, t251 + t271,
+                gproximal_wx_leg3 * t315 - minus_s_proximal_leg3 * t277,
+                -(minus_s_proximal_leg3 * rate_dot_distal_leg3), -(minus_s_proximal_leg3 * t324),
+                -(minus_s_proximal_leg3 * t327), t335 * t347 + t368 - t378,
+                t349 * t391 - t335 * t398 + t355 * t403, t335 * t421 + t349 * t424 - t355 * t427,
+                t349 * t397 - t441 + t378, t335 * t452 - t349 * t454 + t355 * t457,
+                t441 - t368 + t355 * t420, t355 * t479 - t349 * t481, t335 * t481 - t355 * t488,
+                t349 * t488 - t335 * t479,
             ],
             [
-                t46, -(gproximal_wy_leg1 * t48), t50, t46, gproximal_wy_leg1 * rate_proximal_leg1,
+                t25, -(gproximal_wy_leg1 * t28), t30, t25, gproximal_wy_leg1 * rate_proximal_leg1,
                 ::overact::math::signed(gproximal_wy_leg1, rate_proximal_leg1), gproximal_wy_leg1,
-                -t70, gproximal_wy_leg1 * t80 - minus_s_proximal_leg1 * t84,
-                gproximal_wy_leg1 * t98 + minus_s_proximal_leg1 * t60, t46 + t70,
-                gproximal_wy_leg1 * t112 - minus_s_proximal_leg1 * t76,
-                -(minus_s_proximal_leg1 * rate_dot_distal_leg1),
-                9.81 * (minus_s_proximal_leg1 * t8) - gproximal_wy_leg1 * t122,
-                -(9.81 * c_distal_leg1), -t50, rate_dot_proximal_leg2, t181, t184,
-                rate_dot_proximal_leg2, rate_proximal_leg2,
-                ::overact::math::sign(rate_proximal_leg2), 1.0, -t201, t213, t231,
-                rate_dot_proximal_leg2 + t201, t245, 0.0, t255, 9.81 * t163, -t184, t312, t312,
-                gproximal_wy_leg3 * rate_proximal_leg3,
+                t50, gproximal_wy_leg1 * t60 - minus_s_proximal_leg1 * t64,
+                gproximal_wy_leg1 * t80 + minus_s_proximal_leg1 * t38, t25 - t50,
+                -(gproximal_wy_leg1 * t94 + minus_s_proximal_leg1 * t54),
+                minus_s_proximal_leg1 * minus_rate_dot_distal_leg1,
+                minus_s_proximal_leg1 * t104 - gproximal_wy_leg1 * t103, -(9.81 * c_distal_leg1),
+                -t30, rate_dot_proximal_leg2, t141, t144, rate_dot_proximal_leg2,
+                rate_proximal_leg2, ::overact::math::sign(rate_proximal_leg2), 1.0, t159, t173,
+                t193, rate_dot_proximal_leg2 - t159, -t208, 0.0, t216, minus_s_distal_leg2 * t141,
+                -t144, t253, t253, gproximal_wy_leg3 * rate_proximal_leg3,
                 ::overact::math::signed(gproximal_wy_leg3, rate_proximal_leg3), gproximal_wy_leg3,
-                t333, gproximal_wy_leg3 * t340 + minus_c_proximal_leg3 * t344,
-                gproximal_wy_leg3 * t360 - minus_c_proximal_leg3 * t320, t312 - t333,
-                gproximal_wy_leg3 * t374 + minus_c_proximal_leg3 * t336,
-                minus_c_proximal_leg3 * rate_dot_distal_leg3,
-                9.81 * (minus_c_proximal_leg3 * c_distal_leg3), 9.81 * t295,
-                t399 * t406 + t440 - t442, t430 * t450 - t399 * t457 + t418 * t462,
-                t399 * t480 + t430 * t483 - t418 * t486, t430 * t456 - t504 + t442,
-                t399 * t511 - t430 * t513 + t418 * t516, t504 - t440 + t418 * t479,
-                t418 * t538 - t430 * t540, t399 * t540 - t418 * t547, t430 * t547 - t399 * t538,
+                t274, gproximal_wy_leg3 * t281 + minus_c_proximal_leg3 * t285,
+                gproximal_wy_leg3 * t301 - minus_c_proximal_leg3 * t261, t253 - t274,
+                gproximal_wy_leg3 * t315 + minus_c_proximal_leg3 * t277,
+                minus_c_proximal_leg3 * rate_dot_distal_leg3, minus_c_proximal_leg3 * t324,
+                minus_c_proximal_leg3 * t327, t340 * t347 + t381 - t383,
+                t371 * t391 - t340 * t398 + t359 * t403, t340 * t421 + t371 * t424 - t359 * t427,
+                t371 * t397 - t445 + t383, t340 * t452 - t371 * t454 + t359 * t457,
+                t445 - t381 + t359 * t420, t359 * t479 - t371 * t481, t340 * t481 - t359 * t488,
+                t371 * t488 - t340 * t479,
             ],
             [
-                t47, -t50, t52, t47, gproximal_wz_leg1 * rate_proximal_leg1,
+                t27, -t30, t32, t27, gproximal_wz_leg1 * rate_proximal_leg1,
                 ::overact::math::signed(gproximal_wz_leg1, rate_proximal_leg1), gproximal_wz_leg1,
-                t73, gproximal_wz_leg1 * t80 + minus_c_proximal_leg1 * t84,
-                gproximal_wz_leg1 * t98 - minus_c_proximal_leg1 * t60, t47 - t73,
-                gproximal_wz_leg1 * t112 + minus_c_proximal_leg1 * t76,
-                minus_c_proximal_leg1 * rate_dot_distal_leg1,
-                -(gproximal_wz_leg1 * t122 + minus_c_proximal_leg1 * (9.81 * t8)), 0.0, -t52, t180,
-                t183, t185, t180, gproximal_wz_leg2 * rate_proximal_leg2,
+                t53, gproximal_wz_leg1 * t60 + minus_c_proximal_leg1 * t64,
+                gproximal_wz_leg1 * t80 - minus_c_proximal_leg1 * t38, t27 - t53,
+                minus_c_proximal_leg1 * t54 - gproximal_wz_leg1 * t94,
+                -(minus_c_proximal_leg1 * minus_rate_dot_distal_leg1),
+                -(gproximal_wz_leg1 * t103 + minus_c_proximal_leg1 * t104), 0.0, -t32, t140, t143,
+                t145, t140, gproximal_wz_leg2 * rate_proximal_leg2,
                 ::overact::math::signed(gproximal_wz_leg2, rate_proximal_leg2), gproximal_wz_leg2,
-                -t206, gproximal_wz_leg2 * t213 - minus_s_proximal_leg2 * t217,
-                gproximal_wz_leg2 * t231 + minus_s_proximal_leg2 * t196, t180 + t206,
-                gproximal_wz_leg2 * t245 - minus_s_proximal_leg2 * t209,
-                -(minus_s_proximal_leg2 * rate_dot_distal_leg2),
-                gproximal_wz_leg2 * t255 + minus_s_proximal_leg2 * (9.81 * t146), 0.0, -t185,
+                t166, gproximal_wz_leg2 * t173 - minus_s_proximal_leg2 * t177,
+                gproximal_wz_leg2 * t193 + minus_s_proximal_leg2 * t151, t140 - t166,
+                -(gproximal_wz_leg2 * t208 + minus_s_proximal_leg2 * t167),
+                minus_s_proximal_leg2 * minus_rate_dot_distal_leg2,
+                gproximal_wz_leg2 * t216 + minus_s_proximal_leg2 * t218, 0.0, -t145,
                 rate_dot_proximal_leg3, rate_dot_proximal_leg3, rate_proximal_leg3,
-                ::overact::math::sign(rate_proximal_leg3), 1.0, -t326, t340, t360,
-                rate_dot_proximal_leg3 + t326, t374, 0.0, 0.0, 0.0, t404 * t406 + t445 - t447,
-                t433 * t450 - t404 * t457 + t423 * t462, t404 * t480 + t433 * t483 - t423 * t486,
-                t433 * t456 - t508 + t447, t404 * t511 - t433 * t513 + t423 * t516,
-                t508 - t445 + t423 * t479, 0.0, 0.0, 0.0,
+                ::overact::math::sign(rate_proximal_leg3), 1.0, -t267, t281, t301,
+                rate_dot_proximal_leg3 + t267, t315, 0.0, 0.0, 0.0, t345 * t347 + t386 - t388,
+                t374 * t391 - t345 * t398 + t364 * t403, t345 * t421 + t374 * t424 - t364 * t427,
+                t374 * t397 - t449 + t388, t345 * t452 - t374 * t454 + t364 * t457,
+                t449 - t386 + t364 * t420, 0.0, 0.0, 0.0,
             ],
         ])
     }
@@ -1906,7 +1745,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 54.
     /// Columns: `PARAMETERS`.
     ///
-    /// 638 operations (236 additions, 393 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 524 intermediates.
+    /// 580 operations (216 additions, 355 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 466 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1918,436 +1757,416 @@ impl Spherical3Rrr {
     ) -> Result<[[f64; 54]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 2.0 * pose[1];
-        let t1 = pose[2] * t0;
-        let t2 = 2.0 * pose[3];
-        let t3 = pose[0] * t2;
-        let minus_s_distal_leg1 = t1 - t3;
-        let t6 = 1.0 - pose[1] * t0;
-        let t7 = pose[3] * t2;
-        let t8 = t6 - t7;
+        let t2 = 1.0 - pose[1] * t0;
+        let t3 = 2.0 * pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = t2 - t4;
+        let t6 = pose[2] * t0;
+        let t7 = pose[0] * t3;
+        let minus_s_distal_leg1 = t6 - t7;
         let t10 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
         ::overact::guard::reach(t10, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t10);
-        let t13 = 1.0 / (t8 * c_distal_leg1);
-        let c_proximal_leg1 = t13 * (t8 * t8);
-        let t17 = 2.0 * pose[2];
-        let t18 = pose[3] * t17;
-        let t19 = pose[0] * t0;
-        let t20 = t18 + t19;
-        let s_proximal_leg1 = t13 * (t8 * t20);
-        let t24 = t8 * c_proximal_leg1 + t20 * s_proximal_leg1;
-        ::overact::guard::leg(t24, 1.0, "leg1")?;
-        let t25 = 1.0 / t24;
-        let gwrist_wy_leg1 = c_proximal_leg1 * t25;
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
-        let t28 = minus_gproximal_wy_leg1 * actuator_accelerations[0];
-        let gwrist_wz_leg1 = s_proximal_leg1 * t25;
-        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
-        let t31 = minus_gproximal_wz_leg1 * actuator_accelerations[0];
-        let t32 = 9.81 * c_proximal_leg1;
-        let t34 = minus_gproximal_wz_leg1 * t32;
-        let t35 = 9.81 * s_proximal_leg1;
-        let t36 = minus_gproximal_wz_leg1 * t35;
-        let t37 = minus_gproximal_wy_leg1 * actuator_velocities[0];
-        let t38 = minus_gproximal_wz_leg1 * actuator_velocities[0];
-        let t42 = c_distal_leg1 * actuator_accelerations[0];
-        let gdistal_wz_leg1 = t8 * t25;
-        let minus_s_distal_leg2 = t18 - t19;
-        let t46 = pose[2] * t17;
-        let t47 = t6 - t46;
-        let t49 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t49, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t49);
-        let t52 = 1.0 / (t47 * c_distal_leg2);
-        let c_proximal_leg2 = t52 * (t47 * t47);
-        let t55 = pose[3] * t0;
-        let t56 = pose[0] * t17;
-        let t57 = t55 + t56;
-        let s_proximal_leg2 = t52 * (t57 * t47);
-        let t62 = t57 * s_proximal_leg2 + t47 * c_proximal_leg2;
-        ::overact::guard::leg(t62, 1.0, "leg2")?;
-        let t63 = 1.0 / t62;
-        let gwrist_wz_leg2 = c_proximal_leg2 * t63;
-        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
-        let gwrist_wx_leg2 = s_proximal_leg2 * t63;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
-        let minus_s_distal_leg3 = t55 - t56;
-        let t75 = 1.0 - t46 - t7;
-        let t77 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t77, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t77);
-        let t80 = 1.0 / (t75 * c_distal_leg3);
-        let c_proximal_leg3 = t80 * (t75 * t75);
-        let t84 = t1 + t3;
-        let s_proximal_leg3 = t80 * (t75 * t84);
-        let t88 = t75 * c_proximal_leg3 + t84 * s_proximal_leg3;
-        ::overact::guard::leg(t88, 1.0, "leg3")?;
-        let t89 = 1.0 / t88;
-        let gwrist_wx_leg3 = c_proximal_leg3 * t89;
-        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
-        let t92 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
-            - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
-        let t96 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
-            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
-        ::overact::guard::platform(t96, 1.0, "actuators")?;
-        ::overact::guard::platform(t96, 1.0, "actuators")?;
-        let t97 = 1.0 / t96;
-        let t98 = t92 * t97;
-        let gwrist_wy_leg3 = s_proximal_leg3 * t89;
-        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
-        let t108 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+        ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
+        let t13 = 1.0 / (t5 * c_distal_leg1);
+        let c_proximal_leg1 = t13 * (t5 * t5);
+        let t16 = 1.0 / c_distal_leg1;
+        let t17 = minus_s_distal_leg1 * t16;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t17;
+        let t19 = minus_gproximal_wy_leg1 * actuator_accelerations[0];
+        let t20 = 2.0 * pose[2];
+        let t21 = pose[3] * t20;
+        let t22 = pose[0] * t0;
+        let t23 = t21 + t22;
+        let s_proximal_leg1 = t13 * (t5 * t23);
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t17;
+        let t27 = minus_gproximal_wz_leg1 * actuator_accelerations[0];
+        let t28 = 9.81 * c_proximal_leg1;
+        let t30 = minus_gproximal_wz_leg1 * t28;
+        let t31 = 9.81 * s_proximal_leg1;
+        let t32 = minus_gproximal_wz_leg1 * t31;
+        let t33 = minus_gproximal_wy_leg1 * actuator_velocities[0];
+        let t34 = minus_gproximal_wz_leg1 * actuator_velocities[0];
+        let t40 = pose[2] * t20;
+        let t42 = 1.0 - t40 - t4;
+        let t43 = pose[3] * t0;
+        let t44 = pose[0] * t20;
+        let minus_s_distal_leg3 = t43 - t44;
+        let t47 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t47, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t47);
+        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
+        let t50 = 1.0 / (t42 * c_distal_leg3);
+        let t51 = t6 + t7;
+        let s_proximal_leg3 = t50 * (t42 * t51);
+        let t54 = 1.0 / c_distal_leg3;
+        let t55 = minus_s_distal_leg3 * t54;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t55;
+        let c_proximal_leg3 = t50 * (t42 * t42);
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t55;
+        let t63 = t2 - t40;
+        let minus_s_distal_leg2 = t21 - t22;
+        let t66 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t66, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t66);
+        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
+        let t69 = 1.0 / (t63 * c_distal_leg2);
+        let t70 = t43 + t44;
+        let s_proximal_leg2 = t69 * (t70 * t63);
+        let t73 = 1.0 / c_distal_leg2;
+        let t74 = minus_s_distal_leg2 * t73;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t74;
+        let t77 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
-        let t110 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
-            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t108 * t98;
-        let t115 = t108 * t97;
-        let t117 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t108 * t115;
+        let t81 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
+        ::overact::guard::platform(t81, 1.0, "actuators")?;
+        ::overact::guard::platform(t81, 1.0, "actuators")?;
+        let t82 = 1.0 / t81;
+        let t83 = t77 * t82;
+        let t85 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t77 * t83;
+        ::overact::guard::platform(t85, 1.0, "actuators")?;
+        ::overact::guard::platform(t85, 1.0, "actuators")?;
+        let t86 = 1.0 / t85;
+        let t88 = minus_gproximal_wy_leg3 * actuator_velocities[2];
+        let t90 = minus_gproximal_wx_leg2 * actuator_velocities[1];
+        let t92 = minus_gproximal_wx_leg3 * actuator_velocities[2];
+        let t93 = actuator_velocities[0] - t90 - t92;
+        let t95 = actuator_velocities[1] - t33 - t88 - t93 * t83;
+        let c_proximal_leg2 = t69 * (t63 * t63);
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t74;
+        let t105 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
+        let t106 = t105 * t82;
+        let t108 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t77 * t106;
+        let t109 = t108 * t86;
+        let t117 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t105 * t106
+            - t108 * t109;
         ::overact::guard::platform(t117, 1.0, "actuators")?;
         ::overact::guard::platform(t117, 1.0, "actuators")?;
         let t118 = 1.0 / t117;
-        let t119 = t110 * t118;
-        let t121 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t92 * t98
-            - t110 * t119;
-        ::overact::guard::platform(t121, 1.0, "actuators")?;
-        ::overact::guard::platform(t121, 1.0, "actuators")?;
-        let t122 = 1.0 / t121;
-        let t123 = minus_gproximal_wz_leg2 * actuator_velocities[1];
-        let t126 = minus_gproximal_wx_leg2 * actuator_velocities[1];
-        let t128 = minus_gproximal_wx_leg3 * actuator_velocities[2];
-        let t129 = actuator_velocities[0] - t126 - t128;
-        let t133 = minus_gproximal_wy_leg3 * actuator_velocities[2];
-        let t136 = actuator_velocities[1] - t37 - t133 - t129 * t115;
-        let t139 = t122
-            * (actuator_velocities[2] - (t38 + t123) - t129 * t98 - t119 * t136);
-        let minus_gdistal_wy_leg1 = t20 * t25;
-        let t144 = t118 * t136 - t119 * t139;
-        let rate_distal_leg1 = gdistal_wz_leg1 * t139 - minus_gdistal_wy_leg1 * t144;
-        let t147 = minus_s_distal_leg1 * actuator_velocities[0];
-        let t148 = rate_distal_leg1 * t147;
-        let t149 = t42 + t148;
-        let t151 = c_distal_leg1 * actuator_velocities[0];
-        let t152 = rate_distal_leg1 * t151;
-        let t154 = c_distal_leg1 * t149 + minus_s_distal_leg1 * t152;
-        let t155 = t151 * t147;
-        let t158 = minus_gdistal_wy_leg1 * t155 - minus_gproximal_wy_leg1 * t154;
-        let t161 = minus_gproximal_wz_leg1 * t154 + gdistal_wz_leg1 * t155;
-        let t164 = minus_s_distal_leg1 * actuator_accelerations[0];
-        let t168 = minus_s_distal_leg1 * (t148 + t149)
-            - c_distal_leg1 * (t152 + t152 - t164);
-        let t170 = t151 * t151;
-        let t171 = t147 * t147;
-        let t172 = t170 - t171;
-        let t182 = t129 * t97 - t115 * t144 - t98 * t139;
-        let t185 = minus_gproximal_wx_leg3 * t182 + minus_gproximal_wy_leg3 * t144;
-        let gdistal_wy_leg3 = t75 * t89;
-        let minus_gdistal_wx_leg3 = t84 * t89;
-        let rate_distal_leg3 = gdistal_wy_leg3 * t144 - minus_gdistal_wx_leg3 * t182;
-        let t191 = c_proximal_leg3 * rate_distal_leg3;
-        let rate_wrist_leg3 = gwrist_wx_leg3 * t182 + gwrist_wy_leg3 * t144;
-        let t196 = t84 * rate_wrist_leg3;
-        let t200 = t185 * t191 - actuator_velocities[2] * t196
-            - actuator_velocities[2] * t191;
-        let t202 = t75 * rate_wrist_leg3;
-        let t204 = s_proximal_leg3 * rate_distal_leg3;
-        let t208 = actuator_velocities[2] * t202 + t185 * t204
-            - actuator_velocities[2] * t204;
-        let rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t200
-            + minus_gproximal_wy_leg3 * t208 + t204 * t196 + t191 * t202;
-        let t215 = actuator_accelerations[2] - rate_dot_proximal_leg3;
-        let t216 = s_proximal_leg1 * rate_distal_leg1;
-        let rate_wrist_leg1 = gwrist_wy_leg1 * t144 + gwrist_wz_leg1 * t139;
-        let t220 = t20 * rate_wrist_leg1;
-        let t222 = c_proximal_leg1 * rate_distal_leg1;
-        let t223 = t8 * rate_wrist_leg1;
-        let t226 = minus_s_distal_leg1 * rate_wrist_leg1;
-        let t231 = t222 * t226 - actuator_velocities[0] * t220
-            - actuator_velocities[0] * t222;
-        let t238 = actuator_velocities[0] * t223 + t216 * t226
-            - actuator_velocities[0] * t216;
-        let rate_dot_proximal_leg1 = t216 * t220 + t222 * t223
-            + minus_gproximal_wy_leg1 * t231 + minus_gproximal_wz_leg1 * t238;
-        let t241 = actuator_accelerations[0] - rate_dot_proximal_leg1;
-        let rate_wrist_leg2 = gwrist_wx_leg2 * t182 + gwrist_wz_leg2 * t139;
-        let t246 = t47 * rate_wrist_leg2;
-        let gdistal_wx_leg2 = t47 * t63;
-        let minus_gdistal_wz_leg2 = t57 * t63;
-        let rate_distal_leg2 = gdistal_wx_leg2 * t182 - minus_gdistal_wz_leg2 * t139;
-        let t253 = s_proximal_leg2 * rate_distal_leg2;
-        let t254 = minus_s_distal_leg2 * rate_wrist_leg2;
-        let t258 = actuator_velocities[1] * t246 + t253 * t254
-            - actuator_velocities[1] * t253;
-        let t260 = t57 * rate_wrist_leg2;
-        let t262 = c_proximal_leg2 * rate_distal_leg2;
-        let t270 = t262 * t254 - actuator_velocities[1] * t260
-            - actuator_velocities[1] * t262;
-        let rate_dot_proximal_leg2 = minus_gproximal_wx_leg2 * t258 + t253 * t260
-            + t262 * t246 + minus_gproximal_wz_leg2 * t270;
-        let t273 = actuator_accelerations[1] - rate_dot_proximal_leg2;
-        let t280 = t241 - minus_gproximal_wx_leg2 * t273
-            - minus_gproximal_wx_leg3 * t215;
-        let t288 = t273 - minus_gproximal_wy_leg1 * t241 - minus_gproximal_wy_leg3 * t215
-            - t115 * t280;
-        let t291 = t122
-            * (t215 - (minus_gproximal_wz_leg1 * t241 + minus_gproximal_wz_leg2 * t273)
-                - t98 * t280 - t119 * t288);
-        let t296 = t118 * t288 - t119 * t291;
-        let rate_dot_distal_leg1 = gdistal_wz_leg1 * (t291 - t238)
-            - minus_gdistal_wy_leg1 * (t296 - t231);
-        let t302 = rate_distal_leg1 * rate_distal_leg1;
-        let t305 = c_distal_leg1 * (t155 + rate_dot_distal_leg1)
-            + minus_s_distal_leg1 * (t302 - t170);
-        let t319 = minus_s_distal_leg1 * (t155 - rate_dot_distal_leg1)
-            - c_distal_leg1 * (t171 - t302);
-        let t329 = 9.81 * (minus_s_distal_leg1 * c_proximal_leg1);
-        let t330 = 9.81 * t20;
-        let t339 = minus_gproximal_wx_leg2 * actuator_accelerations[1];
-        let t340 = minus_gproximal_wz_leg2 * actuator_accelerations[1];
-        let t341 = 9.81 * s_proximal_leg2;
-        let t343 = minus_gproximal_wz_leg2 * t341;
-        let t344 = 9.81 * c_proximal_leg2;
-        let t345 = minus_gproximal_wz_leg2 * t344;
-        let t349 = c_distal_leg2 * actuator_accelerations[1];
-        let t350 = minus_s_distal_leg2 * actuator_velocities[1];
-        let t351 = rate_distal_leg2 * t350;
-        let t352 = t349 + t351;
-        let t354 = c_distal_leg2 * actuator_velocities[1];
-        let t355 = rate_distal_leg2 * t354;
-        let t357 = c_distal_leg2 * t352 + minus_s_distal_leg2 * t355;
-        let t359 = t354 * t350;
-        let t361 = minus_gproximal_wx_leg2 * t357 + gdistal_wx_leg2 * t359;
-        let t364 = minus_gdistal_wz_leg2 * t359 - minus_gproximal_wz_leg2 * t357;
-        let t365 = t354 * t354;
-        let t366 = t350 * t350;
-        let t367 = t365 - t366;
-        let t371 = minus_s_distal_leg2 * actuator_accelerations[1];
-        let t375 = minus_s_distal_leg2 * (t351 + t352)
-            - c_distal_leg2 * (t355 + t355 - t371);
-        let t385 = t97 * t280 - t115 * t296 - t98 * t291;
-        let rate_dot_distal_leg2 = gdistal_wx_leg2 * (t385 - t258)
-            - minus_gdistal_wz_leg2 * (t291 - t270);
-        let t393 = rate_distal_leg2 * rate_distal_leg2;
-        let t396 = c_distal_leg2 * (t359 + rate_dot_distal_leg2)
-            + minus_s_distal_leg2 * (t393 - t365);
-        let t410 = minus_s_distal_leg2 * (t359 - rate_dot_distal_leg2)
-            - c_distal_leg2 * (t366 - t393);
-        let t420 = 9.81 * (minus_s_distal_leg2 * s_proximal_leg2);
-        let t422 = 9.81 * t47;
-        let t430 = minus_gproximal_wx_leg3 * actuator_accelerations[2];
-        let t431 = minus_gproximal_wy_leg3 * actuator_accelerations[2];
-        let t435 = c_distal_leg3 * actuator_velocities[2];
-        let t436 = minus_s_distal_leg3 * actuator_velocities[2];
-        let t437 = t435 * t436;
-        let t439 = c_distal_leg3 * actuator_accelerations[2];
-        let t440 = rate_distal_leg3 * t436;
-        let t441 = t439 + t440;
-        let t443 = rate_distal_leg3 * t435;
-        let t445 = c_distal_leg3 * t441 + minus_s_distal_leg3 * t443;
-        let t447 = minus_gdistal_wx_leg3 * t437 - minus_gproximal_wx_leg3 * t445;
-        let t450 = minus_gproximal_wy_leg3 * t445 + gdistal_wy_leg3 * t437;
-        let t453 = minus_s_distal_leg3 * actuator_accelerations[2];
-        let t457 = minus_s_distal_leg3 * (t440 + t441)
-            - c_distal_leg3 * (t443 + t443 - t453);
-        let t459 = t435 * t435;
-        let t460 = t436 * t436;
-        let t461 = t459 - t460;
-        let rate_dot_distal_leg3 = gdistal_wy_leg3 * (t296 - t208)
-            - minus_gdistal_wx_leg3 * (t385 - t200);
-        let t474 = rate_distal_leg3 * rate_distal_leg3;
-        let t477 = c_distal_leg3 * (t437 + rate_dot_distal_leg3)
-            + minus_s_distal_leg3 * (t474 - t459);
-        let t492 = minus_s_distal_leg3 * (t437 - rate_dot_distal_leg3)
-            - c_distal_leg3 * (t460 - t474);
-        let t500 = 9.81 * minus_s_distal_leg3;
-        let t503 = 9.81 * c_distal_leg3;
-        let t510 = t75 * t385 + t84 * t296 + minus_s_distal_leg3 * t291;
-        let t516 = t75 * t182 + t84 * t144 + minus_s_distal_leg3 * t139;
-        let t521 = t57 * t182 + minus_s_distal_leg2 * t144 + t47 * t139;
-        let t522 = t516 * t521;
-        let t523 = minus_s_distal_leg1 * t522;
-        let t529 = minus_s_distal_leg1 * t182 + t8 * t144 + t20 * t139;
-        let t530 = t516 * t529;
-        let t531 = t57 * t530;
-        let t534 = t8 * t522;
-        let t536 = minus_s_distal_leg2 * t530;
-        let t539 = t20 * t522;
-        let t541 = t47 * t530;
-        let t543 = t529 * t521;
-        let t544 = t543 + t510;
-        let t550 = minus_s_distal_leg1 * t385 + t8 * t296 + t20 * t291;
-        let t551 = t522 - t550;
-        let t554 = t516 * t516;
-        let t555 = t529 * t529;
-        let t556 = t554 - t555;
-        let t573 = t57 * t385 + minus_s_distal_leg2 * t296 + t47 * t291;
-        let t574 = t530 + t573;
-        let t576 = t521 * t521;
-        let t577 = t576 - t554;
-        let t580 = t543 - t510;
-        let t594 = t75 * t543;
-        let t598 = t84 * t543;
-        let t602 = minus_s_distal_leg3 * t543;
-        let t605 = t555 - t576;
-        let t607 = t530 - t573;
-        let t610 = t522 + t550;
+        let t119 = minus_gproximal_wz_leg2 * actuator_velocities[1];
+        let t126 = t118
+            * (actuator_velocities[2] - (t34 + t119) - t93 * t106 - t109 * t95);
+        let t128 = t86 * t95 - t109 * t126;
+        let minus_rate_distal_leg1 = s_proximal_leg1 * t128 - c_proximal_leg1 * t126;
+        let t132 = minus_s_distal_leg1 * actuator_velocities[0];
+        let t133 = minus_rate_distal_leg1 * t132;
+        let t134 = c_distal_leg1 * actuator_accelerations[0];
+        let t135 = t133 - t134;
+        let t137 = c_distal_leg1 * actuator_velocities[0];
+        let t138 = minus_rate_distal_leg1 * t137;
+        let t140 = c_distal_leg1 * t135 + minus_s_distal_leg1 * t138;
+        let t142 = t137 * t132;
+        let t144 = minus_gproximal_wy_leg1 * t140 + s_proximal_leg1 * t142;
+        let t147 = minus_gproximal_wz_leg1 * t140 - c_proximal_leg1 * t142;
+        let t148 = minus_s_distal_leg1 * actuator_accelerations[0];
+        let t149 = t148 + t138;
+        let t154 = c_distal_leg1 * (t138 + t149) - minus_s_distal_leg1 * (t133 + t135);
+        let t156 = t137 * t137;
+        let t157 = t132 * t132;
+        let t158 = t156 - t157;
+        let t169 = t93 * t82 - t83 * t128 - t106 * t126;
+        let minus_rate_distal_leg2 = s_proximal_leg2 * t126 - c_proximal_leg2 * t169;
+        let t174 = s_proximal_leg2 * t169 + c_proximal_leg2 * t126;
+        let t178 = minus_rate_distal_leg2 * (t74 * t174)
+            - actuator_velocities[1] * minus_rate_distal_leg2;
+        let minus_rate_dot_proximal_leg2 = t74 * t178 + t174 * minus_rate_distal_leg2;
+        let t182 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
+        let t185 = c_proximal_leg1 * t128 + s_proximal_leg1 * t126;
+        let t189 = minus_rate_distal_leg1 * (t17 * t185)
+            - actuator_velocities[0] * minus_rate_distal_leg1;
+        let minus_rate_dot_proximal_leg1 = t17 * t189 + t185 * minus_rate_distal_leg1;
+        let t193 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
+        let rate_distal_leg3 = c_proximal_leg3 * t128 - s_proximal_leg3 * t169;
+        let t202 = c_proximal_leg3 * t169 + s_proximal_leg3 * t128;
+        let t205 = actuator_velocities[2] * rate_distal_leg3
+            - rate_distal_leg3 * (t55 * t202);
+        let minus_rate_dot_proximal_leg3 = t55 * t205 - t202 * rate_distal_leg3;
+        let t209 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let t215 = t193 - minus_gproximal_wx_leg2 * t182
+            - minus_gproximal_wx_leg3 * t209;
+        let t217 = t182 - minus_gproximal_wy_leg1 * t193 - minus_gproximal_wy_leg3 * t209
+            - t83 * t215;
+        let t227 = t118
+            * (t209 - (minus_gproximal_wz_leg1 * t193 + minus_gproximal_wz_leg2 * t182)
+                - t106 * t215 - t109 * t217);
+        let t229 = t86 * t217 - t109 * t227;
+        let minus_rate_dot_distal_leg1 = actuator_velocities[0] * t185;
+        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t229
+            - c_proximal_leg1 * t227 + minus_rate_dot_distal_leg1;
+        let t237 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t240 = c_distal_leg1 * (t142 - minus_rate_dot_distal_leg1_2)
+            + minus_s_distal_leg1 * (t237 - t156);
+        let t254 = minus_s_distal_leg1 * (t142 + minus_rate_dot_distal_leg1_2)
+            - c_distal_leg1 * (t157 - t237);
+        let t264 = 9.81 * (minus_s_distal_leg1 * c_proximal_leg1);
+        let t273 = 9.81 * t5;
+        let t279 = minus_gproximal_wx_leg2 * actuator_accelerations[1];
+        let t280 = minus_gproximal_wz_leg2 * actuator_accelerations[1];
+        let t281 = 9.81 * s_proximal_leg2;
+        let t283 = minus_gproximal_wz_leg2 * t281;
+        let t284 = 9.81 * c_proximal_leg2;
+        let t285 = minus_gproximal_wz_leg2 * t284;
+        let t289 = minus_s_distal_leg2 * actuator_velocities[1];
+        let t290 = minus_rate_distal_leg2 * t289;
+        let t291 = c_distal_leg2 * actuator_accelerations[1];
+        let t292 = t290 - t291;
+        let t294 = c_distal_leg2 * actuator_velocities[1];
+        let t295 = minus_rate_distal_leg2 * t294;
+        let t297 = c_distal_leg2 * t292 + minus_s_distal_leg2 * t295;
+        let t299 = t294 * t289;
+        let t301 = minus_gproximal_wx_leg2 * t297 - c_proximal_leg2 * t299;
+        let t304 = minus_gproximal_wz_leg2 * t297 + s_proximal_leg2 * t299;
+        let t305 = t294 * t294;
+        let t306 = t289 * t289;
+        let t307 = t305 - t306;
+        let t309 = minus_s_distal_leg2 * actuator_accelerations[1];
+        let t310 = t309 + t295;
+        let t315 = c_distal_leg2 * (t295 + t310) - minus_s_distal_leg2 * (t290 + t292);
+        let t326 = t82 * t215 - t83 * t229 - t106 * t227;
+        let minus_rate_dot_distal_leg2 = actuator_velocities[1] * t174;
+        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t227
+            - c_proximal_leg2 * t326 + minus_rate_dot_distal_leg2;
+        let t333 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t336 = c_distal_leg2 * (t299 - minus_rate_dot_distal_leg2_2)
+            + minus_s_distal_leg2 * (t333 - t305);
+        let t350 = minus_s_distal_leg2 * (t299 + minus_rate_dot_distal_leg2_2)
+            - c_distal_leg2 * (t306 - t333);
+        let t360 = 9.81 * (minus_s_distal_leg2 * s_proximal_leg2);
+        let t369 = 9.81 * t70;
+        let t375 = minus_gproximal_wx_leg3 * actuator_accelerations[2];
+        let t376 = minus_gproximal_wy_leg3 * actuator_accelerations[2];
+        let t380 = c_distal_leg3 * actuator_velocities[2];
+        let t381 = minus_s_distal_leg3 * actuator_velocities[2];
+        let t382 = t380 * t381;
+        let t384 = c_distal_leg3 * actuator_accelerations[2];
+        let t385 = rate_distal_leg3 * t381;
+        let t386 = t384 + t385;
+        let t388 = rate_distal_leg3 * t380;
+        let t390 = c_distal_leg3 * t386 + minus_s_distal_leg3 * t388;
+        let t392 = s_proximal_leg3 * t382 - minus_gproximal_wx_leg3 * t390;
+        let t395 = minus_gproximal_wy_leg3 * t390 + c_proximal_leg3 * t382;
+        let t398 = minus_s_distal_leg3 * actuator_accelerations[2];
+        let t399 = t388 - t398;
+        let t402 = minus_s_distal_leg3 * (t385 + t386) - c_distal_leg3 * (t388 + t399);
+        let t404 = t380 * t380;
+        let t405 = t381 * t381;
+        let t406 = t404 - t405;
+        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t202;
+        let rate_dot_distal_leg3 = c_proximal_leg3 * t229 - s_proximal_leg3 * t326
+            - minus_rate_dot_distal_leg3;
+        let t419 = rate_distal_leg3 * rate_distal_leg3;
+        let t422 = c_distal_leg3 * (t382 + rate_dot_distal_leg3)
+            + minus_s_distal_leg3 * (t419 - t404);
+        let t437 = minus_s_distal_leg3 * (t382 - rate_dot_distal_leg3)
+            - c_distal_leg3 * (t405 - t419);
+        let rate_dot_wrist_leg3 = t54
+            * (c_proximal_leg3 * t326 + s_proximal_leg3 * t229 + t205);
+        let t456 = rate_dot_wrist_leg3 - t399;
+        let rate_wrist_leg2 = t73 * t174;
+        let t459 = t289 + rate_wrist_leg2;
+        let rate_wrist_leg3 = t54 * t202;
+        let t461 = t381 + rate_wrist_leg3;
+        let t462 = t459 * t461;
+        let t463 = minus_s_distal_leg1 * t462;
+        let rate_wrist_leg1 = t16 * t185;
+        let t466 = t132 + rate_wrist_leg1;
+        let t467 = t466 * t461;
+        let t468 = t70 * t467;
+        let t471 = t5 * t462;
+        let t473 = minus_s_distal_leg2 * t467;
+        let t476 = t23 * t462;
+        let t478 = t63 * t467;
+        let t480 = t466 * t459;
+        let t481 = t480 + t456;
+        let rate_dot_wrist_leg1 = t16
+            * (c_proximal_leg1 * t229 + s_proximal_leg1 * t227 + t189);
+        let t488 = t149 + rate_dot_wrist_leg1;
+        let t489 = t462 - t488;
+        let t492 = t461 * t461;
+        let t493 = t466 * t466;
+        let t494 = t492 - t493;
+        let rate_dot_wrist_leg2 = t73
+            * (s_proximal_leg2 * t326 + c_proximal_leg2 * t227 + t178);
+        let t512 = t310 + rate_dot_wrist_leg2;
+        let t513 = t467 + t512;
+        let t515 = t459 * t459;
+        let t516 = t515 - t492;
+        let t519 = t480 - t456;
+        let t533 = t42 * t480;
+        let t537 = t51 * t480;
+        let t541 = minus_s_distal_leg3 * t480;
+        let t544 = t493 - t515;
+        let t546 = t467 - t512;
+        let t549 = t462 + t488;
+        let t571 = 9.81 * t23;
+        let t573 = 9.81 * t63;
+        let t580 = 9.81 * minus_s_distal_leg3;
         Ok([
             [
-                actuator_accelerations[0], -t32, t35, actuator_accelerations[0],
-                actuator_velocities[0], ::overact::math::sign(actuator_velocities[0]), 1.0, t154,
-                t168, -t305, actuator_accelerations[0] - t154, t319, 0.0, t329, -(9.81 * t8), -t35,
-                -t339, -(minus_gproximal_wx_leg2 * t341), -t343, -t339, -t126,
+                actuator_accelerations[0], -t28, t31, actuator_accelerations[0],
+                actuator_velocities[0], ::overact::math::sign(actuator_velocities[0]), 1.0, -t140,
+                t154, -t240, actuator_accelerations[0] + t140, t254, 0.0, t264, -t273, -t31, -t279,
+                -(minus_gproximal_wx_leg2 * t281), -t283, -t279, -t90,
                 -::overact::math::signed(
                     minus_gproximal_wx_leg2,
                     actuator_velocities[1],
                 ),
                 -minus_gproximal_wx_leg2,
-                -t361,
-                gdistal_wx_leg2 * t367 - minus_gproximal_wx_leg2 * t375,
-                minus_gproximal_wx_leg2 * t396 - gdistal_wx_leg2 * t349,
-                t361 - t339,
-                -(minus_gproximal_wx_leg2 * t410 + gdistal_wx_leg2 * t371),
-                gdistal_wx_leg2 * rate_dot_distal_leg2,
-                minus_gproximal_wx_leg2 * t420 - gdistal_wx_leg2 * t422,
-                -(9.81 * minus_s_distal_leg2),
-                t343,
-                -t430,
-                -t430,
-                -t128,
+                t301,
+                c_proximal_leg2 * t307 - minus_gproximal_wx_leg2 * t315,
+                minus_gproximal_wx_leg2 * t336 - c_proximal_leg2 * t291,
+                -(t279 + t301),
+                -(minus_gproximal_wx_leg2 * t350 + c_proximal_leg2 * t309),
+                -(c_proximal_leg2 * minus_rate_dot_distal_leg2_2),
+                minus_gproximal_wx_leg2 * t360 - 9.81 * (t63 * c_proximal_leg2),
+                -(minus_gproximal_wx_leg2 * t369
+                    + c_proximal_leg2
+                        * (9.81 * (minus_s_distal_leg2 * c_proximal_leg2))),
+                t283,
+                -t375,
+                -t375,
+                -t92,
                 -::overact::math::signed(
                     minus_gproximal_wx_leg3,
                     actuator_velocities[2],
                 ),
                 -minus_gproximal_wx_leg3,
-                t447,
-                -(minus_gproximal_wx_leg3 * t457 + minus_gdistal_wx_leg3 * t461),
-                minus_gproximal_wx_leg3 * t477 + minus_gdistal_wx_leg3 * t439,
-                -(t430 + t447),
-                minus_gdistal_wx_leg3 * t453 - minus_gproximal_wx_leg3 * t492,
-                -(minus_gdistal_wx_leg3 * rate_dot_distal_leg3),
-                minus_gdistal_wx_leg3 * t500,
-                -(minus_gdistal_wx_leg3 * t503),
-                t75 * t510 + t523 - t531,
-                minus_s_distal_leg1 * t544 - t75 * t551 + t57 * t556,
-                t75 * t574 + minus_s_distal_leg1 * t577 - t57 * t580,
-                minus_s_distal_leg1 * t550 - t594 + t531,
-                t75 * t605 - minus_s_distal_leg1 * t607 + t57 * t610,
-                t594 - t523 + t57 * t573,
-                t57 * t330 - minus_s_distal_leg1 * t422,
-                t75 * t422 - t57 * t500,
-                minus_s_distal_leg1 * t500 - t75 * t330,
+                t392,
+                -(minus_gproximal_wx_leg3 * t402 + s_proximal_leg3 * t406),
+                minus_gproximal_wx_leg3 * t422 + s_proximal_leg3 * t384,
+                -(t375 + t392),
+                s_proximal_leg3 * t398 - minus_gproximal_wx_leg3 * t437,
+                -(s_proximal_leg3 * rate_dot_distal_leg3),
+                9.81 * (minus_s_distal_leg3 * s_proximal_leg3),
+                -(9.81 * t51),
+                t42 * t456 + t463 - t468,
+                minus_s_distal_leg1 * t481 - t42 * t489 + t70 * t494,
+                t42 * t513 + minus_s_distal_leg1 * t516 - t70 * t519,
+                minus_s_distal_leg1 * t488 - t533 + t468,
+                t42 * t544 - minus_s_distal_leg1 * t546 + t70 * t549,
+                t533 - t463 + t70 * t512,
+                t70 * t571 - minus_s_distal_leg1 * t573,
+                t42 * t573 - t70 * t580,
+                minus_s_distal_leg1 * t580 - t42 * t571,
             ],
             [
-                -t28, minus_gproximal_wy_leg1 * t32, -t34, -t28, -t37,
+                -t19, minus_gproximal_wy_leg1 * t28, -t30, -t19, -t33,
                 -::overact::math::signed(
                     minus_gproximal_wy_leg1,
                     actuator_velocities[0],
                 ),
                 -minus_gproximal_wy_leg1,
-                t158,
-                -(minus_gproximal_wy_leg1 * t168 + minus_gdistal_wy_leg1 * t172),
-                minus_gproximal_wy_leg1 * t305 + minus_gdistal_wy_leg1 * t42,
-                -(t28 + t158),
-                minus_gdistal_wy_leg1 * t164 - minus_gproximal_wy_leg1 * t319,
-                -(minus_gdistal_wy_leg1 * rate_dot_distal_leg1),
-                minus_gdistal_wy_leg1 * t330 - minus_gproximal_wy_leg1 * t329,
-                9.81 * minus_s_distal_leg1,
-                t34,
+                t144,
+                -(minus_gproximal_wy_leg1 * t154 + s_proximal_leg1 * t158),
+                minus_gproximal_wy_leg1 * t240 + s_proximal_leg1 * t134,
+                -(t19 + t144),
+                s_proximal_leg1 * t148 - minus_gproximal_wy_leg1 * t254,
+                s_proximal_leg1 * minus_rate_dot_distal_leg1_2,
+                9.81 * (t23 * s_proximal_leg1) - minus_gproximal_wy_leg1 * t264,
+                minus_gproximal_wy_leg1 * t273
+                    + s_proximal_leg1 * (9.81 * (minus_s_distal_leg1 * s_proximal_leg1)),
+                t30,
                 actuator_accelerations[1],
-                t341,
-                t344,
+                t281,
+                t284,
                 actuator_accelerations[1],
                 actuator_velocities[1],
                 ::overact::math::sign(actuator_velocities[1]),
                 1.0,
-                t357,
-                t375,
-                -t396,
-                actuator_accelerations[1] - t357,
-                t410,
+                -t297,
+                t315,
+                -t336,
+                actuator_accelerations[1] + t297,
+                t350,
                 0.0,
-                -t420,
-                9.81 * t57,
-                -t344,
-                -t431,
-                -t431,
-                -t133,
+                -t360,
+                t369,
+                -t284,
+                -t376,
+                -t376,
+                -t88,
                 -::overact::math::signed(
                     minus_gproximal_wy_leg3,
                     actuator_velocities[2],
                 ),
                 -minus_gproximal_wy_leg3,
-                -t450,
-                gdistal_wy_leg3 * t461 - minus_gproximal_wy_leg3 * t457,
-                minus_gproximal_wy_leg3 * t477 - gdistal_wy_leg3 * t439,
-                t450 - t431,
-                -(minus_gproximal_wy_leg3 * t492 + gdistal_wy_leg3 * t453),
-                gdistal_wy_leg3 * rate_dot_distal_leg3,
-                -(gdistal_wy_leg3 * t500),
-                gdistal_wy_leg3 * t503,
-                t84 * t510 + t534 - t536,
-                t8 * t544 - t84 * t551 + minus_s_distal_leg2 * t556,
-                t84 * t574 + t8 * t577 - minus_s_distal_leg2 * t580,
-                t8 * t550 - t598 + t536,
-                t84 * t605 - t8 * t607 + minus_s_distal_leg2 * t610,
-                t598 - t534 + minus_s_distal_leg2 * t573,
-                minus_s_distal_leg2 * t330 - t8 * t422,
-                t84 * t422 - minus_s_distal_leg2 * t500,
-                t8 * t500 - t84 * t330,
+                -t395,
+                c_proximal_leg3 * t406 - minus_gproximal_wy_leg3 * t402,
+                minus_gproximal_wy_leg3 * t422 - c_proximal_leg3 * t384,
+                t395 - t376,
+                -(minus_gproximal_wy_leg3 * t437 + c_proximal_leg3 * t398),
+                c_proximal_leg3 * rate_dot_distal_leg3,
+                -(9.81 * (minus_s_distal_leg3 * c_proximal_leg3)),
+                9.81 * t42,
+                t51 * t456 + t471 - t473,
+                t5 * t481 - t51 * t489 + minus_s_distal_leg2 * t494,
+                t51 * t513 + t5 * t516 - minus_s_distal_leg2 * t519,
+                t5 * t488 - t537 + t473,
+                t51 * t544 - t5 * t546 + minus_s_distal_leg2 * t549,
+                t537 - t471 + minus_s_distal_leg2 * t512,
+                minus_s_distal_leg2 * t571 - t5 * t573,
+                t51 * t573 - minus_s_distal_leg2 * t580,
+                t5 * t580 - t51 * t571,
             ],
             [
-                -t31, t34, -t36, -t31, -t38,
+                -t27, t30, -t32, -t27, -t34,
                 -::overact::math::signed(
                     minus_gproximal_wz_leg1,
                     actuator_velocities[0],
                 ),
                 -minus_gproximal_wz_leg1,
-                -t161,
-                gdistal_wz_leg1 * t172 - minus_gproximal_wz_leg1 * t168,
-                minus_gproximal_wz_leg1 * t305 - gdistal_wz_leg1 * t42,
-                t161 - t31,
-                -(minus_gproximal_wz_leg1 * t319 + gdistal_wz_leg1 * t164),
-                gdistal_wz_leg1 * rate_dot_distal_leg1,
-                -(minus_gproximal_wz_leg1 * t329 + gdistal_wz_leg1 * t330),
+                t147,
+                c_proximal_leg1 * t158 - minus_gproximal_wz_leg1 * t154,
+                minus_gproximal_wz_leg1 * t240 - c_proximal_leg1 * t134,
+                -(t27 + t147),
+                -(minus_gproximal_wz_leg1 * t254 + c_proximal_leg1 * t148),
+                -(c_proximal_leg1 * minus_rate_dot_distal_leg1_2),
+                -(minus_gproximal_wz_leg1 * t264 + 9.81 * (t5 * s_proximal_leg1)),
                 0.0,
-                t36,
-                -t340,
-                -t343,
-                -t345,
-                -t340,
-                -t123,
+                t32,
+                -t280,
+                -t283,
+                -t285,
+                -t280,
+                -t119,
                 -::overact::math::signed(
                     minus_gproximal_wz_leg2,
                     actuator_velocities[1],
                 ),
                 -minus_gproximal_wz_leg2,
-                t364,
-                -(minus_gproximal_wz_leg2 * t375 + minus_gdistal_wz_leg2 * t367),
-                minus_gproximal_wz_leg2 * t396 + minus_gdistal_wz_leg2 * t349,
-                -(t340 + t364),
-                minus_gdistal_wz_leg2 * t371 - minus_gproximal_wz_leg2 * t410,
-                -(minus_gdistal_wz_leg2 * rate_dot_distal_leg2),
-                minus_gproximal_wz_leg2 * t420 + minus_gdistal_wz_leg2 * t422,
+                t304,
+                -(minus_gproximal_wz_leg2 * t315 + s_proximal_leg2 * t307),
+                minus_gproximal_wz_leg2 * t336 + s_proximal_leg2 * t291,
+                -(t280 + t304),
+                s_proximal_leg2 * t309 - minus_gproximal_wz_leg2 * t350,
+                s_proximal_leg2 * minus_rate_dot_distal_leg2_2,
+                minus_gproximal_wz_leg2 * t360 + 9.81 * (t70 * c_proximal_leg2),
                 0.0,
-                t345,
+                t285,
                 actuator_accelerations[2],
                 actuator_accelerations[2],
                 actuator_velocities[2],
                 ::overact::math::sign(actuator_velocities[2]),
                 1.0,
-                t445,
-                t457,
-                -t477,
-                actuator_accelerations[2] - t445,
-                t492,
+                t390,
+                t402,
+                -t422,
+                actuator_accelerations[2] - t390,
+                t437,
                 0.0,
                 0.0,
                 0.0,
-                minus_s_distal_leg3 * t510 + t539 - t541,
-                t20 * t544 - minus_s_distal_leg3 * t551 + t47 * t556,
-                minus_s_distal_leg3 * t574 + t20 * t577 - t47 * t580,
-                t20 * t550 - t602 + t541,
-                minus_s_distal_leg3 * t605 - t20 * t607 + t47 * t610,
-                t602 - t539 + t47 * t573,
+                minus_s_distal_leg3 * t456 + t476 - t478,
+                t23 * t481 - minus_s_distal_leg3 * t489 + t63 * t494,
+                minus_s_distal_leg3 * t513 + t23 * t516 - t63 * t519,
+                t23 * t488 - t541 + t478,
+                minus_s_distal_leg3 * t544 - t23 * t546 + t63 * t549,
+                t541 - t476 + t63 * t512,
                 0.0,
                 0.0,
                 0.0,
@@ -2364,7 +2183,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 54.
     /// Columns: `PARAMETERS`.
     ///
-    /// 703 operations (248 additions, 448 multiplications, 7 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 603 intermediates.
+    /// 626 operations (224 additions, 395 multiplications, 7 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 526 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2384,270 +2203,245 @@ impl Spherical3Rrr {
         let t10 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
         ::overact::guard::reach(t10, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t10);
+        ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
         let t13 = 1.0 / (t5 * c_distal_leg1);
-        let t14 = 2.0 * pose[2];
-        let t15 = pose[3] * t14;
-        let t16 = pose[0] * t0;
-        let t17 = t15 + t16;
-        let s_proximal_leg1 = t13 * (t5 * t17);
         let c_proximal_leg1 = t13 * (t5 * t5);
-        let t24 = t5 * c_proximal_leg1 + t17 * s_proximal_leg1;
-        ::overact::guard::leg(t24, 1.0, "leg1")?;
-        let t25 = 1.0 / t24;
-        let gdistal_wz_leg1 = t5 * t25;
-        let minus_gdistal_wy_leg1 = t17 * t25;
-        let rate_distal_leg1 = gdistal_wz_leg1 * twist[2]
-            - minus_gdistal_wy_leg1 * twist[1];
-        let t31 = s_proximal_leg1 * rate_distal_leg1;
-        let gwrist_wy_leg1 = c_proximal_leg1 * t25;
-        let gwrist_wz_leg1 = s_proximal_leg1 * t25;
-        let rate_wrist_leg1 = gwrist_wy_leg1 * twist[1] + gwrist_wz_leg1 * twist[2];
-        let t37 = t17 * rate_wrist_leg1;
-        let t39 = c_proximal_leg1 * rate_distal_leg1;
-        let t40 = t5 * rate_wrist_leg1;
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
-        let t45 = minus_s_distal_leg1 * rate_wrist_leg1;
-        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
-        let rate_proximal_leg1 = twist[0] - minus_gproximal_wy_leg1 * twist[1]
-            - minus_gproximal_wz_leg1 * twist[2];
-        let t56 = acceleration[1]
-            - (t39 * t45 - rate_proximal_leg1 * t37 - rate_proximal_leg1 * t39);
-        let t64 = acceleration[2]
-            - (rate_proximal_leg1 * t40 + t31 * t45 - rate_proximal_leg1 * t31);
-        let rate_dot_proximal_leg1 = acceleration[0] + t31 * t37 + t39 * t40
-            - minus_gproximal_wy_leg1 * t56 - minus_gproximal_wz_leg1 * t64;
-        let t68 = 9.81 * s_proximal_leg1;
-        let t70 = c_distal_leg1 * rate_dot_proximal_leg1;
-        let t71 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t72 = rate_distal_leg1 * t71;
-        let t73 = t70 + t72;
-        let t75 = c_distal_leg1 * rate_proximal_leg1;
-        let t76 = rate_distal_leg1 * t75;
-        let minus_s_distal_leg2 = t15 - t16;
-        let t80 = pose[2] * t14;
-        let t81 = t2 - t80;
-        let t83 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t83, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t83);
-        let t86 = 1.0 / (t81 * c_distal_leg2);
-        let t87 = pose[3] * t0;
-        let t88 = pose[0] * t14;
-        let t89 = t87 + t88;
-        let s_proximal_leg2 = t86 * (t89 * t81);
-        let c_proximal_leg2 = t86 * (t81 * t81);
-        let t96 = t89 * s_proximal_leg2 + t81 * c_proximal_leg2;
-        ::overact::guard::leg(t96, 1.0, "leg2")?;
-        let t97 = 1.0 / t96;
-        let gwrist_wx_leg2 = s_proximal_leg2 * t97;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
-        let minus_s_distal_leg3 = t87 - t88;
-        let t102 = 1.0 - t80 - t4;
-        let t104 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t104, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t104);
-        let t107 = 1.0 / (t102 * c_distal_leg3);
-        let t108 = t6 + t7;
-        let s_proximal_leg3 = t107 * (t102 * t108);
-        let c_proximal_leg3 = t107 * (t102 * t102);
-        let t115 = t102 * c_proximal_leg3 + t108 * s_proximal_leg3;
-        ::overact::guard::leg(t115, 1.0, "leg3")?;
-        let t116 = 1.0 / t115;
-        let gwrist_wy_leg3 = s_proximal_leg3 * t116;
-        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
-        let gwrist_wx_leg3 = c_proximal_leg3 * t116;
-        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
-        let t122 = minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3
+        let t17 = 2.0 * pose[2];
+        let t18 = pose[3] * t17;
+        let t19 = pose[0] * t0;
+        let t20 = t18 + t19;
+        let s_proximal_leg1 = t13 * (t5 * t20);
+        let t24 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
+        let minus_rate_distal_leg1 = s_proximal_leg1 * twist[1]
+            - c_proximal_leg1 * twist[2];
+        let t30 = 1.0 / c_distal_leg1;
+        let t31 = minus_s_distal_leg1 * t30;
+        let t35 = t31 * t24;
+        let rate_proximal_leg1 = twist[0] - t35;
+        let t40 = c_proximal_leg1 * acceleration[1] + s_proximal_leg1 * acceleration[2]
+            + minus_rate_distal_leg1 * t35 - minus_rate_distal_leg1 * rate_proximal_leg1;
+        let rate_dot_proximal_leg1 = acceleration[0] - t24 * minus_rate_distal_leg1
+            - t31 * t40;
+        let t44 = 9.81 * s_proximal_leg1;
+        let t46 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t47 = minus_rate_distal_leg1 * t46;
+        let t48 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t49 = t47 - t48;
+        let t51 = c_distal_leg1 * rate_proximal_leg1;
+        let t52 = minus_rate_distal_leg1 * t51;
+        let t55 = pose[2] * t17;
+        let t56 = t2 - t55;
+        let minus_s_distal_leg2 = t18 - t19;
+        let t59 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t59, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t59);
+        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
+        let t62 = 1.0 / (t56 * c_distal_leg2);
+        let t63 = pose[3] * t0;
+        let t64 = pose[0] * t17;
+        let t65 = t63 + t64;
+        let s_proximal_leg2 = t62 * (t65 * t56);
+        let t68 = 1.0 / c_distal_leg2;
+        let t69 = minus_s_distal_leg2 * t68;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t69;
+        let t72 = 1.0 - t55 - t4;
+        let minus_s_distal_leg3 = t63 - t64;
+        let t75 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t75, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t75);
+        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
+        let t78 = 1.0 / (t72 * c_distal_leg3);
+        let t79 = t6 + t7;
+        let s_proximal_leg3 = t78 * (t72 * t79);
+        let t82 = 1.0 / c_distal_leg3;
+        let t83 = minus_s_distal_leg3 * t82;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t83;
+        let c_proximal_leg3 = t78 * (t72 * t72);
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t83;
+        let t89 = minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3
             + minus_gproximal_wx_leg3;
-        let gwrist_wz_leg2 = c_proximal_leg2 * t97;
-        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
-        let t126 = 1.0 - minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3;
-        let t128 = minus_gproximal_wx_leg2
+        let c_proximal_leg2 = t62 * (t56 * t56);
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t69;
+        let t94 = 1.0 - minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t31;
+        let t97 = minus_gproximal_wx_leg2
             + minus_gproximal_wz_leg2 * minus_gproximal_wx_leg3;
-        let t132 = t126 - minus_gproximal_wy_leg1 * t128
-            - minus_gproximal_wz_leg1 * t122;
-        ::overact::guard::platform(t132, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t132, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t132, 1.0, "kept actuators")?;
-        let t133 = 1.0 / t132;
-        let t134 = t122 * t133;
-        let t136 = t128 * t133;
-        let t138 = gdistal_wz_leg1 * t134 - minus_gdistal_wy_leg1 * t136;
-        let t139 = t75 * t71;
-        let t141 = c_distal_leg1 * t73 + minus_s_distal_leg1 * t76 - t138 * t139;
-        let t144 = (minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t133;
-        let t148 = (1.0 - minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3) * t133;
-        let t150 = gdistal_wz_leg1 * t144 - minus_gdistal_wy_leg1 * t148;
-        let t151 = t150 * t139;
-        let t154 = (1.0 - minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2) * t133;
-        let t158 = (minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2) * t133;
-        let t160 = gdistal_wz_leg1 * t154 - minus_gdistal_wy_leg1 * t158;
-        let t161 = t160 * t139;
-        let t164 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
-        let t169 = t75 * t75;
-        let t170 = t71 * t71;
-        let t171 = t169 - t170;
-        let rate_dot_distal_leg1 = gdistal_wz_leg1 * t64 - minus_gdistal_wy_leg1 * t56;
-        let t181 = rate_distal_leg1 * rate_distal_leg1;
-        let t204 = 9.81 * t17;
-        let t211 = 9.81 * (minus_s_distal_leg1 * s_proximal_leg1);
-        let gdistal_wx_leg2 = t81 * t97;
-        let minus_gdistal_wz_leg2 = t89 * t97;
-        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
-            - minus_gdistal_wz_leg2 * twist[2];
-        let t221 = s_proximal_leg2 * rate_distal_leg2;
-        let rate_wrist_leg2 = gwrist_wx_leg2 * twist[0] + gwrist_wz_leg2 * twist[2];
-        let t225 = t89 * rate_wrist_leg2;
-        let t227 = c_proximal_leg2 * rate_distal_leg2;
-        let t228 = t81 * rate_wrist_leg2;
-        let rate_proximal_leg2 = twist[1] - minus_gproximal_wx_leg2 * twist[0]
-            - minus_gproximal_wz_leg2 * twist[2];
-        let t237 = minus_s_distal_leg2 * rate_wrist_leg2;
-        let t242 = acceleration[0]
-            - (rate_proximal_leg2 * t228 + t221 * t237 - rate_proximal_leg2 * t221);
-        let t250 = acceleration[2]
-            - (t227 * t237 - rate_proximal_leg2 * t225 - rate_proximal_leg2 * t227);
-        let rate_dot_proximal_leg2 = acceleration[1] + t221 * t225 + t227 * t228
-            - minus_gproximal_wx_leg2 * t242 - minus_gproximal_wz_leg2 * t250;
-        let t254 = 9.81 * c_proximal_leg2;
-        let t256 = t126 * t133;
-        let t259 = gdistal_wx_leg2 * t256 - minus_gdistal_wz_leg2 * t134;
-        let t260 = c_distal_leg2 * rate_proximal_leg2;
-        let t261 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t262 = t260 * t261;
-        let t263 = t259 * t262;
-        let t264 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t265 = rate_distal_leg2 * t261;
-        let t266 = t264 + t265;
-        let t268 = rate_distal_leg2 * t260;
-        let t273 = (minus_gproximal_wy_leg1
-            + minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3) * t133;
-        let t276 = gdistal_wx_leg2 * t273 - minus_gdistal_wz_leg2 * t144;
-        let t278 = c_distal_leg2 * t266 + minus_s_distal_leg2 * t268 - t276 * t262;
-        let t281 = (minus_gproximal_wy_leg1 * minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg1) * t133;
-        let t284 = gdistal_wx_leg2 * t281 - minus_gdistal_wz_leg2 * t154;
-        let t285 = t284 * t262;
-        let t286 = t260 * t260;
-        let t287 = t261 * t261;
-        let t288 = t286 - t287;
-        let t292 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let rate_dot_distal_leg2 = gdistal_wx_leg2 * t242 - minus_gdistal_wz_leg2 * t250;
-        let t306 = rate_distal_leg2 * rate_distal_leg2;
-        let t326 = 9.81 * t81;
-        let t334 = 9.81 * (minus_s_distal_leg2 * c_proximal_leg2);
-        let gdistal_wy_leg3 = t102 * t116;
-        let minus_gdistal_wx_leg3 = t108 * t116;
-        let rate_distal_leg3 = gdistal_wy_leg3 * twist[1]
-            - minus_gdistal_wx_leg3 * twist[0];
-        let t345 = s_proximal_leg3 * rate_distal_leg3;
-        let rate_wrist_leg3 = gwrist_wx_leg3 * twist[0] + gwrist_wy_leg3 * twist[1];
-        let t349 = t108 * rate_wrist_leg3;
-        let t351 = c_proximal_leg3 * rate_distal_leg3;
-        let t352 = t102 * rate_wrist_leg3;
-        let t358 = minus_gproximal_wx_leg3 * twist[0]
-            + minus_gproximal_wy_leg3 * twist[1];
-        let rate_proximal_leg3 = twist[2] - t358;
-        let t365 = acceleration[0]
-            - (t358 * t351 - rate_proximal_leg3 * t349 - rate_proximal_leg3 * t351);
-        let t372 = acceleration[1]
-            - (rate_proximal_leg3 * t352 + t358 * t345 - rate_proximal_leg3 * t345);
-        let rate_dot_proximal_leg3 = acceleration[2] + t345 * t349 + t351 * t352
-            - (minus_gproximal_wx_leg3 * t365 + minus_gproximal_wy_leg3 * t372);
-        let t379 = gdistal_wy_leg3 * t136 - minus_gdistal_wx_leg3 * t256;
-        let t380 = c_distal_leg3 * rate_proximal_leg3;
-        let t381 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t382 = t380 * t381;
-        let t383 = t379 * t382;
-        let t386 = gdistal_wy_leg3 * t148 - minus_gdistal_wx_leg3 * t273;
-        let t387 = t386 * t382;
-        let t388 = c_distal_leg3 * rate_dot_proximal_leg3;
-        let t389 = rate_distal_leg3 * t381;
-        let t390 = t388 + t389;
-        let t392 = rate_distal_leg3 * t380;
-        let t397 = gdistal_wy_leg3 * t158 - minus_gdistal_wx_leg3 * t281;
-        let t399 = c_distal_leg3 * t390 + minus_s_distal_leg3 * t392 - t397 * t382;
-        let t400 = t380 * t380;
-        let t401 = t381 * t381;
-        let t402 = t400 - t401;
-        let t407 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let rate_dot_distal_leg3 = gdistal_wy_leg3 * t372 - minus_gdistal_wx_leg3 * t365;
-        let t421 = rate_distal_leg3 * rate_distal_leg3;
-        let t440 = 9.81 * minus_s_distal_leg3;
-        let t444 = 9.81 * c_distal_leg3;
-        let t452 = t102 * acceleration[0] + t108 * acceleration[1]
-            + minus_s_distal_leg3 * acceleration[2];
-        let t458 = t102 * twist[0] + t108 * twist[1] + minus_s_distal_leg3 * twist[2];
-        let t463 = t89 * twist[0] + minus_s_distal_leg2 * twist[1] + t81 * twist[2];
-        let t464 = t458 * t463;
-        let t465 = minus_s_distal_leg1 * t464;
-        let t471 = minus_s_distal_leg1 * twist[0] + t5 * twist[1] + t17 * twist[2];
-        let t472 = t458 * t471;
-        let t473 = t89 * t472;
-        let t474 = t102 * t452 + t465 - t473;
-        let t477 = t5 * t464;
-        let t479 = minus_s_distal_leg2 * t472;
-        let t480 = t108 * t452 + t477 - t479;
-        let t484 = t17 * t464;
-        let t486 = t81 * t472;
-        let t487 = minus_s_distal_leg3 * t452 + t484 - t486;
-        let t500 = t471 * t463;
-        let t501 = t500 + t452;
-        let t507 = minus_s_distal_leg1 * acceleration[0] + t5 * acceleration[1]
-            + t17 * acceleration[2];
-        let t508 = t464 - t507;
-        let t511 = t458 * t458;
-        let t512 = t471 * t471;
-        let t513 = t511 - t512;
-        let t515 = minus_s_distal_leg1 * t501 - t102 * t508 + t89 * t513;
-        let t521 = t5 * t501 - t108 * t508 + minus_s_distal_leg2 * t513;
-        let t528 = t17 * t501 - minus_s_distal_leg3 * t508 + t81 * t513;
-        let t545 = t89 * acceleration[0] + minus_s_distal_leg2 * acceleration[1]
-            + t81 * acceleration[2];
-        let t546 = t472 + t545;
-        let t548 = t463 * t463;
-        let t549 = t548 - t511;
-        let t552 = t500 - t452;
-        let t554 = t102 * t546 + minus_s_distal_leg1 * t549 - t89 * t552;
-        let t560 = t108 * t546 + t5 * t549 - minus_s_distal_leg2 * t552;
-        let t567 = minus_s_distal_leg3 * t546 + t17 * t549 - t81 * t552;
-        let t581 = t102 * t500;
-        let t583 = minus_s_distal_leg1 * t507 - t581 + t473;
-        let t586 = t108 * t500;
-        let t588 = t5 * t507 - t586 + t479;
-        let t592 = minus_s_distal_leg3 * t500;
-        let t594 = t17 * t507 - t592 + t486;
-        let t607 = t512 - t548;
-        let t609 = t472 - t545;
-        let t612 = t464 + t507;
-        let t614 = t102 * t607 - minus_s_distal_leg1 * t609 + t89 * t612;
-        let t620 = t108 * t607 - t5 * t609 + minus_s_distal_leg2 * t612;
-        let t627 = minus_s_distal_leg3 * t607 - t17 * t609 + t81 * t612;
-        let t642 = t581 - t465 + t89 * t545;
-        let t646 = t586 - t477 + minus_s_distal_leg2 * t545;
-        let t651 = t592 - t484 + t81 * t545;
-        let t666 = t89 * t204 - minus_s_distal_leg1 * t326;
-        let t670 = minus_s_distal_leg2 * t204 - t5 * t326;
-        let t681 = t102 * t326 - t89 * t440;
-        let t685 = t108 * t326 - minus_s_distal_leg2 * t440;
-        let t696 = minus_s_distal_leg1 * t440 - t102 * t204;
-        let t700 = t5 * t440 - t108 * t204;
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t31;
+        let t102 = t94 - minus_gproximal_wy_leg1 * t97 - minus_gproximal_wz_leg1 * t89;
+        ::overact::guard::platform(t102, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t102, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t102, 1.0, "kept actuators")?;
+        let t103 = 1.0 / t102;
+        let t104 = t89 * t103;
+        let t106 = t97 * t103;
+        let t108 = c_proximal_leg1 * t104 - s_proximal_leg1 * t106;
+        let t109 = t51 * t46;
+        let t111 = c_distal_leg1 * t49 + minus_s_distal_leg1 * t52 + t108 * t109;
+        let t114 = (minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t103;
+        let t118 = (1.0 - minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3) * t103;
+        let t120 = c_proximal_leg1 * t114 - s_proximal_leg1 * t118;
+        let t121 = t120 * t109;
+        let t124 = (1.0 - minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2) * t103;
+        let t128 = (minus_gproximal_wz_leg2
+            + minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2) * t103;
+        let t130 = c_proximal_leg1 * t124 - s_proximal_leg1 * t128;
+        let t131 = t130 * t109;
+        let t132 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t133 = t132 + t52;
+        let t139 = t51 * t51;
+        let t140 = t46 * t46;
+        let t141 = t139 - t140;
+        let minus_rate_dot_distal_leg1 = s_proximal_leg1 * acceleration[1]
+            - c_proximal_leg1 * acceleration[2] + t24 * rate_proximal_leg1;
+        let t153 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t176 = 9.81 * t20;
+        let t183 = 9.81 * (minus_s_distal_leg1 * s_proximal_leg1);
+        let t190 = s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2];
+        let minus_rate_distal_leg2 = s_proximal_leg2 * twist[2]
+            - c_proximal_leg2 * twist[0];
+        let t199 = t69 * t190;
+        let rate_proximal_leg2 = twist[1] - t199;
+        let t204 = s_proximal_leg2 * acceleration[0] + c_proximal_leg2 * acceleration[2]
+            + minus_rate_distal_leg2 * t199
+            - minus_rate_distal_leg2 * rate_proximal_leg2;
+        let rate_dot_proximal_leg2 = acceleration[1] - t190 * minus_rate_distal_leg2
+            - t69 * t204;
+        let t208 = 9.81 * c_proximal_leg2;
+        let t210 = t94 * t103;
+        let t213 = c_proximal_leg2 * t210 - s_proximal_leg2 * t104;
+        let t214 = c_distal_leg2 * rate_proximal_leg2;
+        let t215 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t216 = t214 * t215;
+        let t217 = t213 * t216;
+        let t218 = minus_rate_distal_leg2 * t215;
+        let t219 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t220 = t218 - t219;
+        let t222 = minus_rate_distal_leg2 * t214;
+        let t227 = (minus_gproximal_wy_leg1
+            + minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3) * t103;
+        let t230 = c_proximal_leg2 * t227 - s_proximal_leg2 * t114;
+        let t232 = c_distal_leg2 * t220 + minus_s_distal_leg2 * t222 + t230 * t216;
+        let t235 = (minus_gproximal_wy_leg1 * minus_gproximal_wz_leg2
+            + minus_gproximal_wz_leg1) * t103;
+        let t238 = c_proximal_leg2 * t235 - s_proximal_leg2 * t124;
+        let t239 = t238 * t216;
+        let t240 = t214 * t214;
+        let t241 = t215 * t215;
+        let t242 = t240 - t241;
+        let t244 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t245 = t244 + t222;
+        let minus_rate_dot_distal_leg2 = s_proximal_leg2 * acceleration[2]
+            - c_proximal_leg2 * acceleration[0] + t190 * rate_proximal_leg2;
+        let t262 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t282 = 9.81 * t56;
+        let t290 = 9.81 * (minus_s_distal_leg2 * c_proximal_leg2);
+        let t298 = c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1];
+        let rate_distal_leg3 = c_proximal_leg3 * twist[1] - s_proximal_leg3 * twist[0];
+        let t307 = t83 * t298;
+        let rate_proximal_leg3 = twist[2] - t307;
+        let t312 = c_proximal_leg3 * acceleration[0] + s_proximal_leg3 * acceleration[1]
+            + rate_distal_leg3 * rate_proximal_leg3 - rate_distal_leg3 * t307;
+        let rate_dot_proximal_leg3 = acceleration[2] + t298 * rate_distal_leg3
+            - t83 * t312;
+        let t318 = c_proximal_leg3 * t106 - s_proximal_leg3 * t210;
+        let t319 = c_distal_leg3 * rate_proximal_leg3;
+        let t320 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t321 = t319 * t320;
+        let t322 = t318 * t321;
+        let t325 = c_proximal_leg3 * t118 - s_proximal_leg3 * t227;
+        let t326 = t325 * t321;
+        let t327 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t328 = rate_distal_leg3 * t320;
+        let t329 = t327 + t328;
+        let t331 = rate_distal_leg3 * t319;
+        let t336 = c_proximal_leg3 * t128 - s_proximal_leg3 * t235;
+        let t338 = c_distal_leg3 * t329 + minus_s_distal_leg3 * t331 - t336 * t321;
+        let t339 = t319 * t319;
+        let t340 = t320 * t320;
+        let t341 = t339 - t340;
+        let t346 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t347 = t331 - t346;
+        let rate_dot_distal_leg3 = c_proximal_leg3 * acceleration[1]
+            - s_proximal_leg3 * acceleration[0] - t298 * rate_proximal_leg3;
+        let t362 = rate_distal_leg3 * rate_distal_leg3;
+        let t381 = 9.81 * minus_s_distal_leg3;
+        let t385 = 9.81 * c_distal_leg3;
+        let rate_dot_wrist_leg3 = t82 * t312;
+        let t390 = rate_dot_wrist_leg3 - t347;
+        let rate_wrist_leg2 = t68 * t190;
+        let t393 = t215 + rate_wrist_leg2;
+        let rate_wrist_leg3 = t82 * t298;
+        let t395 = t320 + rate_wrist_leg3;
+        let t396 = t393 * t395;
+        let t397 = minus_s_distal_leg1 * t396;
+        let rate_wrist_leg1 = t30 * t24;
+        let t400 = t46 + rate_wrist_leg1;
+        let t401 = t400 * t395;
+        let t402 = t65 * t401;
+        let t403 = t72 * t390 + t397 - t402;
+        let t406 = t5 * t396;
+        let t408 = minus_s_distal_leg2 * t401;
+        let t409 = t79 * t390 + t406 - t408;
+        let t413 = t20 * t396;
+        let t415 = t56 * t401;
+        let t416 = minus_s_distal_leg3 * t390 + t413 - t415;
+        let t429 = t400 * t393;
+        let t430 = t429 + t390;
+        let rate_dot_wrist_leg1 = t30 * t40;
+        let t433 = t133 + rate_dot_wrist_leg1;
+        let t434 = t396 - t433;
+        let t437 = t395 * t395;
+        let t438 = t400 * t400;
+        let t439 = t437 - t438;
+        let t441 = minus_s_distal_leg1 * t430 - t72 * t434 + t65 * t439;
+        let t447 = t5 * t430 - t79 * t434 + minus_s_distal_leg2 * t439;
+        let t454 = t20 * t430 - minus_s_distal_leg3 * t434 + t56 * t439;
+        let rate_dot_wrist_leg2 = t68 * t204;
+        let t468 = t245 + rate_dot_wrist_leg2;
+        let t469 = t401 + t468;
+        let t471 = t393 * t393;
+        let t472 = t471 - t437;
+        let t475 = t429 - t390;
+        let t477 = t72 * t469 + minus_s_distal_leg1 * t472 - t65 * t475;
+        let t483 = t79 * t469 + t5 * t472 - minus_s_distal_leg2 * t475;
+        let t490 = minus_s_distal_leg3 * t469 + t20 * t472 - t56 * t475;
+        let t504 = t72 * t429;
+        let t506 = minus_s_distal_leg1 * t433 - t504 + t402;
+        let t509 = t79 * t429;
+        let t511 = t5 * t433 - t509 + t408;
+        let t515 = minus_s_distal_leg3 * t429;
+        let t517 = t20 * t433 - t515 + t415;
+        let t530 = t438 - t471;
+        let t532 = t401 - t468;
+        let t535 = t396 + t433;
+        let t537 = t72 * t530 - minus_s_distal_leg1 * t532 + t65 * t535;
+        let t543 = t79 * t530 - t5 * t532 + minus_s_distal_leg2 * t535;
+        let t550 = minus_s_distal_leg3 * t530 - t20 * t532 + t56 * t535;
+        let t565 = t504 - t397 + t65 * t468;
+        let t569 = t509 - t406 + minus_s_distal_leg2 * t468;
+        let t574 = t515 - t413 + t56 * t468;
+        let t589 = t65 * t176 - minus_s_distal_leg1 * t282;
+        let t593 = minus_s_distal_leg2 * t176 - t5 * t282;
+        let t604 = t72 * t282 - t65 * t381;
+        let t608 = t79 * t282 - minus_s_distal_leg2 * t381;
+        let t619 = minus_s_distal_leg1 * t381 - t72 * t176;
+        let t623 = t5 * t381 - t79 * t176;
         Ok([
             [
-                rate_dot_proximal_leg1, -(9.81 * c_proximal_leg1), t68, rate_dot_proximal_leg1,
-                rate_proximal_leg1, ::overact::math::sign(rate_proximal_leg1), 1.0, t141,
-                minus_s_distal_leg1 * (t72 + t73) - c_distal_leg1 * (t76 + t76 - t164)
-                    + t138 * t171,
-                -(c_distal_leg1 * (t139 + rate_dot_distal_leg1)
-                    + minus_s_distal_leg1 * (t181 - t169) + t138 * t70),
-                rate_dot_proximal_leg1 - t141,
-                minus_s_distal_leg1 * (t139 - rate_dot_distal_leg1)
-                    - c_distal_leg1 * (t170 - t181) - t138 * t164,
-                t138 * rate_dot_distal_leg1,
-                9.81 * (minus_s_distal_leg1 * c_proximal_leg1) - t138 * t204,
-                -(9.81 * t5 + t138 * t211),
-                -t68,
+                rate_dot_proximal_leg1, -(9.81 * c_proximal_leg1), t44, rate_dot_proximal_leg1,
+                rate_proximal_leg1, ::overact::math::sign(rate_proximal_leg1), 1.0, -t111,
+                c_distal_leg1 * (t52 + t133) - minus_s_distal_leg1 * (t47 + t49)
+                    + t108 * t141,
+                -(c_distal_leg1 * (t109 - minus_rate_dot_distal_leg1)
+                    + minus_s_distal_leg1 * (t153 - t139) + t108 * t48),
+                rate_dot_proximal_leg1 + t111,
+                minus_s_distal_leg1 * (t109 + minus_rate_dot_distal_leg1)
+                    - c_distal_leg1 * (t140 - t153) - t108 * t132,
+                -(t108 * minus_rate_dot_distal_leg1),
+                9.81 * (minus_s_distal_leg1 * c_proximal_leg1) - t108 * t176,
+                -(9.81 * t5 + t108 * t183),
+                -t44,
                 0.0,
                 0.0,
                 0.0,
@@ -2655,103 +2449,104 @@ impl Spherical3Rrr {
                 0.0,
                 0.0,
                 0.0,
-                -t263,
-                t259 * t288,
-                -(t259 * t264),
-                t263,
-                -(t259 * t292),
-                t259 * rate_dot_distal_leg2,
-                -(t259 * t326),
-                -(t259 * t334),
+                -t217,
+                t213 * t242,
+                -(t213 * t219),
+                t217,
+                -(t213 * t244),
+                -(t213 * minus_rate_dot_distal_leg2),
+                -(t213 * t282),
+                -(t213 * t290),
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
-                -t383,
-                t379 * t402,
-                -(t379 * t388),
-                t383,
-                -(t379 * t407),
-                t379 * rate_dot_distal_leg3,
-                -(t379 * t440),
-                t379 * t444,
-                t256 * t474 + t136 * t480 + t134 * t487,
-                t256 * t515 + t136 * t521 + t134 * t528,
-                t256 * t554 + t136 * t560 + t134 * t567,
-                t256 * t583 + t136 * t588 + t134 * t594,
-                t256 * t614 + t136 * t620 + t134 * t627,
-                t256 * t642 + t136 * t646 + t134 * t651,
-                t256 * t666 + t136 * t670,
-                t256 * t681 + t136 * t685,
-                t256 * t696 + t136 * t700,
+                -t322,
+                t318 * t341,
+                -(t318 * t327),
+                t322,
+                -(t318 * t346),
+                t318 * rate_dot_distal_leg3,
+                -(t318 * t381),
+                t318 * t385,
+                t210 * t403 + t106 * t409 + t104 * t416,
+                t210 * t441 + t106 * t447 + t104 * t454,
+                t210 * t477 + t106 * t483 + t104 * t490,
+                t210 * t506 + t106 * t511 + t104 * t517,
+                t210 * t537 + t106 * t543 + t104 * t550,
+                t210 * t565 + t106 * t569 + t104 * t574,
+                t210 * t589 + t106 * t593,
+                t210 * t604 + t106 * t608,
+                t210 * t619 + t106 * t623,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t151, t150 * t171, -(t150 * t70), t151,
-                -(t150 * t164), t150 * rate_dot_distal_leg1, -(t150 * t204), -(t150 * t211), 0.0,
-                rate_dot_proximal_leg2, 9.81 * s_proximal_leg2, t254, rate_dot_proximal_leg2,
-                rate_proximal_leg2, ::overact::math::sign(rate_proximal_leg2), 1.0, t278,
-                minus_s_distal_leg2 * (t265 + t266)
-                    - c_distal_leg2 * (t268 + t268 - t292) + t276 * t288,
-                -(c_distal_leg2 * (t262 + rate_dot_distal_leg2)
-                    + minus_s_distal_leg2 * (t306 - t286) + t276 * t264),
-                rate_dot_proximal_leg2 - t278,
-                minus_s_distal_leg2 * (t262 - rate_dot_distal_leg2)
-                    - c_distal_leg2 * (t287 - t306) - t276 * t292,
-                t276 * rate_dot_distal_leg2,
-                -(9.81 * (minus_s_distal_leg2 * s_proximal_leg2) + t276 * t326),
-                9.81 * t89 - t276 * t334,
-                -t254,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t121, t120 * t141, -(t120 * t48), t121,
+                -(t120 * t132), -(t120 * minus_rate_dot_distal_leg1), -(t120 * t176),
+                -(t120 * t183), 0.0, rate_dot_proximal_leg2, 9.81 * s_proximal_leg2, t208,
+                rate_dot_proximal_leg2, rate_proximal_leg2,
+                ::overact::math::sign(rate_proximal_leg2), 1.0, -t232,
+                c_distal_leg2 * (t222 + t245) - minus_s_distal_leg2 * (t218 + t220)
+                    + t230 * t242,
+                -(c_distal_leg2 * (t216 - minus_rate_dot_distal_leg2)
+                    + minus_s_distal_leg2 * (t262 - t240) + t230 * t219),
+                rate_dot_proximal_leg2 + t232,
+                minus_s_distal_leg2 * (t216 + minus_rate_dot_distal_leg2)
+                    - c_distal_leg2 * (t241 - t262) - t230 * t244,
+                -(t230 * minus_rate_dot_distal_leg2),
+                -(9.81 * (minus_s_distal_leg2 * s_proximal_leg2) + t230 * t282),
+                9.81 * t65 - t230 * t290,
+                -t208,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
-                -t387,
-                t386 * t402,
-                -(t386 * t388),
-                t387,
-                -(t386 * t407),
-                t386 * rate_dot_distal_leg3,
-                -(t386 * t440),
-                t386 * t444,
-                t273 * t474 + t148 * t480 + t144 * t487,
-                t273 * t515 + t148 * t521 + t144 * t528,
-                t273 * t554 + t148 * t560 + t144 * t567,
-                t273 * t583 + t148 * t588 + t144 * t594,
-                t273 * t614 + t148 * t620 + t144 * t627,
-                t273 * t642 + t148 * t646 + t144 * t651,
-                t273 * t666 + t148 * t670,
-                t273 * t681 + t148 * t685,
-                t273 * t696 + t148 * t700,
+                -t326,
+                t325 * t341,
+                -(t325 * t327),
+                t326,
+                -(t325 * t346),
+                t325 * rate_dot_distal_leg3,
+                -(t325 * t381),
+                t325 * t385,
+                t227 * t403 + t118 * t409 + t114 * t416,
+                t227 * t441 + t118 * t447 + t114 * t454,
+                t227 * t477 + t118 * t483 + t114 * t490,
+                t227 * t506 + t118 * t511 + t114 * t517,
+                t227 * t537 + t118 * t543 + t114 * t550,
+                t227 * t565 + t118 * t569 + t114 * t574,
+                t227 * t589 + t118 * t593,
+                t227 * t604 + t118 * t608,
+                t227 * t619 + t118 * t623,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t161, t160 * t171, -(t160 * t70), t161,
-                -(t160 * t164), t160 * rate_dot_distal_leg1, -(t160 * t204), -(t160 * t211), 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t285, t284 * t288, -(t284 * t264), t285,
-                -(t284 * t292), t284 * rate_dot_distal_leg2, -(t284 * t326), -(t284 * t334), 0.0,
-                rate_dot_proximal_leg3, rate_dot_proximal_leg3, rate_proximal_leg3,
-                ::overact::math::sign(rate_proximal_leg3), 1.0, t399,
-                minus_s_distal_leg3 * (t389 + t390)
-                    - c_distal_leg3 * (t392 + t392 - t407) + t397 * t402,
-                -(c_distal_leg3 * (t382 + rate_dot_distal_leg3)
-                    + minus_s_distal_leg3 * (t421 - t400) + t397 * t388),
-                rate_dot_proximal_leg3 - t399,
-                minus_s_distal_leg3 * (t382 - rate_dot_distal_leg3)
-                    - c_distal_leg3 * (t401 - t421) - t397 * t407,
-                t397 * rate_dot_distal_leg3,
-                -(t397 * t440),
-                t397 * t444,
-                t281 * t474 + t158 * t480 + t154 * t487,
-                t281 * t515 + t158 * t521 + t154 * t528,
-                t281 * t554 + t158 * t560 + t154 * t567,
-                t281 * t583 + t158 * t588 + t154 * t594,
-                t281 * t614 + t158 * t620 + t154 * t627,
-                t281 * t642 + t158 * t646 + t154 * t651,
-                t281 * t666 + t158 * t670,
-                t281 * t681 + t158 * t685,
-                t281 * t696 + t158 * t700,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t131, t130 * t141, -(t130 * t48), t131,
+                -(t130 * t132), -(t130 * minus_rate_dot_distal_leg1), -(t130 * t176),
+                -(t130 * t183), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t239, t238 * t242,
+                -(t238 * t219), t239, -(t238 * t244), -(t238 * minus_rate_dot_distal_leg2),
+                -(t238 * t282), -(t238 * t290), 0.0, rate_dot_proximal_leg3, rate_dot_proximal_leg3,
+                rate_proximal_leg3, ::overact::math::sign(rate_proximal_leg3), 1.0, t338,
+                minus_s_distal_leg3 * (t328 + t329) - c_distal_leg3 * (t331 + t347)
+                    + t336 * t341,
+                -(c_distal_leg3 * (t321 + rate_dot_distal_leg3)
+                    + minus_s_distal_leg3 * (t362 - t339) + t336 * t327),
+                rate_dot_proximal_leg3 - t338,
+                minus_s_distal_leg3 * (t321 - rate_dot_distal_leg3)
+                    - c_distal_leg3 * (t340 - t362) - t336 * t346,
+                t336 * rate_dot_distal_leg3,
+                -(t336 * t381),
+                t336 * t385,
+                t235 * t403 + t128 * t409 + t124 * t416,
+                t235 * t441 + t128 * t447 + t124 * t454,
+                t235 * t477 + t128 * t483 + t124 * t490,
+                t235 * t506 + t128 * t511 + t124 * t517,
+                t235 * t537 + t128 * t543 + t124 * t550,
+                t235 * t565 + t128 * t569 + t124 * t574,
+                t235 * t589 + t128 * t593,
+                t235 * t604 + t128 * t608,
+                t235 * t619 + t128 * t623,
             ],
         ])
     }
@@ -2766,7 +2561,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 54.
     /// Columns: `PARAMETERS`.
     ///
-    /// 675 operations (243 additions, 428 multiplications, 4 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 584 intermediates.
+    /// 616 operations (227 additions, 385 multiplications, 4 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 525 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2776,269 +2571,242 @@ impl Spherical3Rrr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 54]; 3], ::overact::Error> {
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let rate_distal_leg1 = minus_c_proximal_leg1 * twist[2]
-            - minus_s_proximal_leg1 * twist[1];
-        let t5 = minus_s_proximal_leg1 * rate_distal_leg1;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
+        let [(minus_s_proximal_leg1, minus_c_proximal_leg1),
+        (c_distal_leg1, minus_s_distal_leg1),
+        (minus_s_proximal_leg2, minus_c_proximal_leg2),
+        (c_distal_leg2, minus_s_distal_leg2),
+        (minus_s_proximal_leg3, minus_c_proximal_leg3),
+        (c_distal_leg3, minus_s_distal_leg3)] = ::overact::math::sin_cos_all([
+            joints[0], joints[1], joints[3], joints[4], joints[6], joints[7],
+        ]);
         ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t8 = minus_s_proximal_leg1 * minus_s_distal_leg1;
-        let t9 = 1.0 / minus_s_distal_leg1;
-        let gwrist_wy_leg1 = minus_c_proximal_leg1 * t9;
-        let gwrist_wz_leg1 = minus_s_proximal_leg1 * t9;
-        let rate_wrist_leg1 = gwrist_wy_leg1 * twist[1] + gwrist_wz_leg1 * twist[2];
-        let t15 = t8 * rate_wrist_leg1;
-        let t17 = minus_c_proximal_leg1 * rate_distal_leg1;
-        let t18 = minus_c_proximal_leg1 * minus_s_distal_leg1;
-        let t19 = t18 * rate_wrist_leg1;
-        let gproximal_wy_leg1 = c_distal_leg1 * gwrist_wy_leg1;
-        let gproximal_wz_leg1 = c_distal_leg1 * gwrist_wz_leg1;
-        let rate_proximal_leg1 = twist[0] + gproximal_wy_leg1 * twist[1]
-            + gproximal_wz_leg1 * twist[2];
-        let t30 = c_distal_leg1 * rate_wrist_leg1;
-        let t35 = acceleration[1] + rate_proximal_leg1 * t17 + t17 * t30
-            + rate_proximal_leg1 * t15;
-        let t43 = acceleration[2]
-            - (rate_proximal_leg1 * t19 - t5 * t30 - rate_proximal_leg1 * t5);
-        let rate_dot_proximal_leg1 = acceleration[0] + t5 * t15 + t17 * t19
-            + gproximal_wy_leg1 * t35 + gproximal_wz_leg1 * t43;
-        let t47 = 9.81 * minus_s_proximal_leg1;
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
         ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let t53 = 1.0 / minus_s_distal_leg2;
-        let gwrist_wx_leg2 = minus_s_proximal_leg2 * t53;
-        let gproximal_wx_leg2 = c_distal_leg2 * gwrist_wx_leg2;
-        let gwrist_wz_leg2 = minus_c_proximal_leg2 * t53;
-        let gproximal_wz_leg2 = c_distal_leg2 * gwrist_wz_leg2;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
         ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t62 = 1.0 / minus_s_distal_leg3;
-        let gwrist_wx_leg3 = minus_c_proximal_leg3 * t62;
-        let gproximal_wx_leg3 = c_distal_leg3 * gwrist_wx_leg3;
-        let t66 = gproximal_wx_leg2 - gproximal_wz_leg2 * gproximal_wx_leg3;
-        let gwrist_wy_leg3 = minus_s_proximal_leg3 * t62;
-        let gproximal_wy_leg3 = c_distal_leg3 * gwrist_wy_leg3;
-        let t70 = 1.0 - gproximal_wz_leg2 * gproximal_wy_leg3;
-        let t74 = gproximal_wx_leg2 * gproximal_wy_leg3 - gproximal_wx_leg3;
-        let t76 = t70 - gproximal_wy_leg1 * t66 + gproximal_wz_leg1 * t74;
-        ::overact::guard::platform(t76, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t76, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t76, 1.0, "kept actuators")?;
-        let t77 = 1.0 / t76;
-        let t78 = t66 * t77;
-        let t80 = t74 * t77;
-        let t82 = minus_s_proximal_leg1 * t78 + minus_c_proximal_leg1 * t80;
-        let t83 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t84 = c_distal_leg1 * rate_proximal_leg1;
-        let t85 = t83 * t84;
-        let t87 = rate_distal_leg1 * t84;
-        let t88 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
-        let t89 = t87 - t88;
-        let t91 = rate_distal_leg1 * t83;
-        let t94 = t82 * t85 - (minus_s_distal_leg1 * t89 + c_distal_leg1 * t91);
-        let t97 = (1.0 - gproximal_wz_leg1 * gproximal_wx_leg3) * t77;
-        let t101 = (gproximal_wy_leg3 - gproximal_wy_leg1 * gproximal_wx_leg3) * t77;
-        let t103 = minus_s_proximal_leg1 * t97 + minus_c_proximal_leg1 * t101;
-        let t104 = t103 * t85;
-        let t107 = (gproximal_wz_leg2 - gproximal_wz_leg1 * gproximal_wx_leg2) * t77;
-        let t111 = (1.0 - gproximal_wy_leg1 * gproximal_wx_leg2) * t77;
-        let t113 = minus_s_proximal_leg1 * t107 + minus_c_proximal_leg1 * t111;
-        let t114 = t113 * t85;
-        let t117 = c_distal_leg1 * rate_dot_proximal_leg1;
-        let t122 = t83 * t83;
-        let t123 = t84 * t84;
-        let t124 = t122 - t123;
-        let t129 = rate_distal_leg1 * rate_distal_leg1;
-        let rate_dot_distal_leg1 = minus_c_proximal_leg1 * t43
-            - minus_s_proximal_leg1 * t35;
-        let t157 = 9.81 * t8;
-        let t163 = 9.81 * (minus_s_proximal_leg1 * c_distal_leg1);
-        let rate_proximal_leg2 = gproximal_wx_leg2 * twist[0] + twist[1]
-            + gproximal_wz_leg2 * twist[2];
-        let t173 = minus_c_proximal_leg2 * minus_s_distal_leg2;
-        let rate_wrist_leg2 = gwrist_wx_leg2 * twist[0] + gwrist_wz_leg2 * twist[2];
-        let t177 = t173 * rate_wrist_leg2;
-        let rate_distal_leg2 = minus_c_proximal_leg2 * twist[0]
-            - minus_s_proximal_leg2 * twist[2];
-        let t182 = minus_s_proximal_leg2 * rate_distal_leg2;
-        let t183 = c_distal_leg2 * rate_wrist_leg2;
-        let t188 = acceleration[0]
-            - (rate_proximal_leg2 * t177 - t182 * t183 - rate_proximal_leg2 * t182);
-        let t190 = minus_s_proximal_leg2 * minus_s_distal_leg2;
-        let t191 = t190 * rate_wrist_leg2;
-        let t193 = minus_c_proximal_leg2 * rate_distal_leg2;
-        let t203 = acceleration[2] + rate_proximal_leg2 * t193 + t193 * t183
-            + rate_proximal_leg2 * t191;
-        let rate_dot_proximal_leg2 = gproximal_wx_leg2 * t188 + acceleration[1]
-            + t182 * t191 + t193 * t177 + gproximal_wz_leg2 * t203;
-        let t207 = 9.81 * minus_c_proximal_leg2;
-        let t209 = t70 * t77;
-        let t212 = minus_c_proximal_leg2 * t209 - minus_s_proximal_leg2 * t80;
-        let t213 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t214 = c_distal_leg2 * rate_proximal_leg2;
-        let t215 = t213 * t214;
-        let t216 = t212 * t215;
-        let t220 = (gproximal_wy_leg1 - gproximal_wz_leg1 * gproximal_wy_leg3) * t77;
-        let t222 = minus_s_proximal_leg2 * t101 - minus_c_proximal_leg2 * t220;
-        let t224 = rate_distal_leg2 * t214;
-        let t225 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t226 = t224 - t225;
-        let t228 = rate_distal_leg2 * t213;
-        let t231 = t222 * t215 - (minus_s_distal_leg2 * t226 + c_distal_leg2 * t228);
-        let t234 = (gproximal_wy_leg1 * gproximal_wz_leg2 - gproximal_wz_leg1) * t77;
-        let t237 = minus_c_proximal_leg2 * t234 - minus_s_proximal_leg2 * t111;
-        let t238 = t237 * t215;
-        let t239 = t213 * t213;
-        let t240 = t214 * t214;
-        let t241 = t239 - t240;
-        let t245 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t254 = rate_distal_leg2 * rate_distal_leg2;
-        let rate_dot_distal_leg2 = minus_c_proximal_leg2 * t188
-            - minus_s_proximal_leg2 * t203;
-        let t279 = 9.81 * t173;
-        let t287 = 9.81 * (minus_c_proximal_leg2 * c_distal_leg2);
-        let t295 = gproximal_wx_leg3 * twist[0] + gproximal_wy_leg3 * twist[1];
-        let rate_proximal_leg3 = t295 + twist[2];
+        let t4 = minus_c_proximal_leg1 * twist[1] + minus_s_proximal_leg1 * twist[2];
+        let minus_rate_distal_leg1 = minus_s_proximal_leg1 * twist[1]
+            - minus_c_proximal_leg1 * twist[2];
+        let t12 = c_distal_leg1 / minus_s_distal_leg1;
+        let t13 = t12 * t4;
+        let rate_proximal_leg1 = t13 + twist[0];
+        let rate_dot_proximal_leg1 = acceleration[0] - t4 * minus_rate_distal_leg1
+            - t12
+                * (minus_rate_distal_leg1 * rate_proximal_leg1
+                    + minus_rate_distal_leg1 * t13
+                    - (minus_c_proximal_leg1 * acceleration[1]
+                        + minus_s_proximal_leg1 * acceleration[2]));
+        let t24 = 9.81 * minus_c_proximal_leg1;
+        let t25 = 9.81 * minus_s_proximal_leg1;
+        let t27 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t28 = c_distal_leg1 * rate_proximal_leg1;
+        let t29 = minus_rate_distal_leg1 * t28;
+        let t30 = t27 + t29;
+        let t32 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t33 = minus_rate_distal_leg1 * t32;
+        let t40 = c_distal_leg2 / minus_s_distal_leg2;
+        let gproximal_wx_leg2 = minus_s_proximal_leg2 * t40;
+        let gproximal_wz_leg2 = minus_c_proximal_leg2 * t40;
+        let t47 = c_distal_leg3 / minus_s_distal_leg3;
+        let gproximal_wx_leg3 = minus_c_proximal_leg3 * t47;
+        let t50 = gproximal_wx_leg2 - gproximal_wz_leg2 * gproximal_wx_leg3;
+        let gproximal_wy_leg3 = minus_s_proximal_leg3 * t47;
+        let t53 = 1.0 - gproximal_wz_leg2 * gproximal_wy_leg3;
+        let gproximal_wy_leg1 = minus_c_proximal_leg1 * t12;
+        let gproximal_wz_leg1 = minus_s_proximal_leg1 * t12;
+        let t59 = gproximal_wx_leg2 * gproximal_wy_leg3 - gproximal_wx_leg3;
+        let t61 = t53 - gproximal_wy_leg1 * t50 + gproximal_wz_leg1 * t59;
+        ::overact::guard::platform(t61, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t61, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t61, 1.0, "kept actuators")?;
+        let t62 = 1.0 / t61;
+        let t63 = t50 * t62;
+        let t65 = t59 * t62;
+        let t67 = minus_s_proximal_leg1 * t63 + minus_c_proximal_leg1 * t65;
+        let t68 = t32 * t28;
+        let t70 = minus_s_distal_leg1 * t30 + c_distal_leg1 * t33 + t67 * t68;
+        let t73 = (1.0 - gproximal_wz_leg1 * gproximal_wx_leg3) * t62;
+        let t77 = (gproximal_wy_leg3 - gproximal_wy_leg1 * gproximal_wx_leg3) * t62;
+        let t79 = minus_s_proximal_leg1 * t73 + minus_c_proximal_leg1 * t77;
+        let t80 = t79 * t68;
+        let t83 = (gproximal_wz_leg2 - gproximal_wz_leg1 * gproximal_wx_leg2) * t62;
+        let t87 = (1.0 - gproximal_wy_leg1 * gproximal_wx_leg2) * t62;
+        let t89 = minus_s_proximal_leg1 * t83 + minus_c_proximal_leg1 * t87;
+        let t90 = t89 * t68;
+        let t91 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t98 = t32 * t32;
+        let t99 = t28 * t28;
+        let t100 = t98 - t99;
+        let minus_rate_dot_distal_leg1 = minus_s_proximal_leg1 * acceleration[1]
+            - minus_c_proximal_leg1 * acceleration[2] + t4 * rate_proximal_leg1;
+        let t112 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t134 = minus_s_distal_leg1 * t25;
+        let t139 = c_distal_leg1 * t25;
+        let t147 = minus_s_proximal_leg2 * twist[0] + minus_c_proximal_leg2 * twist[2];
+        let minus_rate_distal_leg2 = minus_s_proximal_leg2 * twist[2]
+            - minus_c_proximal_leg2 * twist[0];
+        let t153 = t40 * t147;
+        let rate_proximal_leg2 = t153 + twist[1];
+        let rate_dot_proximal_leg2 = acceleration[1] - t147 * minus_rate_distal_leg2
+            - t40
+                * (minus_rate_distal_leg2 * rate_proximal_leg2
+                    + minus_rate_distal_leg2 * t153
+                    - (minus_s_proximal_leg2 * acceleration[0]
+                        + minus_c_proximal_leg2 * acceleration[2]));
+        let t164 = 9.81 * minus_s_proximal_leg2;
+        let t165 = 9.81 * minus_c_proximal_leg2;
+        let t167 = t53 * t62;
+        let t170 = minus_c_proximal_leg2 * t167 - minus_s_proximal_leg2 * t65;
+        let t171 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t172 = c_distal_leg2 * rate_proximal_leg2;
+        let t173 = t171 * t172;
+        let t174 = t170 * t173;
+        let t175 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t176 = minus_rate_distal_leg2 * t172;
+        let t177 = t175 + t176;
+        let t179 = minus_rate_distal_leg2 * t171;
+        let t185 = (gproximal_wy_leg1 - gproximal_wz_leg1 * gproximal_wy_leg3) * t62;
+        let t187 = minus_s_proximal_leg2 * t77 - minus_c_proximal_leg2 * t185;
+        let t189 = minus_s_distal_leg2 * t177 + c_distal_leg2 * t179 + t187 * t173;
+        let t192 = (gproximal_wy_leg1 * gproximal_wz_leg2 - gproximal_wz_leg1) * t62;
+        let t195 = minus_c_proximal_leg2 * t192 - minus_s_proximal_leg2 * t87;
+        let t196 = t195 * t173;
+        let t197 = t171 * t171;
+        let t198 = t172 * t172;
+        let t199 = t197 - t198;
+        let t201 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let minus_rate_dot_distal_leg2 = minus_s_proximal_leg2 * acceleration[2]
+            - minus_c_proximal_leg2 * acceleration[0] + t147 * rate_proximal_leg2;
+        let t219 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t239 = minus_s_distal_leg2 * t165;
+        let t245 = c_distal_leg2 * t165;
         let rate_distal_leg3 = minus_c_proximal_leg3 * twist[1]
             - minus_s_proximal_leg3 * twist[0];
-        let t300 = minus_c_proximal_leg3 * rate_distal_leg3;
-        let rate_wrist_leg3 = gwrist_wx_leg3 * twist[0] + gwrist_wy_leg3 * twist[1];
-        let t307 = minus_s_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let t311 = acceleration[0] + rate_proximal_leg3 * t300 + t295 * t300
-            + rate_proximal_leg3 * t307;
-        let t314 = minus_c_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let t316 = minus_s_proximal_leg3 * rate_distal_leg3;
-        let t321 = acceleration[1]
-            - (rate_proximal_leg3 * t314 - t295 * t316 - rate_proximal_leg3 * t316);
-        let rate_dot_proximal_leg3 = gproximal_wx_leg3 * t311 + gproximal_wy_leg3 * t321
-            + acceleration[2] + t316 * t307 + t300 * t314;
-        let t332 = minus_s_proximal_leg3 * t209 + minus_c_proximal_leg3 * t78;
-        let t333 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t334 = c_distal_leg3 * rate_proximal_leg3;
-        let t335 = t333 * t334;
-        let t336 = t332 * t335;
-        let t339 = minus_s_proximal_leg3 * t220 + minus_c_proximal_leg3 * t97;
-        let t340 = t339 * t335;
-        let t341 = rate_distal_leg3 * t334;
-        let t342 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let t343 = t341 - t342;
-        let t345 = rate_distal_leg3 * t333;
-        let t350 = minus_s_proximal_leg3 * t234 + minus_c_proximal_leg3 * t107;
-        let t352 = minus_s_distal_leg3 * t343 + c_distal_leg3 * t345 + t350 * t335;
-        let t353 = t333 * t333;
-        let t354 = t334 * t334;
-        let t355 = t353 - t354;
-        let t360 = c_distal_leg3 * rate_dot_proximal_leg3;
-        let t371 = t316 * t316 + t300 * t300;
-        let rate_dot_distal_leg3 = minus_c_proximal_leg3 * t321
-            - minus_s_proximal_leg3 * t311;
-        let t395 = 9.81 * c_distal_leg3;
-        let t399 = 9.81 * minus_s_distal_leg3;
-        let t403 = 2.0 * pose[2];
-        let t404 = pose[2] * t403;
-        let t406 = 2.0 * pose[3];
-        let t407 = pose[3] * t406;
-        let t408 = 1.0 - t404 - t407;
-        let t410 = 2.0 * pose[1];
-        let t411 = pose[2] * t410;
-        let t412 = pose[0] * t406;
-        let t413 = t411 + t412;
-        let t416 = pose[3] * t410;
-        let t417 = pose[0] * t403;
-        let t418 = t416 - t417;
-        let t420 = t408 * acceleration[0] + t413 * acceleration[1]
-            + t418 * acceleration[2];
-        let t422 = t411 - t412;
-        let t427 = t408 * twist[0] + t413 * twist[1] + t418 * twist[2];
-        let t428 = t416 + t417;
-        let t430 = pose[3] * t403;
-        let t431 = pose[0] * t410;
+        let t259 = minus_c_proximal_leg3 * twist[0] + minus_s_proximal_leg3 * twist[1];
+        let t260 = t47 * t259;
+        let rate_proximal_leg3 = t260 + twist[2];
+        let rate_dot_proximal_leg3 = t47
+            * (minus_c_proximal_leg3 * acceleration[0]
+                + minus_s_proximal_leg3 * acceleration[1]
+                + rate_distal_leg3 * rate_proximal_leg3 + rate_distal_leg3 * t260)
+            + acceleration[2] + t259 * rate_distal_leg3;
+        let t273 = minus_s_proximal_leg3 * t167 + minus_c_proximal_leg3 * t63;
+        let t274 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t275 = c_distal_leg3 * rate_proximal_leg3;
+        let t276 = t274 * t275;
+        let t277 = t273 * t276;
+        let t280 = minus_s_proximal_leg3 * t185 + minus_c_proximal_leg3 * t73;
+        let t281 = t280 * t276;
+        let t282 = rate_distal_leg3 * t275;
+        let t283 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t284 = t282 - t283;
+        let t286 = rate_distal_leg3 * t274;
+        let t291 = minus_s_proximal_leg3 * t192 + minus_c_proximal_leg3 * t83;
+        let t293 = minus_s_distal_leg3 * t284 + c_distal_leg3 * t286 + t291 * t276;
+        let t294 = t274 * t274;
+        let t295 = t275 * t275;
+        let t296 = t294 - t295;
+        let t301 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t310 = rate_distal_leg3 * rate_distal_leg3;
+        let rate_dot_distal_leg3 = minus_c_proximal_leg3 * acceleration[1]
+            - minus_s_proximal_leg3 * acceleration[0] - t259 * rate_proximal_leg3;
+        let t336 = 9.81 * c_distal_leg3;
+        let t340 = 9.81 * minus_s_distal_leg3;
+        let t344 = 2.0 * pose[2];
+        let t345 = pose[2] * t344;
+        let t347 = 2.0 * pose[3];
+        let t348 = pose[3] * t347;
+        let t349 = 1.0 - t345 - t348;
+        let t351 = 2.0 * pose[1];
+        let t352 = pose[2] * t351;
+        let t353 = pose[0] * t347;
+        let t354 = t352 + t353;
+        let t357 = pose[3] * t351;
+        let t358 = pose[0] * t344;
+        let t359 = t357 - t358;
+        let t361 = t349 * acceleration[0] + t354 * acceleration[1]
+            + t359 * acceleration[2];
+        let t363 = t352 - t353;
+        let t368 = t349 * twist[0] + t354 * twist[1] + t359 * twist[2];
+        let t369 = t357 + t358;
+        let t371 = pose[3] * t344;
+        let t372 = pose[0] * t351;
+        let t373 = t371 - t372;
+        let t377 = 1.0 - pose[1] * t351;
+        let t378 = t377 - t345;
+        let t380 = t369 * twist[0] + t373 * twist[1] + t378 * twist[2];
+        let t381 = t368 * t380;
+        let t382 = t363 * t381;
+        let t385 = t377 - t348;
+        let t388 = t371 + t372;
+        let t390 = t363 * twist[0] + t385 * twist[1] + t388 * twist[2];
+        let t391 = t368 * t390;
+        let t392 = t369 * t391;
+        let t393 = t349 * t361 + t382 - t392;
+        let t396 = t385 * t381;
+        let t398 = t373 * t391;
+        let t399 = t354 * t361 + t396 - t398;
+        let t403 = t388 * t381;
+        let t405 = t378 * t391;
+        let t406 = t359 * t361 + t403 - t405;
+        let t419 = t390 * t380;
+        let t420 = t419 + t361;
+        let t426 = t363 * acceleration[0] + t385 * acceleration[1]
+            + t388 * acceleration[2];
+        let t427 = t381 - t426;
+        let t430 = t368 * t368;
+        let t431 = t390 * t390;
         let t432 = t430 - t431;
-        let t436 = 1.0 - pose[1] * t410;
-        let t437 = t436 - t404;
-        let t439 = t428 * twist[0] + t432 * twist[1] + t437 * twist[2];
-        let t440 = t427 * t439;
-        let t441 = t422 * t440;
-        let t444 = t436 - t407;
-        let t447 = t430 + t431;
-        let t449 = t422 * twist[0] + t444 * twist[1] + t447 * twist[2];
-        let t450 = t427 * t449;
-        let t451 = t428 * t450;
-        let t452 = t408 * t420 + t441 - t451;
-        let t455 = t444 * t440;
-        let t457 = t432 * t450;
-        let t458 = t413 * t420 + t455 - t457;
-        let t462 = t447 * t440;
-        let t464 = t437 * t450;
-        let t465 = t418 * t420 + t462 - t464;
-        let t478 = t449 * t439;
-        let t479 = t478 + t420;
-        let t485 = t422 * acceleration[0] + t444 * acceleration[1]
-            + t447 * acceleration[2];
-        let t486 = t440 - t485;
-        let t489 = t427 * t427;
-        let t490 = t449 * t449;
-        let t491 = t489 - t490;
-        let t493 = t422 * t479 - t408 * t486 + t428 * t491;
-        let t499 = t444 * t479 - t413 * t486 + t432 * t491;
-        let t506 = t447 * t479 - t418 * t486 + t437 * t491;
-        let t523 = t428 * acceleration[0] + t432 * acceleration[1]
-            + t437 * acceleration[2];
-        let t524 = t450 + t523;
-        let t526 = t439 * t439;
-        let t527 = t526 - t489;
-        let t530 = t478 - t420;
-        let t532 = t408 * t524 + t422 * t527 - t428 * t530;
-        let t538 = t413 * t524 + t444 * t527 - t432 * t530;
-        let t545 = t418 * t524 + t447 * t527 - t437 * t530;
-        let t559 = t408 * t478;
-        let t561 = t422 * t485 - t559 + t451;
-        let t564 = t413 * t478;
-        let t566 = t444 * t485 - t564 + t457;
-        let t570 = t418 * t478;
-        let t572 = t447 * t485 - t570 + t464;
-        let t585 = t490 - t526;
-        let t587 = t450 - t523;
-        let t590 = t440 + t485;
-        let t592 = t408 * t585 - t422 * t587 + t428 * t590;
-        let t598 = t413 * t585 - t444 * t587 + t432 * t590;
-        let t605 = t418 * t585 - t447 * t587 + t437 * t590;
-        let t620 = t559 - t441 + t428 * t523;
-        let t624 = t564 - t455 + t432 * t523;
-        let t629 = t570 - t462 + t437 * t523;
-        let t642 = 9.81 * t447;
-        let t644 = 9.81 * t437;
-        let t646 = t428 * t642 - t422 * t644;
-        let t650 = t432 * t642 - t444 * t644;
-        let t660 = 9.81 * t418;
-        let t662 = t408 * t644 - t428 * t660;
-        let t666 = t413 * t644 - t432 * t660;
-        let t677 = t422 * t660 - t408 * t642;
-        let t681 = t444 * t660 - t413 * t642;
+        let t434 = t363 * t420 - t349 * t427 + t369 * t432;
+        let t440 = t385 * t420 - t354 * t427 + t373 * t432;
+        let t447 = t388 * t420 - t359 * t427 + t378 * t432;
+        let t464 = t369 * acceleration[0] + t373 * acceleration[1]
+            + t378 * acceleration[2];
+        let t465 = t391 + t464;
+        let t467 = t380 * t380;
+        let t468 = t467 - t430;
+        let t471 = t419 - t361;
+        let t473 = t349 * t465 + t363 * t468 - t369 * t471;
+        let t479 = t354 * t465 + t385 * t468 - t373 * t471;
+        let t486 = t359 * t465 + t388 * t468 - t378 * t471;
+        let t500 = t349 * t419;
+        let t502 = t363 * t426 - t500 + t392;
+        let t505 = t354 * t419;
+        let t507 = t385 * t426 - t505 + t398;
+        let t511 = t359 * t419;
+        let t513 = t388 * t426 - t511 + t405;
+        let t526 = t431 - t467;
+        let t528 = t391 - t464;
+        let t531 = t381 + t426;
+        let t533 = t349 * t526 - t363 * t528 + t369 * t531;
+        let t539 = t354 * t526 - t385 * t528 + t373 * t531;
+        let t546 = t359 * t526 - t388 * t528 + t378 * t531;
+        let t561 = t500 - t382 + t369 * t464;
+        let t565 = t505 - t396 + t373 * t464;
+        let t570 = t511 - t403 + t378 * t464;
+        let t583 = 9.81 * t388;
+        let t585 = 9.81 * t378;
+        let t587 = t369 * t583 - t363 * t585;
+        let t591 = t373 * t583 - t385 * t585;
+        let t601 = 9.81 * t359;
+        let t603 = t349 * t585 - t369 * t601;
+        let t607 = t354 * t585 - t373 * t601;
+        let t618 = t363 * t601 - t349 * t583;
+        let t622 = t385 * t601 - t354 * t583;
         Ok([
             [
-                rate_dot_proximal_leg1, -(9.81 * minus_c_proximal_leg1), t47,
-                rate_dot_proximal_leg1, rate_proximal_leg1,
-                ::overact::math::sign(rate_proximal_leg1), 1.0, t94,
-                c_distal_leg1 * (t87 + t89) - minus_s_distal_leg1 * (t91 + t117 + t91)
-                    + t82 * t124,
-                c_distal_leg1 * (t129 - t122)
-                    - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t85) - t82 * t88,
-                rate_dot_proximal_leg1 - t94,
-                c_distal_leg1 * (t85 + rate_dot_distal_leg1)
-                    - minus_s_distal_leg1 * (t123 - t129) + t82 * t117,
-                t82 * rate_dot_distal_leg1,
-                -(9.81 * (minus_c_proximal_leg1 * c_distal_leg1) + t82 * t157),
-                t82 * t163 - 9.81 * t18,
-                -t47,
+                rate_dot_proximal_leg1, -t24, t25, rate_dot_proximal_leg1, rate_proximal_leg1,
+                ::overact::math::sign(rate_proximal_leg1), 1.0, t70,
+                minus_s_distal_leg1 * (t33 - (t91 - t33)) - c_distal_leg1 * (t29 + t30)
+                    + t67 * t100,
+                minus_s_distal_leg1 * (t68 + minus_rate_dot_distal_leg1)
+                    + c_distal_leg1 * (t112 - t98) - t67 * t27,
+                rate_dot_proximal_leg1 - t70,
+                t67 * t91
+                    - (minus_s_distal_leg1 * (t99 - t112)
+                        + c_distal_leg1 * (minus_rate_dot_distal_leg1 - t68)),
+                -(t67 * minus_rate_dot_distal_leg1),
+                -(c_distal_leg1 * t24 + t67 * t134),
+                t67 * t139 - minus_s_distal_leg1 * t24,
+                -t25,
                 0.0,
                 0.0,
                 0.0,
@@ -3046,103 +2814,104 @@ impl Spherical3Rrr {
                 0.0,
                 0.0,
                 0.0,
-                t216,
-                t212 * t241,
-                -(t212 * t225),
-                -t216,
-                t212 * t245,
-                t212 * rate_dot_distal_leg2,
-                -(t212 * t279),
-                t212 * t287,
+                t174,
+                t170 * t199,
+                -(t170 * t175),
+                -t174,
+                t170 * t201,
+                -(t170 * minus_rate_dot_distal_leg2),
+                -(t170 * t239),
+                t170 * t245,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
-                -t336,
-                -(t332 * t355),
-                t332 * t342,
-                t336,
-                -(t332 * t360),
-                -(t332 * rate_dot_distal_leg3),
-                -(t332 * t395),
-                -(t332 * t399),
-                t209 * t452 - t78 * t458 + t80 * t465,
-                t209 * t493 - t78 * t499 + t80 * t506,
-                t209 * t532 - t78 * t538 + t80 * t545,
-                t209 * t561 - t78 * t566 + t80 * t572,
-                t209 * t592 - t78 * t598 + t80 * t605,
-                t209 * t620 - t78 * t624 + t80 * t629,
-                t209 * t646 - t78 * t650,
-                t209 * t662 - t78 * t666,
-                t209 * t677 - t78 * t681,
+                -t277,
+                -(t273 * t296),
+                t273 * t283,
+                t277,
+                -(t273 * t301),
+                -(t273 * rate_dot_distal_leg3),
+                -(t273 * t336),
+                -(t273 * t340),
+                t167 * t393 - t63 * t399 + t65 * t406,
+                t167 * t434 - t63 * t440 + t65 * t447,
+                t167 * t473 - t63 * t479 + t65 * t486,
+                t167 * t502 - t63 * t507 + t65 * t513,
+                t167 * t533 - t63 * t539 + t65 * t546,
+                t167 * t561 - t63 * t565 + t65 * t570,
+                t167 * t587 - t63 * t591,
+                t167 * t603 - t63 * t607,
+                t167 * t618 - t63 * t622,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t104, -(t103 * t124), t103 * t88, t104,
-                -(t103 * t117), -(t103 * rate_dot_distal_leg1), t103 * t157, -(t103 * t163), 0.0,
-                rate_dot_proximal_leg2, 9.81 * minus_s_proximal_leg2, t207, rate_dot_proximal_leg2,
-                rate_proximal_leg2, ::overact::math::sign(rate_proximal_leg2), 1.0, t231,
-                c_distal_leg2 * (t224 + t226)
-                    - minus_s_distal_leg2 * (t228 + t245 + t228) + t222 * t241,
-                c_distal_leg2 * (t254 - t239)
-                    - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t215) - t222 * t225,
-                rate_dot_proximal_leg2 - t231,
-                c_distal_leg2 * (t215 + rate_dot_distal_leg2)
-                    - minus_s_distal_leg2 * (t240 - t254) + t222 * t245,
-                t222 * rate_dot_distal_leg2,
-                9.81 * (minus_s_proximal_leg2 * c_distal_leg2) - t222 * t279,
-                9.81 * t190 + t222 * t287,
-                -t207,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t80, -(t79 * t100), t79 * t27, t80,
+                -(t79 * t91), t79 * minus_rate_dot_distal_leg1, t79 * t134, -(t79 * t139), 0.0,
+                rate_dot_proximal_leg2, t164, t165, rate_dot_proximal_leg2, rate_proximal_leg2,
+                ::overact::math::sign(rate_proximal_leg2), 1.0, t189,
+                minus_s_distal_leg2 * (t179 - (t201 - t179))
+                    - c_distal_leg2 * (t176 + t177) + t187 * t199,
+                minus_s_distal_leg2 * (t173 + minus_rate_dot_distal_leg2)
+                    + c_distal_leg2 * (t219 - t197) - t187 * t175,
+                rate_dot_proximal_leg2 - t189,
+                t187 * t201
+                    - (minus_s_distal_leg2 * (t198 - t219)
+                        + c_distal_leg2 * (minus_rate_dot_distal_leg2 - t173)),
+                -(t187 * minus_rate_dot_distal_leg2),
+                c_distal_leg2 * t164 - t187 * t239,
+                minus_s_distal_leg2 * t164 + t187 * t245,
+                -t165,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
-                t340,
-                t339 * t355,
-                -(t339 * t342),
-                -t340,
-                t339 * t360,
-                t339 * rate_dot_distal_leg3,
-                t339 * t395,
-                t339 * t399,
-                t97 * t458 - t220 * t452 - t101 * t465,
-                t97 * t499 - t220 * t493 - t101 * t506,
-                t97 * t538 - t220 * t532 - t101 * t545,
-                t97 * t566 - t220 * t561 - t101 * t572,
-                t97 * t598 - t220 * t592 - t101 * t605,
-                t97 * t624 - t220 * t620 - t101 * t629,
-                t97 * t650 - t220 * t646,
-                t97 * t666 - t220 * t662,
-                t97 * t681 - t220 * t677,
+                t281,
+                t280 * t296,
+                -(t280 * t283),
+                -t281,
+                t280 * t301,
+                t280 * rate_dot_distal_leg3,
+                t280 * t336,
+                t280 * t340,
+                t73 * t399 - t185 * t393 - t77 * t406,
+                t73 * t440 - t185 * t434 - t77 * t447,
+                t73 * t479 - t185 * t473 - t77 * t486,
+                t73 * t507 - t185 * t502 - t77 * t513,
+                t73 * t539 - t185 * t533 - t77 * t546,
+                t73 * t565 - t185 * t561 - t77 * t570,
+                t73 * t591 - t185 * t587,
+                t73 * t607 - t185 * t603,
+                t73 * t622 - t185 * t618,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t114, t113 * t124, -(t113 * t88), -t114,
-                t113 * t117, t113 * rate_dot_distal_leg1, -(t113 * t157), t113 * t163, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t238, t237 * t241, -(t237 * t225), -t238, t237 * t245,
-                t237 * rate_dot_distal_leg2, -(t237 * t279), t237 * t287, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t90, t89 * t100, -(t89 * t27), -t90, t89 * t91,
+                -(t89 * minus_rate_dot_distal_leg1), -(t89 * t134), t89 * t139, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, t196, t195 * t199, -(t195 * t175), -t196, t195 * t201,
+                -(t195 * minus_rate_dot_distal_leg2), -(t195 * t239), t195 * t245, 0.0,
                 rate_dot_proximal_leg3, rate_dot_proximal_leg3, rate_proximal_leg3,
-                ::overact::math::sign(rate_proximal_leg3), 1.0, -t352,
-                c_distal_leg3 * (t341 + t343)
-                    - minus_s_distal_leg3 * (t345 + t360 + t345) - t350 * t355,
-                c_distal_leg3 * (t371 - t353)
-                    - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t335) + t350 * t342,
-                rate_dot_proximal_leg3 + t352,
-                c_distal_leg3 * (t335 + rate_dot_distal_leg3)
-                    - minus_s_distal_leg3 * (t354 - t371) - t350 * t360,
-                -(t350 * rate_dot_distal_leg3),
-                -(t350 * t395),
-                -(t350 * t399),
-                t234 * t452 - t107 * t458 + t111 * t465,
-                t234 * t493 - t107 * t499 + t111 * t506,
-                t234 * t532 - t107 * t538 + t111 * t545,
-                t234 * t561 - t107 * t566 + t111 * t572,
-                t234 * t592 - t107 * t598 + t111 * t605,
-                t234 * t620 - t107 * t624 + t111 * t629,
-                t234 * t646 - t107 * t650,
-                t234 * t662 - t107 * t666,
-                t234 * t677 - t107 * t681,
+                ::overact::math::sign(rate_proximal_leg3), 1.0, -t293,
+                c_distal_leg3 * (t282 + t284)
+                    - minus_s_distal_leg3 * (t286 + t301 + t286) - t291 * t296,
+                c_distal_leg3 * (t310 - t294)
+                    - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t276) + t291 * t283,
+                rate_dot_proximal_leg3 + t293,
+                c_distal_leg3 * (t276 + rate_dot_distal_leg3)
+                    - minus_s_distal_leg3 * (t295 - t310) - t291 * t301,
+                -(t291 * rate_dot_distal_leg3),
+                -(t291 * t336),
+                -(t291 * t340),
+                t192 * t393 - t83 * t399 + t87 * t406,
+                t192 * t434 - t83 * t440 + t87 * t447,
+                t192 * t473 - t83 * t479 + t87 * t486,
+                t192 * t502 - t83 * t507 + t87 * t513,
+                t192 * t533 - t83 * t539 + t87 * t546,
+                t192 * t561 - t83 * t565 + t87 * t570,
+                t192 * t587 - t83 * t591,
+                t192 * t603 - t83 * t607,
+                t192 * t618 - t83 * t622,
             ],
         ])
     }
@@ -3157,7 +2926,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 54.
     /// Columns: `PARAMETERS`.
     ///
-    /// 783 operations (283 additions, 490 multiplications, 10 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 689 intermediates.
+    /// 712 operations (261 additions, 441 multiplications, 10 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 618 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3179,6 +2948,7 @@ impl Spherical3Rrr {
         let t10 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
         ::overact::guard::reach(t10, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t10);
+        ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
         let t13 = 1.0 / (t5 * c_distal_leg1);
         let c_proximal_leg1 = t13 * (t5 * t5);
         let t17 = 2.0 * pose[2];
@@ -3187,303 +2957,281 @@ impl Spherical3Rrr {
         let t20 = t18 + t19;
         let s_proximal_leg1 = t13 * (t5 * t20);
         let t23 = 9.81 * s_proximal_leg1;
-        let t25 = c_distal_leg1 * actuator_accelerations[0];
-        let t28 = t5 * c_proximal_leg1 + t20 * s_proximal_leg1;
-        ::overact::guard::leg(t28, 1.0, "leg1")?;
-        let t29 = 1.0 / t28;
-        let gdistal_wz_leg1 = t5 * t29;
-        let gwrist_wz_leg1 = s_proximal_leg1 * t29;
-        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
+        let t25 = 1.0 / c_distal_leg1;
+        let t26 = minus_s_distal_leg1 * t25;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t26;
+        let t30 = pose[2] * t17;
+        let t32 = 1.0 - t30 - t4;
+        let t33 = pose[3] * t0;
+        let t34 = pose[0] * t17;
+        let minus_s_distal_leg3 = t33 - t34;
+        let t37 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t37, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t37);
+        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
+        let t40 = 1.0 / (t32 * c_distal_leg3);
+        let t41 = t6 + t7;
+        let s_proximal_leg3 = t40 * (t32 * t41);
+        let t44 = 1.0 / c_distal_leg3;
+        let t45 = minus_s_distal_leg3 * t44;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t45;
+        let c_proximal_leg3 = t40 * (t32 * t32);
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t45;
+        let t53 = t2 - t30;
         let minus_s_distal_leg2 = t18 - t19;
-        let t35 = pose[2] * t17;
-        let t36 = t2 - t35;
-        let t38 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t38, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t38);
-        let t41 = 1.0 / (t36 * c_distal_leg2);
-        let c_proximal_leg2 = t41 * (t36 * t36);
-        let t44 = pose[3] * t0;
-        let t45 = pose[0] * t17;
-        let t46 = t44 + t45;
-        let s_proximal_leg2 = t41 * (t46 * t36);
-        let t51 = t46 * s_proximal_leg2 + t36 * c_proximal_leg2;
-        ::overact::guard::leg(t51, 1.0, "leg2")?;
-        let t52 = 1.0 / t51;
-        let gwrist_wz_leg2 = c_proximal_leg2 * t52;
-        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
-        let gwrist_wx_leg2 = s_proximal_leg2 * t52;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
-        let minus_s_distal_leg3 = t44 - t45;
-        let t64 = 1.0 - t35 - t4;
-        let t66 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t66, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t66);
-        let t69 = 1.0 / (t64 * c_distal_leg3);
-        let c_proximal_leg3 = t69 * (t64 * t64);
-        let t73 = t6 + t7;
-        let s_proximal_leg3 = t69 * (t64 * t73);
-        let t77 = t64 * c_proximal_leg3 + t73 * s_proximal_leg3;
-        ::overact::guard::leg(t77, 1.0, "leg3")?;
-        let t78 = 1.0 / t77;
-        let gwrist_wx_leg3 = c_proximal_leg3 * t78;
-        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
-        let t81 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
-            - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
-        let t85 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
-            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
-        ::overact::guard::platform(t85, 1.0, "actuators")?;
-        ::overact::guard::platform(t85, 1.0, "actuators")?;
-        let t86 = 1.0 / t85;
-        let t87 = t81 * t86;
-        let gwrist_wy_leg1 = c_proximal_leg1 * t29;
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
-        let gwrist_wy_leg3 = s_proximal_leg3 * t78;
-        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
-        let t99 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+        let t56 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t56, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t56);
+        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
+        let t59 = 1.0 / (t53 * c_distal_leg2);
+        let t60 = t33 + t34;
+        let s_proximal_leg2 = t59 * (t60 * t53);
+        let t63 = 1.0 / c_distal_leg2;
+        let t64 = minus_s_distal_leg2 * t63;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t64;
+        let t67 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
-        let t101 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
-            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t99 * t87;
-        let t106 = t99 * t86;
-        let t108 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t99 * t106;
-        ::overact::guard::platform(t108, 1.0, "actuators")?;
-        ::overact::guard::platform(t108, 1.0, "actuators")?;
-        let t109 = 1.0 / t108;
-        let t110 = t101 * t109;
-        let t112 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t81 * t87
-            - t101 * t110;
-        ::overact::guard::platform(t112, 1.0, "actuators")?;
-        ::overact::guard::platform(t112, 1.0, "actuators")?;
-        let t113 = 1.0 / t112;
-        let t121 = actuator_velocities[0]
+        let t71 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
+        ::overact::guard::platform(t71, 1.0, "actuators")?;
+        ::overact::guard::platform(t71, 1.0, "actuators")?;
+        let t72 = 1.0 / t71;
+        let t73 = t67 * t72;
+        let t75 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t67 * t73;
+        ::overact::guard::platform(t75, 1.0, "actuators")?;
+        ::overact::guard::platform(t75, 1.0, "actuators")?;
+        let t76 = 1.0 / t75;
+        let t84 = actuator_velocities[0]
             - minus_gproximal_wx_leg2 * actuator_velocities[1]
             - minus_gproximal_wx_leg3 * actuator_velocities[2];
-        let t129 = actuator_velocities[1]
+        let t86 = actuator_velocities[1]
             - minus_gproximal_wy_leg1 * actuator_velocities[0]
-            - minus_gproximal_wy_leg3 * actuator_velocities[2] - t121 * t106;
-        let t132 = t113
+            - minus_gproximal_wy_leg3 * actuator_velocities[2] - t84 * t73;
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t26;
+        let c_proximal_leg2 = t59 * (t53 * t53);
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t64;
+        let t97 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
+        let t98 = t97 * t72;
+        let t100 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t67 * t98;
+        let t101 = t100 * t76;
+        let t109 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t97 * t98
+            - t100 * t101;
+        ::overact::guard::platform(t109, 1.0, "actuators")?;
+        ::overact::guard::platform(t109, 1.0, "actuators")?;
+        let t110 = 1.0 / t109;
+        let t119 = t110
             * (actuator_velocities[2]
                 - (minus_gproximal_wz_leg1 * actuator_velocities[0]
-                    + minus_gproximal_wz_leg2 * actuator_velocities[1]) - t121 * t87
-                - t110 * t129);
-        let minus_gdistal_wy_leg1 = t20 * t29;
-        let t137 = t109 * t129 - t110 * t132;
-        let rate_distal_leg1 = gdistal_wz_leg1 * t132 - minus_gdistal_wy_leg1 * t137;
-        let t140 = minus_s_distal_leg1 * actuator_velocities[0];
-        let t141 = rate_distal_leg1 * t140;
-        let t142 = t25 + t141;
-        let t144 = c_distal_leg1 * actuator_velocities[0];
-        let t145 = rate_distal_leg1 * t144;
-        let t149 = minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3
+                    + minus_gproximal_wz_leg2 * actuator_velocities[1]) - t84 * t98
+                - t101 * t86);
+        let t121 = t76 * t86 - t101 * t119;
+        let minus_rate_distal_leg1 = s_proximal_leg1 * t121 - c_proximal_leg1 * t119;
+        let t125 = minus_s_distal_leg1 * actuator_velocities[0];
+        let t126 = minus_rate_distal_leg1 * t125;
+        let t127 = c_distal_leg1 * actuator_accelerations[0];
+        let t128 = t126 - t127;
+        let t130 = c_distal_leg1 * actuator_velocities[0];
+        let t131 = minus_rate_distal_leg1 * t130;
+        let t135 = minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3
             + minus_gproximal_wx_leg3;
-        let t151 = 1.0 - minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3;
-        let t153 = minus_gproximal_wx_leg2
+        let t137 = 1.0 - minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3;
+        let t139 = minus_gproximal_wx_leg2
             + minus_gproximal_wz_leg2 * minus_gproximal_wx_leg3;
-        let t157 = t151 - minus_gproximal_wy_leg1 * t153
-            - minus_gproximal_wz_leg1 * t149;
-        ::overact::guard::platform(t157, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t157, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t157, 1.0, "kept actuators")?;
-        let t158 = 1.0 / t157;
-        let t159 = t149 * t158;
-        let t161 = t153 * t158;
-        let t163 = gdistal_wz_leg1 * t159 - minus_gdistal_wy_leg1 * t161;
-        let t164 = t144 * t140;
-        let t166 = c_distal_leg1 * t142 + minus_s_distal_leg1 * t145 - t163 * t164;
-        let t169 = (minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t158;
-        let t173 = (1.0 - minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3) * t158;
-        let t175 = gdistal_wz_leg1 * t169 - minus_gdistal_wy_leg1 * t173;
-        let t176 = t175 * t164;
-        let t179 = (1.0 - minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2) * t158;
-        let t183 = (minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2) * t158;
-        let t185 = gdistal_wz_leg1 * t179 - minus_gdistal_wy_leg1 * t183;
-        let t186 = t185 * t164;
-        let t189 = minus_s_distal_leg1 * actuator_accelerations[0];
-        let t194 = t144 * t144;
-        let t195 = t140 * t140;
-        let t196 = t194 - t195;
-        let t205 = t121 * t86 - t106 * t137 - t87 * t132;
-        let t208 = minus_gproximal_wx_leg3 * t205 + minus_gproximal_wy_leg3 * t137;
-        let gdistal_wy_leg3 = t64 * t78;
-        let minus_gdistal_wx_leg3 = t73 * t78;
-        let rate_distal_leg3 = gdistal_wy_leg3 * t137 - minus_gdistal_wx_leg3 * t205;
-        let t214 = c_proximal_leg3 * rate_distal_leg3;
-        let rate_wrist_leg3 = gwrist_wx_leg3 * t205 + gwrist_wy_leg3 * t137;
-        let t219 = t73 * rate_wrist_leg3;
-        let t223 = t208 * t214 - actuator_velocities[2] * t219
-            - actuator_velocities[2] * t214;
-        let t225 = t64 * rate_wrist_leg3;
-        let t227 = s_proximal_leg3 * rate_distal_leg3;
-        let t231 = actuator_velocities[2] * t225 + t208 * t227
-            - actuator_velocities[2] * t227;
-        let rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t223
-            + minus_gproximal_wy_leg3 * t231 + t227 * t219 + t214 * t225;
-        let t238 = actuator_accelerations[2] - rate_dot_proximal_leg3;
-        let t239 = s_proximal_leg1 * rate_distal_leg1;
-        let rate_wrist_leg1 = gwrist_wy_leg1 * t137 + gwrist_wz_leg1 * t132;
-        let t243 = t20 * rate_wrist_leg1;
-        let t245 = c_proximal_leg1 * rate_distal_leg1;
-        let t246 = t5 * rate_wrist_leg1;
-        let t249 = minus_s_distal_leg1 * rate_wrist_leg1;
-        let t254 = t245 * t249 - actuator_velocities[0] * t243
-            - actuator_velocities[0] * t245;
-        let t261 = actuator_velocities[0] * t246 + t239 * t249
-            - actuator_velocities[0] * t239;
-        let rate_dot_proximal_leg1 = t239 * t243 + t245 * t246
-            + minus_gproximal_wy_leg1 * t254 + minus_gproximal_wz_leg1 * t261;
-        let t264 = actuator_accelerations[0] - rate_dot_proximal_leg1;
-        let rate_wrist_leg2 = gwrist_wx_leg2 * t205 + gwrist_wz_leg2 * t132;
-        let t269 = t36 * rate_wrist_leg2;
-        let gdistal_wx_leg2 = t36 * t52;
-        let minus_gdistal_wz_leg2 = t46 * t52;
-        let rate_distal_leg2 = gdistal_wx_leg2 * t205 - minus_gdistal_wz_leg2 * t132;
-        let t276 = s_proximal_leg2 * rate_distal_leg2;
-        let t277 = minus_s_distal_leg2 * rate_wrist_leg2;
-        let t281 = actuator_velocities[1] * t269 + t276 * t277
-            - actuator_velocities[1] * t276;
-        let t283 = t46 * rate_wrist_leg2;
-        let t285 = c_proximal_leg2 * rate_distal_leg2;
-        let t293 = t285 * t277 - actuator_velocities[1] * t283
-            - actuator_velocities[1] * t285;
-        let rate_dot_proximal_leg2 = minus_gproximal_wx_leg2 * t281 + t276 * t283
-            + t285 * t269 + minus_gproximal_wz_leg2 * t293;
-        let t296 = actuator_accelerations[1] - rate_dot_proximal_leg2;
-        let t303 = t264 - minus_gproximal_wx_leg2 * t296
-            - minus_gproximal_wx_leg3 * t238;
-        let t311 = t296 - minus_gproximal_wy_leg1 * t264 - minus_gproximal_wy_leg3 * t238
-            - t106 * t303;
-        let t314 = t113
-            * (t238 - (minus_gproximal_wz_leg1 * t264 + minus_gproximal_wz_leg2 * t296)
-                - t87 * t303 - t110 * t311);
-        let t319 = t109 * t311 - t110 * t314;
-        let rate_dot_distal_leg1 = gdistal_wz_leg1 * (t314 - t261)
-            - minus_gdistal_wy_leg1 * (t319 - t254);
-        let t325 = rate_distal_leg1 * rate_distal_leg1;
-        let t348 = 9.81 * t20;
-        let t355 = 9.81 * (minus_s_distal_leg1 * s_proximal_leg1);
-        let t361 = 9.81 * c_proximal_leg2;
-        let t363 = t151 * t158;
-        let t366 = gdistal_wx_leg2 * t363 - minus_gdistal_wz_leg2 * t159;
-        let t367 = c_distal_leg2 * actuator_velocities[1];
-        let t368 = minus_s_distal_leg2 * actuator_velocities[1];
-        let t369 = t367 * t368;
-        let t370 = t366 * t369;
-        let t371 = c_distal_leg2 * actuator_accelerations[1];
-        let t372 = rate_distal_leg2 * t368;
-        let t373 = t371 + t372;
-        let t375 = rate_distal_leg2 * t367;
-        let t380 = (minus_gproximal_wy_leg1
-            + minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3) * t158;
-        let t383 = gdistal_wx_leg2 * t380 - minus_gdistal_wz_leg2 * t169;
-        let t385 = c_distal_leg2 * t373 + minus_s_distal_leg2 * t375 - t383 * t369;
-        let t388 = (minus_gproximal_wy_leg1 * minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg1) * t158;
-        let t391 = gdistal_wx_leg2 * t388 - minus_gdistal_wz_leg2 * t179;
-        let t392 = t391 * t369;
-        let t393 = t367 * t367;
-        let t394 = t368 * t368;
-        let t395 = t393 - t394;
-        let t399 = minus_s_distal_leg2 * actuator_accelerations[1];
-        let t412 = t86 * t303 - t106 * t319 - t87 * t314;
-        let rate_dot_distal_leg2 = gdistal_wx_leg2 * (t412 - t281)
-            - minus_gdistal_wz_leg2 * (t314 - t293);
-        let t420 = rate_distal_leg2 * rate_distal_leg2;
-        let t440 = 9.81 * t36;
-        let t448 = 9.81 * (minus_s_distal_leg2 * c_proximal_leg2);
-        let t457 = gdistal_wy_leg3 * t161 - minus_gdistal_wx_leg3 * t363;
-        let t458 = c_distal_leg3 * actuator_velocities[2];
-        let t459 = minus_s_distal_leg3 * actuator_velocities[2];
-        let t460 = t458 * t459;
-        let t461 = t457 * t460;
-        let t464 = gdistal_wy_leg3 * t173 - minus_gdistal_wx_leg3 * t380;
-        let t465 = t464 * t460;
-        let t466 = c_distal_leg3 * actuator_accelerations[2];
-        let t467 = rate_distal_leg3 * t459;
-        let t468 = t466 + t467;
-        let t470 = rate_distal_leg3 * t458;
-        let t475 = gdistal_wy_leg3 * t183 - minus_gdistal_wx_leg3 * t388;
-        let t477 = c_distal_leg3 * t468 + minus_s_distal_leg3 * t470 - t475 * t460;
-        let t478 = t458 * t458;
-        let t479 = t459 * t459;
-        let t480 = t478 - t479;
-        let t485 = minus_s_distal_leg3 * actuator_accelerations[2];
-        let rate_dot_distal_leg3 = gdistal_wy_leg3 * (t319 - t231)
-            - minus_gdistal_wx_leg3 * (t412 - t223);
-        let t501 = rate_distal_leg3 * rate_distal_leg3;
-        let t520 = 9.81 * minus_s_distal_leg3;
-        let t524 = 9.81 * c_distal_leg3;
-        let t532 = t64 * t412 + t73 * t319 + minus_s_distal_leg3 * t314;
-        let t538 = t64 * t205 + t73 * t137 + minus_s_distal_leg3 * t132;
-        let t543 = t46 * t205 + minus_s_distal_leg2 * t137 + t36 * t132;
-        let t544 = t538 * t543;
-        let t545 = minus_s_distal_leg1 * t544;
-        let t551 = minus_s_distal_leg1 * t205 + t5 * t137 + t20 * t132;
-        let t552 = t538 * t551;
-        let t553 = t46 * t552;
-        let t554 = t64 * t532 + t545 - t553;
-        let t557 = t5 * t544;
-        let t559 = minus_s_distal_leg2 * t552;
-        let t560 = t73 * t532 + t557 - t559;
-        let t564 = t20 * t544;
-        let t566 = t36 * t552;
-        let t567 = minus_s_distal_leg3 * t532 + t564 - t566;
-        let t580 = t551 * t543;
-        let t581 = t580 + t532;
-        let t587 = minus_s_distal_leg1 * t412 + t5 * t319 + t20 * t314;
-        let t588 = t544 - t587;
-        let t591 = t538 * t538;
-        let t592 = t551 * t551;
-        let t593 = t591 - t592;
-        let t595 = minus_s_distal_leg1 * t581 - t64 * t588 + t46 * t593;
-        let t601 = t5 * t581 - t73 * t588 + minus_s_distal_leg2 * t593;
-        let t608 = t20 * t581 - minus_s_distal_leg3 * t588 + t36 * t593;
-        let t625 = t46 * t412 + minus_s_distal_leg2 * t319 + t36 * t314;
-        let t626 = t552 + t625;
-        let t628 = t543 * t543;
-        let t629 = t628 - t591;
-        let t632 = t580 - t532;
-        let t634 = t64 * t626 + minus_s_distal_leg1 * t629 - t46 * t632;
-        let t640 = t73 * t626 + t5 * t629 - minus_s_distal_leg2 * t632;
-        let t647 = minus_s_distal_leg3 * t626 + t20 * t629 - t36 * t632;
-        let t661 = t64 * t580;
-        let t663 = minus_s_distal_leg1 * t587 - t661 + t553;
-        let t666 = t73 * t580;
-        let t668 = t5 * t587 - t666 + t559;
-        let t672 = minus_s_distal_leg3 * t580;
-        let t674 = t20 * t587 - t672 + t566;
-        let t687 = t592 - t628;
-        let t689 = t552 - t625;
-        let t692 = t544 + t587;
-        let t694 = t64 * t687 - minus_s_distal_leg1 * t689 + t46 * t692;
-        let t700 = t73 * t687 - t5 * t689 + minus_s_distal_leg2 * t692;
-        let t707 = minus_s_distal_leg3 * t687 - t20 * t689 + t36 * t692;
-        let t722 = t661 - t545 + t46 * t625;
-        let t726 = t666 - t557 + minus_s_distal_leg2 * t625;
-        let t731 = t672 - t564 + t36 * t625;
-        let t746 = t46 * t348 - minus_s_distal_leg1 * t440;
-        let t750 = minus_s_distal_leg2 * t348 - t5 * t440;
-        let t761 = t64 * t440 - t46 * t520;
-        let t765 = t73 * t440 - minus_s_distal_leg2 * t520;
-        let t776 = minus_s_distal_leg1 * t520 - t64 * t348;
-        let t780 = t5 * t520 - t73 * t348;
+        let t143 = t137 - minus_gproximal_wy_leg1 * t139
+            - minus_gproximal_wz_leg1 * t135;
+        ::overact::guard::platform(t143, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t143, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t143, 1.0, "kept actuators")?;
+        let t144 = 1.0 / t143;
+        let t145 = t135 * t144;
+        let t147 = t139 * t144;
+        let t149 = c_proximal_leg1 * t145 - s_proximal_leg1 * t147;
+        let t150 = t130 * t125;
+        let t152 = c_distal_leg1 * t128 + minus_s_distal_leg1 * t131 + t149 * t150;
+        let t155 = (minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t144;
+        let t159 = (1.0 - minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3) * t144;
+        let t161 = c_proximal_leg1 * t155 - s_proximal_leg1 * t159;
+        let t162 = t161 * t150;
+        let t165 = (1.0 - minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2) * t144;
+        let t169 = (minus_gproximal_wz_leg2
+            + minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2) * t144;
+        let t171 = c_proximal_leg1 * t165 - s_proximal_leg1 * t169;
+        let t172 = t171 * t150;
+        let t173 = minus_s_distal_leg1 * actuator_accelerations[0];
+        let t174 = t173 + t131;
+        let t180 = t130 * t130;
+        let t181 = t125 * t125;
+        let t182 = t180 - t181;
+        let t192 = t84 * t72 - t73 * t121 - t98 * t119;
+        let minus_rate_distal_leg2 = s_proximal_leg2 * t119 - c_proximal_leg2 * t192;
+        let t197 = s_proximal_leg2 * t192 + c_proximal_leg2 * t119;
+        let t201 = minus_rate_distal_leg2 * (t64 * t197)
+            - actuator_velocities[1] * minus_rate_distal_leg2;
+        let minus_rate_dot_proximal_leg2 = t64 * t201 + t197 * minus_rate_distal_leg2;
+        let t205 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
+        let t208 = c_proximal_leg1 * t121 + s_proximal_leg1 * t119;
+        let t212 = minus_rate_distal_leg1 * (t26 * t208)
+            - actuator_velocities[0] * minus_rate_distal_leg1;
+        let minus_rate_dot_proximal_leg1 = t26 * t212 + t208 * minus_rate_distal_leg1;
+        let t216 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
+        let rate_distal_leg3 = c_proximal_leg3 * t121 - s_proximal_leg3 * t192;
+        let t225 = c_proximal_leg3 * t192 + s_proximal_leg3 * t121;
+        let t228 = actuator_velocities[2] * rate_distal_leg3
+            - rate_distal_leg3 * (t45 * t225);
+        let minus_rate_dot_proximal_leg3 = t45 * t228 - t225 * rate_distal_leg3;
+        let t232 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let t238 = t216 - minus_gproximal_wx_leg2 * t205
+            - minus_gproximal_wx_leg3 * t232;
+        let t240 = t205 - minus_gproximal_wy_leg1 * t216 - minus_gproximal_wy_leg3 * t232
+            - t73 * t238;
+        let t250 = t110
+            * (t232 - (minus_gproximal_wz_leg1 * t216 + minus_gproximal_wz_leg2 * t205)
+                - t98 * t238 - t101 * t240);
+        let t252 = t76 * t240 - t101 * t250;
+        let minus_rate_dot_distal_leg1 = actuator_velocities[0] * t208;
+        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t252
+            - c_proximal_leg1 * t250 + minus_rate_dot_distal_leg1;
+        let t260 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t283 = 9.81 * t20;
+        let t290 = 9.81 * (minus_s_distal_leg1 * s_proximal_leg1);
+        let t296 = 9.81 * c_proximal_leg2;
+        let t298 = t137 * t144;
+        let t301 = c_proximal_leg2 * t298 - s_proximal_leg2 * t145;
+        let t302 = c_distal_leg2 * actuator_velocities[1];
+        let t303 = minus_s_distal_leg2 * actuator_velocities[1];
+        let t304 = t302 * t303;
+        let t305 = t301 * t304;
+        let t306 = minus_rate_distal_leg2 * t303;
+        let t307 = c_distal_leg2 * actuator_accelerations[1];
+        let t308 = t306 - t307;
+        let t310 = minus_rate_distal_leg2 * t302;
+        let t315 = (minus_gproximal_wy_leg1
+            + minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3) * t144;
+        let t318 = c_proximal_leg2 * t315 - s_proximal_leg2 * t155;
+        let t320 = c_distal_leg2 * t308 + minus_s_distal_leg2 * t310 + t318 * t304;
+        let t323 = (minus_gproximal_wy_leg1 * minus_gproximal_wz_leg2
+            + minus_gproximal_wz_leg1) * t144;
+        let t326 = c_proximal_leg2 * t323 - s_proximal_leg2 * t165;
+        let t327 = t326 * t304;
+        let t328 = t302 * t302;
+        let t329 = t303 * t303;
+        let t330 = t328 - t329;
+        let t332 = minus_s_distal_leg2 * actuator_accelerations[1];
+        let t333 = t332 + t310;
+        let t348 = t72 * t238 - t73 * t252 - t98 * t250;
+        let minus_rate_dot_distal_leg2 = actuator_velocities[1] * t197;
+        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t250
+            - c_proximal_leg2 * t348 + minus_rate_dot_distal_leg2;
+        let t355 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t375 = 9.81 * t53;
+        let t383 = 9.81 * (minus_s_distal_leg2 * c_proximal_leg2);
+        let t392 = c_proximal_leg3 * t147 - s_proximal_leg3 * t298;
+        let t393 = c_distal_leg3 * actuator_velocities[2];
+        let t394 = minus_s_distal_leg3 * actuator_velocities[2];
+        let t395 = t393 * t394;
+        let t396 = t392 * t395;
+        let t399 = c_proximal_leg3 * t159 - s_proximal_leg3 * t315;
+        let t400 = t399 * t395;
+        let t401 = c_distal_leg3 * actuator_accelerations[2];
+        let t402 = rate_distal_leg3 * t394;
+        let t403 = t401 + t402;
+        let t405 = rate_distal_leg3 * t393;
+        let t410 = c_proximal_leg3 * t169 - s_proximal_leg3 * t323;
+        let t412 = c_distal_leg3 * t403 + minus_s_distal_leg3 * t405 - t410 * t395;
+        let t413 = t393 * t393;
+        let t414 = t394 * t394;
+        let t415 = t413 - t414;
+        let t420 = minus_s_distal_leg3 * actuator_accelerations[2];
+        let t421 = t405 - t420;
+        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t225;
+        let rate_dot_distal_leg3 = c_proximal_leg3 * t252 - s_proximal_leg3 * t348
+            - minus_rate_dot_distal_leg3;
+        let t436 = rate_distal_leg3 * rate_distal_leg3;
+        let t455 = 9.81 * minus_s_distal_leg3;
+        let t459 = 9.81 * c_distal_leg3;
+        let rate_dot_wrist_leg3 = t44
+            * (c_proximal_leg3 * t348 + s_proximal_leg3 * t252 + t228);
+        let t468 = rate_dot_wrist_leg3 - t421;
+        let rate_wrist_leg2 = t63 * t197;
+        let t471 = t303 + rate_wrist_leg2;
+        let rate_wrist_leg3 = t44 * t225;
+        let t473 = t394 + rate_wrist_leg3;
+        let t474 = t471 * t473;
+        let t475 = minus_s_distal_leg1 * t474;
+        let rate_wrist_leg1 = t25 * t208;
+        let t478 = t125 + rate_wrist_leg1;
+        let t479 = t478 * t473;
+        let t480 = t60 * t479;
+        let t481 = t32 * t468 + t475 - t480;
+        let t484 = t5 * t474;
+        let t486 = minus_s_distal_leg2 * t479;
+        let t487 = t41 * t468 + t484 - t486;
+        let t491 = t20 * t474;
+        let t493 = t53 * t479;
+        let t494 = minus_s_distal_leg3 * t468 + t491 - t493;
+        let t507 = t478 * t471;
+        let t508 = t507 + t468;
+        let rate_dot_wrist_leg1 = t25
+            * (c_proximal_leg1 * t252 + s_proximal_leg1 * t250 + t212);
+        let t515 = t174 + rate_dot_wrist_leg1;
+        let t516 = t474 - t515;
+        let t519 = t473 * t473;
+        let t520 = t478 * t478;
+        let t521 = t519 - t520;
+        let t523 = minus_s_distal_leg1 * t508 - t32 * t516 + t60 * t521;
+        let t529 = t5 * t508 - t41 * t516 + minus_s_distal_leg2 * t521;
+        let t536 = t20 * t508 - minus_s_distal_leg3 * t516 + t53 * t521;
+        let rate_dot_wrist_leg2 = t63
+            * (s_proximal_leg2 * t348 + c_proximal_leg2 * t250 + t201);
+        let t554 = t333 + rate_dot_wrist_leg2;
+        let t555 = t479 + t554;
+        let t557 = t471 * t471;
+        let t558 = t557 - t519;
+        let t561 = t507 - t468;
+        let t563 = t32 * t555 + minus_s_distal_leg1 * t558 - t60 * t561;
+        let t569 = t41 * t555 + t5 * t558 - minus_s_distal_leg2 * t561;
+        let t576 = minus_s_distal_leg3 * t555 + t20 * t558 - t53 * t561;
+        let t590 = t32 * t507;
+        let t592 = minus_s_distal_leg1 * t515 - t590 + t480;
+        let t595 = t41 * t507;
+        let t597 = t5 * t515 - t595 + t486;
+        let t601 = minus_s_distal_leg3 * t507;
+        let t603 = t20 * t515 - t601 + t493;
+        let t616 = t520 - t557;
+        let t618 = t479 - t554;
+        let t621 = t474 + t515;
+        let t623 = t32 * t616 - minus_s_distal_leg1 * t618 + t60 * t621;
+        let t629 = t41 * t616 - t5 * t618 + minus_s_distal_leg2 * t621;
+        let t636 = minus_s_distal_leg3 * t616 - t20 * t618 + t53 * t621;
+        let t651 = t590 - t475 + t60 * t554;
+        let t655 = t595 - t484 + minus_s_distal_leg2 * t554;
+        let t660 = t601 - t491 + t53 * t554;
+        let t675 = t60 * t283 - minus_s_distal_leg1 * t375;
+        let t679 = minus_s_distal_leg2 * t283 - t5 * t375;
+        let t690 = t32 * t375 - t60 * t455;
+        let t694 = t41 * t375 - minus_s_distal_leg2 * t455;
+        let t705 = minus_s_distal_leg1 * t455 - t32 * t283;
+        let t709 = t5 * t455 - t41 * t283;
         Ok([
             [
                 actuator_accelerations[0], -(9.81 * c_proximal_leg1), t23,
                 actuator_accelerations[0], actuator_velocities[0],
-                ::overact::math::sign(actuator_velocities[0]), 1.0, t166,
-                minus_s_distal_leg1 * (t141 + t142)
-                    - c_distal_leg1 * (t145 + t145 - t189) + t163 * t196,
-                -(c_distal_leg1 * (t164 + rate_dot_distal_leg1)
-                    + minus_s_distal_leg1 * (t325 - t194) + t163 * t25),
-                actuator_accelerations[0] - t166,
-                minus_s_distal_leg1 * (t164 - rate_dot_distal_leg1)
-                    - c_distal_leg1 * (t195 - t325) - t163 * t189,
-                t163 * rate_dot_distal_leg1,
-                9.81 * (minus_s_distal_leg1 * c_proximal_leg1) - t163 * t348,
-                -(9.81 * t5 + t163 * t355),
+                ::overact::math::sign(actuator_velocities[0]), 1.0, -t152,
+                c_distal_leg1 * (t131 + t174) - minus_s_distal_leg1 * (t126 + t128)
+                    + t149 * t182,
+                -(c_distal_leg1 * (t150 - minus_rate_dot_distal_leg1_2)
+                    + minus_s_distal_leg1 * (t260 - t180) + t149 * t127),
+                actuator_accelerations[0] + t152,
+                minus_s_distal_leg1 * (t150 + minus_rate_dot_distal_leg1_2)
+                    - c_distal_leg1 * (t181 - t260) - t149 * t173,
+                -(t149 * minus_rate_dot_distal_leg1_2),
+                9.81 * (minus_s_distal_leg1 * c_proximal_leg1) - t149 * t283,
+                -(9.81 * t5 + t149 * t290),
                 -t23,
                 0.0,
                 0.0,
@@ -3492,103 +3240,105 @@ impl Spherical3Rrr {
                 0.0,
                 0.0,
                 0.0,
-                -t370,
-                t366 * t395,
-                -(t366 * t371),
-                t370,
-                -(t366 * t399),
-                t366 * rate_dot_distal_leg2,
-                -(t366 * t440),
-                -(t366 * t448),
+                -t305,
+                t301 * t330,
+                -(t301 * t307),
+                t305,
+                -(t301 * t332),
+                -(t301 * minus_rate_dot_distal_leg2_2),
+                -(t301 * t375),
+                -(t301 * t383),
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
-                -t461,
-                t457 * t480,
-                -(t457 * t466),
-                t461,
-                -(t457 * t485),
-                t457 * rate_dot_distal_leg3,
-                -(t457 * t520),
-                t457 * t524,
-                t363 * t554 + t161 * t560 + t159 * t567,
-                t363 * t595 + t161 * t601 + t159 * t608,
-                t363 * t634 + t161 * t640 + t159 * t647,
-                t363 * t663 + t161 * t668 + t159 * t674,
-                t363 * t694 + t161 * t700 + t159 * t707,
-                t363 * t722 + t161 * t726 + t159 * t731,
-                t363 * t746 + t161 * t750,
-                t363 * t761 + t161 * t765,
-                t363 * t776 + t161 * t780,
+                -t396,
+                t392 * t415,
+                -(t392 * t401),
+                t396,
+                -(t392 * t420),
+                t392 * rate_dot_distal_leg3,
+                -(t392 * t455),
+                t392 * t459,
+                t298 * t481 + t147 * t487 + t145 * t494,
+                t298 * t523 + t147 * t529 + t145 * t536,
+                t298 * t563 + t147 * t569 + t145 * t576,
+                t298 * t592 + t147 * t597 + t145 * t603,
+                t298 * t623 + t147 * t629 + t145 * t636,
+                t298 * t651 + t147 * t655 + t145 * t660,
+                t298 * t675 + t147 * t679,
+                t298 * t690 + t147 * t694,
+                t298 * t705 + t147 * t709,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t176, t175 * t196, -(t175 * t25), t176,
-                -(t175 * t189), t175 * rate_dot_distal_leg1, -(t175 * t348), -(t175 * t355), 0.0,
-                actuator_accelerations[1], 9.81 * s_proximal_leg2, t361, actuator_accelerations[1],
-                actuator_velocities[1], ::overact::math::sign(actuator_velocities[1]), 1.0, t385,
-                minus_s_distal_leg2 * (t372 + t373)
-                    - c_distal_leg2 * (t375 + t375 - t399) + t383 * t395,
-                -(c_distal_leg2 * (t369 + rate_dot_distal_leg2)
-                    + minus_s_distal_leg2 * (t420 - t393) + t383 * t371),
-                actuator_accelerations[1] - t385,
-                minus_s_distal_leg2 * (t369 - rate_dot_distal_leg2)
-                    - c_distal_leg2 * (t394 - t420) - t383 * t399,
-                t383 * rate_dot_distal_leg2,
-                -(9.81 * (minus_s_distal_leg2 * s_proximal_leg2) + t383 * t440),
-                9.81 * t46 - t383 * t448,
-                -t361,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t162, t161 * t182, -(t161 * t127), t162,
+                -(t161 * t173), -(t161 * minus_rate_dot_distal_leg1_2), -(t161 * t283),
+                -(t161 * t290), 0.0, actuator_accelerations[1], 9.81 * s_proximal_leg2, t296,
+                actuator_accelerations[1], actuator_velocities[1],
+                ::overact::math::sign(actuator_velocities[1]), 1.0, -t320,
+                c_distal_leg2 * (t310 + t333) - minus_s_distal_leg2 * (t306 + t308)
+                    + t318 * t330,
+                -(c_distal_leg2 * (t304 - minus_rate_dot_distal_leg2_2)
+                    + minus_s_distal_leg2 * (t355 - t328) + t318 * t307),
+                actuator_accelerations[1] + t320,
+                minus_s_distal_leg2 * (t304 + minus_rate_dot_distal_leg2_2)
+                    - c_distal_leg2 * (t329 - t355) - t318 * t332,
+                -(t318 * minus_rate_dot_distal_leg2_2),
+                -(9.81 * (minus_s_distal_leg2 * s_proximal_leg2) + t318 * t375),
+                9.81 * t60 - t318 * t383,
+                -t296,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
-                -t465,
-                t464 * t480,
-                -(t464 * t466),
-                t465,
-                -(t464 * t485),
-                t464 * rate_dot_distal_leg3,
-                -(t464 * t520),
-                t464 * t524,
-                t380 * t554 + t173 * t560 + t169 * t567,
-                t380 * t595 + t173 * t601 + t169 * t608,
-                t380 * t634 + t173 * t640 + t169 * t647,
-                t380 * t663 + t173 * t668 + t169 * t674,
-                t380 * t694 + t173 * t700 + t169 * t707,
-                t380 * t722 + t173 * t726 + t169 * t731,
-                t380 * t746 + t173 * t750,
-                t380 * t761 + t173 * t765,
-                t380 * t776 + t173 * t780,
+                -t400,
+                t399 * t415,
+                -(t399 * t401),
+                t400,
+                -(t399 * t420),
+                t399 * rate_dot_distal_leg3,
+                -(t399 * t455),
+                t399 * t459,
+                t315 * t481 + t159 * t487 + t155 * t494,
+                t315 * t523 + t159 * t529 + t155 * t536,
+                t315 * t563 + t159 * t569 + t155 * t576,
+                t315 * t592 + t159 * t597 + t155 * t603,
+                t315 * t623 + t159 * t629 + t155 * t636,
+                t315 * t651 + t159 * t655 + t155 * t660,
+                t315 * t675 + t159 * t679,
+                t315 * t690 + t159 * t694,
+                t315 * t705 + t159 * t709,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t186, t185 * t196, -(t185 * t25), t186,
-                -(t185 * t189), t185 * rate_dot_distal_leg1, -(t185 * t348), -(t185 * t355), 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t392, t391 * t395, -(t391 * t371), t392,
-                -(t391 * t399), t391 * rate_dot_distal_leg2, -(t391 * t440), -(t391 * t448), 0.0,
-                actuator_accelerations[2], actuator_accelerations[2], actuator_velocities[2],
-                ::overact::math::sign(actuator_velocities[2]), 1.0, t477,
-                minus_s_distal_leg3 * (t467 + t468)
-                    - c_distal_leg3 * (t470 + t470 - t485) + t475 * t480,
-                -(c_distal_leg3 * (t460 + rate_dot_distal_leg3)
-                    + minus_s_distal_leg3 * (t501 - t478) + t475 * t466),
-                actuator_accelerations[2] - t477,
-                minus_s_distal_leg3 * (t460 - rate_dot_distal_leg3)
-                    - c_distal_leg3 * (t479 - t501) - t475 * t485,
-                t475 * rate_dot_distal_leg3,
-                -(t475 * t520),
-                t475 * t524,
-                t388 * t554 + t183 * t560 + t179 * t567,
-                t388 * t595 + t183 * t601 + t179 * t608,
-                t388 * t634 + t183 * t640 + t179 * t647,
-                t388 * t663 + t183 * t668 + t179 * t674,
-                t388 * t694 + t183 * t700 + t179 * t707,
-                t388 * t722 + t183 * t726 + t179 * t731,
-                t388 * t746 + t183 * t750,
-                t388 * t761 + t183 * t765,
-                t388 * t776 + t183 * t780,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t172, t171 * t182, -(t171 * t127), t172,
+                -(t171 * t173), -(t171 * minus_rate_dot_distal_leg1_2), -(t171 * t283),
+                -(t171 * t290), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t327, t326 * t330,
+                -(t326 * t307), t327, -(t326 * t332), -(t326 * minus_rate_dot_distal_leg2_2),
+                -(t326 * t375), -(t326 * t383), 0.0, actuator_accelerations[2],
+                actuator_accelerations[2], actuator_velocities[2],
+                ::overact::math::sign(actuator_velocities[2]), 1.0, t412,
+                minus_s_distal_leg3 * (t402 + t403) - c_distal_leg3 * (t405 + t421)
+                    + t410 * t415,
+                -(c_distal_leg3 * (t395 + rate_dot_distal_leg3)
+                    + minus_s_distal_leg3 * (t436 - t413) + t410 * t401),
+                actuator_accelerations[2] - t412,
+                minus_s_distal_leg3 * (t395 - rate_dot_distal_leg3)
+                    - c_distal_leg3 * (t414 - t436) - t410 * t420,
+                t410 * rate_dot_distal_leg3,
+                -(t410 * t455),
+                t410 * t459,
+                t323 * t481 + t169 * t487 + t165 * t494,
+                t323 * t523 + t169 * t529 + t165 * t536,
+                t323 * t563 + t169 * t569 + t165 * t576,
+                t323 * t592 + t169 * t597 + t165 * t603,
+                t323 * t623 + t169 * t629 + t165 * t636,
+                t323 * t651 + t169 * t655 + t165 * t660,
+                t323 * t675 + t169 * t679,
+                t323 * t690 + t169 * t694,
+                t323 * t705 + t169 * t709,
             ],
         ])
     }
@@ -3602,7 +3352,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 40.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 542 operations (192 additions, 344 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 443 intermediates.
+    /// 471 operations (168 additions, 297 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 372 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3616,296 +3366,268 @@ impl Spherical3Rrr {
         let t3 = 2.0 * pose[3];
         let t4 = pose[3] * t3;
         let t5 = 1.0 - t1 - t4;
-        let t7 = 2.0 * pose[1];
-        let t8 = pose[2] * t7;
-        let t9 = pose[0] * t3;
-        let t10 = t8 + t9;
-        let t13 = pose[3] * t7;
-        let t14 = pose[0] * t0;
-        let minus_s_distal_leg3 = t13 - t14;
-        let t17 = t5 * acceleration[0] + t10 * acceleration[1]
-            + minus_s_distal_leg3 * acceleration[2];
-        let minus_s_distal_leg1 = t8 - t9;
-        let t24 = t5 * twist[0] + t10 * twist[1] + minus_s_distal_leg3 * twist[2];
-        let t25 = t13 + t14;
-        let t27 = pose[3] * t0;
-        let t28 = pose[0] * t7;
-        let minus_s_distal_leg2 = t27 - t28;
-        let t33 = 1.0 - pose[1] * t7;
-        let t34 = t33 - t1;
-        let t36 = t25 * twist[0] + minus_s_distal_leg2 * twist[1] + t34 * twist[2];
-        let t37 = t24 * t36;
-        let t38 = minus_s_distal_leg1 * t37;
-        let t41 = t33 - t4;
-        let t44 = t27 + t28;
-        let t46 = minus_s_distal_leg1 * twist[0] + t41 * twist[1] + t44 * twist[2];
-        let t47 = t24 * t46;
-        let t48 = t25 * t47;
-        let t51 = t41 * t37;
-        let t53 = minus_s_distal_leg2 * t47;
-        let t56 = t44 * t37;
-        let t58 = t34 * t47;
-        let t60 = t46 * t36;
-        let t61 = t60 + t17;
-        let t67 = minus_s_distal_leg1 * acceleration[0] + t41 * acceleration[1]
-            + t44 * acceleration[2];
-        let t68 = t37 - t67;
-        let t71 = t24 * t24;
-        let t72 = t46 * t46;
-        let t73 = t71 - t72;
-        let t90 = t25 * acceleration[0] + minus_s_distal_leg2 * acceleration[1]
-            + t34 * acceleration[2];
-        let t91 = t47 + t90;
-        let t93 = t36 * t36;
-        let t94 = t93 - t71;
-        let t97 = t60 - t17;
-        let t111 = t5 * t60;
-        let t115 = t10 * t60;
-        let t119 = minus_s_distal_leg3 * t60;
-        let t122 = t72 - t93;
-        let t124 = t47 - t90;
-        let t127 = t37 + t67;
-        let t149 = 9.81 * t44;
-        let t151 = 9.81 * t34;
-        let t158 = 9.81 * minus_s_distal_leg3;
-        let t171 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t171, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t171);
-        let t174 = 1.0 / (t41 * c_distal_leg1);
-        let s_proximal_leg1 = t174 * (t41 * t44);
-        let c_proximal_leg1 = t174 * (t41 * t41);
-        let t181 = t41 * c_proximal_leg1 + t44 * s_proximal_leg1;
-        ::overact::guard::leg(t181, 1.0, "leg1")?;
-        let t182 = 1.0 / t181;
-        let gdistal_wz_leg1 = t41 * t182;
-        let minus_gdistal_wy_leg1 = t44 * t182;
-        let rate_distal_leg1 = gdistal_wz_leg1 * twist[2]
-            - minus_gdistal_wy_leg1 * twist[1];
-        let t188 = s_proximal_leg1 * rate_distal_leg1;
-        let gwrist_wy_leg1 = c_proximal_leg1 * t182;
-        let gwrist_wz_leg1 = s_proximal_leg1 * t182;
-        let rate_wrist_leg1 = gwrist_wy_leg1 * twist[1] + gwrist_wz_leg1 * twist[2];
-        let t194 = t44 * rate_wrist_leg1;
-        let t196 = c_proximal_leg1 * rate_distal_leg1;
-        let t197 = t41 * rate_wrist_leg1;
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
-        let t202 = minus_s_distal_leg1 * rate_wrist_leg1;
-        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
-        let rate_proximal_leg1 = twist[0] - minus_gproximal_wy_leg1 * twist[1]
-            - minus_gproximal_wz_leg1 * twist[2];
-        let t213 = acceleration[1]
-            - (t196 * t202 - rate_proximal_leg1 * t194 - rate_proximal_leg1 * t196);
-        let t221 = acceleration[2]
-            - (rate_proximal_leg1 * t197 + t188 * t202 - rate_proximal_leg1 * t188);
-        let rate_dot_proximal_leg1 = acceleration[0] + t188 * t194 + t196 * t197
-            - minus_gproximal_wy_leg1 * t213 - minus_gproximal_wz_leg1 * t221;
-        let t227 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t227, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t227);
-        let t230 = 1.0 / (t34 * c_distal_leg2);
-        let s_proximal_leg2 = t230 * (t25 * t34);
-        let c_proximal_leg2 = t230 * (t34 * t34);
-        let t237 = t25 * s_proximal_leg2 + t34 * c_proximal_leg2;
-        ::overact::guard::leg(t237, 1.0, "leg2")?;
-        let t238 = 1.0 / t237;
-        let gwrist_wx_leg2 = s_proximal_leg2 * t238;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
-        let gdistal_wx_leg2 = t34 * t238;
-        let minus_gdistal_wz_leg2 = t25 * t238;
-        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
-            - minus_gdistal_wz_leg2 * twist[2];
-        let t246 = s_proximal_leg2 * rate_distal_leg2;
-        let gwrist_wz_leg2 = c_proximal_leg2 * t238;
-        let rate_wrist_leg2 = gwrist_wx_leg2 * twist[0] + gwrist_wz_leg2 * twist[2];
-        let t251 = t25 * rate_wrist_leg2;
-        let t253 = c_proximal_leg2 * rate_distal_leg2;
-        let t254 = t34 * rate_wrist_leg2;
-        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
-        let rate_proximal_leg2 = twist[1] - minus_gproximal_wx_leg2 * twist[0]
-            - minus_gproximal_wz_leg2 * twist[2];
-        let t264 = minus_s_distal_leg2 * rate_wrist_leg2;
-        let t269 = acceleration[0]
-            - (rate_proximal_leg2 * t254 + t246 * t264 - rate_proximal_leg2 * t246);
-        let t277 = acceleration[2]
-            - (t253 * t264 - rate_proximal_leg2 * t251 - rate_proximal_leg2 * t253);
-        let rate_dot_proximal_leg2 = acceleration[1] + t246 * t251 + t253 * t254
-            - minus_gproximal_wx_leg2 * t269 - minus_gproximal_wz_leg2 * t277;
-        let t283 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t283, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t283);
-        let t286 = 1.0 / (t5 * c_distal_leg3);
-        let c_proximal_leg3 = t286 * (t5 * t5);
-        let s_proximal_leg3 = t286 * (t5 * t10);
-        let t293 = t5 * c_proximal_leg3 + t10 * s_proximal_leg3;
-        ::overact::guard::leg(t293, 1.0, "leg3")?;
-        let t294 = 1.0 / t293;
-        let gwrist_wx_leg3 = c_proximal_leg3 * t294;
-        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
-        let gdistal_wy_leg3 = t5 * t294;
-        let minus_gdistal_wx_leg3 = t10 * t294;
-        let rate_distal_leg3 = gdistal_wy_leg3 * twist[1]
-            - minus_gdistal_wx_leg3 * twist[0];
-        let t302 = s_proximal_leg3 * rate_distal_leg3;
-        let gwrist_wy_leg3 = s_proximal_leg3 * t294;
-        let rate_wrist_leg3 = gwrist_wx_leg3 * twist[0] + gwrist_wy_leg3 * twist[1];
-        let t307 = t10 * rate_wrist_leg3;
-        let t309 = c_proximal_leg3 * rate_distal_leg3;
-        let t310 = t5 * rate_wrist_leg3;
-        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
-        let t317 = minus_gproximal_wx_leg3 * twist[0]
-            + minus_gproximal_wy_leg3 * twist[1];
-        let rate_proximal_leg3 = twist[2] - t317;
-        let t324 = acceleration[0]
-            - (t317 * t309 - rate_proximal_leg3 * t307 - rate_proximal_leg3 * t309);
-        let t331 = acceleration[1]
-            - (rate_proximal_leg3 * t310 + t317 * t302 - rate_proximal_leg3 * t302);
-        let rate_dot_proximal_leg3 = acceleration[2] + t302 * t307 + t309 * t310
-            - (minus_gproximal_wx_leg3 * t324 + minus_gproximal_wy_leg3 * t331);
-        let t337 = 9.81 * c_proximal_leg1;
-        let t339 = minus_gproximal_wz_leg1 * t337;
-        let t340 = 9.81 * s_proximal_leg2;
-        let t342 = minus_gproximal_wz_leg2 * t340;
-        let t343 = 9.81 * s_proximal_leg1;
-        let t345 = 9.81 * c_proximal_leg2;
-        let t362 = c_distal_leg1 * rate_dot_proximal_leg1;
-        let t363 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t364 = rate_distal_leg1 * t363;
-        let t365 = t362 + t364;
-        let t367 = c_distal_leg1 * rate_proximal_leg1;
-        let t368 = rate_distal_leg1 * t367;
-        let t370 = c_distal_leg1 * t365 + minus_s_distal_leg1 * t368;
-        let t371 = t367 * t363;
-        let t378 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t379 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t380 = rate_distal_leg2 * t379;
-        let t381 = t378 + t380;
-        let t383 = c_distal_leg2 * rate_proximal_leg2;
-        let t384 = rate_distal_leg2 * t383;
-        let t386 = c_distal_leg2 * t381 + minus_s_distal_leg2 * t384;
-        let t388 = t383 * t379;
-        let t394 = c_distal_leg3 * rate_proximal_leg3;
-        let t395 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t396 = t394 * t395;
-        let t398 = c_distal_leg3 * rate_dot_proximal_leg3;
-        let t399 = rate_distal_leg3 * t395;
-        let t400 = t398 + t399;
-        let t402 = rate_distal_leg3 * t394;
-        let t404 = c_distal_leg3 * t400 + minus_s_distal_leg3 * t402;
-        let t412 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
-        let t416 = minus_s_distal_leg1 * (t364 + t365)
-            - c_distal_leg1 * (t368 + t368 - t412);
-        let t418 = t367 * t367;
-        let t419 = t363 * t363;
-        let t420 = t418 - t419;
-        let t426 = t383 * t383;
-        let t427 = t379 * t379;
-        let t428 = t426 - t427;
-        let t432 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t436 = minus_s_distal_leg2 * (t380 + t381)
-            - c_distal_leg2 * (t384 + t384 - t432);
-        let t444 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let t448 = minus_s_distal_leg3 * (t399 + t400)
-            - c_distal_leg3 * (t402 + t402 - t444);
-        let t450 = t394 * t394;
-        let t451 = t395 * t395;
-        let t452 = t450 - t451;
-        let rate_dot_distal_leg1 = gdistal_wz_leg1 * t221 - minus_gdistal_wy_leg1 * t213;
-        let t463 = rate_distal_leg1 * rate_distal_leg1;
-        let t466 = c_distal_leg1 * (t371 + rate_dot_distal_leg1)
-            + minus_s_distal_leg1 * (t463 - t418);
-        let rate_dot_distal_leg2 = gdistal_wx_leg2 * t269 - minus_gdistal_wz_leg2 * t277;
-        let t478 = rate_distal_leg2 * rate_distal_leg2;
-        let t481 = c_distal_leg2 * (t388 + rate_dot_distal_leg2)
-            + minus_s_distal_leg2 * (t478 - t426);
-        let rate_dot_distal_leg3 = gdistal_wy_leg3 * t331 - minus_gdistal_wx_leg3 * t324;
-        let t493 = rate_distal_leg3 * rate_distal_leg3;
-        let t496 = c_distal_leg3 * (t396 + rate_dot_distal_leg3)
-            + minus_s_distal_leg3 * (t493 - t450);
-        let t507 = minus_s_distal_leg1 * (t371 - rate_dot_distal_leg1)
-            - c_distal_leg1 * (t419 - t463);
-        let t518 = minus_s_distal_leg2 * (t388 - rate_dot_distal_leg2)
-            - c_distal_leg2 * (t427 - t478);
-        let t530 = minus_s_distal_leg3 * (t396 - rate_dot_distal_leg3)
-            - c_distal_leg3 * (t451 - t493);
-        let t537 = 9.81 * (minus_s_distal_leg1 * c_proximal_leg1);
-        let t545 = 9.81 * (minus_s_distal_leg2 * s_proximal_leg2);
+        let t6 = 2.0 * pose[1];
+        let t7 = pose[3] * t6;
+        let t8 = pose[0] * t0;
+        let minus_s_distal_leg3 = t7 - t8;
+        let t11 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t11, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t11);
+        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
+        let t13 = 1.0 / c_distal_leg3;
+        let t15 = 1.0 / (t5 * c_distal_leg3);
+        let c_proximal_leg3 = t15 * (t5 * t5);
+        let t19 = pose[2] * t6;
+        let t20 = pose[0] * t3;
+        let t21 = t19 + t20;
+        let s_proximal_leg3 = t15 * (t5 * t21);
+        let rate_distal_leg3 = c_proximal_leg3 * twist[1] - s_proximal_leg3 * twist[0];
+        let t29 = minus_s_distal_leg3 * t13;
+        let t32 = c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1];
+        let t33 = t29 * t32;
+        let rate_proximal_leg3 = twist[2] - t33;
+        let t38 = c_proximal_leg3 * acceleration[0] + s_proximal_leg3 * acceleration[1]
+            + rate_distal_leg3 * rate_proximal_leg3 - rate_distal_leg3 * t33;
+        let rate_dot_wrist_leg3 = t13 * t38;
+        let t40 = c_distal_leg3 * rate_proximal_leg3;
+        let t41 = rate_distal_leg3 * t40;
+        let rate_dot_proximal_leg3 = acceleration[2] + t32 * rate_distal_leg3
+            - t29 * t38;
+        let t46 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t47 = t41 - t46;
+        let t48 = rate_dot_wrist_leg3 - t47;
+        let minus_s_distal_leg1 = t19 - t20;
+        let t51 = pose[3] * t0;
+        let t52 = pose[0] * t6;
+        let minus_s_distal_leg2 = t51 - t52;
+        let t55 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t55, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t55);
+        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
+        let t57 = 1.0 / c_distal_leg2;
+        let t58 = minus_s_distal_leg2 * t57;
+        let t60 = 1.0 - pose[1] * t6;
+        let t61 = t60 - t1;
+        let t63 = 1.0 / (t61 * c_distal_leg2);
+        let t64 = t7 + t8;
+        let s_proximal_leg2 = t63 * (t64 * t61);
+        let c_proximal_leg2 = t63 * (t61 * t61);
+        let t71 = s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2];
+        let t72 = t58 * t71;
+        let rate_proximal_leg2 = twist[1] - t72;
+        let t74 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let rate_wrist_leg2 = t57 * t71;
+        let t76 = t74 + rate_wrist_leg2;
+        let t77 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let rate_wrist_leg3 = t13 * t32;
+        let t79 = t77 + rate_wrist_leg3;
+        let t80 = t76 * t79;
+        let t81 = minus_s_distal_leg1 * t80;
+        let t84 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t84, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t84);
+        ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
+        let t86 = 1.0 / c_distal_leg1;
+        let t87 = minus_s_distal_leg1 * t86;
+        let t88 = t60 - t4;
+        let t90 = 1.0 / (t88 * c_distal_leg1);
+        let c_proximal_leg1 = t90 * (t88 * t88);
+        let t94 = t51 + t52;
+        let s_proximal_leg1 = t90 * (t88 * t94);
+        let t98 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
+        let t99 = t87 * t98;
+        let rate_proximal_leg1 = twist[0] - t99;
+        let t101 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let rate_wrist_leg1 = t86 * t98;
+        let t103 = t101 + rate_wrist_leg1;
+        let t104 = t103 * t79;
+        let t105 = t64 * t104;
+        let t108 = t88 * t80;
+        let t110 = minus_s_distal_leg2 * t104;
+        let t113 = t94 * t80;
+        let t115 = t61 * t104;
+        let t117 = t103 * t76;
+        let t118 = t117 + t48;
+        let minus_rate_distal_leg1 = s_proximal_leg1 * twist[1]
+            - c_proximal_leg1 * twist[2];
+        let t131 = c_proximal_leg1 * acceleration[1] + s_proximal_leg1 * acceleration[2]
+            + minus_rate_distal_leg1 * t99 - minus_rate_distal_leg1 * rate_proximal_leg1;
+        let rate_dot_proximal_leg1 = acceleration[0] - t98 * minus_rate_distal_leg1
+            - t87 * t131;
+        let t134 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t135 = c_distal_leg1 * rate_proximal_leg1;
+        let t136 = minus_rate_distal_leg1 * t135;
+        let t137 = t134 + t136;
+        let rate_dot_wrist_leg1 = t86 * t131;
+        let t139 = t137 + rate_dot_wrist_leg1;
+        let t140 = t80 - t139;
+        let t143 = t79 * t79;
+        let t144 = t103 * t103;
+        let t145 = t143 - t144;
+        let minus_rate_distal_leg2 = s_proximal_leg2 * twist[2]
+            - c_proximal_leg2 * twist[0];
+        let t169 = s_proximal_leg2 * acceleration[0] + c_proximal_leg2 * acceleration[2]
+            + minus_rate_distal_leg2 * t72 - minus_rate_distal_leg2 * rate_proximal_leg2;
+        let rate_dot_proximal_leg2 = acceleration[1] - t71 * minus_rate_distal_leg2
+            - t58 * t169;
+        let t172 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t173 = c_distal_leg2 * rate_proximal_leg2;
+        let t174 = minus_rate_distal_leg2 * t173;
+        let t175 = t172 + t174;
+        let rate_dot_wrist_leg2 = t57 * t169;
+        let t177 = t175 + rate_dot_wrist_leg2;
+        let t178 = t104 + t177;
+        let t180 = t76 * t76;
+        let t181 = t180 - t143;
+        let t184 = t117 - t48;
+        let t198 = t5 * t117;
+        let t202 = t21 * t117;
+        let t206 = minus_s_distal_leg3 * t117;
+        let t209 = t144 - t180;
+        let t211 = t104 - t177;
+        let t214 = t80 + t139;
+        let t236 = 9.81 * t94;
+        let t238 = 9.81 * t61;
+        let t245 = 9.81 * minus_s_distal_leg3;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t87;
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t87;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t58;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t58;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t29;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t29;
+        let t269 = 9.81 * c_proximal_leg1;
+        let t271 = minus_gproximal_wz_leg1 * t269;
+        let t272 = 9.81 * s_proximal_leg2;
+        let t274 = minus_gproximal_wz_leg2 * t272;
+        let t275 = 9.81 * s_proximal_leg1;
+        let t277 = 9.81 * c_proximal_leg2;
+        let t294 = minus_rate_distal_leg1 * t101;
+        let t295 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t296 = t294 - t295;
+        let t299 = c_distal_leg1 * t296 + minus_s_distal_leg1 * t136;
+        let t301 = t135 * t101;
+        let t307 = minus_rate_distal_leg2 * t74;
+        let t308 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t309 = t307 - t308;
+        let t312 = c_distal_leg2 * t309 + minus_s_distal_leg2 * t174;
+        let t314 = t173 * t74;
+        let t320 = t40 * t77;
+        let t322 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t323 = rate_distal_leg3 * t77;
+        let t324 = t322 + t323;
+        let t327 = c_distal_leg3 * t324 + minus_s_distal_leg3 * t41;
+        let t337 = c_distal_leg1 * (t136 + t137) - minus_s_distal_leg1 * (t294 + t296);
+        let t339 = t135 * t135;
+        let t340 = t101 * t101;
+        let t341 = t339 - t340;
+        let t347 = t173 * t173;
+        let t348 = t74 * t74;
+        let t349 = t347 - t348;
+        let t355 = c_distal_leg2 * (t174 + t175) - minus_s_distal_leg2 * (t307 + t309);
+        let t365 = minus_s_distal_leg3 * (t323 + t324) - c_distal_leg3 * (t41 + t47);
+        let t367 = t40 * t40;
+        let t368 = t77 * t77;
+        let t369 = t367 - t368;
+        let minus_rate_dot_distal_leg1 = s_proximal_leg1 * acceleration[1]
+            - c_proximal_leg1 * acceleration[2] + t98 * rate_proximal_leg1;
+        let t382 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t385 = c_distal_leg1 * (t301 - minus_rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t382 - t339);
+        let minus_rate_dot_distal_leg2 = s_proximal_leg2 * acceleration[2]
+            - c_proximal_leg2 * acceleration[0] + t71 * rate_proximal_leg2;
+        let t399 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t402 = c_distal_leg2 * (t314 - minus_rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t399 - t347);
+        let rate_dot_distal_leg3 = c_proximal_leg3 * acceleration[1]
+            - s_proximal_leg3 * acceleration[0] - t32 * rate_proximal_leg3;
+        let t416 = rate_distal_leg3 * rate_distal_leg3;
+        let t419 = c_distal_leg3 * (t320 + rate_dot_distal_leg3)
+            + minus_s_distal_leg3 * (t416 - t367);
+        let t430 = minus_s_distal_leg1 * (t301 + minus_rate_dot_distal_leg1)
+            - c_distal_leg1 * (t340 - t382);
+        let t441 = minus_s_distal_leg2 * (t314 + minus_rate_dot_distal_leg2)
+            - c_distal_leg2 * (t348 - t399);
+        let t453 = minus_s_distal_leg3 * (t320 - rate_dot_distal_leg3)
+            - c_distal_leg3 * (t368 - t416);
+        let t460 = 9.81 * (minus_s_distal_leg1 * c_proximal_leg1);
+        let t470 = 9.81 * (minus_s_distal_leg2 * s_proximal_leg2);
         Ok([
             [
-                t5 * t17 + t38 - t48, minus_s_distal_leg1 * t61 - t5 * t68 + t25 * t73,
-                t5 * t91 + minus_s_distal_leg1 * t94 - t25 * t97,
-                minus_s_distal_leg1 * t67 - t111 + t48,
-                t5 * t122 - minus_s_distal_leg1 * t124 + t25 * t127, t111 - t38 + t25 * t90,
-                t25 * t149 - minus_s_distal_leg1 * t151, t5 * t151 - t25 * t158,
-                minus_s_distal_leg1 * t158 - t5 * t149, rate_dot_proximal_leg1,
+                t5 * t48 + t81 - t105, minus_s_distal_leg1 * t118 - t5 * t140 + t64 * t145,
+                t5 * t178 + minus_s_distal_leg1 * t181 - t64 * t184,
+                minus_s_distal_leg1 * t139 - t198 + t105,
+                t5 * t209 - minus_s_distal_leg1 * t211 + t64 * t214, t198 - t81 + t64 * t177,
+                t64 * t236 - minus_s_distal_leg1 * t238, t5 * t238 - t64 * t245,
+                minus_s_distal_leg1 * t245 - t5 * t236, rate_dot_proximal_leg1,
                 -(minus_gproximal_wx_leg2 * rate_dot_proximal_leg2),
-                -(minus_gproximal_wx_leg3 * rate_dot_proximal_leg3), -t337,
-                -(minus_gproximal_wx_leg2 * t340), t343, -t342, rate_proximal_leg1,
+                -(minus_gproximal_wx_leg3 * rate_dot_proximal_leg3), -t269,
+                -(minus_gproximal_wx_leg2 * t272), t275, -t274, rate_proximal_leg1,
                 -(minus_gproximal_wx_leg2 * rate_proximal_leg2),
                 -(minus_gproximal_wx_leg3 * rate_proximal_leg3),
                 ::overact::math::sign(rate_proximal_leg1),
                 -::overact::math::signed(minus_gproximal_wx_leg2, rate_proximal_leg2),
                 -::overact::math::signed(minus_gproximal_wx_leg3, rate_proximal_leg3), 1.0,
-                -minus_gproximal_wx_leg2, -minus_gproximal_wx_leg3, t370,
-                -(minus_gproximal_wx_leg2 * t386 + gdistal_wx_leg2 * t388),
-                minus_gdistal_wx_leg3 * t396 - minus_gproximal_wx_leg3 * t404, t416,
-                gdistal_wx_leg2 * t428 - minus_gproximal_wx_leg2 * t436,
-                -(minus_gproximal_wx_leg3 * t448 + minus_gdistal_wx_leg3 * t452), -t466,
-                minus_gproximal_wx_leg2 * t481 - gdistal_wx_leg2 * t378,
-                minus_gproximal_wx_leg3 * t496 + minus_gdistal_wx_leg3 * t398, t507,
-                -(minus_gproximal_wx_leg2 * t518 + gdistal_wx_leg2 * t432),
-                minus_gdistal_wx_leg3 * t444 - minus_gproximal_wx_leg3 * t530, t537,
-                minus_gproximal_wx_leg2 * t545 - gdistal_wx_leg2 * t151,
-                minus_gdistal_wx_leg3 * t158,
+                -minus_gproximal_wx_leg2, -minus_gproximal_wx_leg3, -t299,
+                minus_gproximal_wx_leg2 * t312 - c_proximal_leg2 * t314,
+                s_proximal_leg3 * t320 - minus_gproximal_wx_leg3 * t327, t337,
+                c_proximal_leg2 * t349 - minus_gproximal_wx_leg2 * t355,
+                -(minus_gproximal_wx_leg3 * t365 + s_proximal_leg3 * t369), -t385,
+                minus_gproximal_wx_leg2 * t402 - c_proximal_leg2 * t308,
+                minus_gproximal_wx_leg3 * t419 + s_proximal_leg3 * t322, t430,
+                -(minus_gproximal_wx_leg2 * t441 + c_proximal_leg2 * t172),
+                s_proximal_leg3 * t46 - minus_gproximal_wx_leg3 * t453, t460,
+                minus_gproximal_wx_leg2 * t470 - 9.81 * (t61 * c_proximal_leg2),
+                9.81 * (minus_s_distal_leg3 * s_proximal_leg3),
             ],
             [
-                t10 * t17 + t51 - t53, t41 * t61 - t10 * t68 + minus_s_distal_leg2 * t73,
-                t10 * t91 + t41 * t94 - minus_s_distal_leg2 * t97, t41 * t67 - t115 + t53,
-                t10 * t122 - t41 * t124 + minus_s_distal_leg2 * t127,
-                t115 - t51 + minus_s_distal_leg2 * t90, minus_s_distal_leg2 * t149 - t41 * t151,
-                t10 * t151 - minus_s_distal_leg2 * t158, t41 * t158 - t10 * t149,
+                t21 * t48 + t108 - t110, t88 * t118 - t21 * t140 + minus_s_distal_leg2 * t145,
+                t21 * t178 + t88 * t181 - minus_s_distal_leg2 * t184, t88 * t139 - t202 + t110,
+                t21 * t209 - t88 * t211 + minus_s_distal_leg2 * t214,
+                t202 - t108 + minus_s_distal_leg2 * t177, minus_s_distal_leg2 * t236 - t88 * t238,
+                t21 * t238 - minus_s_distal_leg2 * t245, t88 * t245 - t21 * t236,
                 -(minus_gproximal_wy_leg1 * rate_dot_proximal_leg1), rate_dot_proximal_leg2,
-                -(minus_gproximal_wy_leg3 * rate_dot_proximal_leg3), minus_gproximal_wy_leg1 * t337,
-                t340, -t339, t345, -(minus_gproximal_wy_leg1 * rate_proximal_leg1),
+                -(minus_gproximal_wy_leg3 * rate_dot_proximal_leg3), minus_gproximal_wy_leg1 * t269,
+                t272, -t271, t277, -(minus_gproximal_wy_leg1 * rate_proximal_leg1),
                 rate_proximal_leg2, -(minus_gproximal_wy_leg3 * rate_proximal_leg3),
                 -::overact::math::signed(minus_gproximal_wy_leg1, rate_proximal_leg1),
                 ::overact::math::sign(rate_proximal_leg2),
                 -::overact::math::signed(minus_gproximal_wy_leg3, rate_proximal_leg3),
                 -minus_gproximal_wy_leg1, 1.0, -minus_gproximal_wy_leg3,
-                minus_gdistal_wy_leg1 * t371 - minus_gproximal_wy_leg1 * t370, t386,
-                -(minus_gproximal_wy_leg3 * t404 + gdistal_wy_leg3 * t396),
-                -(minus_gproximal_wy_leg1 * t416 + minus_gdistal_wy_leg1 * t420), t436,
-                gdistal_wy_leg3 * t452 - minus_gproximal_wy_leg3 * t448,
-                minus_gproximal_wy_leg1 * t466 + minus_gdistal_wy_leg1 * t362, -t481,
-                minus_gproximal_wy_leg3 * t496 - gdistal_wy_leg3 * t398,
-                minus_gdistal_wy_leg1 * t412 - minus_gproximal_wy_leg1 * t507, t518,
-                -(minus_gproximal_wy_leg3 * t530 + gdistal_wy_leg3 * t444),
-                minus_gdistal_wy_leg1 * t149 - minus_gproximal_wy_leg1 * t537, -t545,
-                -(gdistal_wy_leg3 * t158),
+                minus_gproximal_wy_leg1 * t299 + s_proximal_leg1 * t301, -t312,
+                -(minus_gproximal_wy_leg3 * t327 + c_proximal_leg3 * t320),
+                -(minus_gproximal_wy_leg1 * t337 + s_proximal_leg1 * t341), t355,
+                c_proximal_leg3 * t369 - minus_gproximal_wy_leg3 * t365,
+                minus_gproximal_wy_leg1 * t385 + s_proximal_leg1 * t295, -t402,
+                minus_gproximal_wy_leg3 * t419 - c_proximal_leg3 * t322,
+                s_proximal_leg1 * t134 - minus_gproximal_wy_leg1 * t430, t441,
+                -(minus_gproximal_wy_leg3 * t453 + c_proximal_leg3 * t46),
+                9.81 * (t94 * s_proximal_leg1) - minus_gproximal_wy_leg1 * t460, -t470,
+                -(9.81 * (minus_s_distal_leg3 * c_proximal_leg3)),
             ],
             [
-                minus_s_distal_leg3 * t17 + t56 - t58,
-                t44 * t61 - minus_s_distal_leg3 * t68 + t34 * t73,
-                minus_s_distal_leg3 * t91 + t44 * t94 - t34 * t97, t44 * t67 - t119 + t58,
-                minus_s_distal_leg3 * t122 - t44 * t124 + t34 * t127, t119 - t56 + t34 * t90, 0.0,
+                minus_s_distal_leg3 * t48 + t113 - t115,
+                t94 * t118 - minus_s_distal_leg3 * t140 + t61 * t145,
+                minus_s_distal_leg3 * t178 + t94 * t181 - t61 * t184, t94 * t139 - t206 + t115,
+                minus_s_distal_leg3 * t209 - t94 * t211 + t61 * t214, t206 - t113 + t61 * t177, 0.0,
                 0.0, 0.0, -(minus_gproximal_wz_leg1 * rate_dot_proximal_leg1),
-                -(minus_gproximal_wz_leg2 * rate_dot_proximal_leg2), rate_dot_proximal_leg3, t339,
-                -t342, -(minus_gproximal_wz_leg1 * t343), -(minus_gproximal_wz_leg2 * t345),
+                -(minus_gproximal_wz_leg2 * rate_dot_proximal_leg2), rate_dot_proximal_leg3, t271,
+                -t274, -(minus_gproximal_wz_leg1 * t275), -(minus_gproximal_wz_leg2 * t277),
                 -(minus_gproximal_wz_leg1 * rate_proximal_leg1),
                 -(minus_gproximal_wz_leg2 * rate_proximal_leg2), rate_proximal_leg3,
                 -::overact::math::signed(minus_gproximal_wz_leg1, rate_proximal_leg1),
                 -::overact::math::signed(minus_gproximal_wz_leg2, rate_proximal_leg2),
                 ::overact::math::sign(rate_proximal_leg3), -minus_gproximal_wz_leg1,
                 -minus_gproximal_wz_leg2, 1.0,
-                -(minus_gproximal_wz_leg1 * t370 + gdistal_wz_leg1 * t371),
-                minus_gdistal_wz_leg2 * t388 - minus_gproximal_wz_leg2 * t386, t404,
-                gdistal_wz_leg1 * t420 - minus_gproximal_wz_leg1 * t416,
-                -(minus_gproximal_wz_leg2 * t436 + minus_gdistal_wz_leg2 * t428), t448,
-                minus_gproximal_wz_leg1 * t466 - gdistal_wz_leg1 * t362,
-                minus_gproximal_wz_leg2 * t481 + minus_gdistal_wz_leg2 * t378, -t496,
-                -(minus_gproximal_wz_leg1 * t507 + gdistal_wz_leg1 * t412),
-                minus_gdistal_wz_leg2 * t432 - minus_gproximal_wz_leg2 * t518, t530,
-                -(minus_gproximal_wz_leg1 * t537 + gdistal_wz_leg1 * t149),
-                minus_gproximal_wz_leg2 * t545 + minus_gdistal_wz_leg2 * t151, 0.0,
+                minus_gproximal_wz_leg1 * t299 - c_proximal_leg1 * t301,
+                minus_gproximal_wz_leg2 * t312 + s_proximal_leg2 * t314, t327,
+                c_proximal_leg1 * t341 - minus_gproximal_wz_leg1 * t337,
+                -(minus_gproximal_wz_leg2 * t355 + s_proximal_leg2 * t349), t365,
+                minus_gproximal_wz_leg1 * t385 - c_proximal_leg1 * t295,
+                minus_gproximal_wz_leg2 * t402 + s_proximal_leg2 * t308, -t419,
+                -(minus_gproximal_wz_leg1 * t430 + c_proximal_leg1 * t134),
+                s_proximal_leg2 * t172 - minus_gproximal_wz_leg2 * t441, t453,
+                -(minus_gproximal_wz_leg1 * t460 + 9.81 * (t88 * s_proximal_leg1)),
+                minus_gproximal_wz_leg2 * t470 + 9.81 * (t64 * c_proximal_leg2), 0.0,
             ],
         ])
     }
@@ -3920,7 +3642,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 40.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 517 operations (187 additions, 327 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 427 intermediates.
+    /// 457 operations (171 additions, 283 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 367 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3930,6 +3652,17 @@ impl Spherical3Rrr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 40]; 3], ::overact::Error> {
+        let [(minus_s_proximal_leg1, minus_c_proximal_leg1),
+        (c_distal_leg1, minus_s_distal_leg1),
+        (minus_s_proximal_leg2, minus_c_proximal_leg2),
+        (c_distal_leg2, minus_s_distal_leg2),
+        (minus_s_proximal_leg3, minus_c_proximal_leg3),
+        (c_distal_leg3, minus_s_distal_leg3)] = ::overact::math::sin_cos_all([
+            joints[0], joints[1], joints[3], joints[4], joints[6], joints[7],
+        ]);
+        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
+        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
+        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
         let t0 = 2.0 * pose[2];
         let t1 = pose[2] * t0;
         let t3 = 2.0 * pose[3];
@@ -3984,156 +3717,121 @@ impl Spherical3Rrr {
         let t149 = 9.81 * t44;
         let t151 = 9.81 * t34;
         let t158 = 9.81 * t15;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let rate_distal_leg1 = minus_c_proximal_leg1 * twist[2]
-            - minus_s_proximal_leg1 * twist[1];
-        let t175 = minus_s_proximal_leg1 * rate_distal_leg1;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t178 = minus_s_proximal_leg1 * minus_s_distal_leg1;
-        let t179 = 1.0 / minus_s_distal_leg1;
-        let gwrist_wy_leg1 = minus_c_proximal_leg1 * t179;
-        let gwrist_wz_leg1 = minus_s_proximal_leg1 * t179;
-        let rate_wrist_leg1 = gwrist_wy_leg1 * twist[1] + gwrist_wz_leg1 * twist[2];
-        let t185 = t178 * rate_wrist_leg1;
-        let t187 = minus_c_proximal_leg1 * rate_distal_leg1;
-        let t189 = minus_c_proximal_leg1 * minus_s_distal_leg1 * rate_wrist_leg1;
-        let gproximal_wy_leg1 = c_distal_leg1 * gwrist_wy_leg1;
-        let gproximal_wz_leg1 = c_distal_leg1 * gwrist_wz_leg1;
-        let rate_proximal_leg1 = twist[0] + gproximal_wy_leg1 * twist[1]
-            + gproximal_wz_leg1 * twist[2];
-        let t200 = c_distal_leg1 * rate_wrist_leg1;
-        let t205 = acceleration[1] + rate_proximal_leg1 * t187 + t187 * t200
-            + rate_proximal_leg1 * t185;
-        let t213 = acceleration[2]
-            - (rate_proximal_leg1 * t189 - t175 * t200 - rate_proximal_leg1 * t175);
-        let rate_dot_proximal_leg1 = acceleration[0] + t175 * t185 + t187 * t189
-            + gproximal_wy_leg1 * t205 + gproximal_wz_leg1 * t213;
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let t222 = 1.0 / minus_s_distal_leg2;
-        let gwrist_wx_leg2 = minus_s_proximal_leg2 * t222;
-        let gproximal_wx_leg2 = c_distal_leg2 * gwrist_wx_leg2;
-        let gwrist_wz_leg2 = minus_c_proximal_leg2 * t222;
-        let gproximal_wz_leg2 = c_distal_leg2 * gwrist_wz_leg2;
-        let rate_proximal_leg2 = gproximal_wx_leg2 * twist[0] + twist[1]
-            + gproximal_wz_leg2 * twist[2];
-        let t231 = minus_c_proximal_leg2 * minus_s_distal_leg2;
-        let rate_wrist_leg2 = gwrist_wx_leg2 * twist[0] + gwrist_wz_leg2 * twist[2];
-        let t235 = t231 * rate_wrist_leg2;
-        let rate_distal_leg2 = minus_c_proximal_leg2 * twist[0]
-            - minus_s_proximal_leg2 * twist[2];
-        let t240 = minus_s_proximal_leg2 * rate_distal_leg2;
-        let t241 = c_distal_leg2 * rate_wrist_leg2;
-        let t246 = acceleration[0]
-            - (rate_proximal_leg2 * t235 - t240 * t241 - rate_proximal_leg2 * t240);
-        let t249 = minus_s_proximal_leg2 * minus_s_distal_leg2 * rate_wrist_leg2;
-        let t251 = minus_c_proximal_leg2 * rate_distal_leg2;
-        let t261 = acceleration[2] + rate_proximal_leg2 * t251 + t251 * t241
-            + rate_proximal_leg2 * t249;
-        let rate_dot_proximal_leg2 = gproximal_wx_leg2 * t246 + acceleration[1]
-            + t240 * t249 + t251 * t235 + gproximal_wz_leg2 * t261;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t270 = 1.0 / minus_s_distal_leg3;
-        let gwrist_wx_leg3 = minus_c_proximal_leg3 * t270;
-        let gproximal_wx_leg3 = c_distal_leg3 * gwrist_wx_leg3;
-        let gwrist_wy_leg3 = minus_s_proximal_leg3 * t270;
-        let gproximal_wy_leg3 = c_distal_leg3 * gwrist_wy_leg3;
-        let t277 = gproximal_wx_leg3 * twist[0] + gproximal_wy_leg3 * twist[1];
-        let rate_proximal_leg3 = t277 + twist[2];
+        let t174 = minus_c_proximal_leg1 * twist[1] + minus_s_proximal_leg1 * twist[2];
+        let minus_rate_distal_leg1 = minus_s_proximal_leg1 * twist[1]
+            - minus_c_proximal_leg1 * twist[2];
+        let t182 = c_distal_leg1 / minus_s_distal_leg1;
+        let t183 = t182 * t174;
+        let rate_proximal_leg1 = t183 + twist[0];
+        let rate_dot_proximal_leg1 = acceleration[0] - t174 * minus_rate_distal_leg1
+            - t182
+                * (minus_rate_distal_leg1 * rate_proximal_leg1
+                    + minus_rate_distal_leg1 * t183
+                    - (minus_c_proximal_leg1 * acceleration[1]
+                        + minus_s_proximal_leg1 * acceleration[2]));
+        let gproximal_wy_leg1 = minus_c_proximal_leg1 * t182;
+        let gproximal_wz_leg1 = minus_s_proximal_leg1 * t182;
+        let t202 = c_distal_leg2 / minus_s_distal_leg2;
+        let gproximal_wx_leg2 = minus_s_proximal_leg2 * t202;
+        let t206 = minus_s_proximal_leg2 * twist[0] + minus_c_proximal_leg2 * twist[2];
+        let minus_rate_distal_leg2 = minus_s_proximal_leg2 * twist[2]
+            - minus_c_proximal_leg2 * twist[0];
+        let t212 = t202 * t206;
+        let rate_proximal_leg2 = t212 + twist[1];
+        let rate_dot_proximal_leg2 = acceleration[1] - t206 * minus_rate_distal_leg2
+            - t202
+                * (minus_rate_distal_leg2 * rate_proximal_leg2
+                    + minus_rate_distal_leg2 * t212
+                    - (minus_s_proximal_leg2 * acceleration[0]
+                        + minus_c_proximal_leg2 * acceleration[2]));
+        let gproximal_wz_leg2 = minus_c_proximal_leg2 * t202;
+        let t230 = c_distal_leg3 / minus_s_distal_leg3;
+        let gproximal_wx_leg3 = minus_c_proximal_leg3 * t230;
         let rate_distal_leg3 = minus_c_proximal_leg3 * twist[1]
             - minus_s_proximal_leg3 * twist[0];
-        let t282 = minus_c_proximal_leg3 * rate_distal_leg3;
-        let rate_wrist_leg3 = gwrist_wx_leg3 * twist[0] + gwrist_wy_leg3 * twist[1];
-        let t289 = minus_s_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let t293 = acceleration[0] + rate_proximal_leg3 * t282 + t277 * t282
-            + rate_proximal_leg3 * t289;
-        let t296 = minus_c_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let t298 = minus_s_proximal_leg3 * rate_distal_leg3;
-        let t303 = acceleration[1]
-            - (rate_proximal_leg3 * t296 - t277 * t298 - rate_proximal_leg3 * t298);
-        let rate_dot_proximal_leg3 = gproximal_wx_leg3 * t293 + gproximal_wy_leg3 * t303
-            + acceleration[2] + t298 * t289 + t282 * t296;
-        let t313 = 9.81 * minus_c_proximal_leg1;
-        let t315 = gproximal_wz_leg1 * t313;
-        let t316 = 9.81 * minus_s_proximal_leg2;
-        let t318 = gproximal_wz_leg2 * t316;
-        let t319 = 9.81 * minus_s_proximal_leg1;
-        let t321 = 9.81 * minus_c_proximal_leg2;
-        let t338 = c_distal_leg1 * rate_proximal_leg1;
-        let t339 = rate_distal_leg1 * t338;
-        let t340 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
-        let t341 = t339 - t340;
-        let t343 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t344 = rate_distal_leg1 * t343;
-        let t346 = minus_s_distal_leg1 * t341 + c_distal_leg1 * t344;
-        let t348 = t343 * t338;
-        let t354 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t355 = c_distal_leg2 * rate_proximal_leg2;
-        let t356 = t354 * t355;
-        let t358 = rate_distal_leg2 * t355;
-        let t359 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t360 = t358 - t359;
-        let t362 = rate_distal_leg2 * t354;
-        let t364 = minus_s_distal_leg2 * t360 + c_distal_leg2 * t362;
-        let t370 = c_distal_leg3 * rate_proximal_leg3;
-        let t371 = rate_distal_leg3 * t370;
-        let t372 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let t373 = t371 - t372;
-        let t375 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t376 = rate_distal_leg3 * t375;
-        let t378 = minus_s_distal_leg3 * t373 + c_distal_leg3 * t376;
-        let t380 = t375 * t370;
-        let t388 = c_distal_leg1 * rate_dot_proximal_leg1;
-        let t392 = c_distal_leg1 * (t339 + t341)
-            - minus_s_distal_leg1 * (t344 + t388 + t344);
-        let t394 = t343 * t343;
-        let t395 = t338 * t338;
-        let t396 = t394 - t395;
-        let t404 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t408 = c_distal_leg2 * (t358 + t360)
-            - minus_s_distal_leg2 * (t362 + t404 + t362);
-        let t410 = t354 * t354;
-        let t411 = t355 * t355;
-        let t412 = t410 - t411;
-        let t420 = c_distal_leg3 * rate_dot_proximal_leg3;
-        let t424 = c_distal_leg3 * (t371 + t373)
-            - minus_s_distal_leg3 * (t376 + t420 + t376);
-        let t426 = t375 * t375;
-        let t427 = t370 * t370;
-        let t428 = t426 - t427;
-        let t434 = rate_distal_leg1 * rate_distal_leg1;
-        let rate_dot_distal_leg1 = minus_c_proximal_leg1 * t213
-            - minus_s_proximal_leg1 * t205;
-        let t442 = c_distal_leg1 * (t434 - t394)
-            - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t348);
-        let t449 = rate_distal_leg2 * rate_distal_leg2;
-        let rate_dot_distal_leg2 = minus_c_proximal_leg2 * t246
-            - minus_s_proximal_leg2 * t261;
-        let t457 = c_distal_leg2 * (t449 - t410)
-            - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t356);
-        let t466 = t298 * t298 + t282 * t282;
-        let rate_dot_distal_leg3 = minus_c_proximal_leg3 * t303
-            - minus_s_proximal_leg3 * t293;
-        let t474 = c_distal_leg3 * (t466 - t426)
-            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t380);
-        let t485 = c_distal_leg1 * (t348 + rate_dot_distal_leg1)
-            - minus_s_distal_leg1 * (t395 - t434);
-        let t496 = c_distal_leg2 * (t356 + rate_dot_distal_leg2)
-            - minus_s_distal_leg2 * (t411 - t449);
-        let t507 = c_distal_leg3 * (t380 + rate_dot_distal_leg3)
-            - minus_s_distal_leg3 * (t427 - t466);
-        let t515 = 9.81 * (minus_c_proximal_leg1 * c_distal_leg1);
-        let t525 = 9.81 * (minus_s_proximal_leg2 * c_distal_leg2);
+        let t240 = minus_c_proximal_leg3 * twist[0] + minus_s_proximal_leg3 * twist[1];
+        let t241 = t230 * t240;
+        let rate_proximal_leg3 = t241 + twist[2];
+        let rate_dot_proximal_leg3 = t230
+            * (minus_c_proximal_leg3 * acceleration[0]
+                + minus_s_proximal_leg3 * acceleration[1]
+                + rate_distal_leg3 * rate_proximal_leg3 + rate_distal_leg3 * t241)
+            + acceleration[2] + t240 * rate_distal_leg3;
+        let gproximal_wy_leg3 = minus_s_proximal_leg3 * t230;
+        let t254 = 9.81 * minus_c_proximal_leg1;
+        let t256 = gproximal_wz_leg1 * t254;
+        let t257 = 9.81 * minus_s_proximal_leg2;
+        let t259 = gproximal_wz_leg2 * t257;
+        let t260 = 9.81 * minus_s_proximal_leg1;
+        let t262 = 9.81 * minus_c_proximal_leg2;
+        let t279 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t280 = c_distal_leg1 * rate_proximal_leg1;
+        let t281 = minus_rate_distal_leg1 * t280;
+        let t282 = t279 + t281;
+        let t284 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t285 = minus_rate_distal_leg1 * t284;
+        let t287 = minus_s_distal_leg1 * t282 + c_distal_leg1 * t285;
+        let t289 = t284 * t280;
+        let t295 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t296 = c_distal_leg2 * rate_proximal_leg2;
+        let t297 = minus_rate_distal_leg2 * t296;
+        let t298 = t295 + t297;
+        let t300 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t301 = minus_rate_distal_leg2 * t300;
+        let t303 = minus_s_distal_leg2 * t298 + c_distal_leg2 * t301;
+        let t305 = t300 * t296;
+        let t311 = c_distal_leg3 * rate_proximal_leg3;
+        let t312 = rate_distal_leg3 * t311;
+        let t313 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t314 = t312 - t313;
+        let t316 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t317 = rate_distal_leg3 * t316;
+        let t319 = minus_s_distal_leg3 * t314 + c_distal_leg3 * t317;
+        let t321 = t316 * t311;
+        let t327 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t333 = minus_s_distal_leg1 * (t285 - (t327 - t285))
+            - c_distal_leg1 * (t281 + t282);
+        let t335 = t284 * t284;
+        let t336 = t280 * t280;
+        let t337 = t335 - t336;
+        let t343 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t349 = minus_s_distal_leg2 * (t301 - (t343 - t301))
+            - c_distal_leg2 * (t297 + t298);
+        let t351 = t300 * t300;
+        let t352 = t296 * t296;
+        let t353 = t351 - t352;
+        let t361 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t365 = c_distal_leg3 * (t312 + t314)
+            - minus_s_distal_leg3 * (t317 + t361 + t317);
+        let t367 = t316 * t316;
+        let t368 = t311 * t311;
+        let t369 = t367 - t368;
+        let minus_rate_dot_distal_leg1 = minus_s_proximal_leg1 * acceleration[1]
+            - minus_c_proximal_leg1 * acceleration[2] + t174 * rate_proximal_leg1;
+        let t382 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t385 = minus_s_distal_leg1 * (t289 + minus_rate_dot_distal_leg1)
+            + c_distal_leg1 * (t382 - t335);
+        let minus_rate_dot_distal_leg2 = minus_s_proximal_leg2 * acceleration[2]
+            - minus_c_proximal_leg2 * acceleration[0] + t206 * rate_proximal_leg2;
+        let t399 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t402 = minus_s_distal_leg2 * (t305 + minus_rate_dot_distal_leg2)
+            + c_distal_leg2 * (t399 - t351);
+        let t409 = rate_distal_leg3 * rate_distal_leg3;
+        let rate_dot_distal_leg3 = minus_c_proximal_leg3 * acceleration[1]
+            - minus_s_proximal_leg3 * acceleration[0] - t240 * rate_proximal_leg3;
+        let t419 = c_distal_leg3 * (t409 - t367)
+            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t321);
+        let t430 = minus_s_distal_leg1 * (t336 - t382)
+            + c_distal_leg1 * (minus_rate_dot_distal_leg1 - t289);
+        let t442 = minus_s_distal_leg2 * (t352 - t399)
+            + c_distal_leg2 * (minus_rate_dot_distal_leg2 - t305);
+        let t452 = c_distal_leg3 * (t321 + rate_dot_distal_leg3)
+            - minus_s_distal_leg3 * (t368 - t409);
+        let t459 = c_distal_leg1 * t254;
+        let t460 = minus_s_distal_leg1 * t260;
+        let t467 = c_distal_leg2 * t257;
+        let t469 = minus_s_distal_leg2 * t262;
+        let t475 = 9.81 * c_distal_leg3;
         Ok([
             [
                 t5 * t17 + t38 - t48, t19 * t61 - t5 * t68 + t25 * t73,
@@ -4141,22 +3839,22 @@ impl Spherical3Rrr {
                 t5 * t122 - t19 * t124 + t25 * t127, t111 - t38 + t25 * t90,
                 t25 * t149 - t19 * t151, t5 * t151 - t25 * t158, t19 * t158 - t5 * t149,
                 rate_dot_proximal_leg1, gproximal_wx_leg2 * rate_dot_proximal_leg2,
-                gproximal_wx_leg3 * rate_dot_proximal_leg3, -t313, gproximal_wx_leg2 * t316, t319,
-                t318, rate_proximal_leg1, gproximal_wx_leg2 * rate_proximal_leg2,
+                gproximal_wx_leg3 * rate_dot_proximal_leg3, -t254, gproximal_wx_leg2 * t257, t260,
+                t259, rate_proximal_leg1, gproximal_wx_leg2 * rate_proximal_leg2,
                 gproximal_wx_leg3 * rate_proximal_leg3, ::overact::math::sign(rate_proximal_leg1),
                 ::overact::math::signed(gproximal_wx_leg2, rate_proximal_leg2),
                 ::overact::math::signed(gproximal_wx_leg3, rate_proximal_leg3), 1.0,
-                gproximal_wx_leg2, gproximal_wx_leg3, -t346,
-                minus_c_proximal_leg2 * t356 - gproximal_wx_leg2 * t364,
-                -(gproximal_wx_leg3 * t378 + minus_s_proximal_leg3 * t380), t392,
-                gproximal_wx_leg2 * t408 + minus_c_proximal_leg2 * t412,
-                gproximal_wx_leg3 * t424 - minus_s_proximal_leg3 * t428, t442,
-                gproximal_wx_leg2 * t457 - minus_c_proximal_leg2 * t359,
-                gproximal_wx_leg3 * t474 + minus_s_proximal_leg3 * t372, t485,
-                gproximal_wx_leg2 * t496 + minus_c_proximal_leg2 * t404,
-                gproximal_wx_leg3 * t507 - minus_s_proximal_leg3 * t420, -t515,
-                gproximal_wx_leg2 * t525 - 9.81 * (minus_c_proximal_leg2 * t231),
-                -(9.81 * (minus_s_proximal_leg3 * c_distal_leg3)),
+                gproximal_wx_leg2, gproximal_wx_leg3, t287,
+                gproximal_wx_leg2 * t303 + minus_c_proximal_leg2 * t305,
+                -(gproximal_wx_leg3 * t319 + minus_s_proximal_leg3 * t321), t333,
+                gproximal_wx_leg2 * t349 + minus_c_proximal_leg2 * t353,
+                gproximal_wx_leg3 * t365 - minus_s_proximal_leg3 * t369, t385,
+                gproximal_wx_leg2 * t402 - minus_c_proximal_leg2 * t295,
+                gproximal_wx_leg3 * t419 + minus_s_proximal_leg3 * t313, -t430,
+                minus_c_proximal_leg2 * t343 - gproximal_wx_leg2 * t442,
+                gproximal_wx_leg3 * t452 - minus_s_proximal_leg3 * t361, -t459,
+                gproximal_wx_leg2 * t467 - minus_c_proximal_leg2 * t469,
+                -(minus_s_proximal_leg3 * t475),
             ],
             [
                 t10 * t17 + t51 - t53, t41 * t61 - t10 * t68 + t29 * t73,
@@ -4164,44 +3862,44 @@ impl Spherical3Rrr {
                 t10 * t122 - t41 * t124 + t29 * t127, t115 - t51 + t29 * t90,
                 t29 * t149 - t41 * t151, t10 * t151 - t29 * t158, t41 * t158 - t10 * t149,
                 gproximal_wy_leg1 * rate_dot_proximal_leg1, rate_dot_proximal_leg2,
-                gproximal_wy_leg3 * rate_dot_proximal_leg3, -(gproximal_wy_leg1 * t313), t316, t315,
-                t321, gproximal_wy_leg1 * rate_proximal_leg1, rate_proximal_leg2,
+                gproximal_wy_leg3 * rate_dot_proximal_leg3, -(gproximal_wy_leg1 * t254), t257, t256,
+                t262, gproximal_wy_leg1 * rate_proximal_leg1, rate_proximal_leg2,
                 gproximal_wy_leg3 * rate_proximal_leg3,
                 ::overact::math::signed(gproximal_wy_leg1, rate_proximal_leg1),
                 ::overact::math::sign(rate_proximal_leg2),
                 ::overact::math::signed(gproximal_wy_leg3, rate_proximal_leg3), gproximal_wy_leg1,
-                1.0, gproximal_wy_leg3, -(gproximal_wy_leg1 * t346 + minus_s_proximal_leg1 * t348),
-                -t364, minus_c_proximal_leg3 * t380 - gproximal_wy_leg3 * t378,
-                gproximal_wy_leg1 * t392 - minus_s_proximal_leg1 * t396, t408,
-                gproximal_wy_leg3 * t424 + minus_c_proximal_leg3 * t428,
-                gproximal_wy_leg1 * t442 + minus_s_proximal_leg1 * t340, t457,
-                gproximal_wy_leg3 * t474 - minus_c_proximal_leg3 * t372,
-                gproximal_wy_leg1 * t485 - minus_s_proximal_leg1 * t388, t496,
-                gproximal_wy_leg3 * t507 + minus_c_proximal_leg3 * t420,
-                9.81 * (minus_s_proximal_leg1 * t178) - gproximal_wy_leg1 * t515, t525,
-                9.81 * (minus_c_proximal_leg3 * c_distal_leg3),
+                1.0, gproximal_wy_leg3, gproximal_wy_leg1 * t287 - minus_s_proximal_leg1 * t289,
+                t303, minus_c_proximal_leg3 * t321 - gproximal_wy_leg3 * t319,
+                gproximal_wy_leg1 * t333 - minus_s_proximal_leg1 * t337, t349,
+                gproximal_wy_leg3 * t365 + minus_c_proximal_leg3 * t369,
+                gproximal_wy_leg1 * t385 + minus_s_proximal_leg1 * t279, t402,
+                gproximal_wy_leg3 * t419 - minus_c_proximal_leg3 * t313,
+                -(gproximal_wy_leg1 * t430 + minus_s_proximal_leg1 * t327), -t442,
+                gproximal_wy_leg3 * t452 + minus_c_proximal_leg3 * t361,
+                minus_s_proximal_leg1 * t460 - gproximal_wy_leg1 * t459, t467,
+                minus_c_proximal_leg3 * t475,
             ],
             [
                 t15 * t17 + t56 - t58, t44 * t61 - t15 * t68 + t34 * t73,
                 t15 * t91 + t44 * t94 - t34 * t97, t44 * t67 - t119 + t58,
                 t15 * t122 - t44 * t124 + t34 * t127, t119 - t56 + t34 * t90, 0.0, 0.0, 0.0,
                 gproximal_wz_leg1 * rate_dot_proximal_leg1,
-                gproximal_wz_leg2 * rate_dot_proximal_leg2, rate_dot_proximal_leg3, -t315, t318,
-                gproximal_wz_leg1 * t319, gproximal_wz_leg2 * t321,
+                gproximal_wz_leg2 * rate_dot_proximal_leg2, rate_dot_proximal_leg3, -t256, t259,
+                gproximal_wz_leg1 * t260, gproximal_wz_leg2 * t262,
                 gproximal_wz_leg1 * rate_proximal_leg1, gproximal_wz_leg2 * rate_proximal_leg2,
                 rate_proximal_leg3, ::overact::math::signed(gproximal_wz_leg1, rate_proximal_leg1),
                 ::overact::math::signed(gproximal_wz_leg2, rate_proximal_leg2),
                 ::overact::math::sign(rate_proximal_leg3), gproximal_wz_leg1, gproximal_wz_leg2,
-                1.0, minus_c_proximal_leg1 * t348 - gproximal_wz_leg1 * t346,
-                -(gproximal_wz_leg2 * t364 + minus_s_proximal_leg2 * t356), -t378,
-                gproximal_wz_leg1 * t392 + minus_c_proximal_leg1 * t396,
-                gproximal_wz_leg2 * t408 - minus_s_proximal_leg2 * t412, t424,
-                gproximal_wz_leg1 * t442 - minus_c_proximal_leg1 * t340,
-                gproximal_wz_leg2 * t457 + minus_s_proximal_leg2 * t359, t474,
-                gproximal_wz_leg1 * t485 + minus_c_proximal_leg1 * t388,
-                gproximal_wz_leg2 * t496 - minus_s_proximal_leg2 * t404, t507,
-                -(gproximal_wz_leg1 * t515 + minus_c_proximal_leg1 * (9.81 * t178)),
-                gproximal_wz_leg2 * t525 + minus_s_proximal_leg2 * (9.81 * t231), 0.0,
+                1.0, gproximal_wz_leg1 * t287 + minus_c_proximal_leg1 * t289,
+                gproximal_wz_leg2 * t303 - minus_s_proximal_leg2 * t305, -t319,
+                gproximal_wz_leg1 * t333 + minus_c_proximal_leg1 * t337,
+                gproximal_wz_leg2 * t349 - minus_s_proximal_leg2 * t353, t365,
+                gproximal_wz_leg1 * t385 - minus_c_proximal_leg1 * t279,
+                gproximal_wz_leg2 * t402 + minus_s_proximal_leg2 * t295, t419,
+                minus_c_proximal_leg1 * t327 - gproximal_wz_leg1 * t430,
+                -(gproximal_wz_leg2 * t442 + minus_s_proximal_leg2 * t343), t452,
+                -(gproximal_wz_leg1 * t459 + minus_c_proximal_leg1 * t460),
+                gproximal_wz_leg2 * t467 + minus_s_proximal_leg2 * t469, 0.0,
             ],
         ])
     }
@@ -4216,7 +3914,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 40.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 616 operations (227 additions, 380 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 523 intermediates.
+    /// 551 operations (205 additions, 337 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 458 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4232,271 +3930,247 @@ impl Spherical3Rrr {
         let t3 = 2.0 * pose[3];
         let t4 = pose[3] * t3;
         let t5 = 1.0 - t1 - t4;
-        let t6 = pose[3] * t0;
-        let t7 = 2.0 * pose[1];
-        let t8 = pose[0] * t7;
-        let minus_s_distal_leg2 = t6 - t8;
-        let t11 = 1.0 - pose[1] * t7;
-        let t12 = t11 - t1;
-        let t14 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t14, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t14);
-        let t17 = 1.0 / (t12 * c_distal_leg2);
-        let t18 = pose[3] * t7;
-        let t19 = pose[0] * t0;
-        let t20 = t18 + t19;
-        let s_proximal_leg2 = t17 * (t20 * t12);
-        let c_proximal_leg2 = t17 * (t12 * t12);
-        let t27 = t20 * s_proximal_leg2 + t12 * c_proximal_leg2;
-        ::overact::guard::leg(t27, 1.0, "leg2")?;
-        let t28 = 1.0 / t27;
-        let gwrist_wx_leg2 = s_proximal_leg2 * t28;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
-        let minus_s_distal_leg3 = t18 - t19;
-        let t35 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t35, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t35);
-        let t38 = 1.0 / (t5 * c_distal_leg3);
-        let c_proximal_leg3 = t38 * (t5 * t5);
-        let t42 = pose[2] * t7;
-        let t43 = pose[0] * t3;
-        let t44 = t42 + t43;
-        let s_proximal_leg3 = t38 * (t5 * t44);
-        let t48 = t5 * c_proximal_leg3 + t44 * s_proximal_leg3;
-        ::overact::guard::leg(t48, 1.0, "leg3")?;
-        let t49 = 1.0 / t48;
-        let gwrist_wx_leg3 = c_proximal_leg3 * t49;
-        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
-        let t53 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+        let t6 = 2.0 * pose[1];
+        let t7 = pose[3] * t6;
+        let t8 = pose[0] * t0;
+        let minus_s_distal_leg3 = t7 - t8;
+        let t11 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t11, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t11);
+        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
+        let t13 = 1.0 / c_distal_leg3;
+        let t15 = 1.0 / (t5 * c_distal_leg3);
+        let c_proximal_leg3 = t15 * (t5 * t5);
+        let t19 = 1.0 - pose[1] * t6;
+        let t20 = t19 - t1;
+        let t21 = pose[3] * t0;
+        let t22 = pose[0] * t6;
+        let minus_s_distal_leg2 = t21 - t22;
+        let t25 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t25, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t25);
+        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
+        let t28 = 1.0 / (t20 * c_distal_leg2);
+        let t29 = t7 + t8;
+        let s_proximal_leg2 = t28 * (t29 * t20);
+        let t32 = 1.0 / c_distal_leg2;
+        let t33 = minus_s_distal_leg2 * t32;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t33;
+        let t37 = minus_s_distal_leg3 * t13;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t37;
+        let t40 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
-        ::overact::guard::platform(t53, 1.0, "actuators")?;
-        ::overact::guard::platform(t53, 1.0, "actuators")?;
-        let t54 = 1.0 / t53;
-        let t55 = t11 - t4;
+        ::overact::guard::platform(t40, 1.0, "actuators")?;
+        ::overact::guard::platform(t40, 1.0, "actuators")?;
+        let t41 = 1.0 / t40;
+        let t42 = pose[2] * t6;
+        let t43 = pose[0] * t3;
         let minus_s_distal_leg1 = t42 - t43;
-        let t58 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t58, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t58);
-        let t61 = 1.0 / (t55 * c_distal_leg1);
-        let t62 = t6 + t8;
-        let s_proximal_leg1 = t61 * (t55 * t62);
-        let c_proximal_leg1 = t61 * (t55 * t55);
-        let t69 = t55 * c_proximal_leg1 + t62 * s_proximal_leg1;
-        ::overact::guard::leg(t69, 1.0, "leg1")?;
-        let t70 = 1.0 / t69;
-        let gdistal_wz_leg1 = t55 * t70;
-        let gwrist_wz_leg1 = s_proximal_leg1 * t70;
-        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
-        let gwrist_wz_leg2 = c_proximal_leg2 * t28;
-        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
-        let t82 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
-            - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
-        let t83 = t82 * t54;
-        let gwrist_wy_leg1 = c_proximal_leg1 * t70;
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
-        let gwrist_wy_leg3 = s_proximal_leg3 * t49;
-        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
-        let t95 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+        let t46 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t46, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t46);
+        ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
+        let t48 = 1.0 / c_distal_leg1;
+        let t49 = minus_s_distal_leg1 * t48;
+        let t50 = t19 - t4;
+        let t52 = 1.0 / (t50 * c_distal_leg1);
+        let t53 = t21 + t22;
+        let s_proximal_leg1 = t52 * (t50 * t53);
+        let c_proximal_leg1 = t52 * (t50 * t50);
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t49;
+        let t61 = t42 + t43;
+        let s_proximal_leg3 = t15 * (t5 * t61);
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t37;
+        let t69 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
+        let t70 = t69 * t41;
+        let t72 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t69 * t70;
+        ::overact::guard::platform(t72, 1.0, "actuators")?;
+        ::overact::guard::platform(t72, 1.0, "actuators")?;
+        let t73 = 1.0 / t72;
+        let t74 = minus_gproximal_wy_leg1 * actuator_velocities[0];
+        let t76 = minus_gproximal_wy_leg3 * actuator_velocities[2];
+        let t78 = minus_gproximal_wx_leg2 * actuator_velocities[1];
+        let t80 = minus_gproximal_wx_leg3 * actuator_velocities[2];
+        let t81 = actuator_velocities[0] - t78 - t80;
+        let t83 = actuator_velocities[1] - t74 - t76 - t81 * t70;
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t49;
+        let c_proximal_leg2 = t28 * (t20 * t20);
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t33;
+        let t94 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
+        let t95 = t94 * t41;
         let t97 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
-            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t95 * t83;
-        let t102 = t95 * t54;
-        let t104 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t95 * t102;
-        ::overact::guard::platform(t104, 1.0, "actuators")?;
-        ::overact::guard::platform(t104, 1.0, "actuators")?;
-        let t105 = 1.0 / t104;
-        let t106 = t97 * t105;
-        let t108 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t82 * t83
-            - t97 * t106;
-        ::overact::guard::platform(t108, 1.0, "actuators")?;
-        ::overact::guard::platform(t108, 1.0, "actuators")?;
-        let t109 = 1.0 / t108;
-        let t110 = minus_gproximal_wz_leg1 * actuator_velocities[0];
-        let t111 = minus_gproximal_wz_leg2 * actuator_velocities[1];
-        let t114 = minus_gproximal_wx_leg2 * actuator_velocities[1];
-        let t116 = minus_gproximal_wx_leg3 * actuator_velocities[2];
-        let t117 = actuator_velocities[0] - t114 - t116;
-        let t120 = minus_gproximal_wy_leg1 * actuator_velocities[0];
-        let t122 = minus_gproximal_wy_leg3 * actuator_velocities[2];
-        let t125 = actuator_velocities[1] - t120 - t122 - t117 * t102;
-        let t128 = t109
-            * (actuator_velocities[2] - (t110 + t111) - t117 * t83 - t106 * t125);
-        let minus_gdistal_wy_leg1 = t62 * t70;
-        let t133 = t105 * t125 - t106 * t128;
-        let rate_distal_leg1 = gdistal_wz_leg1 * t128 - minus_gdistal_wy_leg1 * t133;
-        let t136 = s_proximal_leg1 * rate_distal_leg1;
-        let rate_wrist_leg1 = gwrist_wy_leg1 * t133 + gwrist_wz_leg1 * t128;
-        let t140 = t62 * rate_wrist_leg1;
-        let t142 = c_proximal_leg1 * rate_distal_leg1;
-        let t143 = t55 * rate_wrist_leg1;
-        let t146 = minus_s_distal_leg1 * rate_wrist_leg1;
-        let t151 = t142 * t146 - actuator_velocities[0] * t140
-            - actuator_velocities[0] * t142;
-        let t158 = actuator_velocities[0] * t143 + t136 * t146
-            - actuator_velocities[0] * t136;
-        let rate_dot_proximal_leg1 = t136 * t140 + t142 * t143
-            + minus_gproximal_wy_leg1 * t151 + minus_gproximal_wz_leg1 * t158;
-        let t161 = actuator_accelerations[0] - rate_dot_proximal_leg1;
-        let t166 = t117 * t54 - t102 * t133 - t83 * t128;
-        let rate_wrist_leg2 = gwrist_wx_leg2 * t166 + gwrist_wz_leg2 * t128;
-        let t170 = t12 * rate_wrist_leg2;
-        let gdistal_wx_leg2 = t12 * t28;
-        let minus_gdistal_wz_leg2 = t20 * t28;
-        let rate_distal_leg2 = gdistal_wx_leg2 * t166 - minus_gdistal_wz_leg2 * t128;
-        let t177 = s_proximal_leg2 * rate_distal_leg2;
-        let t178 = minus_s_distal_leg2 * rate_wrist_leg2;
-        let t182 = actuator_velocities[1] * t170 + t177 * t178
-            - actuator_velocities[1] * t177;
-        let t184 = t20 * rate_wrist_leg2;
-        let t186 = c_proximal_leg2 * rate_distal_leg2;
-        let t194 = t186 * t178 - actuator_velocities[1] * t184
-            - actuator_velocities[1] * t186;
-        let rate_dot_proximal_leg2 = minus_gproximal_wx_leg2 * t182 + t177 * t184
-            + t186 * t170 + minus_gproximal_wz_leg2 * t194;
-        let t197 = actuator_accelerations[1] - rate_dot_proximal_leg2;
-        let t202 = minus_gproximal_wx_leg3 * t166 + minus_gproximal_wy_leg3 * t133;
-        let gdistal_wy_leg3 = t5 * t49;
-        let minus_gdistal_wx_leg3 = t44 * t49;
-        let rate_distal_leg3 = gdistal_wy_leg3 * t133 - minus_gdistal_wx_leg3 * t166;
-        let t208 = c_proximal_leg3 * rate_distal_leg3;
-        let rate_wrist_leg3 = gwrist_wx_leg3 * t166 + gwrist_wy_leg3 * t133;
-        let t213 = t44 * rate_wrist_leg3;
-        let t217 = t202 * t208 - actuator_velocities[2] * t213
-            - actuator_velocities[2] * t208;
-        let t219 = t5 * rate_wrist_leg3;
-        let t221 = s_proximal_leg3 * rate_distal_leg3;
-        let t225 = actuator_velocities[2] * t219 + t202 * t221
-            - actuator_velocities[2] * t221;
-        let rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t217
-            + minus_gproximal_wy_leg3 * t225 + t221 * t213 + t208 * t219;
-        let t232 = actuator_accelerations[2] - rate_dot_proximal_leg3;
-        let t234 = t161 - minus_gproximal_wx_leg2 * t197
-            - minus_gproximal_wx_leg3 * t232;
-        let t241 = t197 - minus_gproximal_wy_leg1 * t161 - minus_gproximal_wy_leg3 * t232
-            - t102 * t234;
-        let t251 = t109
-            * (t232 - (minus_gproximal_wz_leg1 * t161 + minus_gproximal_wz_leg2 * t197)
-                - t83 * t234 - t106 * t241);
-        let t253 = t105 * t241 - t106 * t251;
-        let t257 = t54 * t234 - t102 * t253 - t83 * t251;
-        let t262 = t5 * t257 + t44 * t253 + minus_s_distal_leg3 * t251;
-        let t268 = t5 * t166 + t44 * t133 + minus_s_distal_leg3 * t128;
-        let t273 = t20 * t166 + minus_s_distal_leg2 * t133 + t12 * t128;
-        let t274 = t268 * t273;
-        let t275 = minus_s_distal_leg1 * t274;
-        let t281 = minus_s_distal_leg1 * t166 + t55 * t133 + t62 * t128;
-        let t282 = t268 * t281;
-        let t283 = t20 * t282;
-        let t286 = t55 * t274;
-        let t288 = minus_s_distal_leg2 * t282;
-        let t291 = t62 * t274;
-        let t293 = t12 * t282;
-        let t295 = t281 * t273;
-        let t296 = t295 + t262;
-        let t302 = minus_s_distal_leg1 * t257 + t55 * t253 + t62 * t251;
-        let t303 = t274 - t302;
-        let t306 = t268 * t268;
-        let t307 = t281 * t281;
-        let t308 = t306 - t307;
-        let t325 = t20 * t257 + minus_s_distal_leg2 * t253 + t12 * t251;
-        let t326 = t282 + t325;
-        let t328 = t273 * t273;
-        let t329 = t328 - t306;
-        let t332 = t295 - t262;
-        let t346 = t5 * t295;
-        let t350 = t44 * t295;
-        let t354 = minus_s_distal_leg3 * t295;
-        let t357 = t307 - t328;
-        let t359 = t282 - t325;
-        let t362 = t274 + t302;
-        let t384 = 9.81 * t62;
-        let t386 = 9.81 * t12;
-        let t393 = 9.81 * minus_s_distal_leg3;
-        let t411 = 9.81 * c_proximal_leg1;
-        let t413 = minus_gproximal_wz_leg1 * t411;
-        let t414 = 9.81 * s_proximal_leg2;
-        let t416 = minus_gproximal_wz_leg2 * t414;
-        let t417 = 9.81 * s_proximal_leg1;
-        let t419 = 9.81 * c_proximal_leg2;
-        let t430 = c_distal_leg1 * actuator_accelerations[0];
-        let t431 = minus_s_distal_leg1 * actuator_velocities[0];
-        let t432 = rate_distal_leg1 * t431;
-        let t433 = t430 + t432;
-        let t435 = c_distal_leg1 * actuator_velocities[0];
-        let t436 = rate_distal_leg1 * t435;
-        let t438 = c_distal_leg1 * t433 + minus_s_distal_leg1 * t436;
-        let t439 = t435 * t431;
-        let t446 = c_distal_leg2 * actuator_accelerations[1];
-        let t447 = minus_s_distal_leg2 * actuator_velocities[1];
-        let t448 = rate_distal_leg2 * t447;
-        let t449 = t446 + t448;
-        let t451 = c_distal_leg2 * actuator_velocities[1];
-        let t452 = rate_distal_leg2 * t451;
-        let t454 = c_distal_leg2 * t449 + minus_s_distal_leg2 * t452;
-        let t456 = t451 * t447;
-        let t462 = c_distal_leg3 * actuator_velocities[2];
-        let t463 = minus_s_distal_leg3 * actuator_velocities[2];
-        let t464 = t462 * t463;
-        let t466 = c_distal_leg3 * actuator_accelerations[2];
-        let t467 = rate_distal_leg3 * t463;
-        let t468 = t466 + t467;
-        let t470 = rate_distal_leg3 * t462;
-        let t472 = c_distal_leg3 * t468 + minus_s_distal_leg3 * t470;
-        let t480 = minus_s_distal_leg1 * actuator_accelerations[0];
-        let t484 = minus_s_distal_leg1 * (t432 + t433)
-            - c_distal_leg1 * (t436 + t436 - t480);
-        let t486 = t435 * t435;
-        let t487 = t431 * t431;
-        let t488 = t486 - t487;
-        let t494 = t451 * t451;
-        let t495 = t447 * t447;
-        let t496 = t494 - t495;
-        let t500 = minus_s_distal_leg2 * actuator_accelerations[1];
-        let t504 = minus_s_distal_leg2 * (t448 + t449)
-            - c_distal_leg2 * (t452 + t452 - t500);
-        let t512 = minus_s_distal_leg3 * actuator_accelerations[2];
-        let t516 = minus_s_distal_leg3 * (t467 + t468)
-            - c_distal_leg3 * (t470 + t470 - t512);
-        let t518 = t462 * t462;
-        let t519 = t463 * t463;
-        let t520 = t518 - t519;
-        let rate_dot_distal_leg1 = gdistal_wz_leg1 * (t251 - t158)
-            - minus_gdistal_wy_leg1 * (t253 - t151);
-        let t533 = rate_distal_leg1 * rate_distal_leg1;
-        let t536 = c_distal_leg1 * (t439 + rate_dot_distal_leg1)
-            + minus_s_distal_leg1 * (t533 - t486);
-        let rate_dot_distal_leg2 = gdistal_wx_leg2 * (t257 - t182)
-            - minus_gdistal_wz_leg2 * (t251 - t194);
-        let t550 = rate_distal_leg2 * rate_distal_leg2;
-        let t553 = c_distal_leg2 * (t456 + rate_dot_distal_leg2)
-            + minus_s_distal_leg2 * (t550 - t494);
-        let rate_dot_distal_leg3 = gdistal_wy_leg3 * (t253 - t225)
-            - minus_gdistal_wx_leg3 * (t257 - t217);
-        let t567 = rate_distal_leg3 * rate_distal_leg3;
-        let t570 = c_distal_leg3 * (t464 + rate_dot_distal_leg3)
-            + minus_s_distal_leg3 * (t567 - t518);
-        let t581 = minus_s_distal_leg1 * (t439 - rate_dot_distal_leg1)
-            - c_distal_leg1 * (t487 - t533);
-        let t592 = minus_s_distal_leg2 * (t456 - rate_dot_distal_leg2)
-            - c_distal_leg2 * (t495 - t550);
-        let t604 = minus_s_distal_leg3 * (t464 - rate_dot_distal_leg3)
-            - c_distal_leg3 * (t519 - t567);
-        let t611 = 9.81 * (minus_s_distal_leg1 * c_proximal_leg1);
-        let t619 = 9.81 * (minus_s_distal_leg2 * s_proximal_leg2);
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t69 * t95;
+        let t98 = t97 * t73;
+        let t106 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t94 * t95
+            - t97 * t98;
+        ::overact::guard::platform(t106, 1.0, "actuators")?;
+        ::overact::guard::platform(t106, 1.0, "actuators")?;
+        let t107 = 1.0 / t106;
+        let t108 = minus_gproximal_wz_leg1 * actuator_velocities[0];
+        let t109 = minus_gproximal_wz_leg2 * actuator_velocities[1];
+        let t116 = t107
+            * (actuator_velocities[2] - (t108 + t109) - t81 * t95 - t98 * t83);
+        let t118 = t73 * t83 - t98 * t116;
+        let minus_rate_distal_leg1 = s_proximal_leg1 * t118 - c_proximal_leg1 * t116;
+        let t124 = c_proximal_leg1 * t118 + s_proximal_leg1 * t116;
+        let t128 = minus_rate_distal_leg1 * (t49 * t124)
+            - actuator_velocities[0] * minus_rate_distal_leg1;
+        let minus_rate_dot_proximal_leg1 = t49 * t128 + t124 * minus_rate_distal_leg1;
+        let t132 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
+        let t138 = t81 * t41 - t70 * t118 - t95 * t116;
+        let minus_rate_distal_leg2 = s_proximal_leg2 * t116 - c_proximal_leg2 * t138;
+        let t143 = s_proximal_leg2 * t138 + c_proximal_leg2 * t116;
+        let t147 = minus_rate_distal_leg2 * (t33 * t143)
+            - actuator_velocities[1] * minus_rate_distal_leg2;
+        let minus_rate_dot_proximal_leg2 = t33 * t147 + t143 * minus_rate_distal_leg2;
+        let t151 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
+        let rate_distal_leg3 = c_proximal_leg3 * t118 - s_proximal_leg3 * t138;
+        let t160 = c_proximal_leg3 * t138 + s_proximal_leg3 * t118;
+        let t163 = actuator_velocities[2] * rate_distal_leg3
+            - rate_distal_leg3 * (t37 * t160);
+        let minus_rate_dot_proximal_leg3 = t37 * t163 - t160 * rate_distal_leg3;
+        let t167 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let t169 = t132 - minus_gproximal_wx_leg2 * t151
+            - minus_gproximal_wx_leg3 * t167;
+        let t176 = t151 - minus_gproximal_wy_leg1 * t132 - minus_gproximal_wy_leg3 * t167
+            - t70 * t169;
+        let t186 = t107
+            * (t167 - (minus_gproximal_wz_leg1 * t132 + minus_gproximal_wz_leg2 * t151)
+                - t95 * t169 - t98 * t176);
+        let t188 = t73 * t176 - t98 * t186;
+        let t192 = t41 * t169 - t70 * t188 - t95 * t186;
+        let rate_dot_wrist_leg3 = t13
+            * (c_proximal_leg3 * t192 + s_proximal_leg3 * t188 + t163);
+        let t198 = c_distal_leg3 * actuator_velocities[2];
+        let t199 = rate_distal_leg3 * t198;
+        let t200 = minus_s_distal_leg3 * actuator_accelerations[2];
+        let t201 = t199 - t200;
+        let t202 = rate_dot_wrist_leg3 - t201;
+        let t204 = minus_s_distal_leg2 * actuator_velocities[1];
+        let rate_wrist_leg2 = t32 * t143;
+        let t206 = t204 + rate_wrist_leg2;
+        let t207 = minus_s_distal_leg3 * actuator_velocities[2];
+        let rate_wrist_leg3 = t13 * t160;
+        let t209 = t207 + rate_wrist_leg3;
+        let t210 = t206 * t209;
+        let t211 = minus_s_distal_leg1 * t210;
+        let t213 = minus_s_distal_leg1 * actuator_velocities[0];
+        let rate_wrist_leg1 = t48 * t124;
+        let t215 = t213 + rate_wrist_leg1;
+        let t216 = t215 * t209;
+        let t217 = t29 * t216;
+        let t220 = t50 * t210;
+        let t222 = minus_s_distal_leg2 * t216;
+        let t225 = t53 * t210;
+        let t227 = t20 * t216;
+        let t229 = t215 * t206;
+        let t230 = t229 + t202;
+        let t232 = minus_s_distal_leg1 * actuator_accelerations[0];
+        let t233 = c_distal_leg1 * actuator_velocities[0];
+        let t234 = minus_rate_distal_leg1 * t233;
+        let t235 = t232 + t234;
+        let rate_dot_wrist_leg1 = t48
+            * (c_proximal_leg1 * t188 + s_proximal_leg1 * t186 + t128);
+        let t241 = t235 + rate_dot_wrist_leg1;
+        let t242 = t210 - t241;
+        let t245 = t209 * t209;
+        let t246 = t215 * t215;
+        let t247 = t245 - t246;
+        let t260 = minus_s_distal_leg2 * actuator_accelerations[1];
+        let t261 = c_distal_leg2 * actuator_velocities[1];
+        let t262 = minus_rate_distal_leg2 * t261;
+        let t263 = t260 + t262;
+        let rate_dot_wrist_leg2 = t32
+            * (s_proximal_leg2 * t192 + c_proximal_leg2 * t186 + t147);
+        let t269 = t263 + rate_dot_wrist_leg2;
+        let t270 = t216 + t269;
+        let t272 = t206 * t206;
+        let t273 = t272 - t245;
+        let t276 = t229 - t202;
+        let t290 = t5 * t229;
+        let t294 = t61 * t229;
+        let t298 = minus_s_distal_leg3 * t229;
+        let t301 = t246 - t272;
+        let t303 = t216 - t269;
+        let t306 = t210 + t241;
+        let t328 = 9.81 * t53;
+        let t330 = 9.81 * t20;
+        let t337 = 9.81 * minus_s_distal_leg3;
+        let t355 = 9.81 * c_proximal_leg1;
+        let t357 = minus_gproximal_wz_leg1 * t355;
+        let t358 = 9.81 * s_proximal_leg2;
+        let t360 = minus_gproximal_wz_leg2 * t358;
+        let t361 = 9.81 * s_proximal_leg1;
+        let t363 = 9.81 * c_proximal_leg2;
+        let t374 = minus_rate_distal_leg1 * t213;
+        let t375 = c_distal_leg1 * actuator_accelerations[0];
+        let t376 = t374 - t375;
+        let t379 = c_distal_leg1 * t376 + minus_s_distal_leg1 * t234;
+        let t381 = t233 * t213;
+        let t387 = minus_rate_distal_leg2 * t204;
+        let t388 = c_distal_leg2 * actuator_accelerations[1];
+        let t389 = t387 - t388;
+        let t392 = c_distal_leg2 * t389 + minus_s_distal_leg2 * t262;
+        let t394 = t261 * t204;
+        let t400 = t198 * t207;
+        let t402 = c_distal_leg3 * actuator_accelerations[2];
+        let t403 = rate_distal_leg3 * t207;
+        let t404 = t402 + t403;
+        let t407 = c_distal_leg3 * t404 + minus_s_distal_leg3 * t199;
+        let t417 = c_distal_leg1 * (t234 + t235) - minus_s_distal_leg1 * (t374 + t376);
+        let t419 = t233 * t233;
+        let t420 = t213 * t213;
+        let t421 = t419 - t420;
+        let t427 = t261 * t261;
+        let t428 = t204 * t204;
+        let t429 = t427 - t428;
+        let t435 = c_distal_leg2 * (t262 + t263) - minus_s_distal_leg2 * (t387 + t389);
+        let t445 = minus_s_distal_leg3 * (t403 + t404) - c_distal_leg3 * (t199 + t201);
+        let t447 = t198 * t198;
+        let t448 = t207 * t207;
+        let t449 = t447 - t448;
+        let minus_rate_dot_distal_leg1 = actuator_velocities[0] * t124;
+        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t188
+            - c_proximal_leg1 * t186 + minus_rate_dot_distal_leg1;
+        let t462 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t465 = c_distal_leg1 * (t381 - minus_rate_dot_distal_leg1_2)
+            + minus_s_distal_leg1 * (t462 - t419);
+        let minus_rate_dot_distal_leg2 = actuator_velocities[1] * t143;
+        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t186
+            - c_proximal_leg2 * t192 + minus_rate_dot_distal_leg2;
+        let t479 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t482 = c_distal_leg2 * (t394 - minus_rate_dot_distal_leg2_2)
+            + minus_s_distal_leg2 * (t479 - t427);
+        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t160;
+        let rate_dot_distal_leg3 = c_proximal_leg3 * t188 - s_proximal_leg3 * t192
+            - minus_rate_dot_distal_leg3;
+        let t496 = rate_distal_leg3 * rate_distal_leg3;
+        let t499 = c_distal_leg3 * (t400 + rate_dot_distal_leg3)
+            + minus_s_distal_leg3 * (t496 - t447);
+        let t510 = minus_s_distal_leg1 * (t381 + minus_rate_dot_distal_leg1_2)
+            - c_distal_leg1 * (t420 - t462);
+        let t521 = minus_s_distal_leg2 * (t394 + minus_rate_dot_distal_leg2_2)
+            - c_distal_leg2 * (t428 - t479);
+        let t533 = minus_s_distal_leg3 * (t400 - rate_dot_distal_leg3)
+            - c_distal_leg3 * (t448 - t496);
+        let t540 = 9.81 * (minus_s_distal_leg1 * c_proximal_leg1);
+        let t550 = 9.81 * (minus_s_distal_leg2 * s_proximal_leg2);
         Ok([
             [
-                t5 * t262 + t275 - t283, minus_s_distal_leg1 * t296 - t5 * t303 + t20 * t308,
-                t5 * t326 + minus_s_distal_leg1 * t329 - t20 * t332,
-                minus_s_distal_leg1 * t302 - t346 + t283,
-                t5 * t357 - minus_s_distal_leg1 * t359 + t20 * t362, t346 - t275 + t20 * t325,
-                t20 * t384 - minus_s_distal_leg1 * t386, t5 * t386 - t20 * t393,
-                minus_s_distal_leg1 * t393 - t5 * t384, actuator_accelerations[0],
+                t5 * t202 + t211 - t217, minus_s_distal_leg1 * t230 - t5 * t242 + t29 * t247,
+                t5 * t270 + minus_s_distal_leg1 * t273 - t29 * t276,
+                minus_s_distal_leg1 * t241 - t290 + t217,
+                t5 * t301 - minus_s_distal_leg1 * t303 + t29 * t306, t290 - t211 + t29 * t269,
+                t29 * t328 - minus_s_distal_leg1 * t330, t5 * t330 - t29 * t337,
+                minus_s_distal_leg1 * t337 - t5 * t328, actuator_accelerations[0],
                 -(minus_gproximal_wx_leg2 * actuator_accelerations[1]),
-                -(minus_gproximal_wx_leg3 * actuator_accelerations[2]), -t411,
-                -(minus_gproximal_wx_leg2 * t414), t417, -t416, actuator_velocities[0], -t114,
-                -t116, ::overact::math::sign(actuator_velocities[0]),
+                -(minus_gproximal_wx_leg3 * actuator_accelerations[2]), -t355,
+                -(minus_gproximal_wx_leg2 * t358), t361, -t360, actuator_velocities[0], -t78, -t80,
+                ::overact::math::sign(actuator_velocities[0]),
                 -::overact::math::signed(
                     minus_gproximal_wx_leg2,
                     actuator_velocities[1],
@@ -4508,32 +4182,32 @@ impl Spherical3Rrr {
                 1.0,
                 -minus_gproximal_wx_leg2,
                 -minus_gproximal_wx_leg3,
-                t438,
-                -(minus_gproximal_wx_leg2 * t454 + gdistal_wx_leg2 * t456),
-                minus_gdistal_wx_leg3 * t464 - minus_gproximal_wx_leg3 * t472,
-                t484,
-                gdistal_wx_leg2 * t496 - minus_gproximal_wx_leg2 * t504,
-                -(minus_gproximal_wx_leg3 * t516 + minus_gdistal_wx_leg3 * t520),
-                -t536,
-                minus_gproximal_wx_leg2 * t553 - gdistal_wx_leg2 * t446,
-                minus_gproximal_wx_leg3 * t570 + minus_gdistal_wx_leg3 * t466,
-                t581,
-                -(minus_gproximal_wx_leg2 * t592 + gdistal_wx_leg2 * t500),
-                minus_gdistal_wx_leg3 * t512 - minus_gproximal_wx_leg3 * t604,
-                t611,
-                minus_gproximal_wx_leg2 * t619 - gdistal_wx_leg2 * t386,
-                minus_gdistal_wx_leg3 * t393,
+                -t379,
+                minus_gproximal_wx_leg2 * t392 - c_proximal_leg2 * t394,
+                s_proximal_leg3 * t400 - minus_gproximal_wx_leg3 * t407,
+                t417,
+                c_proximal_leg2 * t429 - minus_gproximal_wx_leg2 * t435,
+                -(minus_gproximal_wx_leg3 * t445 + s_proximal_leg3 * t449),
+                -t465,
+                minus_gproximal_wx_leg2 * t482 - c_proximal_leg2 * t388,
+                minus_gproximal_wx_leg3 * t499 + s_proximal_leg3 * t402,
+                t510,
+                -(minus_gproximal_wx_leg2 * t521 + c_proximal_leg2 * t260),
+                s_proximal_leg3 * t200 - minus_gproximal_wx_leg3 * t533,
+                t540,
+                minus_gproximal_wx_leg2 * t550 - 9.81 * (t20 * c_proximal_leg2),
+                9.81 * (minus_s_distal_leg3 * s_proximal_leg3),
             ],
             [
-                t44 * t262 + t286 - t288, t55 * t296 - t44 * t303 + minus_s_distal_leg2 * t308,
-                t44 * t326 + t55 * t329 - minus_s_distal_leg2 * t332, t55 * t302 - t350 + t288,
-                t44 * t357 - t55 * t359 + minus_s_distal_leg2 * t362,
-                t350 - t286 + minus_s_distal_leg2 * t325, minus_s_distal_leg2 * t384 - t55 * t386,
-                t44 * t386 - minus_s_distal_leg2 * t393, t55 * t393 - t44 * t384,
+                t61 * t202 + t220 - t222, t50 * t230 - t61 * t242 + minus_s_distal_leg2 * t247,
+                t61 * t270 + t50 * t273 - minus_s_distal_leg2 * t276, t50 * t241 - t294 + t222,
+                t61 * t301 - t50 * t303 + minus_s_distal_leg2 * t306,
+                t294 - t220 + minus_s_distal_leg2 * t269, minus_s_distal_leg2 * t328 - t50 * t330,
+                t61 * t330 - minus_s_distal_leg2 * t337, t50 * t337 - t61 * t328,
                 -(minus_gproximal_wy_leg1 * actuator_accelerations[0]), actuator_accelerations[1],
                 -(minus_gproximal_wy_leg3 * actuator_accelerations[2]),
-                minus_gproximal_wy_leg1 * t411, t414, -t413, t419, -t120, actuator_velocities[1],
-                -t122,
+                minus_gproximal_wy_leg1 * t355, t358, -t357, t363, -t74, actuator_velocities[1],
+                -t76,
                 -::overact::math::signed(
                     minus_gproximal_wy_leg1,
                     actuator_velocities[0],
@@ -4546,31 +4220,31 @@ impl Spherical3Rrr {
                 -minus_gproximal_wy_leg1,
                 1.0,
                 -minus_gproximal_wy_leg3,
-                minus_gdistal_wy_leg1 * t439 - minus_gproximal_wy_leg1 * t438,
-                t454,
-                -(minus_gproximal_wy_leg3 * t472 + gdistal_wy_leg3 * t464),
-                -(minus_gproximal_wy_leg1 * t484 + minus_gdistal_wy_leg1 * t488),
-                t504,
-                gdistal_wy_leg3 * t520 - minus_gproximal_wy_leg3 * t516,
-                minus_gproximal_wy_leg1 * t536 + minus_gdistal_wy_leg1 * t430,
-                -t553,
-                minus_gproximal_wy_leg3 * t570 - gdistal_wy_leg3 * t466,
-                minus_gdistal_wy_leg1 * t480 - minus_gproximal_wy_leg1 * t581,
-                t592,
-                -(minus_gproximal_wy_leg3 * t604 + gdistal_wy_leg3 * t512),
-                minus_gdistal_wy_leg1 * t384 - minus_gproximal_wy_leg1 * t611,
-                -t619,
-                -(gdistal_wy_leg3 * t393),
+                minus_gproximal_wy_leg1 * t379 + s_proximal_leg1 * t381,
+                -t392,
+                -(minus_gproximal_wy_leg3 * t407 + c_proximal_leg3 * t400),
+                -(minus_gproximal_wy_leg1 * t417 + s_proximal_leg1 * t421),
+                t435,
+                c_proximal_leg3 * t449 - minus_gproximal_wy_leg3 * t445,
+                minus_gproximal_wy_leg1 * t465 + s_proximal_leg1 * t375,
+                -t482,
+                minus_gproximal_wy_leg3 * t499 - c_proximal_leg3 * t402,
+                s_proximal_leg1 * t232 - minus_gproximal_wy_leg1 * t510,
+                t521,
+                -(minus_gproximal_wy_leg3 * t533 + c_proximal_leg3 * t200),
+                9.81 * (t53 * s_proximal_leg1) - minus_gproximal_wy_leg1 * t540,
+                -t550,
+                -(9.81 * (minus_s_distal_leg3 * c_proximal_leg3)),
             ],
             [
-                minus_s_distal_leg3 * t262 + t291 - t293,
-                t62 * t296 - minus_s_distal_leg3 * t303 + t12 * t308,
-                minus_s_distal_leg3 * t326 + t62 * t329 - t12 * t332, t62 * t302 - t354 + t293,
-                minus_s_distal_leg3 * t357 - t62 * t359 + t12 * t362, t354 - t291 + t12 * t325, 0.0,
+                minus_s_distal_leg3 * t202 + t225 - t227,
+                t53 * t230 - minus_s_distal_leg3 * t242 + t20 * t247,
+                minus_s_distal_leg3 * t270 + t53 * t273 - t20 * t276, t53 * t241 - t298 + t227,
+                minus_s_distal_leg3 * t301 - t53 * t303 + t20 * t306, t298 - t225 + t20 * t269, 0.0,
                 0.0, 0.0, -(minus_gproximal_wz_leg1 * actuator_accelerations[0]),
                 -(minus_gproximal_wz_leg2 * actuator_accelerations[1]), actuator_accelerations[2],
-                t413, -t416, -(minus_gproximal_wz_leg1 * t417), -(minus_gproximal_wz_leg2 * t419),
-                -t110, -t111, actuator_velocities[2],
+                t357, -t360, -(minus_gproximal_wz_leg1 * t361), -(minus_gproximal_wz_leg2 * t363),
+                -t108, -t109, actuator_velocities[2],
                 -::overact::math::signed(
                     minus_gproximal_wz_leg1,
                     actuator_velocities[0],
@@ -4583,20 +4257,20 @@ impl Spherical3Rrr {
                 -minus_gproximal_wz_leg1,
                 -minus_gproximal_wz_leg2,
                 1.0,
-                -(minus_gproximal_wz_leg1 * t438 + gdistal_wz_leg1 * t439),
-                minus_gdistal_wz_leg2 * t456 - minus_gproximal_wz_leg2 * t454,
-                t472,
-                gdistal_wz_leg1 * t488 - minus_gproximal_wz_leg1 * t484,
-                -(minus_gproximal_wz_leg2 * t504 + minus_gdistal_wz_leg2 * t496),
-                t516,
-                minus_gproximal_wz_leg1 * t536 - gdistal_wz_leg1 * t430,
-                minus_gproximal_wz_leg2 * t553 + minus_gdistal_wz_leg2 * t446,
-                -t570,
-                -(minus_gproximal_wz_leg1 * t581 + gdistal_wz_leg1 * t480),
-                minus_gdistal_wz_leg2 * t500 - minus_gproximal_wz_leg2 * t592,
-                t604,
-                -(minus_gproximal_wz_leg1 * t611 + gdistal_wz_leg1 * t384),
-                minus_gproximal_wz_leg2 * t619 + minus_gdistal_wz_leg2 * t386,
+                minus_gproximal_wz_leg1 * t379 - c_proximal_leg1 * t381,
+                minus_gproximal_wz_leg2 * t392 + s_proximal_leg2 * t394,
+                t407,
+                c_proximal_leg1 * t421 - minus_gproximal_wz_leg1 * t417,
+                -(minus_gproximal_wz_leg2 * t435 + s_proximal_leg2 * t429),
+                t445,
+                minus_gproximal_wz_leg1 * t465 - c_proximal_leg1 * t375,
+                minus_gproximal_wz_leg2 * t482 + s_proximal_leg2 * t388,
+                -t499,
+                -(minus_gproximal_wz_leg1 * t510 + c_proximal_leg1 * t232),
+                s_proximal_leg2 * t260 - minus_gproximal_wz_leg2 * t521,
+                t533,
+                -(minus_gproximal_wz_leg1 * t540 + 9.81 * (t50 * s_proximal_leg1)),
+                minus_gproximal_wz_leg2 * t550 + 9.81 * (t29 * c_proximal_leg2),
                 0.0,
             ],
         ])
@@ -4611,7 +4285,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 40.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 673 operations (243 additions, 423 multiplications, 7 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 594 intermediates.
+    /// 596 operations (219 additions, 370 multiplications, 7 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 517 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4620,325 +4294,302 @@ impl Spherical3Rrr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 40]; 3], ::overact::Error> {
-        let t0 = 2.0 * pose[2];
-        let t1 = pose[3] * t0;
-        let t2 = 2.0 * pose[1];
-        let t3 = pose[0] * t2;
-        let minus_s_distal_leg2 = t1 - t3;
-        let t6 = 1.0 - pose[1] * t2;
-        let t7 = pose[2] * t0;
-        let t8 = t6 - t7;
+        let t0 = 2.0 * pose[1];
+        let t2 = 1.0 - pose[1] * t0;
+        let t3 = 2.0 * pose[2];
+        let t4 = pose[2] * t3;
+        let t5 = t2 - t4;
+        let t6 = pose[3] * t3;
+        let t7 = pose[0] * t0;
+        let minus_s_distal_leg2 = t6 - t7;
         let t10 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
         ::overact::guard::reach(t10, "leg2")?;
         let c_distal_leg2 = ::overact::math::sqrt(t10);
-        let t13 = 1.0 / (t8 * c_distal_leg2);
-        let c_proximal_leg2 = t13 * (t8 * t8);
-        let t16 = pose[3] * t2;
-        let t17 = pose[0] * t0;
-        let t18 = t16 + t17;
-        let s_proximal_leg2 = t13 * (t18 * t8);
-        let t23 = t18 * s_proximal_leg2 + t8 * c_proximal_leg2;
-        ::overact::guard::leg(t23, 1.0, "leg2")?;
-        let t24 = 1.0 / t23;
-        let gwrist_wz_leg2 = c_proximal_leg2 * t24;
-        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
-        let minus_s_distal_leg3 = t16 - t17;
-        let t29 = 2.0 * pose[3];
-        let t30 = pose[3] * t29;
-        let t31 = 1.0 - t7 - t30;
-        let t33 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t33, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t33);
-        let t36 = 1.0 / (t31 * c_distal_leg3);
-        let t37 = pose[2] * t2;
-        let t38 = pose[0] * t29;
-        let t39 = t37 + t38;
-        let s_proximal_leg3 = t36 * (t31 * t39);
-        let c_proximal_leg3 = t36 * (t31 * t31);
-        let t46 = t31 * c_proximal_leg3 + t39 * s_proximal_leg3;
-        ::overact::guard::leg(t46, 1.0, "leg3")?;
-        let t47 = 1.0 / t46;
-        let gwrist_wy_leg3 = s_proximal_leg3 * t47;
-        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
-        let t51 = 1.0 - minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3;
-        let minus_s_distal_leg1 = t37 - t38;
-        let t53 = t6 - t30;
-        let t55 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t55, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t55);
-        let t58 = 1.0 / (t53 * c_distal_leg1);
-        let c_proximal_leg1 = t58 * (t53 * t53);
-        let t62 = t1 + t3;
-        let s_proximal_leg1 = t58 * (t53 * t62);
-        let t66 = t53 * c_proximal_leg1 + t62 * s_proximal_leg1;
-        ::overact::guard::leg(t66, 1.0, "leg1")?;
-        let t67 = 1.0 / t66;
-        let gwrist_wy_leg1 = c_proximal_leg1 * t67;
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
-        let gwrist_wx_leg2 = s_proximal_leg2 * t24;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
-        let gwrist_wx_leg3 = c_proximal_leg3 * t47;
-        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
-        let t75 = minus_gproximal_wx_leg2
+        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
+        let t13 = 1.0 / (t5 * c_distal_leg2);
+        let c_proximal_leg2 = t13 * (t5 * t5);
+        let t16 = 1.0 / c_distal_leg2;
+        let t17 = minus_s_distal_leg2 * t16;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t17;
+        let t20 = 2.0 * pose[3];
+        let t21 = pose[3] * t20;
+        let t22 = 1.0 - t4 - t21;
+        let t23 = pose[3] * t0;
+        let t24 = pose[0] * t3;
+        let minus_s_distal_leg3 = t23 - t24;
+        let t27 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t27, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t27);
+        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
+        let t30 = 1.0 / (t22 * c_distal_leg3);
+        let t31 = pose[2] * t0;
+        let t32 = pose[0] * t20;
+        let t33 = t31 + t32;
+        let s_proximal_leg3 = t30 * (t22 * t33);
+        let t36 = 1.0 / c_distal_leg3;
+        let t37 = minus_s_distal_leg3 * t36;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t37;
+        let t40 = 1.0 - minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3;
+        let t41 = t2 - t21;
+        let minus_s_distal_leg1 = t31 - t32;
+        let t44 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t44, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t44);
+        ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
+        let t47 = 1.0 / (t41 * c_distal_leg1);
+        let c_proximal_leg1 = t47 * (t41 * t41);
+        let t50 = 1.0 / c_distal_leg1;
+        let t51 = minus_s_distal_leg1 * t50;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t51;
+        let t53 = t23 + t24;
+        let s_proximal_leg2 = t13 * (t53 * t5);
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t17;
+        let c_proximal_leg3 = t30 * (t22 * t22);
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t37;
+        let t61 = minus_gproximal_wx_leg2
             + minus_gproximal_wz_leg2 * minus_gproximal_wx_leg3;
-        let gwrist_wz_leg1 = s_proximal_leg1 * t67;
-        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
-        let t81 = minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3
+        let t64 = t6 + t7;
+        let s_proximal_leg1 = t47 * (t41 * t64);
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t51;
+        let t69 = minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3
             + minus_gproximal_wx_leg3;
-        let t83 = t51 - minus_gproximal_wy_leg1 * t75 - minus_gproximal_wz_leg1 * t81;
-        ::overact::guard::platform(t83, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t83, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t83, 1.0, "kept actuators")?;
-        let t84 = 1.0 / t83;
-        let t85 = t51 * t84;
-        let t90 = t31 * acceleration[0] + t39 * acceleration[1]
-            + minus_s_distal_leg3 * acceleration[2];
-        let t96 = t31 * twist[0] + t39 * twist[1] + minus_s_distal_leg3 * twist[2];
-        let t101 = t18 * twist[0] + minus_s_distal_leg2 * twist[1] + t8 * twist[2];
-        let t102 = t96 * t101;
-        let t103 = minus_s_distal_leg1 * t102;
-        let t109 = minus_s_distal_leg1 * twist[0] + t53 * twist[1] + t62 * twist[2];
-        let t110 = t96 * t109;
-        let t111 = t18 * t110;
-        let t112 = t31 * t90 + t103 - t111;
-        let t114 = t75 * t84;
-        let t116 = t53 * t102;
-        let t118 = minus_s_distal_leg2 * t110;
-        let t119 = t39 * t90 + t116 - t118;
-        let t122 = t81 * t84;
-        let t124 = t62 * t102;
-        let t126 = t8 * t110;
-        let t127 = minus_s_distal_leg3 * t90 + t124 - t126;
-        let t132 = (minus_gproximal_wy_leg1
-            + minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3) * t84;
-        let t136 = (1.0 - minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3) * t84;
-        let t141 = (minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t84;
-        let t146 = (minus_gproximal_wy_leg1 * minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg1) * t84;
-        let t150 = (minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2) * t84;
-        let t155 = (1.0 - minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2) * t84;
-        let t158 = t109 * t101;
-        let t159 = t158 + t90;
-        let t165 = minus_s_distal_leg1 * acceleration[0] + t53 * acceleration[1]
-            + t62 * acceleration[2];
-        let t166 = t102 - t165;
-        let t169 = t96 * t96;
-        let t170 = t109 * t109;
-        let t171 = t169 - t170;
-        let t173 = minus_s_distal_leg1 * t159 - t31 * t166 + t18 * t171;
-        let t179 = t53 * t159 - t39 * t166 + minus_s_distal_leg2 * t171;
-        let t186 = t62 * t159 - minus_s_distal_leg3 * t166 + t8 * t171;
-        let t203 = t18 * acceleration[0] + minus_s_distal_leg2 * acceleration[1]
-            + t8 * acceleration[2];
-        let t204 = t110 + t203;
-        let t206 = t101 * t101;
-        let t207 = t206 - t169;
-        let t210 = t158 - t90;
-        let t212 = t31 * t204 + minus_s_distal_leg1 * t207 - t18 * t210;
-        let t218 = t39 * t204 + t53 * t207 - minus_s_distal_leg2 * t210;
-        let t225 = minus_s_distal_leg3 * t204 + t62 * t207 - t8 * t210;
-        let t239 = t31 * t158;
-        let t241 = minus_s_distal_leg1 * t165 - t239 + t111;
-        let t244 = t39 * t158;
-        let t246 = t53 * t165 - t244 + t118;
-        let t250 = minus_s_distal_leg3 * t158;
-        let t252 = t62 * t165 - t250 + t126;
-        let t265 = t170 - t206;
-        let t267 = t110 - t203;
-        let t270 = t102 + t165;
-        let t272 = t31 * t265 - minus_s_distal_leg1 * t267 + t18 * t270;
-        let t278 = t39 * t265 - t53 * t267 + minus_s_distal_leg2 * t270;
-        let t285 = minus_s_distal_leg3 * t265 - t62 * t267 + t8 * t270;
-        let t300 = t239 - t103 + t18 * t203;
-        let t304 = t244 - t116 + minus_s_distal_leg2 * t203;
-        let t309 = t250 - t124 + t8 * t203;
-        let t322 = 9.81 * t62;
-        let t324 = 9.81 * t8;
-        let t326 = t18 * t322 - minus_s_distal_leg1 * t324;
-        let t330 = minus_s_distal_leg2 * t322 - t53 * t324;
-        let t340 = 9.81 * minus_s_distal_leg3;
-        let t342 = t31 * t324 - t18 * t340;
-        let t346 = t39 * t324 - minus_s_distal_leg2 * t340;
-        let t357 = minus_s_distal_leg1 * t340 - t31 * t322;
-        let t361 = t53 * t340 - t39 * t322;
-        let gdistal_wz_leg1 = t53 * t67;
-        let minus_gdistal_wy_leg1 = t62 * t67;
-        let rate_distal_leg1 = gdistal_wz_leg1 * twist[2]
-            - minus_gdistal_wy_leg1 * twist[1];
-        let t375 = s_proximal_leg1 * rate_distal_leg1;
-        let rate_wrist_leg1 = gwrist_wy_leg1 * twist[1] + gwrist_wz_leg1 * twist[2];
-        let t379 = t62 * rate_wrist_leg1;
-        let t381 = c_proximal_leg1 * rate_distal_leg1;
-        let t382 = t53 * rate_wrist_leg1;
-        let t386 = minus_s_distal_leg1 * rate_wrist_leg1;
-        let rate_proximal_leg1 = twist[0] - minus_gproximal_wy_leg1 * twist[1]
-            - minus_gproximal_wz_leg1 * twist[2];
-        let t396 = acceleration[1]
-            - (t381 * t386 - rate_proximal_leg1 * t379 - rate_proximal_leg1 * t381);
-        let t404 = acceleration[2]
-            - (rate_proximal_leg1 * t382 + t375 * t386 - rate_proximal_leg1 * t375);
-        let rate_dot_proximal_leg1 = acceleration[0] + t375 * t379 + t381 * t382
-            - minus_gproximal_wy_leg1 * t396 - minus_gproximal_wz_leg1 * t404;
-        let gdistal_wx_leg2 = t8 * t24;
-        let minus_gdistal_wz_leg2 = t18 * t24;
-        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
-            - minus_gdistal_wz_leg2 * twist[2];
-        let t412 = s_proximal_leg2 * rate_distal_leg2;
-        let rate_wrist_leg2 = gwrist_wx_leg2 * twist[0] + gwrist_wz_leg2 * twist[2];
-        let t416 = t18 * rate_wrist_leg2;
-        let t418 = c_proximal_leg2 * rate_distal_leg2;
-        let t419 = t8 * rate_wrist_leg2;
-        let rate_proximal_leg2 = twist[1] - minus_gproximal_wx_leg2 * twist[0]
-            - minus_gproximal_wz_leg2 * twist[2];
-        let t428 = minus_s_distal_leg2 * rate_wrist_leg2;
-        let t433 = acceleration[0]
-            - (rate_proximal_leg2 * t419 + t412 * t428 - rate_proximal_leg2 * t412);
-        let t441 = acceleration[2]
-            - (t418 * t428 - rate_proximal_leg2 * t416 - rate_proximal_leg2 * t418);
-        let rate_dot_proximal_leg2 = acceleration[1] + t412 * t416 + t418 * t419
-            - minus_gproximal_wx_leg2 * t433 - minus_gproximal_wz_leg2 * t441;
-        let gdistal_wy_leg3 = t31 * t47;
-        let minus_gdistal_wx_leg3 = t39 * t47;
-        let rate_distal_leg3 = gdistal_wy_leg3 * twist[1]
-            - minus_gdistal_wx_leg3 * twist[0];
-        let t449 = s_proximal_leg3 * rate_distal_leg3;
-        let rate_wrist_leg3 = gwrist_wx_leg3 * twist[0] + gwrist_wy_leg3 * twist[1];
-        let t453 = t39 * rate_wrist_leg3;
-        let t455 = c_proximal_leg3 * rate_distal_leg3;
-        let t456 = t31 * rate_wrist_leg3;
-        let t462 = minus_gproximal_wx_leg3 * twist[0]
-            + minus_gproximal_wy_leg3 * twist[1];
-        let rate_proximal_leg3 = twist[2] - t462;
-        let t469 = acceleration[0]
-            - (t462 * t455 - rate_proximal_leg3 * t453 - rate_proximal_leg3 * t455);
-        let t476 = acceleration[1]
-            - (rate_proximal_leg3 * t456 + t462 * t449 - rate_proximal_leg3 * t449);
-        let rate_dot_proximal_leg3 = acceleration[2] + t449 * t453 + t455 * t456
-            - (minus_gproximal_wx_leg3 * t469 + minus_gproximal_wy_leg3 * t476);
-        let t487 = c_distal_leg1 * rate_dot_proximal_leg1;
-        let t488 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t489 = rate_distal_leg1 * t488;
-        let t490 = t487 + t489;
-        let t492 = c_distal_leg1 * rate_proximal_leg1;
-        let t493 = rate_distal_leg1 * t492;
-        let t498 = gdistal_wz_leg1 * t122 - minus_gdistal_wy_leg1 * t114;
-        let t499 = t492 * t488;
-        let t504 = gdistal_wz_leg1 * t141 - minus_gdistal_wy_leg1 * t136;
-        let t508 = gdistal_wz_leg1 * t155 - minus_gdistal_wy_leg1 * t150;
-        let t512 = gdistal_wx_leg2 * t85 - minus_gdistal_wz_leg2 * t122;
-        let t513 = c_distal_leg2 * rate_proximal_leg2;
-        let t514 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t515 = t513 * t514;
-        let t517 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t518 = rate_distal_leg2 * t514;
-        let t519 = t517 + t518;
-        let t521 = rate_distal_leg2 * t513;
-        let t526 = gdistal_wx_leg2 * t132 - minus_gdistal_wz_leg2 * t141;
-        let t531 = gdistal_wx_leg2 * t146 - minus_gdistal_wz_leg2 * t155;
-        let t535 = gdistal_wy_leg3 * t114 - minus_gdistal_wx_leg3 * t85;
-        let t536 = c_distal_leg3 * rate_proximal_leg3;
-        let t537 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t538 = t536 * t537;
-        let t542 = gdistal_wy_leg3 * t136 - minus_gdistal_wx_leg3 * t132;
-        let t544 = c_distal_leg3 * rate_dot_proximal_leg3;
-        let t545 = rate_distal_leg3 * t537;
-        let t546 = t544 + t545;
-        let t548 = rate_distal_leg3 * t536;
-        let t553 = gdistal_wy_leg3 * t150 - minus_gdistal_wx_leg3 * t146;
-        let t558 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
-        let t563 = t492 * t492;
-        let t564 = t488 * t488;
-        let t565 = t563 - t564;
-        let t570 = t513 * t513;
-        let t571 = t514 * t514;
-        let t572 = t570 - t571;
-        let t576 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t584 = t536 * t536;
-        let t585 = t537 * t537;
-        let t586 = t584 - t585;
-        let t591 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let rate_dot_distal_leg1 = gdistal_wz_leg1 * t404 - minus_gdistal_wy_leg1 * t396;
-        let t603 = rate_distal_leg1 * rate_distal_leg1;
-        let rate_dot_distal_leg2 = gdistal_wx_leg2 * t433 - minus_gdistal_wz_leg2 * t441;
-        let t617 = rate_distal_leg2 * rate_distal_leg2;
-        let rate_dot_distal_leg3 = gdistal_wy_leg3 * t476 - minus_gdistal_wx_leg3 * t469;
-        let t631 = rate_distal_leg3 * rate_distal_leg3;
+        let t71 = t40 - minus_gproximal_wy_leg1 * t61 - minus_gproximal_wz_leg1 * t69;
+        ::overact::guard::platform(t71, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t71, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t71, 1.0, "kept actuators")?;
+        let t72 = 1.0 / t71;
+        let t73 = t40 * t72;
+        let rate_distal_leg3 = c_proximal_leg3 * twist[1] - s_proximal_leg3 * twist[0];
+        let t82 = c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1];
+        let t83 = t37 * t82;
+        let rate_proximal_leg3 = twist[2] - t83;
+        let t88 = c_proximal_leg3 * acceleration[0] + s_proximal_leg3 * acceleration[1]
+            + rate_distal_leg3 * rate_proximal_leg3 - rate_distal_leg3 * t83;
+        let rate_dot_wrist_leg3 = t36 * t88;
+        let t90 = c_distal_leg3 * rate_proximal_leg3;
+        let t91 = rate_distal_leg3 * t90;
+        let rate_dot_proximal_leg3 = acceleration[2] + t82 * rate_distal_leg3
+            - t37 * t88;
+        let t96 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t97 = t91 - t96;
+        let t98 = rate_dot_wrist_leg3 - t97;
+        let t102 = s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2];
+        let t103 = t17 * t102;
+        let rate_proximal_leg2 = twist[1] - t103;
+        let t105 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let rate_wrist_leg2 = t16 * t102;
+        let t107 = t105 + rate_wrist_leg2;
+        let t108 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let rate_wrist_leg3 = t36 * t82;
+        let t110 = t108 + rate_wrist_leg3;
+        let t111 = t107 * t110;
+        let t112 = minus_s_distal_leg1 * t111;
+        let t116 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
+        let t117 = t51 * t116;
+        let rate_proximal_leg1 = twist[0] - t117;
+        let t119 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let rate_wrist_leg1 = t50 * t116;
+        let t121 = t119 + rate_wrist_leg1;
+        let t122 = t121 * t110;
+        let t123 = t53 * t122;
+        let t124 = t22 * t98 + t112 - t123;
+        let t126 = t61 * t72;
+        let t128 = t41 * t111;
+        let t130 = minus_s_distal_leg2 * t122;
+        let t131 = t33 * t98 + t128 - t130;
+        let t134 = t69 * t72;
+        let t136 = t64 * t111;
+        let t138 = t5 * t122;
+        let t139 = minus_s_distal_leg3 * t98 + t136 - t138;
+        let t144 = (minus_gproximal_wy_leg1
+            + minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3) * t72;
+        let t148 = (1.0 - minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3) * t72;
+        let t153 = (minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t72;
+        let t158 = (minus_gproximal_wy_leg1 * minus_gproximal_wz_leg2
+            + minus_gproximal_wz_leg1) * t72;
+        let t162 = (minus_gproximal_wz_leg2
+            + minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2) * t72;
+        let t167 = (1.0 - minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2) * t72;
+        let t170 = t121 * t107;
+        let t171 = t170 + t98;
+        let minus_rate_distal_leg1 = s_proximal_leg1 * twist[1]
+            - c_proximal_leg1 * twist[2];
+        let t184 = c_proximal_leg1 * acceleration[1] + s_proximal_leg1 * acceleration[2]
+            + minus_rate_distal_leg1 * t117
+            - minus_rate_distal_leg1 * rate_proximal_leg1;
+        let rate_dot_proximal_leg1 = acceleration[0] - t116 * minus_rate_distal_leg1
+            - t51 * t184;
+        let t187 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t188 = c_distal_leg1 * rate_proximal_leg1;
+        let t189 = minus_rate_distal_leg1 * t188;
+        let t190 = t187 + t189;
+        let rate_dot_wrist_leg1 = t50 * t184;
+        let t192 = t190 + rate_dot_wrist_leg1;
+        let t193 = t111 - t192;
+        let t196 = t110 * t110;
+        let t197 = t121 * t121;
+        let t198 = t196 - t197;
+        let t200 = minus_s_distal_leg1 * t171 - t22 * t193 + t53 * t198;
+        let t206 = t41 * t171 - t33 * t193 + minus_s_distal_leg2 * t198;
+        let t213 = t64 * t171 - minus_s_distal_leg3 * t193 + t5 * t198;
+        let minus_rate_distal_leg2 = s_proximal_leg2 * twist[2]
+            - c_proximal_leg2 * twist[0];
+        let t237 = s_proximal_leg2 * acceleration[0] + c_proximal_leg2 * acceleration[2]
+            + minus_rate_distal_leg2 * t103
+            - minus_rate_distal_leg2 * rate_proximal_leg2;
+        let rate_dot_proximal_leg2 = acceleration[1] - t102 * minus_rate_distal_leg2
+            - t17 * t237;
+        let t240 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t241 = c_distal_leg2 * rate_proximal_leg2;
+        let t242 = minus_rate_distal_leg2 * t241;
+        let t243 = t240 + t242;
+        let rate_dot_wrist_leg2 = t16 * t237;
+        let t245 = t243 + rate_dot_wrist_leg2;
+        let t246 = t122 + t245;
+        let t248 = t107 * t107;
+        let t249 = t248 - t196;
+        let t252 = t170 - t98;
+        let t254 = t22 * t246 + minus_s_distal_leg1 * t249 - t53 * t252;
+        let t260 = t33 * t246 + t41 * t249 - minus_s_distal_leg2 * t252;
+        let t267 = minus_s_distal_leg3 * t246 + t64 * t249 - t5 * t252;
+        let t281 = t22 * t170;
+        let t283 = minus_s_distal_leg1 * t192 - t281 + t123;
+        let t286 = t33 * t170;
+        let t288 = t41 * t192 - t286 + t130;
+        let t292 = minus_s_distal_leg3 * t170;
+        let t294 = t64 * t192 - t292 + t138;
+        let t307 = t197 - t248;
+        let t309 = t122 - t245;
+        let t312 = t111 + t192;
+        let t314 = t22 * t307 - minus_s_distal_leg1 * t309 + t53 * t312;
+        let t320 = t33 * t307 - t41 * t309 + minus_s_distal_leg2 * t312;
+        let t327 = minus_s_distal_leg3 * t307 - t64 * t309 + t5 * t312;
+        let t342 = t281 - t112 + t53 * t245;
+        let t346 = t286 - t128 + minus_s_distal_leg2 * t245;
+        let t351 = t292 - t136 + t5 * t245;
+        let t364 = 9.81 * t64;
+        let t366 = 9.81 * t5;
+        let t368 = t53 * t364 - minus_s_distal_leg1 * t366;
+        let t372 = minus_s_distal_leg2 * t364 - t41 * t366;
+        let t382 = 9.81 * minus_s_distal_leg3;
+        let t384 = t22 * t366 - t53 * t382;
+        let t388 = t33 * t366 - minus_s_distal_leg2 * t382;
+        let t399 = minus_s_distal_leg1 * t382 - t22 * t364;
+        let t403 = t41 * t382 - t33 * t364;
+        let t419 = minus_rate_distal_leg1 * t119;
+        let t420 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t421 = t419 - t420;
+        let t427 = c_proximal_leg1 * t134 - s_proximal_leg1 * t126;
+        let t428 = t188 * t119;
+        let t433 = c_proximal_leg1 * t153 - s_proximal_leg1 * t148;
+        let t437 = c_proximal_leg1 * t167 - s_proximal_leg1 * t162;
+        let t441 = c_proximal_leg2 * t73 - s_proximal_leg2 * t134;
+        let t442 = t241 * t105;
+        let t444 = minus_rate_distal_leg2 * t105;
+        let t445 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t446 = t444 - t445;
+        let t452 = c_proximal_leg2 * t144 - s_proximal_leg2 * t153;
+        let t457 = c_proximal_leg2 * t158 - s_proximal_leg2 * t167;
+        let t461 = c_proximal_leg3 * t126 - s_proximal_leg3 * t73;
+        let t462 = t90 * t108;
+        let t466 = c_proximal_leg3 * t148 - s_proximal_leg3 * t144;
+        let t468 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t469 = rate_distal_leg3 * t108;
+        let t470 = t468 + t469;
+        let t476 = c_proximal_leg3 * t162 - s_proximal_leg3 * t158;
+        let t484 = t188 * t188;
+        let t485 = t119 * t119;
+        let t486 = t484 - t485;
+        let t491 = t241 * t241;
+        let t492 = t105 * t105;
+        let t493 = t491 - t492;
+        let t503 = t90 * t90;
+        let t504 = t108 * t108;
+        let t505 = t503 - t504;
+        let minus_rate_dot_distal_leg1 = s_proximal_leg1 * acceleration[1]
+            - c_proximal_leg1 * acceleration[2] + t116 * rate_proximal_leg1;
+        let t522 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let minus_rate_dot_distal_leg2 = s_proximal_leg2 * acceleration[2]
+            - c_proximal_leg2 * acceleration[0] + t102 * rate_proximal_leg2;
+        let t538 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let rate_dot_distal_leg3 = c_proximal_leg3 * acceleration[1]
+            - s_proximal_leg3 * acceleration[0] - t82 * rate_proximal_leg3;
+        let t554 = rate_distal_leg3 * rate_distal_leg3;
         Ok([
             [
-                t85 * t112 + t114 * t119 + t122 * t127, t85 * t173 + t114 * t179 + t122 * t186,
-                t85 * t212 + t114 * t218 + t122 * t225, t85 * t241 + t114 * t246 + t122 * t252,
-                t85 * t272 + t114 * t278 + t122 * t285, t85 * t300 + t114 * t304 + t122 * t309,
-                t85 * t326 + t114 * t330, t85 * t342 + t114 * t346, t85 * t357 + t114 * t361,
+                t73 * t124 + t126 * t131 + t134 * t139, t73 * t200 + t126 * t206 + t134 * t213,
+                t73 * t254 + t126 * t260 + t134 * t267, t73 * t283 + t126 * t288 + t134 * t294,
+                t73 * t314 + t126 * t320 + t134 * t327, t73 * t342 + t126 * t346 + t134 * t351,
+                t73 * t368 + t126 * t372, t73 * t384 + t126 * t388, t73 * t399 + t126 * t403,
                 rate_dot_proximal_leg1, 0.0, 0.0, -(9.81 * c_proximal_leg1), 0.0,
                 9.81 * s_proximal_leg1, 0.0, rate_proximal_leg1, 0.0, 0.0,
                 ::overact::math::sign(rate_proximal_leg1), 0.0, 0.0, 1.0, 0.0, 0.0,
-                c_distal_leg1 * t490 + minus_s_distal_leg1 * t493 - t498 * t499, -(t512 * t515),
-                -(t535 * t538),
-                minus_s_distal_leg1 * (t489 + t490)
-                    - c_distal_leg1 * (t493 + t493 - t558) + t498 * t565,
-                t512 * t572,
-                t535 * t586,
-                -(c_distal_leg1 * (t499 + rate_dot_distal_leg1)
-                    + minus_s_distal_leg1 * (t603 - t563) + t498 * t487),
-                -(t512 * t517),
-                -(t535 * t544),
-                minus_s_distal_leg1 * (t499 - rate_dot_distal_leg1)
-                    - c_distal_leg1 * (t564 - t603) - t498 * t558,
-                -(t512 * t576),
-                -(t535 * t591),
-                9.81 * (minus_s_distal_leg1 * c_proximal_leg1) - t498 * t322,
-                -(t512 * t324),
-                -(t535 * t340),
+                -(c_distal_leg1 * t421 + minus_s_distal_leg1 * t189 + t427 * t428), -(t441 * t442),
+                -(t461 * t462),
+                c_distal_leg1 * (t189 + t190) - minus_s_distal_leg1 * (t419 + t421)
+                    + t427 * t486,
+                t441 * t493,
+                t461 * t505,
+                -(c_distal_leg1 * (t428 - minus_rate_dot_distal_leg1)
+                    + minus_s_distal_leg1 * (t522 - t484) + t427 * t420),
+                -(t441 * t445),
+                -(t461 * t468),
+                minus_s_distal_leg1 * (t428 + minus_rate_dot_distal_leg1)
+                    - c_distal_leg1 * (t485 - t522) - t427 * t187,
+                -(t441 * t240),
+                -(t461 * t96),
+                9.81 * (minus_s_distal_leg1 * c_proximal_leg1) - t427 * t364,
+                -(t441 * t366),
+                -(t461 * t382),
             ],
             [
-                t132 * t112 + t136 * t119 + t141 * t127, t132 * t173 + t136 * t179 + t141 * t186,
-                t132 * t212 + t136 * t218 + t141 * t225, t132 * t241 + t136 * t246 + t141 * t252,
-                t132 * t272 + t136 * t278 + t141 * t285, t132 * t300 + t136 * t304 + t141 * t309,
-                t132 * t326 + t136 * t330, t132 * t342 + t136 * t346, t132 * t357 + t136 * t361,
+                t144 * t124 + t148 * t131 + t153 * t139, t144 * t200 + t148 * t206 + t153 * t213,
+                t144 * t254 + t148 * t260 + t153 * t267, t144 * t283 + t148 * t288 + t153 * t294,
+                t144 * t314 + t148 * t320 + t153 * t327, t144 * t342 + t148 * t346 + t153 * t351,
+                t144 * t368 + t148 * t372, t144 * t384 + t148 * t388, t144 * t399 + t148 * t403,
                 0.0, rate_dot_proximal_leg2, 0.0, 0.0, 9.81 * s_proximal_leg2, 0.0,
                 9.81 * c_proximal_leg2, 0.0, rate_proximal_leg2, 0.0, 0.0,
-                ::overact::math::sign(rate_proximal_leg2), 0.0, 0.0, 1.0, 0.0, -(t504 * t499),
-                c_distal_leg2 * t519 + minus_s_distal_leg2 * t521 - t526 * t515, -(t542 * t538),
-                t504 * t565,
-                minus_s_distal_leg2 * (t518 + t519)
-                    - c_distal_leg2 * (t521 + t521 - t576) + t526 * t572,
-                t542 * t586,
-                -(t504 * t487),
-                -(c_distal_leg2 * (t515 + rate_dot_distal_leg2)
-                    + minus_s_distal_leg2 * (t617 - t570) + t526 * t517),
-                -(t542 * t544),
-                -(t504 * t558),
-                minus_s_distal_leg2 * (t515 - rate_dot_distal_leg2)
-                    - c_distal_leg2 * (t571 - t617) - t526 * t576,
-                -(t542 * t591),
-                -(t504 * t322),
-                -(9.81 * (minus_s_distal_leg2 * s_proximal_leg2) + t526 * t324),
-                -(t542 * t340),
+                ::overact::math::sign(rate_proximal_leg2), 0.0, 0.0, 1.0, 0.0, -(t433 * t428),
+                -(c_distal_leg2 * t446 + minus_s_distal_leg2 * t242 + t452 * t442), -(t466 * t462),
+                t433 * t486,
+                c_distal_leg2 * (t242 + t243) - minus_s_distal_leg2 * (t444 + t446)
+                    + t452 * t493,
+                t466 * t505,
+                -(t433 * t420),
+                -(c_distal_leg2 * (t442 - minus_rate_dot_distal_leg2)
+                    + minus_s_distal_leg2 * (t538 - t491) + t452 * t445),
+                -(t466 * t468),
+                -(t433 * t187),
+                minus_s_distal_leg2 * (t442 + minus_rate_dot_distal_leg2)
+                    - c_distal_leg2 * (t492 - t538) - t452 * t240,
+                -(t466 * t96),
+                -(t433 * t364),
+                -(9.81 * (minus_s_distal_leg2 * s_proximal_leg2) + t452 * t366),
+                -(t466 * t382),
             ],
             [
-                t146 * t112 + t150 * t119 + t155 * t127, t146 * t173 + t150 * t179 + t155 * t186,
-                t146 * t212 + t150 * t218 + t155 * t225, t146 * t241 + t150 * t246 + t155 * t252,
-                t146 * t272 + t150 * t278 + t155 * t285, t146 * t300 + t150 * t304 + t155 * t309,
-                t146 * t326 + t150 * t330, t146 * t342 + t150 * t346, t146 * t357 + t150 * t361,
+                t158 * t124 + t162 * t131 + t167 * t139, t158 * t200 + t162 * t206 + t167 * t213,
+                t158 * t254 + t162 * t260 + t167 * t267, t158 * t283 + t162 * t288 + t167 * t294,
+                t158 * t314 + t162 * t320 + t167 * t327, t158 * t342 + t162 * t346 + t167 * t351,
+                t158 * t368 + t162 * t372, t158 * t384 + t162 * t388, t158 * t399 + t162 * t403,
                 0.0, 0.0, rate_dot_proximal_leg3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, rate_proximal_leg3,
-                0.0, 0.0, ::overact::math::sign(rate_proximal_leg3), 0.0, 0.0, 1.0, -(t508 * t499),
-                -(t531 * t515), c_distal_leg3 * t546 + minus_s_distal_leg3 * t548 - t553 * t538,
-                t508 * t565, t531 * t572,
-                minus_s_distal_leg3 * (t545 + t546)
-                    - c_distal_leg3 * (t548 + t548 - t591) + t553 * t586,
-                -(t508 * t487),
-                -(t531 * t517),
-                -(c_distal_leg3 * (t538 + rate_dot_distal_leg3)
-                    + minus_s_distal_leg3 * (t631 - t584) + t553 * t544),
-                -(t508 * t558),
-                -(t531 * t576),
-                minus_s_distal_leg3 * (t538 - rate_dot_distal_leg3)
-                    - c_distal_leg3 * (t585 - t631) - t553 * t591,
-                -(t508 * t322),
-                -(t531 * t324),
-                -(t553 * t340),
+                0.0, 0.0, ::overact::math::sign(rate_proximal_leg3), 0.0, 0.0, 1.0, -(t437 * t428),
+                -(t457 * t442), c_distal_leg3 * t470 + minus_s_distal_leg3 * t91 - t476 * t462,
+                t437 * t486, t457 * t493,
+                minus_s_distal_leg3 * (t469 + t470) - c_distal_leg3 * (t91 + t97)
+                    + t476 * t505,
+                -(t437 * t420),
+                -(t457 * t445),
+                -(c_distal_leg3 * (t462 + rate_dot_distal_leg3)
+                    + minus_s_distal_leg3 * (t554 - t503) + t476 * t468),
+                -(t437 * t187),
+                -(t457 * t240),
+                minus_s_distal_leg3 * (t462 - rate_dot_distal_leg3)
+                    - c_distal_leg3 * (t504 - t554) - t476 * t96,
+                -(t437 * t364),
+                -(t457 * t366),
+                -(t476 * t382),
             ],
         ])
     }
@@ -4953,7 +4604,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 40.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 645 operations (238 additions, 403 multiplications, 4 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 575 intermediates.
+    /// 588 operations (222 additions, 362 multiplications, 4 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 518 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4963,308 +4614,285 @@ impl Spherical3Rrr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 40]; 3], ::overact::Error> {
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
+        let [(minus_s_proximal_leg2, minus_c_proximal_leg2),
+        (c_distal_leg2, minus_s_distal_leg2),
+        (minus_s_proximal_leg3, minus_c_proximal_leg3),
+        (c_distal_leg3, minus_s_distal_leg3),
+        (minus_s_proximal_leg1, minus_c_proximal_leg1),
+        (c_distal_leg1, minus_s_distal_leg1)] = ::overact::math::sin_cos_all([
+            joints[3], joints[4], joints[6], joints[7], joints[0], joints[1],
+        ]);
         ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let t4 = 1.0 / minus_s_distal_leg2;
-        let gwrist_wz_leg2 = minus_c_proximal_leg2 * t4;
-        let gproximal_wz_leg2 = c_distal_leg2 * gwrist_wz_leg2;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
         ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t11 = 1.0 / minus_s_distal_leg3;
-        let gwrist_wy_leg3 = minus_s_proximal_leg3 * t11;
-        let gproximal_wy_leg3 = c_distal_leg3 * gwrist_wy_leg3;
-        let t15 = 1.0 - gproximal_wz_leg2 * gproximal_wy_leg3;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
         ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let t20 = 1.0 / minus_s_distal_leg1;
-        let gwrist_wy_leg1 = minus_c_proximal_leg1 * t20;
-        let gproximal_wy_leg1 = c_distal_leg1 * gwrist_wy_leg1;
-        let gwrist_wx_leg2 = minus_s_proximal_leg2 * t4;
-        let gproximal_wx_leg2 = c_distal_leg2 * gwrist_wx_leg2;
-        let gwrist_wx_leg3 = minus_c_proximal_leg3 * t11;
-        let gproximal_wx_leg3 = c_distal_leg3 * gwrist_wx_leg3;
-        let t28 = gproximal_wx_leg2 - gproximal_wz_leg2 * gproximal_wx_leg3;
-        let gwrist_wz_leg1 = minus_s_proximal_leg1 * t20;
-        let gproximal_wz_leg1 = c_distal_leg1 * gwrist_wz_leg1;
-        let t34 = gproximal_wx_leg2 * gproximal_wy_leg3 - gproximal_wx_leg3;
-        let t36 = t15 - gproximal_wy_leg1 * t28 + gproximal_wz_leg1 * t34;
-        ::overact::guard::platform(t36, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t36, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t36, 1.0, "kept actuators")?;
-        let t37 = 1.0 / t36;
-        let t38 = t15 * t37;
-        let t39 = 2.0 * pose[2];
-        let t40 = pose[2] * t39;
-        let t42 = 2.0 * pose[3];
-        let t43 = pose[3] * t42;
-        let t44 = 1.0 - t40 - t43;
-        let t46 = 2.0 * pose[1];
-        let t47 = pose[2] * t46;
-        let t48 = pose[0] * t42;
-        let t49 = t47 + t48;
-        let t52 = pose[3] * t46;
-        let t53 = pose[0] * t39;
-        let t54 = t52 - t53;
-        let t56 = t44 * acceleration[0] + t49 * acceleration[1] + t54 * acceleration[2];
-        let t58 = t47 - t48;
-        let t63 = t44 * twist[0] + t49 * twist[1] + t54 * twist[2];
-        let t64 = t52 + t53;
-        let t66 = pose[3] * t39;
-        let t67 = pose[0] * t46;
-        let t68 = t66 - t67;
-        let t72 = 1.0 - pose[1] * t46;
-        let t73 = t72 - t40;
-        let t75 = t64 * twist[0] + t68 * twist[1] + t73 * twist[2];
-        let t76 = t63 * t75;
-        let t77 = t58 * t76;
-        let t80 = t72 - t43;
-        let t83 = t66 + t67;
-        let t85 = t58 * twist[0] + t80 * twist[1] + t83 * twist[2];
-        let t86 = t63 * t85;
-        let t87 = t64 * t86;
-        let t88 = t44 * t56 + t77 - t87;
-        let t90 = t28 * t37;
-        let t92 = t80 * t76;
-        let t94 = t68 * t86;
-        let t95 = t49 * t56 + t92 - t94;
-        let t98 = t34 * t37;
-        let t100 = t83 * t76;
-        let t102 = t73 * t86;
-        let t103 = t54 * t56 + t100 - t102;
-        let t108 = (1.0 - gproximal_wz_leg1 * gproximal_wx_leg3) * t37;
-        let t112 = (gproximal_wy_leg1 - gproximal_wz_leg1 * gproximal_wy_leg3) * t37;
-        let t117 = (gproximal_wy_leg3 - gproximal_wy_leg1 * gproximal_wx_leg3) * t37;
-        let t122 = (gproximal_wy_leg1 * gproximal_wz_leg2 - gproximal_wz_leg1) * t37;
-        let t126 = (gproximal_wz_leg2 - gproximal_wz_leg1 * gproximal_wx_leg2) * t37;
-        let t131 = (1.0 - gproximal_wy_leg1 * gproximal_wx_leg2) * t37;
-        let t134 = t85 * t75;
-        let t135 = t134 + t56;
-        let t141 = t58 * acceleration[0] + t80 * acceleration[1] + t83 * acceleration[2];
-        let t142 = t76 - t141;
-        let t145 = t63 * t63;
-        let t146 = t85 * t85;
-        let t147 = t145 - t146;
-        let t149 = t58 * t135 - t44 * t142 + t64 * t147;
-        let t155 = t80 * t135 - t49 * t142 + t68 * t147;
-        let t162 = t83 * t135 - t54 * t142 + t73 * t147;
-        let t179 = t64 * acceleration[0] + t68 * acceleration[1] + t73 * acceleration[2];
-        let t180 = t86 + t179;
-        let t182 = t75 * t75;
-        let t183 = t182 - t145;
-        let t186 = t134 - t56;
-        let t188 = t44 * t180 + t58 * t183 - t64 * t186;
-        let t194 = t49 * t180 + t80 * t183 - t68 * t186;
-        let t201 = t54 * t180 + t83 * t183 - t73 * t186;
-        let t215 = t44 * t134;
-        let t217 = t58 * t141 - t215 + t87;
-        let t220 = t49 * t134;
-        let t222 = t80 * t141 - t220 + t94;
-        let t226 = t54 * t134;
-        let t228 = t83 * t141 - t226 + t102;
-        let t241 = t146 - t182;
-        let t243 = t86 - t179;
-        let t246 = t76 + t141;
-        let t248 = t44 * t241 - t58 * t243 + t64 * t246;
-        let t254 = t49 * t241 - t80 * t243 + t68 * t246;
-        let t261 = t54 * t241 - t83 * t243 + t73 * t246;
-        let t276 = t215 - t77 + t64 * t179;
-        let t280 = t220 - t92 + t68 * t179;
-        let t285 = t226 - t100 + t73 * t179;
-        let t298 = 9.81 * t83;
-        let t300 = 9.81 * t73;
-        let t302 = t64 * t298 - t58 * t300;
-        let t306 = t68 * t298 - t80 * t300;
-        let t316 = 9.81 * t54;
-        let t318 = t44 * t300 - t64 * t316;
-        let t322 = t49 * t300 - t68 * t316;
-        let t333 = t58 * t316 - t44 * t298;
-        let t337 = t80 * t316 - t49 * t298;
-        let rate_distal_leg1 = minus_c_proximal_leg1 * twist[2]
-            - minus_s_proximal_leg1 * twist[1];
-        let t349 = minus_s_proximal_leg1 * rate_distal_leg1;
-        let t350 = minus_s_proximal_leg1 * minus_s_distal_leg1;
-        let rate_wrist_leg1 = gwrist_wy_leg1 * twist[1] + gwrist_wz_leg1 * twist[2];
-        let t354 = t350 * rate_wrist_leg1;
-        let t356 = minus_c_proximal_leg1 * rate_distal_leg1;
-        let t358 = minus_c_proximal_leg1 * minus_s_distal_leg1 * rate_wrist_leg1;
-        let rate_proximal_leg1 = twist[0] + gproximal_wy_leg1 * twist[1]
-            + gproximal_wz_leg1 * twist[2];
-        let t367 = c_distal_leg1 * rate_wrist_leg1;
-        let t372 = acceleration[1] + rate_proximal_leg1 * t356 + t356 * t367
-            + rate_proximal_leg1 * t354;
-        let t380 = acceleration[2]
-            - (rate_proximal_leg1 * t358 - t349 * t367 - rate_proximal_leg1 * t349);
-        let rate_dot_proximal_leg1 = acceleration[0] + t349 * t354 + t356 * t358
-            + gproximal_wy_leg1 * t372 + gproximal_wz_leg1 * t380;
-        let rate_proximal_leg2 = gproximal_wx_leg2 * twist[0] + twist[1]
-            + gproximal_wz_leg2 * twist[2];
-        let t387 = minus_c_proximal_leg2 * minus_s_distal_leg2;
-        let rate_wrist_leg2 = gwrist_wx_leg2 * twist[0] + gwrist_wz_leg2 * twist[2];
-        let t391 = t387 * rate_wrist_leg2;
-        let rate_distal_leg2 = minus_c_proximal_leg2 * twist[0]
-            - minus_s_proximal_leg2 * twist[2];
-        let t396 = minus_s_proximal_leg2 * rate_distal_leg2;
-        let t397 = c_distal_leg2 * rate_wrist_leg2;
-        let t402 = acceleration[0]
-            - (rate_proximal_leg2 * t391 - t396 * t397 - rate_proximal_leg2 * t396);
-        let t405 = minus_s_proximal_leg2 * minus_s_distal_leg2 * rate_wrist_leg2;
-        let t407 = minus_c_proximal_leg2 * rate_distal_leg2;
-        let t417 = acceleration[2] + rate_proximal_leg2 * t407 + t407 * t397
-            + rate_proximal_leg2 * t405;
-        let rate_dot_proximal_leg2 = gproximal_wx_leg2 * t402 + acceleration[1]
-            + t396 * t405 + t407 * t391 + gproximal_wz_leg2 * t417;
-        let t422 = gproximal_wx_leg3 * twist[0] + gproximal_wy_leg3 * twist[1];
-        let rate_proximal_leg3 = t422 + twist[2];
+        let t4 = c_distal_leg2 / minus_s_distal_leg2;
+        let gproximal_wz_leg2 = minus_c_proximal_leg2 * t4;
+        let t10 = c_distal_leg3 / minus_s_distal_leg3;
+        let gproximal_wy_leg3 = minus_s_proximal_leg3 * t10;
+        let t13 = 1.0 - gproximal_wz_leg2 * gproximal_wy_leg3;
+        let t18 = c_distal_leg1 / minus_s_distal_leg1;
+        let gproximal_wy_leg1 = minus_c_proximal_leg1 * t18;
+        let gproximal_wx_leg2 = minus_s_proximal_leg2 * t4;
+        let gproximal_wx_leg3 = minus_c_proximal_leg3 * t10;
+        let t23 = gproximal_wx_leg2 - gproximal_wz_leg2 * gproximal_wx_leg3;
+        let gproximal_wz_leg1 = minus_s_proximal_leg1 * t18;
+        let t28 = gproximal_wx_leg2 * gproximal_wy_leg3 - gproximal_wx_leg3;
+        let t30 = t13 - gproximal_wy_leg1 * t23 + gproximal_wz_leg1 * t28;
+        ::overact::guard::platform(t30, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t30, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t30, 1.0, "kept actuators")?;
+        let t31 = 1.0 / t30;
+        let t32 = t13 * t31;
+        let t33 = 2.0 * pose[2];
+        let t34 = pose[2] * t33;
+        let t36 = 2.0 * pose[3];
+        let t37 = pose[3] * t36;
+        let t38 = 1.0 - t34 - t37;
+        let t40 = 2.0 * pose[1];
+        let t41 = pose[2] * t40;
+        let t42 = pose[0] * t36;
+        let t43 = t41 + t42;
+        let t46 = pose[3] * t40;
+        let t47 = pose[0] * t33;
+        let t48 = t46 - t47;
+        let t50 = t38 * acceleration[0] + t43 * acceleration[1] + t48 * acceleration[2];
+        let t52 = t41 - t42;
+        let t57 = t38 * twist[0] + t43 * twist[1] + t48 * twist[2];
+        let t58 = t46 + t47;
+        let t60 = pose[3] * t33;
+        let t61 = pose[0] * t40;
+        let t62 = t60 - t61;
+        let t66 = 1.0 - pose[1] * t40;
+        let t67 = t66 - t34;
+        let t69 = t58 * twist[0] + t62 * twist[1] + t67 * twist[2];
+        let t70 = t57 * t69;
+        let t71 = t52 * t70;
+        let t74 = t66 - t37;
+        let t77 = t60 + t61;
+        let t79 = t52 * twist[0] + t74 * twist[1] + t77 * twist[2];
+        let t80 = t57 * t79;
+        let t81 = t58 * t80;
+        let t82 = t38 * t50 + t71 - t81;
+        let t84 = t23 * t31;
+        let t86 = t74 * t70;
+        let t88 = t62 * t80;
+        let t89 = t43 * t50 + t86 - t88;
+        let t92 = t28 * t31;
+        let t94 = t77 * t70;
+        let t96 = t67 * t80;
+        let t97 = t48 * t50 + t94 - t96;
+        let t102 = (1.0 - gproximal_wz_leg1 * gproximal_wx_leg3) * t31;
+        let t106 = (gproximal_wy_leg1 - gproximal_wz_leg1 * gproximal_wy_leg3) * t31;
+        let t111 = (gproximal_wy_leg3 - gproximal_wy_leg1 * gproximal_wx_leg3) * t31;
+        let t116 = (gproximal_wy_leg1 * gproximal_wz_leg2 - gproximal_wz_leg1) * t31;
+        let t120 = (gproximal_wz_leg2 - gproximal_wz_leg1 * gproximal_wx_leg2) * t31;
+        let t125 = (1.0 - gproximal_wy_leg1 * gproximal_wx_leg2) * t31;
+        let t128 = t79 * t69;
+        let t129 = t128 + t50;
+        let t135 = t52 * acceleration[0] + t74 * acceleration[1] + t77 * acceleration[2];
+        let t136 = t70 - t135;
+        let t139 = t57 * t57;
+        let t140 = t79 * t79;
+        let t141 = t139 - t140;
+        let t143 = t52 * t129 - t38 * t136 + t58 * t141;
+        let t149 = t74 * t129 - t43 * t136 + t62 * t141;
+        let t156 = t77 * t129 - t48 * t136 + t67 * t141;
+        let t173 = t58 * acceleration[0] + t62 * acceleration[1] + t67 * acceleration[2];
+        let t174 = t80 + t173;
+        let t176 = t69 * t69;
+        let t177 = t176 - t139;
+        let t180 = t128 - t50;
+        let t182 = t38 * t174 + t52 * t177 - t58 * t180;
+        let t188 = t43 * t174 + t74 * t177 - t62 * t180;
+        let t195 = t48 * t174 + t77 * t177 - t67 * t180;
+        let t209 = t38 * t128;
+        let t211 = t52 * t135 - t209 + t81;
+        let t214 = t43 * t128;
+        let t216 = t74 * t135 - t214 + t88;
+        let t220 = t48 * t128;
+        let t222 = t77 * t135 - t220 + t96;
+        let t235 = t140 - t176;
+        let t237 = t80 - t173;
+        let t240 = t70 + t135;
+        let t242 = t38 * t235 - t52 * t237 + t58 * t240;
+        let t248 = t43 * t235 - t74 * t237 + t62 * t240;
+        let t255 = t48 * t235 - t77 * t237 + t67 * t240;
+        let t270 = t209 - t71 + t58 * t173;
+        let t274 = t214 - t86 + t62 * t173;
+        let t279 = t220 - t94 + t67 * t173;
+        let t292 = 9.81 * t77;
+        let t294 = 9.81 * t67;
+        let t296 = t58 * t292 - t52 * t294;
+        let t300 = t62 * t292 - t74 * t294;
+        let t310 = 9.81 * t48;
+        let t312 = t38 * t294 - t58 * t310;
+        let t316 = t43 * t294 - t62 * t310;
+        let t327 = t52 * t310 - t38 * t292;
+        let t331 = t74 * t310 - t43 * t292;
+        let t342 = minus_c_proximal_leg1 * twist[1] + minus_s_proximal_leg1 * twist[2];
+        let minus_rate_distal_leg1 = minus_s_proximal_leg1 * twist[1]
+            - minus_c_proximal_leg1 * twist[2];
+        let t348 = t18 * t342;
+        let rate_proximal_leg1 = t348 + twist[0];
+        let rate_dot_proximal_leg1 = acceleration[0] - t342 * minus_rate_distal_leg1
+            - t18
+                * (minus_rate_distal_leg1 * rate_proximal_leg1
+                    + minus_rate_distal_leg1 * t348
+                    - (minus_c_proximal_leg1 * acceleration[1]
+                        + minus_s_proximal_leg1 * acceleration[2]));
+        let t361 = minus_s_proximal_leg2 * twist[0] + minus_c_proximal_leg2 * twist[2];
+        let minus_rate_distal_leg2 = minus_s_proximal_leg2 * twist[2]
+            - minus_c_proximal_leg2 * twist[0];
+        let t367 = t4 * t361;
+        let rate_proximal_leg2 = t367 + twist[1];
+        let rate_dot_proximal_leg2 = acceleration[1] - t361 * minus_rate_distal_leg2
+            - t4
+                * (minus_rate_distal_leg2 * rate_proximal_leg2
+                    + minus_rate_distal_leg2 * t367
+                    - (minus_s_proximal_leg2 * acceleration[0]
+                        + minus_c_proximal_leg2 * acceleration[2]));
         let rate_distal_leg3 = minus_c_proximal_leg3 * twist[1]
             - minus_s_proximal_leg3 * twist[0];
-        let t427 = minus_c_proximal_leg3 * rate_distal_leg3;
-        let rate_wrist_leg3 = gwrist_wx_leg3 * twist[0] + gwrist_wy_leg3 * twist[1];
-        let t434 = minus_s_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let t438 = acceleration[0] + rate_proximal_leg3 * t427 + t422 * t427
-            + rate_proximal_leg3 * t434;
-        let t441 = minus_c_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let t443 = minus_s_proximal_leg3 * rate_distal_leg3;
-        let t448 = acceleration[1]
-            - (rate_proximal_leg3 * t441 - t422 * t443 - rate_proximal_leg3 * t443);
-        let rate_dot_proximal_leg3 = gproximal_wx_leg3 * t438 + gproximal_wy_leg3 * t448
-            + acceleration[2] + t443 * t434 + t427 * t441;
-        let t465 = minus_s_proximal_leg1 * t90 + minus_c_proximal_leg1 * t98;
-        let t466 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t467 = c_distal_leg1 * rate_proximal_leg1;
-        let t468 = t466 * t467;
-        let t470 = rate_distal_leg1 * t467;
-        let t471 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
-        let t472 = t470 - t471;
-        let t474 = rate_distal_leg1 * t466;
-        let t480 = minus_s_proximal_leg1 * t108 + minus_c_proximal_leg1 * t117;
-        let t484 = minus_s_proximal_leg1 * t126 + minus_c_proximal_leg1 * t131;
-        let t488 = minus_c_proximal_leg2 * t38 - minus_s_proximal_leg2 * t98;
-        let t489 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t490 = c_distal_leg2 * rate_proximal_leg2;
-        let t491 = t489 * t490;
-        let t495 = minus_s_proximal_leg2 * t117 - minus_c_proximal_leg2 * t112;
-        let t497 = rate_distal_leg2 * t490;
-        let t498 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t499 = t497 - t498;
-        let t501 = rate_distal_leg2 * t489;
-        let t507 = minus_c_proximal_leg2 * t122 - minus_s_proximal_leg2 * t131;
-        let t511 = minus_s_proximal_leg3 * t38 + minus_c_proximal_leg3 * t90;
-        let t512 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t513 = c_distal_leg3 * rate_proximal_leg3;
-        let t514 = t512 * t513;
-        let t518 = minus_s_proximal_leg3 * t112 + minus_c_proximal_leg3 * t108;
-        let t520 = rate_distal_leg3 * t513;
-        let t521 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let t522 = t520 - t521;
-        let t524 = rate_distal_leg3 * t512;
-        let t529 = minus_s_proximal_leg3 * t122 + minus_c_proximal_leg3 * t126;
-        let t534 = c_distal_leg1 * rate_dot_proximal_leg1;
-        let t539 = t466 * t466;
-        let t540 = t467 * t467;
-        let t541 = t539 - t540;
-        let t546 = t489 * t489;
-        let t547 = t490 * t490;
-        let t548 = t546 - t547;
-        let t552 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t560 = t512 * t512;
-        let t561 = t513 * t513;
-        let t562 = t560 - t561;
-        let t567 = c_distal_leg3 * rate_dot_proximal_leg3;
-        let t574 = rate_distal_leg1 * rate_distal_leg1;
-        let rate_dot_distal_leg1 = minus_c_proximal_leg1 * t380
-            - minus_s_proximal_leg1 * t372;
-        let t588 = rate_distal_leg2 * rate_distal_leg2;
-        let rate_dot_distal_leg2 = minus_c_proximal_leg2 * t402
-            - minus_s_proximal_leg2 * t417;
-        let t604 = t443 * t443 + t427 * t427;
-        let rate_dot_distal_leg3 = minus_c_proximal_leg3 * t448
-            - minus_s_proximal_leg3 * t438;
-        let t644 = 9.81 * t350;
-        let t649 = 9.81 * t387;
-        let t656 = 9.81 * c_distal_leg3;
+        let t386 = minus_c_proximal_leg3 * twist[0] + minus_s_proximal_leg3 * twist[1];
+        let t387 = t10 * t386;
+        let rate_proximal_leg3 = t387 + twist[2];
+        let rate_dot_proximal_leg3 = t10
+            * (minus_c_proximal_leg3 * acceleration[0]
+                + minus_s_proximal_leg3 * acceleration[1]
+                + rate_distal_leg3 * rate_proximal_leg3 + rate_distal_leg3 * t387)
+            + acceleration[2] + t386 * rate_distal_leg3;
+        let t397 = 9.81 * minus_c_proximal_leg1;
+        let t398 = 9.81 * minus_s_proximal_leg2;
+        let t399 = 9.81 * minus_s_proximal_leg1;
+        let t400 = 9.81 * minus_c_proximal_leg2;
+        let t404 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t405 = c_distal_leg1 * rate_proximal_leg1;
+        let t406 = minus_rate_distal_leg1 * t405;
+        let t407 = t404 + t406;
+        let t409 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t410 = minus_rate_distal_leg1 * t409;
+        let t415 = minus_s_proximal_leg1 * t84 + minus_c_proximal_leg1 * t92;
+        let t416 = t409 * t405;
+        let t421 = minus_s_proximal_leg1 * t102 + minus_c_proximal_leg1 * t111;
+        let t425 = minus_s_proximal_leg1 * t120 + minus_c_proximal_leg1 * t125;
+        let t429 = minus_c_proximal_leg2 * t32 - minus_s_proximal_leg2 * t92;
+        let t430 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t431 = c_distal_leg2 * rate_proximal_leg2;
+        let t432 = t430 * t431;
+        let t434 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t435 = minus_rate_distal_leg2 * t431;
+        let t436 = t434 + t435;
+        let t438 = minus_rate_distal_leg2 * t430;
+        let t443 = minus_s_proximal_leg2 * t111 - minus_c_proximal_leg2 * t106;
+        let t448 = minus_c_proximal_leg2 * t116 - minus_s_proximal_leg2 * t125;
+        let t452 = minus_s_proximal_leg3 * t32 + minus_c_proximal_leg3 * t84;
+        let t453 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t454 = c_distal_leg3 * rate_proximal_leg3;
+        let t455 = t453 * t454;
+        let t459 = minus_s_proximal_leg3 * t106 + minus_c_proximal_leg3 * t102;
+        let t461 = rate_distal_leg3 * t454;
+        let t462 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t463 = t461 - t462;
+        let t465 = rate_distal_leg3 * t453;
+        let t470 = minus_s_proximal_leg3 * t116 + minus_c_proximal_leg3 * t120;
+        let t473 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t480 = t409 * t409;
+        let t481 = t405 * t405;
+        let t482 = t480 - t481;
+        let t487 = t430 * t430;
+        let t488 = t431 * t431;
+        let t489 = t487 - t488;
+        let t491 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t501 = t453 * t453;
+        let t502 = t454 * t454;
+        let t503 = t501 - t502;
+        let t508 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let minus_rate_dot_distal_leg1 = minus_s_proximal_leg1 * acceleration[1]
+            - minus_c_proximal_leg1 * acceleration[2] + t342 * rate_proximal_leg1;
+        let t522 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let minus_rate_dot_distal_leg2 = minus_s_proximal_leg2 * acceleration[2]
+            - minus_c_proximal_leg2 * acceleration[0] + t361 * rate_proximal_leg2;
+        let t538 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t547 = rate_distal_leg3 * rate_distal_leg3;
+        let rate_dot_distal_leg3 = minus_c_proximal_leg3 * acceleration[1]
+            - minus_s_proximal_leg3 * acceleration[0] - t386 * rate_proximal_leg3;
+        let t588 = minus_s_distal_leg1 * t399;
+        let t593 = minus_s_distal_leg2 * t400;
+        let t599 = 9.81 * c_distal_leg3;
         Ok([
             [
-                t38 * t88 - t90 * t95 + t98 * t103, t38 * t149 - t90 * t155 + t98 * t162,
-                t38 * t188 - t90 * t194 + t98 * t201, t38 * t217 - t90 * t222 + t98 * t228,
-                t38 * t248 - t90 * t254 + t98 * t261, t38 * t276 - t90 * t280 + t98 * t285,
-                t38 * t302 - t90 * t306, t38 * t318 - t90 * t322, t38 * t333 - t90 * t337,
-                rate_dot_proximal_leg1, 0.0, 0.0, -(9.81 * minus_c_proximal_leg1), 0.0,
-                9.81 * minus_s_proximal_leg1, 0.0, rate_proximal_leg1, 0.0, 0.0,
-                ::overact::math::sign(rate_proximal_leg1), 0.0, 0.0, 1.0, 0.0, 0.0,
-                t465 * t468 - (minus_s_distal_leg1 * t472 + c_distal_leg1 * t474), t488 * t491,
-                -(t511 * t514),
-                c_distal_leg1 * (t470 + t472)
-                    - minus_s_distal_leg1 * (t474 + t534 + t474) + t465 * t541,
-                t488 * t548,
-                -(t511 * t562),
-                c_distal_leg1 * (t574 - t539)
-                    - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t468) - t465 * t471,
-                -(t488 * t498),
-                t511 * t521,
-                c_distal_leg1 * (t468 + rate_dot_distal_leg1)
-                    - minus_s_distal_leg1 * (t540 - t574) + t465 * t534,
-                t488 * t552,
-                -(t511 * t567),
-                -(9.81 * (minus_c_proximal_leg1 * c_distal_leg1) + t465 * t644),
-                -(t488 * t649),
-                -(t511 * t656),
+                t32 * t82 - t84 * t89 + t92 * t97, t32 * t143 - t84 * t149 + t92 * t156,
+                t32 * t182 - t84 * t188 + t92 * t195, t32 * t211 - t84 * t216 + t92 * t222,
+                t32 * t242 - t84 * t248 + t92 * t255, t32 * t270 - t84 * t274 + t92 * t279,
+                t32 * t296 - t84 * t300, t32 * t312 - t84 * t316, t32 * t327 - t84 * t331,
+                rate_dot_proximal_leg1, 0.0, 0.0, -t397, 0.0, t399, 0.0, rate_proximal_leg1, 0.0,
+                0.0, ::overact::math::sign(rate_proximal_leg1), 0.0, 0.0, 1.0, 0.0, 0.0,
+                minus_s_distal_leg1 * t407 + c_distal_leg1 * t410 + t415 * t416, t429 * t432,
+                -(t452 * t455),
+                minus_s_distal_leg1 * (t410 - (t473 - t410))
+                    - c_distal_leg1 * (t406 + t407) + t415 * t482,
+                t429 * t489,
+                -(t452 * t503),
+                minus_s_distal_leg1 * (t416 + minus_rate_dot_distal_leg1)
+                    + c_distal_leg1 * (t522 - t480) - t415 * t404,
+                -(t429 * t434),
+                t452 * t462,
+                t415 * t473
+                    - (minus_s_distal_leg1 * (t481 - t522)
+                        + c_distal_leg1 * (minus_rate_dot_distal_leg1 - t416)),
+                t429 * t491,
+                -(t452 * t508),
+                -(c_distal_leg1 * t397 + t415 * t588),
+                -(t429 * t593),
+                -(t452 * t599),
             ],
             [
-                t108 * t95 - t112 * t88 - t117 * t103, t108 * t155 - t112 * t149 - t117 * t162,
-                t108 * t194 - t112 * t188 - t117 * t201, t108 * t222 - t112 * t217 - t117 * t228,
-                t108 * t254 - t112 * t248 - t117 * t261, t108 * t280 - t112 * t276 - t117 * t285,
-                t108 * t306 - t112 * t302, t108 * t322 - t112 * t318, t108 * t337 - t112 * t333,
-                0.0, rate_dot_proximal_leg2, 0.0, 0.0, 9.81 * minus_s_proximal_leg2, 0.0,
-                9.81 * minus_c_proximal_leg2, 0.0, rate_proximal_leg2, 0.0, 0.0,
-                ::overact::math::sign(rate_proximal_leg2), 0.0, 0.0, 1.0, 0.0, -(t480 * t468),
-                t495 * t491 - (minus_s_distal_leg2 * t499 + c_distal_leg2 * t501), t518 * t514,
-                -(t480 * t541),
-                c_distal_leg2 * (t497 + t499)
-                    - minus_s_distal_leg2 * (t501 + t552 + t501) + t495 * t548,
-                t518 * t562,
-                t480 * t471,
-                c_distal_leg2 * (t588 - t546)
-                    - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t491) - t495 * t498,
-                -(t518 * t521),
-                -(t480 * t534),
-                c_distal_leg2 * (t491 + rate_dot_distal_leg2)
-                    - minus_s_distal_leg2 * (t547 - t588) + t495 * t552,
-                t518 * t567,
-                t480 * t644,
-                9.81 * (minus_s_proximal_leg2 * c_distal_leg2) - t495 * t649,
-                t518 * t656,
+                t102 * t89 - t106 * t82 - t111 * t97, t102 * t149 - t106 * t143 - t111 * t156,
+                t102 * t188 - t106 * t182 - t111 * t195, t102 * t216 - t106 * t211 - t111 * t222,
+                t102 * t248 - t106 * t242 - t111 * t255, t102 * t274 - t106 * t270 - t111 * t279,
+                t102 * t300 - t106 * t296, t102 * t316 - t106 * t312, t102 * t331 - t106 * t327,
+                0.0, rate_dot_proximal_leg2, 0.0, 0.0, t398, 0.0, t400, 0.0, rate_proximal_leg2,
+                0.0, 0.0, ::overact::math::sign(rate_proximal_leg2), 0.0, 0.0, 1.0, 0.0,
+                -(t421 * t416), minus_s_distal_leg2 * t436 + c_distal_leg2 * t438 + t443 * t432,
+                t459 * t455, -(t421 * t482),
+                minus_s_distal_leg2 * (t438 - (t491 - t438))
+                    - c_distal_leg2 * (t435 + t436) + t443 * t489,
+                t459 * t503,
+                t421 * t404,
+                minus_s_distal_leg2 * (t432 + minus_rate_dot_distal_leg2)
+                    + c_distal_leg2 * (t538 - t487) - t443 * t434,
+                -(t459 * t462),
+                -(t421 * t473),
+                t443 * t491
+                    - (minus_s_distal_leg2 * (t488 - t538)
+                        + c_distal_leg2 * (minus_rate_dot_distal_leg2 - t432)),
+                t459 * t508,
+                t421 * t588,
+                c_distal_leg2 * t398 - t443 * t593,
+                t459 * t599,
             ],
             [
-                t122 * t88 - t126 * t95 + t131 * t103, t122 * t149 - t126 * t155 + t131 * t162,
-                t122 * t188 - t126 * t194 + t131 * t201, t122 * t217 - t126 * t222 + t131 * t228,
-                t122 * t248 - t126 * t254 + t131 * t261, t122 * t276 - t126 * t280 + t131 * t285,
-                t122 * t302 - t126 * t306, t122 * t318 - t126 * t322, t122 * t333 - t126 * t337,
+                t116 * t82 - t120 * t89 + t125 * t97, t116 * t143 - t120 * t149 + t125 * t156,
+                t116 * t182 - t120 * t188 + t125 * t195, t116 * t211 - t120 * t216 + t125 * t222,
+                t116 * t242 - t120 * t248 + t125 * t255, t116 * t270 - t120 * t274 + t125 * t279,
+                t116 * t296 - t120 * t300, t116 * t312 - t120 * t316, t116 * t327 - t120 * t331,
                 0.0, 0.0, rate_dot_proximal_leg3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, rate_proximal_leg3,
-                0.0, 0.0, ::overact::math::sign(rate_proximal_leg3), 0.0, 0.0, 1.0, t484 * t468,
-                t507 * t491, -(minus_s_distal_leg3 * t522 + c_distal_leg3 * t524 + t529 * t514),
-                t484 * t541, t507 * t548,
-                c_distal_leg3 * (t520 + t522)
-                    - minus_s_distal_leg3 * (t524 + t567 + t524) - t529 * t562,
-                -(t484 * t471),
-                -(t507 * t498),
-                c_distal_leg3 * (t604 - t560)
-                    - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t514) + t529 * t521,
-                t484 * t534,
-                t507 * t552,
-                c_distal_leg3 * (t514 + rate_dot_distal_leg3)
-                    - minus_s_distal_leg3 * (t561 - t604) - t529 * t567,
-                -(t484 * t644),
-                -(t507 * t649),
-                -(t529 * t656),
+                0.0, 0.0, ::overact::math::sign(rate_proximal_leg3), 0.0, 0.0, 1.0, t425 * t416,
+                t448 * t432, -(minus_s_distal_leg3 * t463 + c_distal_leg3 * t465 + t470 * t455),
+                t425 * t482, t448 * t489,
+                c_distal_leg3 * (t461 + t463)
+                    - minus_s_distal_leg3 * (t465 + t508 + t465) - t470 * t503,
+                -(t425 * t404),
+                -(t448 * t434),
+                c_distal_leg3 * (t547 - t501)
+                    - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t455) + t470 * t462,
+                t425 * t473,
+                t448 * t491,
+                c_distal_leg3 * (t455 + rate_dot_distal_leg3)
+                    - minus_s_distal_leg3 * (t502 - t547) - t470 * t508,
+                -(t425 * t588),
+                -(t448 * t593),
+                -(t470 * t599),
             ],
         ])
     }
@@ -5279,7 +4907,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 40.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 753 operations (278 additions, 465 multiplications, 10 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 680 intermediates.
+    /// 682 operations (256 additions, 416 multiplications, 10 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 609 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5290,367 +4918,346 @@ impl Spherical3Rrr {
         start: &[f64; 4],
     ) -> Result<[[f64; 40]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = 2.0 * pose[2];
-        let t1 = pose[3] * t0;
-        let t2 = 2.0 * pose[1];
-        let t3 = pose[0] * t2;
-        let minus_s_distal_leg2 = t1 - t3;
-        let t6 = 1.0 - pose[1] * t2;
-        let t7 = pose[2] * t0;
-        let t8 = t6 - t7;
+        let t0 = 2.0 * pose[1];
+        let t2 = 1.0 - pose[1] * t0;
+        let t3 = 2.0 * pose[2];
+        let t4 = pose[2] * t3;
+        let t5 = t2 - t4;
+        let t6 = pose[3] * t3;
+        let t7 = pose[0] * t0;
+        let minus_s_distal_leg2 = t6 - t7;
         let t10 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
         ::overact::guard::reach(t10, "leg2")?;
         let c_distal_leg2 = ::overact::math::sqrt(t10);
-        let t13 = 1.0 / (t8 * c_distal_leg2);
-        let c_proximal_leg2 = t13 * (t8 * t8);
-        let t16 = pose[3] * t2;
-        let t17 = pose[0] * t0;
-        let t18 = t16 + t17;
-        let s_proximal_leg2 = t13 * (t18 * t8);
-        let t23 = t18 * s_proximal_leg2 + t8 * c_proximal_leg2;
-        ::overact::guard::leg(t23, 1.0, "leg2")?;
-        let t24 = 1.0 / t23;
-        let gwrist_wz_leg2 = c_proximal_leg2 * t24;
-        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
-        let minus_s_distal_leg3 = t16 - t17;
-        let t29 = 2.0 * pose[3];
-        let t30 = pose[3] * t29;
-        let t31 = 1.0 - t7 - t30;
-        let t33 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t33, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t33);
-        let t36 = 1.0 / (t31 * c_distal_leg3);
-        let t37 = pose[2] * t2;
-        let t38 = pose[0] * t29;
-        let t39 = t37 + t38;
-        let s_proximal_leg3 = t36 * (t31 * t39);
-        let c_proximal_leg3 = t36 * (t31 * t31);
-        let t46 = t31 * c_proximal_leg3 + t39 * s_proximal_leg3;
-        ::overact::guard::leg(t46, 1.0, "leg3")?;
-        let t47 = 1.0 / t46;
-        let gwrist_wy_leg3 = s_proximal_leg3 * t47;
-        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
-        let t51 = 1.0 - minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3;
-        let minus_s_distal_leg1 = t37 - t38;
-        let t53 = t6 - t30;
-        let t55 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t55, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t55);
-        let t58 = 1.0 / (t53 * c_distal_leg1);
-        let c_proximal_leg1 = t58 * (t53 * t53);
-        let t62 = t1 + t3;
-        let s_proximal_leg1 = t58 * (t53 * t62);
-        let t66 = t53 * c_proximal_leg1 + t62 * s_proximal_leg1;
-        ::overact::guard::leg(t66, 1.0, "leg1")?;
-        let t67 = 1.0 / t66;
-        let gwrist_wy_leg1 = c_proximal_leg1 * t67;
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
-        let gwrist_wx_leg2 = s_proximal_leg2 * t24;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
-        let gwrist_wx_leg3 = c_proximal_leg3 * t47;
-        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
-        let t75 = minus_gproximal_wx_leg2
+        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
+        let t13 = 1.0 / (t5 * c_distal_leg2);
+        let c_proximal_leg2 = t13 * (t5 * t5);
+        let t16 = 1.0 / c_distal_leg2;
+        let t17 = minus_s_distal_leg2 * t16;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t17;
+        let t20 = 2.0 * pose[3];
+        let t21 = pose[3] * t20;
+        let t22 = 1.0 - t4 - t21;
+        let t23 = pose[3] * t0;
+        let t24 = pose[0] * t3;
+        let minus_s_distal_leg3 = t23 - t24;
+        let t27 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t27, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t27);
+        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
+        let t30 = 1.0 / (t22 * c_distal_leg3);
+        let t31 = pose[2] * t0;
+        let t32 = pose[0] * t20;
+        let t33 = t31 + t32;
+        let s_proximal_leg3 = t30 * (t22 * t33);
+        let t36 = 1.0 / c_distal_leg3;
+        let t37 = minus_s_distal_leg3 * t36;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t37;
+        let t40 = 1.0 - minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3;
+        let t41 = t2 - t21;
+        let minus_s_distal_leg1 = t31 - t32;
+        let t44 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t44, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t44);
+        ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
+        let t47 = 1.0 / (t41 * c_distal_leg1);
+        let c_proximal_leg1 = t47 * (t41 * t41);
+        let t50 = 1.0 / c_distal_leg1;
+        let t51 = minus_s_distal_leg1 * t50;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t51;
+        let t53 = t23 + t24;
+        let s_proximal_leg2 = t13 * (t53 * t5);
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t17;
+        let c_proximal_leg3 = t30 * (t22 * t22);
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t37;
+        let t61 = minus_gproximal_wx_leg2
             + minus_gproximal_wz_leg2 * minus_gproximal_wx_leg3;
-        let gwrist_wz_leg1 = s_proximal_leg1 * t67;
-        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
-        let t81 = minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3
+        let t64 = t6 + t7;
+        let s_proximal_leg1 = t47 * (t41 * t64);
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t51;
+        let t69 = minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3
             + minus_gproximal_wx_leg3;
-        let t83 = t51 - minus_gproximal_wy_leg1 * t75 - minus_gproximal_wz_leg1 * t81;
-        ::overact::guard::platform(t83, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t83, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t83, 1.0, "kept actuators")?;
-        let t84 = 1.0 / t83;
-        let t85 = t51 * t84;
-        let t89 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+        let t71 = t40 - minus_gproximal_wy_leg1 * t61 - minus_gproximal_wz_leg1 * t69;
+        ::overact::guard::platform(t71, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t71, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t71, 1.0, "kept actuators")?;
+        let t72 = 1.0 / t71;
+        let t73 = t40 * t72;
+        let t77 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
-        ::overact::guard::platform(t89, 1.0, "actuators")?;
-        ::overact::guard::platform(t89, 1.0, "actuators")?;
-        let t90 = 1.0 / t89;
-        let gdistal_wz_leg1 = t53 * t67;
-        let t98 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
-            - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
-        let t99 = t98 * t90;
-        let t107 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+        ::overact::guard::platform(t77, 1.0, "actuators")?;
+        ::overact::guard::platform(t77, 1.0, "actuators")?;
+        let t78 = 1.0 / t77;
+        let t85 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
-        let t109 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
-            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t107 * t99;
-        let t114 = t107 * t90;
-        let t116 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t107 * t114;
-        ::overact::guard::platform(t116, 1.0, "actuators")?;
-        ::overact::guard::platform(t116, 1.0, "actuators")?;
-        let t117 = 1.0 / t116;
-        let t118 = t109 * t117;
-        let t120 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t98 * t99
-            - t109 * t118;
-        ::overact::guard::platform(t120, 1.0, "actuators")?;
-        ::overact::guard::platform(t120, 1.0, "actuators")?;
-        let t121 = 1.0 / t120;
-        let t129 = actuator_velocities[0]
+        let t86 = t85 * t78;
+        let t88 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t85 * t86;
+        ::overact::guard::platform(t88, 1.0, "actuators")?;
+        ::overact::guard::platform(t88, 1.0, "actuators")?;
+        let t89 = 1.0 / t88;
+        let t97 = actuator_velocities[0]
             - minus_gproximal_wx_leg2 * actuator_velocities[1]
             - minus_gproximal_wx_leg3 * actuator_velocities[2];
-        let t137 = actuator_velocities[1]
+        let t99 = actuator_velocities[1]
             - minus_gproximal_wy_leg1 * actuator_velocities[0]
-            - minus_gproximal_wy_leg3 * actuator_velocities[2] - t129 * t114;
-        let t140 = t121
+            - minus_gproximal_wy_leg3 * actuator_velocities[2] - t97 * t86;
+        let t106 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
+        let t107 = t106 * t78;
+        let t109 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t85 * t107;
+        let t110 = t109 * t89;
+        let t118 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t106 * t107
+            - t109 * t110;
+        ::overact::guard::platform(t118, 1.0, "actuators")?;
+        ::overact::guard::platform(t118, 1.0, "actuators")?;
+        let t119 = 1.0 / t118;
+        let t128 = t119
             * (actuator_velocities[2]
                 - (minus_gproximal_wz_leg1 * actuator_velocities[0]
-                    + minus_gproximal_wz_leg2 * actuator_velocities[1]) - t129 * t99
-                - t118 * t137);
-        let minus_gdistal_wy_leg1 = t62 * t67;
-        let t145 = t117 * t137 - t118 * t140;
-        let rate_distal_leg1 = gdistal_wz_leg1 * t140 - minus_gdistal_wy_leg1 * t145;
-        let t148 = s_proximal_leg1 * rate_distal_leg1;
-        let rate_wrist_leg1 = gwrist_wy_leg1 * t145 + gwrist_wz_leg1 * t140;
-        let t152 = t62 * rate_wrist_leg1;
-        let t154 = c_proximal_leg1 * rate_distal_leg1;
-        let t155 = t53 * rate_wrist_leg1;
-        let t158 = minus_s_distal_leg1 * rate_wrist_leg1;
-        let t163 = t154 * t158 - actuator_velocities[0] * t152
-            - actuator_velocities[0] * t154;
-        let t170 = actuator_velocities[0] * t155 + t148 * t158
-            - actuator_velocities[0] * t148;
-        let rate_dot_proximal_leg1 = t148 * t152 + t154 * t155
-            + minus_gproximal_wy_leg1 * t163 + minus_gproximal_wz_leg1 * t170;
-        let t173 = actuator_accelerations[0] - rate_dot_proximal_leg1;
-        let t178 = t129 * t90 - t114 * t145 - t99 * t140;
-        let rate_wrist_leg2 = gwrist_wx_leg2 * t178 + gwrist_wz_leg2 * t140;
-        let t182 = t8 * rate_wrist_leg2;
-        let gdistal_wx_leg2 = t8 * t24;
-        let minus_gdistal_wz_leg2 = t18 * t24;
-        let rate_distal_leg2 = gdistal_wx_leg2 * t178 - minus_gdistal_wz_leg2 * t140;
-        let t189 = s_proximal_leg2 * rate_distal_leg2;
-        let t190 = minus_s_distal_leg2 * rate_wrist_leg2;
-        let t194 = actuator_velocities[1] * t182 + t189 * t190
-            - actuator_velocities[1] * t189;
-        let t196 = t18 * rate_wrist_leg2;
-        let t198 = c_proximal_leg2 * rate_distal_leg2;
-        let t206 = t198 * t190 - actuator_velocities[1] * t196
-            - actuator_velocities[1] * t198;
-        let rate_dot_proximal_leg2 = minus_gproximal_wx_leg2 * t194 + t189 * t196
-            + t198 * t182 + minus_gproximal_wz_leg2 * t206;
-        let t209 = actuator_accelerations[1] - rate_dot_proximal_leg2;
-        let t214 = minus_gproximal_wx_leg3 * t178 + minus_gproximal_wy_leg3 * t145;
-        let gdistal_wy_leg3 = t31 * t47;
-        let minus_gdistal_wx_leg3 = t39 * t47;
-        let rate_distal_leg3 = gdistal_wy_leg3 * t145 - minus_gdistal_wx_leg3 * t178;
-        let t220 = c_proximal_leg3 * rate_distal_leg3;
-        let rate_wrist_leg3 = gwrist_wx_leg3 * t178 + gwrist_wy_leg3 * t145;
-        let t225 = t39 * rate_wrist_leg3;
-        let t229 = t214 * t220 - actuator_velocities[2] * t225
-            - actuator_velocities[2] * t220;
-        let t231 = t31 * rate_wrist_leg3;
-        let t233 = s_proximal_leg3 * rate_distal_leg3;
-        let t237 = actuator_velocities[2] * t231 + t214 * t233
-            - actuator_velocities[2] * t233;
-        let rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t229
-            + minus_gproximal_wy_leg3 * t237 + t233 * t225 + t220 * t231;
-        let t244 = actuator_accelerations[2] - rate_dot_proximal_leg3;
-        let t246 = t173 - minus_gproximal_wx_leg2 * t209
-            - minus_gproximal_wx_leg3 * t244;
-        let t253 = t209 - minus_gproximal_wy_leg1 * t173 - minus_gproximal_wy_leg3 * t244
-            - t114 * t246;
-        let t263 = t121
-            * (t244 - (minus_gproximal_wz_leg1 * t173 + minus_gproximal_wz_leg2 * t209)
-                - t99 * t246 - t118 * t253);
-        let t265 = t117 * t253 - t118 * t263;
-        let t269 = t90 * t246 - t114 * t265 - t99 * t263;
-        let t274 = t31 * t269 + t39 * t265 + minus_s_distal_leg3 * t263;
-        let t280 = t31 * t178 + t39 * t145 + minus_s_distal_leg3 * t140;
-        let t285 = t18 * t178 + minus_s_distal_leg2 * t145 + t8 * t140;
-        let t286 = t280 * t285;
-        let t287 = minus_s_distal_leg1 * t286;
-        let t293 = minus_s_distal_leg1 * t178 + t53 * t145 + t62 * t140;
-        let t294 = t280 * t293;
-        let t295 = t18 * t294;
-        let t296 = t31 * t274 + t287 - t295;
-        let t298 = t75 * t84;
-        let t300 = t53 * t286;
-        let t302 = minus_s_distal_leg2 * t294;
-        let t303 = t39 * t274 + t300 - t302;
-        let t306 = t81 * t84;
-        let t308 = t62 * t286;
-        let t310 = t8 * t294;
-        let t311 = minus_s_distal_leg3 * t274 + t308 - t310;
-        let t316 = (minus_gproximal_wy_leg1
-            + minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3) * t84;
-        let t320 = (1.0 - minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3) * t84;
-        let t325 = (minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t84;
-        let t330 = (minus_gproximal_wy_leg1 * minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg1) * t84;
-        let t334 = (minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2) * t84;
-        let t339 = (1.0 - minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2) * t84;
-        let t342 = t293 * t285;
-        let t343 = t342 + t274;
-        let t349 = minus_s_distal_leg1 * t269 + t53 * t265 + t62 * t263;
-        let t350 = t286 - t349;
-        let t353 = t280 * t280;
-        let t354 = t293 * t293;
-        let t355 = t353 - t354;
-        let t357 = minus_s_distal_leg1 * t343 - t31 * t350 + t18 * t355;
-        let t363 = t53 * t343 - t39 * t350 + minus_s_distal_leg2 * t355;
-        let t370 = t62 * t343 - minus_s_distal_leg3 * t350 + t8 * t355;
-        let t387 = t18 * t269 + minus_s_distal_leg2 * t265 + t8 * t263;
-        let t388 = t294 + t387;
-        let t390 = t285 * t285;
-        let t391 = t390 - t353;
-        let t394 = t342 - t274;
-        let t396 = t31 * t388 + minus_s_distal_leg1 * t391 - t18 * t394;
-        let t402 = t39 * t388 + t53 * t391 - minus_s_distal_leg2 * t394;
-        let t409 = minus_s_distal_leg3 * t388 + t62 * t391 - t8 * t394;
-        let t423 = t31 * t342;
-        let t425 = minus_s_distal_leg1 * t349 - t423 + t295;
-        let t428 = t39 * t342;
-        let t430 = t53 * t349 - t428 + t302;
-        let t434 = minus_s_distal_leg3 * t342;
-        let t436 = t62 * t349 - t434 + t310;
-        let t449 = t354 - t390;
-        let t451 = t294 - t387;
-        let t454 = t286 + t349;
-        let t456 = t31 * t449 - minus_s_distal_leg1 * t451 + t18 * t454;
-        let t462 = t39 * t449 - t53 * t451 + minus_s_distal_leg2 * t454;
-        let t469 = minus_s_distal_leg3 * t449 - t62 * t451 + t8 * t454;
-        let t484 = t423 - t287 + t18 * t387;
-        let t488 = t428 - t300 + minus_s_distal_leg2 * t387;
-        let t493 = t434 - t308 + t8 * t387;
-        let t506 = 9.81 * t62;
-        let t508 = 9.81 * t8;
-        let t510 = t18 * t506 - minus_s_distal_leg1 * t508;
-        let t514 = minus_s_distal_leg2 * t506 - t53 * t508;
-        let t524 = 9.81 * minus_s_distal_leg3;
-        let t526 = t31 * t508 - t18 * t524;
-        let t530 = t39 * t508 - minus_s_distal_leg2 * t524;
-        let t541 = minus_s_distal_leg1 * t524 - t31 * t506;
-        let t545 = t53 * t524 - t39 * t506;
-        let t561 = c_distal_leg1 * actuator_accelerations[0];
-        let t562 = minus_s_distal_leg1 * actuator_velocities[0];
-        let t563 = rate_distal_leg1 * t562;
-        let t564 = t561 + t563;
-        let t566 = c_distal_leg1 * actuator_velocities[0];
-        let t567 = rate_distal_leg1 * t566;
-        let t572 = gdistal_wz_leg1 * t306 - minus_gdistal_wy_leg1 * t298;
-        let t573 = t566 * t562;
-        let t578 = gdistal_wz_leg1 * t325 - minus_gdistal_wy_leg1 * t320;
-        let t582 = gdistal_wz_leg1 * t339 - minus_gdistal_wy_leg1 * t334;
-        let t586 = gdistal_wx_leg2 * t85 - minus_gdistal_wz_leg2 * t306;
-        let t587 = c_distal_leg2 * actuator_velocities[1];
-        let t588 = minus_s_distal_leg2 * actuator_velocities[1];
-        let t589 = t587 * t588;
-        let t591 = c_distal_leg2 * actuator_accelerations[1];
-        let t592 = rate_distal_leg2 * t588;
-        let t593 = t591 + t592;
-        let t595 = rate_distal_leg2 * t587;
-        let t600 = gdistal_wx_leg2 * t316 - minus_gdistal_wz_leg2 * t325;
-        let t605 = gdistal_wx_leg2 * t330 - minus_gdistal_wz_leg2 * t339;
-        let t609 = gdistal_wy_leg3 * t298 - minus_gdistal_wx_leg3 * t85;
-        let t610 = c_distal_leg3 * actuator_velocities[2];
-        let t611 = minus_s_distal_leg3 * actuator_velocities[2];
-        let t612 = t610 * t611;
-        let t616 = gdistal_wy_leg3 * t320 - minus_gdistal_wx_leg3 * t316;
-        let t618 = c_distal_leg3 * actuator_accelerations[2];
-        let t619 = rate_distal_leg3 * t611;
-        let t620 = t618 + t619;
-        let t622 = rate_distal_leg3 * t610;
-        let t627 = gdistal_wy_leg3 * t334 - minus_gdistal_wx_leg3 * t330;
-        let t632 = minus_s_distal_leg1 * actuator_accelerations[0];
-        let t637 = t566 * t566;
-        let t638 = t562 * t562;
-        let t639 = t637 - t638;
-        let t644 = t587 * t587;
-        let t645 = t588 * t588;
-        let t646 = t644 - t645;
-        let t650 = minus_s_distal_leg2 * actuator_accelerations[1];
-        let t658 = t610 * t610;
-        let t659 = t611 * t611;
-        let t660 = t658 - t659;
-        let t665 = minus_s_distal_leg3 * actuator_accelerations[2];
-        let rate_dot_distal_leg1 = gdistal_wz_leg1 * (t263 - t170)
-            - minus_gdistal_wy_leg1 * (t265 - t163);
-        let t679 = rate_distal_leg1 * rate_distal_leg1;
-        let rate_dot_distal_leg2 = gdistal_wx_leg2 * (t269 - t194)
-            - minus_gdistal_wz_leg2 * (t263 - t206);
-        let t695 = rate_distal_leg2 * rate_distal_leg2;
-        let rate_dot_distal_leg3 = gdistal_wy_leg3 * (t265 - t237)
-            - minus_gdistal_wx_leg3 * (t269 - t229);
-        let t711 = rate_distal_leg3 * rate_distal_leg3;
+                    + minus_gproximal_wz_leg2 * actuator_velocities[1]) - t97 * t107
+                - t110 * t99);
+        let t130 = t89 * t99 - t110 * t128;
+        let minus_rate_distal_leg1 = s_proximal_leg1 * t130 - c_proximal_leg1 * t128;
+        let t136 = c_proximal_leg1 * t130 + s_proximal_leg1 * t128;
+        let t140 = minus_rate_distal_leg1 * (t51 * t136)
+            - actuator_velocities[0] * minus_rate_distal_leg1;
+        let minus_rate_dot_proximal_leg1 = t51 * t140 + t136 * minus_rate_distal_leg1;
+        let t144 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
+        let t150 = t97 * t78 - t86 * t130 - t107 * t128;
+        let minus_rate_distal_leg2 = s_proximal_leg2 * t128 - c_proximal_leg2 * t150;
+        let t155 = s_proximal_leg2 * t150 + c_proximal_leg2 * t128;
+        let t159 = minus_rate_distal_leg2 * (t17 * t155)
+            - actuator_velocities[1] * minus_rate_distal_leg2;
+        let minus_rate_dot_proximal_leg2 = t17 * t159 + t155 * minus_rate_distal_leg2;
+        let t163 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
+        let rate_distal_leg3 = c_proximal_leg3 * t130 - s_proximal_leg3 * t150;
+        let t172 = c_proximal_leg3 * t150 + s_proximal_leg3 * t130;
+        let t175 = actuator_velocities[2] * rate_distal_leg3
+            - rate_distal_leg3 * (t37 * t172);
+        let minus_rate_dot_proximal_leg3 = t37 * t175 - t172 * rate_distal_leg3;
+        let t179 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let t181 = t144 - minus_gproximal_wx_leg2 * t163
+            - minus_gproximal_wx_leg3 * t179;
+        let t188 = t163 - minus_gproximal_wy_leg1 * t144 - minus_gproximal_wy_leg3 * t179
+            - t86 * t181;
+        let t198 = t119
+            * (t179 - (minus_gproximal_wz_leg1 * t144 + minus_gproximal_wz_leg2 * t163)
+                - t107 * t181 - t110 * t188);
+        let t200 = t89 * t188 - t110 * t198;
+        let t204 = t78 * t181 - t86 * t200 - t107 * t198;
+        let rate_dot_wrist_leg3 = t36
+            * (c_proximal_leg3 * t204 + s_proximal_leg3 * t200 + t175);
+        let t210 = c_distal_leg3 * actuator_velocities[2];
+        let t211 = rate_distal_leg3 * t210;
+        let t212 = minus_s_distal_leg3 * actuator_accelerations[2];
+        let t213 = t211 - t212;
+        let t214 = rate_dot_wrist_leg3 - t213;
+        let t216 = minus_s_distal_leg2 * actuator_velocities[1];
+        let rate_wrist_leg2 = t16 * t155;
+        let t218 = t216 + rate_wrist_leg2;
+        let t219 = minus_s_distal_leg3 * actuator_velocities[2];
+        let rate_wrist_leg3 = t36 * t172;
+        let t221 = t219 + rate_wrist_leg3;
+        let t222 = t218 * t221;
+        let t223 = minus_s_distal_leg1 * t222;
+        let t225 = minus_s_distal_leg1 * actuator_velocities[0];
+        let rate_wrist_leg1 = t50 * t136;
+        let t227 = t225 + rate_wrist_leg1;
+        let t228 = t227 * t221;
+        let t229 = t53 * t228;
+        let t230 = t22 * t214 + t223 - t229;
+        let t232 = t61 * t72;
+        let t234 = t41 * t222;
+        let t236 = minus_s_distal_leg2 * t228;
+        let t237 = t33 * t214 + t234 - t236;
+        let t240 = t69 * t72;
+        let t242 = t64 * t222;
+        let t244 = t5 * t228;
+        let t245 = minus_s_distal_leg3 * t214 + t242 - t244;
+        let t250 = (minus_gproximal_wy_leg1
+            + minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3) * t72;
+        let t254 = (1.0 - minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3) * t72;
+        let t259 = (minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t72;
+        let t264 = (minus_gproximal_wy_leg1 * minus_gproximal_wz_leg2
+            + minus_gproximal_wz_leg1) * t72;
+        let t268 = (minus_gproximal_wz_leg2
+            + minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2) * t72;
+        let t273 = (1.0 - minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2) * t72;
+        let t276 = t227 * t218;
+        let t277 = t276 + t214;
+        let t279 = minus_s_distal_leg1 * actuator_accelerations[0];
+        let t280 = c_distal_leg1 * actuator_velocities[0];
+        let t281 = minus_rate_distal_leg1 * t280;
+        let t282 = t279 + t281;
+        let rate_dot_wrist_leg1 = t50
+            * (c_proximal_leg1 * t200 + s_proximal_leg1 * t198 + t140);
+        let t288 = t282 + rate_dot_wrist_leg1;
+        let t289 = t222 - t288;
+        let t292 = t221 * t221;
+        let t293 = t227 * t227;
+        let t294 = t292 - t293;
+        let t296 = minus_s_distal_leg1 * t277 - t22 * t289 + t53 * t294;
+        let t302 = t41 * t277 - t33 * t289 + minus_s_distal_leg2 * t294;
+        let t309 = t64 * t277 - minus_s_distal_leg3 * t289 + t5 * t294;
+        let t322 = minus_s_distal_leg2 * actuator_accelerations[1];
+        let t323 = c_distal_leg2 * actuator_velocities[1];
+        let t324 = minus_rate_distal_leg2 * t323;
+        let t325 = t322 + t324;
+        let rate_dot_wrist_leg2 = t16
+            * (s_proximal_leg2 * t204 + c_proximal_leg2 * t198 + t159);
+        let t331 = t325 + rate_dot_wrist_leg2;
+        let t332 = t228 + t331;
+        let t334 = t218 * t218;
+        let t335 = t334 - t292;
+        let t338 = t276 - t214;
+        let t340 = t22 * t332 + minus_s_distal_leg1 * t335 - t53 * t338;
+        let t346 = t33 * t332 + t41 * t335 - minus_s_distal_leg2 * t338;
+        let t353 = minus_s_distal_leg3 * t332 + t64 * t335 - t5 * t338;
+        let t367 = t22 * t276;
+        let t369 = minus_s_distal_leg1 * t288 - t367 + t229;
+        let t372 = t33 * t276;
+        let t374 = t41 * t288 - t372 + t236;
+        let t378 = minus_s_distal_leg3 * t276;
+        let t380 = t64 * t288 - t378 + t244;
+        let t393 = t293 - t334;
+        let t395 = t228 - t331;
+        let t398 = t222 + t288;
+        let t400 = t22 * t393 - minus_s_distal_leg1 * t395 + t53 * t398;
+        let t406 = t33 * t393 - t41 * t395 + minus_s_distal_leg2 * t398;
+        let t413 = minus_s_distal_leg3 * t393 - t64 * t395 + t5 * t398;
+        let t428 = t367 - t223 + t53 * t331;
+        let t432 = t372 - t234 + minus_s_distal_leg2 * t331;
+        let t437 = t378 - t242 + t5 * t331;
+        let t450 = 9.81 * t64;
+        let t452 = 9.81 * t5;
+        let t454 = t53 * t450 - minus_s_distal_leg1 * t452;
+        let t458 = minus_s_distal_leg2 * t450 - t41 * t452;
+        let t468 = 9.81 * minus_s_distal_leg3;
+        let t470 = t22 * t452 - t53 * t468;
+        let t474 = t33 * t452 - minus_s_distal_leg2 * t468;
+        let t485 = minus_s_distal_leg1 * t468 - t22 * t450;
+        let t489 = t41 * t468 - t33 * t450;
+        let t505 = minus_rate_distal_leg1 * t225;
+        let t506 = c_distal_leg1 * actuator_accelerations[0];
+        let t507 = t505 - t506;
+        let t513 = c_proximal_leg1 * t240 - s_proximal_leg1 * t232;
+        let t514 = t280 * t225;
+        let t519 = c_proximal_leg1 * t259 - s_proximal_leg1 * t254;
+        let t523 = c_proximal_leg1 * t273 - s_proximal_leg1 * t268;
+        let t527 = c_proximal_leg2 * t73 - s_proximal_leg2 * t240;
+        let t528 = t323 * t216;
+        let t530 = minus_rate_distal_leg2 * t216;
+        let t531 = c_distal_leg2 * actuator_accelerations[1];
+        let t532 = t530 - t531;
+        let t538 = c_proximal_leg2 * t250 - s_proximal_leg2 * t259;
+        let t543 = c_proximal_leg2 * t264 - s_proximal_leg2 * t273;
+        let t547 = c_proximal_leg3 * t232 - s_proximal_leg3 * t73;
+        let t548 = t210 * t219;
+        let t552 = c_proximal_leg3 * t254 - s_proximal_leg3 * t250;
+        let t554 = c_distal_leg3 * actuator_accelerations[2];
+        let t555 = rate_distal_leg3 * t219;
+        let t556 = t554 + t555;
+        let t562 = c_proximal_leg3 * t268 - s_proximal_leg3 * t264;
+        let t570 = t280 * t280;
+        let t571 = t225 * t225;
+        let t572 = t570 - t571;
+        let t577 = t323 * t323;
+        let t578 = t216 * t216;
+        let t579 = t577 - t578;
+        let t589 = t210 * t210;
+        let t590 = t219 * t219;
+        let t591 = t589 - t590;
+        let minus_rate_dot_distal_leg1 = actuator_velocities[0] * t136;
+        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t200
+            - c_proximal_leg1 * t198 + minus_rate_dot_distal_leg1;
+        let t608 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let minus_rate_dot_distal_leg2 = actuator_velocities[1] * t155;
+        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t198
+            - c_proximal_leg2 * t204 + minus_rate_dot_distal_leg2;
+        let t624 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t172;
+        let rate_dot_distal_leg3 = c_proximal_leg3 * t200 - s_proximal_leg3 * t204
+            - minus_rate_dot_distal_leg3;
+        let t640 = rate_distal_leg3 * rate_distal_leg3;
         Ok([
             [
-                t85 * t296 + t298 * t303 + t306 * t311, t85 * t357 + t298 * t363 + t306 * t370,
-                t85 * t396 + t298 * t402 + t306 * t409, t85 * t425 + t298 * t430 + t306 * t436,
-                t85 * t456 + t298 * t462 + t306 * t469, t85 * t484 + t298 * t488 + t306 * t493,
-                t85 * t510 + t298 * t514, t85 * t526 + t298 * t530, t85 * t541 + t298 * t545,
+                t73 * t230 + t232 * t237 + t240 * t245, t73 * t296 + t232 * t302 + t240 * t309,
+                t73 * t340 + t232 * t346 + t240 * t353, t73 * t369 + t232 * t374 + t240 * t380,
+                t73 * t400 + t232 * t406 + t240 * t413, t73 * t428 + t232 * t432 + t240 * t437,
+                t73 * t454 + t232 * t458, t73 * t470 + t232 * t474, t73 * t485 + t232 * t489,
                 actuator_accelerations[0], 0.0, 0.0, -(9.81 * c_proximal_leg1), 0.0,
                 9.81 * s_proximal_leg1, 0.0, actuator_velocities[0], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[0]), 0.0, 0.0, 1.0, 0.0, 0.0,
-                c_distal_leg1 * t564 + minus_s_distal_leg1 * t567 - t572 * t573, -(t586 * t589),
-                -(t609 * t612),
-                minus_s_distal_leg1 * (t563 + t564)
-                    - c_distal_leg1 * (t567 + t567 - t632) + t572 * t639,
-                t586 * t646,
-                t609 * t660,
-                -(c_distal_leg1 * (t573 + rate_dot_distal_leg1)
-                    + minus_s_distal_leg1 * (t679 - t637) + t572 * t561),
-                -(t586 * t591),
-                -(t609 * t618),
-                minus_s_distal_leg1 * (t573 - rate_dot_distal_leg1)
-                    - c_distal_leg1 * (t638 - t679) - t572 * t632,
-                -(t586 * t650),
-                -(t609 * t665),
-                9.81 * (minus_s_distal_leg1 * c_proximal_leg1) - t572 * t506,
-                -(t586 * t508),
-                -(t609 * t524),
+                -(c_distal_leg1 * t507 + minus_s_distal_leg1 * t281 + t513 * t514), -(t527 * t528),
+                -(t547 * t548),
+                c_distal_leg1 * (t281 + t282) - minus_s_distal_leg1 * (t505 + t507)
+                    + t513 * t572,
+                t527 * t579,
+                t547 * t591,
+                -(c_distal_leg1 * (t514 - minus_rate_dot_distal_leg1_2)
+                    + minus_s_distal_leg1 * (t608 - t570) + t513 * t506),
+                -(t527 * t531),
+                -(t547 * t554),
+                minus_s_distal_leg1 * (t514 + minus_rate_dot_distal_leg1_2)
+                    - c_distal_leg1 * (t571 - t608) - t513 * t279,
+                -(t527 * t322),
+                -(t547 * t212),
+                9.81 * (minus_s_distal_leg1 * c_proximal_leg1) - t513 * t450,
+                -(t527 * t452),
+                -(t547 * t468),
             ],
             [
-                t316 * t296 + t320 * t303 + t325 * t311, t316 * t357 + t320 * t363 + t325 * t370,
-                t316 * t396 + t320 * t402 + t325 * t409, t316 * t425 + t320 * t430 + t325 * t436,
-                t316 * t456 + t320 * t462 + t325 * t469, t316 * t484 + t320 * t488 + t325 * t493,
-                t316 * t510 + t320 * t514, t316 * t526 + t320 * t530, t316 * t541 + t320 * t545,
+                t250 * t230 + t254 * t237 + t259 * t245, t250 * t296 + t254 * t302 + t259 * t309,
+                t250 * t340 + t254 * t346 + t259 * t353, t250 * t369 + t254 * t374 + t259 * t380,
+                t250 * t400 + t254 * t406 + t259 * t413, t250 * t428 + t254 * t432 + t259 * t437,
+                t250 * t454 + t254 * t458, t250 * t470 + t254 * t474, t250 * t485 + t254 * t489,
                 0.0, actuator_accelerations[1], 0.0, 0.0, 9.81 * s_proximal_leg2, 0.0,
                 9.81 * c_proximal_leg2, 0.0, actuator_velocities[1], 0.0, 0.0,
-                ::overact::math::sign(actuator_velocities[1]), 0.0, 0.0, 1.0, 0.0, -(t578 * t573),
-                c_distal_leg2 * t593 + minus_s_distal_leg2 * t595 - t600 * t589, -(t616 * t612),
-                t578 * t639,
-                minus_s_distal_leg2 * (t592 + t593)
-                    - c_distal_leg2 * (t595 + t595 - t650) + t600 * t646,
-                t616 * t660,
-                -(t578 * t561),
-                -(c_distal_leg2 * (t589 + rate_dot_distal_leg2)
-                    + minus_s_distal_leg2 * (t695 - t644) + t600 * t591),
-                -(t616 * t618),
-                -(t578 * t632),
-                minus_s_distal_leg2 * (t589 - rate_dot_distal_leg2)
-                    - c_distal_leg2 * (t645 - t695) - t600 * t650,
-                -(t616 * t665),
-                -(t578 * t506),
-                -(9.81 * (minus_s_distal_leg2 * s_proximal_leg2) + t600 * t508),
-                -(t616 * t524),
+                ::overact::math::sign(actuator_velocities[1]), 0.0, 0.0, 1.0, 0.0, -(t519 * t514),
+                -(c_distal_leg2 * t532 + minus_s_distal_leg2 * t324 + t538 * t528), -(t552 * t548),
+                t519 * t572,
+                c_distal_leg2 * (t324 + t325) - minus_s_distal_leg2 * (t530 + t532)
+                    + t538 * t579,
+                t552 * t591,
+                -(t519 * t506),
+                -(c_distal_leg2 * (t528 - minus_rate_dot_distal_leg2_2)
+                    + minus_s_distal_leg2 * (t624 - t577) + t538 * t531),
+                -(t552 * t554),
+                -(t519 * t279),
+                minus_s_distal_leg2 * (t528 + minus_rate_dot_distal_leg2_2)
+                    - c_distal_leg2 * (t578 - t624) - t538 * t322,
+                -(t552 * t212),
+                -(t519 * t450),
+                -(9.81 * (minus_s_distal_leg2 * s_proximal_leg2) + t538 * t452),
+                -(t552 * t468),
             ],
             [
-                t330 * t296 + t334 * t303 + t339 * t311, t330 * t357 + t334 * t363 + t339 * t370,
-                t330 * t396 + t334 * t402 + t339 * t409, t330 * t425 + t334 * t430 + t339 * t436,
-                t330 * t456 + t334 * t462 + t339 * t469, t330 * t484 + t334 * t488 + t339 * t493,
-                t330 * t510 + t334 * t514, t330 * t526 + t334 * t530, t330 * t541 + t334 * t545,
+                t264 * t230 + t268 * t237 + t273 * t245, t264 * t296 + t268 * t302 + t273 * t309,
+                t264 * t340 + t268 * t346 + t273 * t353, t264 * t369 + t268 * t374 + t273 * t380,
+                t264 * t400 + t268 * t406 + t273 * t413, t264 * t428 + t268 * t432 + t273 * t437,
+                t264 * t454 + t268 * t458, t264 * t470 + t268 * t474, t264 * t485 + t268 * t489,
                 0.0, 0.0, actuator_accelerations[2], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 actuator_velocities[2], 0.0, 0.0, ::overact::math::sign(actuator_velocities[2]),
-                0.0, 0.0, 1.0, -(t582 * t573), -(t605 * t589),
-                c_distal_leg3 * t620 + minus_s_distal_leg3 * t622 - t627 * t612, t582 * t639,
-                t605 * t646,
-                minus_s_distal_leg3 * (t619 + t620)
-                    - c_distal_leg3 * (t622 + t622 - t665) + t627 * t660,
-                -(t582 * t561),
-                -(t605 * t591),
-                -(c_distal_leg3 * (t612 + rate_dot_distal_leg3)
-                    + minus_s_distal_leg3 * (t711 - t658) + t627 * t618),
-                -(t582 * t632),
-                -(t605 * t650),
-                minus_s_distal_leg3 * (t612 - rate_dot_distal_leg3)
-                    - c_distal_leg3 * (t659 - t711) - t627 * t665,
-                -(t582 * t506),
-                -(t605 * t508),
-                -(t627 * t524),
+                0.0, 0.0, 1.0, -(t523 * t514), -(t543 * t528),
+                c_distal_leg3 * t556 + minus_s_distal_leg3 * t211 - t562 * t548, t523 * t572,
+                t543 * t579,
+                minus_s_distal_leg3 * (t555 + t556) - c_distal_leg3 * (t211 + t213)
+                    + t562 * t591,
+                -(t523 * t506),
+                -(t543 * t531),
+                -(c_distal_leg3 * (t548 + rate_dot_distal_leg3)
+                    + minus_s_distal_leg3 * (t640 - t589) + t562 * t554),
+                -(t523 * t279),
+                -(t543 * t322),
+                minus_s_distal_leg3 * (t548 - rate_dot_distal_leg3)
+                    - c_distal_leg3 * (t590 - t640) - t562 * t212,
+                -(t523 * t450),
+                -(t543 * t452),
+                -(t562 * t468),
             ],
         ])
     }
@@ -5662,7 +5269,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 83 operations (23 additions, 54 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 83 intermediates.
+    /// 68 operations (20 additions, 42 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 68 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5670,66 +5277,54 @@ impl Spherical3Rrr {
         pose: &[f64; 4],
         torques: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let t0 = 2.0 * pose[2];
-        let t1 = pose[3] * t0;
-        let t2 = 2.0 * pose[1];
-        let t3 = pose[0] * t2;
-        let minus_s_distal_leg2 = t1 - t3;
-        let t6 = 1.0 - pose[1] * t2;
-        let t7 = pose[2] * t0;
-        let t8 = t6 - t7;
+        let t0 = 2.0 * pose[1];
+        let t2 = 1.0 - pose[1] * t0;
+        let t3 = 2.0 * pose[2];
+        let t4 = pose[2] * t3;
+        let t5 = t2 - t4;
+        let t6 = pose[3] * t3;
+        let t7 = pose[0] * t0;
+        let minus_s_distal_leg2 = t6 - t7;
         let t10 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
         ::overact::guard::reach(t10, "leg2")?;
         let c_distal_leg2 = ::overact::math::sqrt(t10);
-        let t13 = 1.0 / (t8 * c_distal_leg2);
-        let t14 = pose[3] * t2;
-        let t15 = pose[0] * t0;
-        let t16 = t14 + t15;
-        let s_proximal_leg2 = t13 * (t16 * t8);
-        let c_proximal_leg2 = t13 * (t8 * t8);
-        let t23 = t16 * s_proximal_leg2 + t8 * c_proximal_leg2;
-        ::overact::guard::leg(t23, 1.0, "leg2")?;
-        let t24 = 1.0 / t23;
-        let gwrist_wx_leg2 = s_proximal_leg2 * t24;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
+        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
+        let t13 = 1.0 / (t5 * c_distal_leg2);
+        let t14 = pose[3] * t0;
+        let t15 = pose[0] * t3;
+        let s_proximal_leg2 = t13 * ((t14 + t15) * t5);
+        let t19 = minus_s_distal_leg2 / c_distal_leg2;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t19;
+        let t24 = 2.0 * pose[3];
+        let t25 = pose[3] * t24;
+        let t26 = 1.0 - t4 - t25;
         let minus_s_distal_leg3 = t14 - t15;
-        let t31 = 2.0 * pose[3];
-        let t32 = pose[3] * t31;
-        let t33 = 1.0 - t7 - t32;
-        let t35 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t35, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t35);
-        let t38 = 1.0 / (t33 * c_distal_leg3);
-        let c_proximal_leg3 = t38 * (t33 * t33);
-        let t42 = pose[2] * t2;
-        let t43 = pose[0] * t31;
-        let t44 = t42 + t43;
-        let s_proximal_leg3 = t38 * (t33 * t44);
-        let t48 = t33 * c_proximal_leg3 + t44 * s_proximal_leg3;
-        ::overact::guard::leg(t48, 1.0, "leg3")?;
-        let t49 = 1.0 / t48;
-        let gwrist_wx_leg3 = c_proximal_leg3 * t49;
-        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
-        let minus_s_distal_leg1 = t42 - t43;
-        let t55 = t6 - t32;
-        let t57 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t57, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t57);
-        let t60 = 1.0 / (t55 * c_distal_leg1);
-        let c_proximal_leg1 = t60 * (t55 * t55);
-        let t64 = t1 + t3;
-        let s_proximal_leg1 = t60 * (t55 * t64);
-        let t68 = t55 * c_proximal_leg1 + t64 * s_proximal_leg1;
-        ::overact::guard::leg(t68, 1.0, "leg1")?;
-        let t69 = 1.0 / t68;
-        let gwrist_wy_leg1 = c_proximal_leg1 * t69;
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
-        let gwrist_wy_leg3 = s_proximal_leg3 * t49;
-        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
-        let gwrist_wz_leg1 = s_proximal_leg1 * t69;
-        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
-        let gwrist_wz_leg2 = c_proximal_leg2 * t24;
-        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
+        let t29 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t29, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t29);
+        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
+        let t32 = 1.0 / (t26 * c_distal_leg3);
+        let c_proximal_leg3 = t32 * (t26 * t26);
+        let t35 = minus_s_distal_leg3 / c_distal_leg3;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t35;
+        let t39 = t2 - t25;
+        let t40 = pose[2] * t0;
+        let t41 = pose[0] * t24;
+        let minus_s_distal_leg1 = t40 - t41;
+        let t44 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t44, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t44);
+        ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
+        let t47 = 1.0 / (t39 * c_distal_leg1);
+        let c_proximal_leg1 = t47 * (t39 * t39);
+        let t50 = minus_s_distal_leg1 / c_distal_leg1;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t50;
+        let s_proximal_leg3 = t32 * (t26 * (t40 + t41));
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t35;
+        let s_proximal_leg1 = t47 * (t39 * (t6 + t7));
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t50;
+        let c_proximal_leg2 = t13 * (t5 * t5);
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t19;
         Ok([
             torques[0] - minus_gproximal_wx_leg2 * torques[1]
                 - minus_gproximal_wx_leg3 * torques[2],
@@ -5763,7 +5358,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 620 operations (261 additions, 350 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 623 intermediates.
+    /// 543 operations (237 additions, 297 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 546 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5784,284 +5379,256 @@ impl Spherical3Rrr {
         let t10 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
         ::overact::guard::reach(t10, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t10);
+        ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
         let t13 = 1.0 / (t5 * c_distal_leg1);
-        let t14 = 2.0 * pose[2];
-        let t15 = pose[3] * t14;
-        let t16 = pose[0] * t0;
-        let t17 = t15 + t16;
-        let s_proximal_leg1 = t13 * (t5 * t17);
         let c_proximal_leg1 = t13 * (t5 * t5);
-        let t24 = t5 * c_proximal_leg1 + t17 * s_proximal_leg1;
-        ::overact::guard::leg(t24, 1.0, "leg1")?;
-        let t25 = 1.0 / t24;
-        let gdistal_wz_leg1 = t5 * t25;
-        let minus_gdistal_wy_leg1 = t17 * t25;
-        let rate_distal_leg1 = gdistal_wz_leg1 * twist[2]
-            - minus_gdistal_wy_leg1 * twist[1];
-        let t31 = s_proximal_leg1 * rate_distal_leg1;
-        let gwrist_wy_leg1 = c_proximal_leg1 * t25;
-        let gwrist_wz_leg1 = s_proximal_leg1 * t25;
-        let rate_wrist_leg1 = gwrist_wy_leg1 * twist[1] + gwrist_wz_leg1 * twist[2];
-        let t37 = t17 * rate_wrist_leg1;
-        let t39 = c_proximal_leg1 * rate_distal_leg1;
-        let t40 = t5 * rate_wrist_leg1;
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
-        let t45 = minus_s_distal_leg1 * rate_wrist_leg1;
-        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
-        let rate_proximal_leg1 = twist[0] - minus_gproximal_wy_leg1 * twist[1]
-            - minus_gproximal_wz_leg1 * twist[2];
-        let t56 = acceleration[1]
-            - (t39 * t45 - rate_proximal_leg1 * t37 - rate_proximal_leg1 * t39);
-        let t64 = acceleration[2]
-            - (rate_proximal_leg1 * t40 + t31 * t45 - rate_proximal_leg1 * t31);
-        let rate_dot_proximal_leg1 = acceleration[0] + t31 * t37 + t39 * t40
-            - minus_gproximal_wy_leg1 * t56 - minus_gproximal_wz_leg1 * t64;
-        let t68 = 9.81 * c_proximal_leg1;
-        let t80 = parameters[0] * rate_dot_proximal_leg1 - parameters[1] * t68
+        let t17 = 2.0 * pose[2];
+        let t18 = pose[3] * t17;
+        let t19 = pose[0] * t0;
+        let t20 = t18 + t19;
+        let s_proximal_leg1 = t13 * (t5 * t20);
+        let t24 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
+        let minus_rate_distal_leg1 = s_proximal_leg1 * twist[1]
+            - c_proximal_leg1 * twist[2];
+        let t30 = 1.0 / c_distal_leg1;
+        let t31 = minus_s_distal_leg1 * t30;
+        let t35 = t31 * t24;
+        let rate_proximal_leg1 = twist[0] - t35;
+        let t40 = c_proximal_leg1 * acceleration[1] + s_proximal_leg1 * acceleration[2]
+            + minus_rate_distal_leg1 * t35 - minus_rate_distal_leg1 * rate_proximal_leg1;
+        let rate_dot_proximal_leg1 = acceleration[0] - t24 * minus_rate_distal_leg1
+            - t31 * t40;
+        let t44 = 9.81 * c_proximal_leg1;
+        let t56 = parameters[0] * rate_dot_proximal_leg1 - parameters[1] * t44
             + parameters[2] * (9.81 * s_proximal_leg1)
             + parameters[3] * rate_dot_proximal_leg1 + parameters[4] * rate_proximal_leg1
             + ::overact::math::signed(parameters[5], rate_proximal_leg1) + parameters[6];
-        let t81 = c_distal_leg1 * rate_proximal_leg1;
-        let t82 = rate_distal_leg1 * t81;
-        let t83 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
-        let t84 = t82 - t83;
-        let t87 = c_distal_leg1 * rate_dot_proximal_leg1;
-        let t88 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t89 = rate_distal_leg1 * t88;
-        let t90 = t87 + t89;
-        let t93 = t81 * t88;
-        let rate_dot_distal_leg1 = gdistal_wz_leg1 * t64 - minus_gdistal_wy_leg1 * t56;
-        let t102 = t88 * t88;
-        let t103 = rate_distal_leg1 * rate_distal_leg1;
-        let t106 = parameters[8] * (t82 + t84) - parameters[7] * t90
-            + parameters[9] * (t93 + rate_dot_distal_leg1) + parameters[10] * t89
-            + parameters[11] * (t102 - t103);
-        let t111 = 9.81 * t17;
-        let t115 = t81 * t81;
-        let t127 = parameters[9] * (t103 - t115)
-            - (parameters[7] * t82 + parameters[8] * (t89 + t90)) + parameters[10] * t84
-            - parameters[11] * (t93 - rate_dot_distal_leg1);
-        let t133 = 9.81 * (minus_s_distal_leg1 * s_proximal_leg1);
-        let t137 = c_distal_leg1
-            * (t106 - parameters[12] * t89 + parameters[14] * t68
-                + parameters[15] * t111)
+        let t57 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t58 = minus_rate_distal_leg1 * t57;
+        let t59 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t60 = t58 - t59;
+        let t62 = c_distal_leg1 * rate_proximal_leg1;
+        let t63 = minus_rate_distal_leg1 * t62;
+        let t64 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t65 = t64 + t63;
+        let t69 = t62 * t57;
+        let minus_rate_dot_distal_leg1 = s_proximal_leg1 * acceleration[1]
+            - c_proximal_leg1 * acceleration[2] + t24 * rate_proximal_leg1;
+        let t80 = t57 * t57;
+        let t81 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t84 = parameters[7] * t60 - parameters[8] * (t63 + t65)
+            + parameters[9] * (t69 - minus_rate_dot_distal_leg1) - parameters[10] * t58
+            + parameters[11] * (t80 - t81);
+        let t89 = 9.81 * t20;
+        let t97 = t62 * t62;
+        let t105 = parameters[7] * t63 + parameters[8] * (t58 + t60)
+            + parameters[9] * (t81 - t97) - parameters[10] * t65
+            - parameters[11] * (t69 + minus_rate_dot_distal_leg1);
+        let t111 = 9.81 * (minus_s_distal_leg1 * s_proximal_leg1);
+        let t115 = c_distal_leg1
+            * (t84 + parameters[12] * t58 + parameters[14] * t44 + parameters[15] * t89)
             + minus_s_distal_leg1
-                * (t127 + parameters[12] * t82 - parameters[13] * t68
-                    + parameters[15] * t133);
-        let t138 = t80 - t137;
-        let t139 = pose[2] * t14;
-        let t140 = t2 - t139;
-        let t141 = pose[3] * t0;
-        let t142 = pose[0] * t14;
-        let t143 = t141 + t142;
-        let minus_s_distal_leg2 = t15 - t16;
-        let t146 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t146, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t146);
-        let t149 = 1.0 / (t140 * c_distal_leg2);
-        let s_proximal_leg2 = t149 * (t143 * t140);
-        let c_proximal_leg2 = t149 * (t140 * t140);
-        let t156 = t143 * s_proximal_leg2 + t140 * c_proximal_leg2;
-        ::overact::guard::leg(t156, 1.0, "leg2")?;
-        let t157 = 1.0 / t156;
-        let gdistal_wx_leg2 = t140 * t157;
-        let gwrist_wx_leg2 = s_proximal_leg2 * t157;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
-        let gwrist_wz_leg2 = c_proximal_leg2 * t157;
-        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
-        let rate_proximal_leg2 = twist[1] - minus_gproximal_wx_leg2 * twist[0]
-            - minus_gproximal_wz_leg2 * twist[2];
-        let t167 = c_distal_leg2 * rate_proximal_leg2;
-        let t168 = t167 * t167;
-        let t169 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t170 = t169 * t169;
-        let t173 = t167 * t169;
-        let minus_gdistal_wz_leg2 = t143 * t157;
-        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
-            - minus_gdistal_wz_leg2 * twist[2];
-        let t180 = s_proximal_leg2 * rate_distal_leg2;
-        let rate_wrist_leg2 = gwrist_wx_leg2 * twist[0] + gwrist_wz_leg2 * twist[2];
-        let t184 = t143 * rate_wrist_leg2;
-        let t186 = c_proximal_leg2 * rate_distal_leg2;
-        let t187 = t140 * rate_wrist_leg2;
-        let t192 = minus_s_distal_leg2 * rate_wrist_leg2;
-        let t197 = acceleration[0]
-            - (rate_proximal_leg2 * t187 + t180 * t192 - rate_proximal_leg2 * t180);
-        let t205 = acceleration[2]
-            - (t186 * t192 - rate_proximal_leg2 * t184 - rate_proximal_leg2 * t186);
-        let rate_dot_proximal_leg2 = acceleration[1] + t180 * t184 + t186 * t187
-            - minus_gproximal_wx_leg2 * t197 - minus_gproximal_wz_leg2 * t205;
-        let t208 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t213 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t215 = parameters[24] * (t168 - t170) - parameters[23] * t173
-            - parameters[25] * t208 + parameters[26] * t173 - parameters[27] * t213;
-        let rate_dot_distal_leg2 = gdistal_wx_leg2 * t197 - minus_gdistal_wz_leg2 * t205;
-        let t221 = 9.81 * t140;
-        let t225 = 9.81 * (minus_s_distal_leg2 * c_proximal_leg2);
-        let t227 = t215 + parameters[28] * rate_dot_distal_leg2 - parameters[29] * t221
-            - parameters[30] * t225;
-        let t230 = 9.81 * s_proximal_leg2;
-        let t242 = parameters[16] * rate_dot_proximal_leg2 + parameters[17] * t230
+                * (t105 - parameters[12] * t63 - parameters[13] * t44
+                    + parameters[15] * t111);
+        let t116 = t56 - t115;
+        let t117 = pose[2] * t17;
+        let t118 = t2 - t117;
+        let minus_s_distal_leg2 = t18 - t19;
+        let t121 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t121, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t121);
+        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
+        let t124 = 1.0 / (t118 * c_distal_leg2);
+        let c_proximal_leg2 = t124 * (t118 * t118);
+        let t127 = 1.0 / c_distal_leg2;
+        let t128 = minus_s_distal_leg2 * t127;
+        let t129 = pose[3] * t0;
+        let t130 = pose[0] * t17;
+        let t131 = t129 + t130;
+        let s_proximal_leg2 = t124 * (t131 * t118);
+        let t136 = s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2];
+        let t137 = t128 * t136;
+        let rate_proximal_leg2 = twist[1] - t137;
+        let t139 = c_distal_leg2 * rate_proximal_leg2;
+        let t140 = t139 * t139;
+        let t141 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t142 = t141 * t141;
+        let t145 = t139 * t141;
+        let minus_rate_distal_leg2 = s_proximal_leg2 * twist[2]
+            - c_proximal_leg2 * twist[0];
+        let t159 = s_proximal_leg2 * acceleration[0] + c_proximal_leg2 * acceleration[2]
+            + minus_rate_distal_leg2 * t137
+            - minus_rate_distal_leg2 * rate_proximal_leg2;
+        let rate_dot_proximal_leg2 = acceleration[1] - t136 * minus_rate_distal_leg2
+            - t128 * t159;
+        let t162 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t167 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t169 = parameters[24] * (t140 - t142) - parameters[23] * t145
+            - parameters[25] * t162 + parameters[26] * t145 - parameters[27] * t167;
+        let minus_rate_dot_distal_leg2 = s_proximal_leg2 * acceleration[2]
+            - c_proximal_leg2 * acceleration[0] + t136 * rate_proximal_leg2;
+        let t177 = 9.81 * t118;
+        let t181 = 9.81 * (minus_s_distal_leg2 * c_proximal_leg2);
+        let t183 = t169 - parameters[28] * minus_rate_dot_distal_leg2
+            - parameters[29] * t177 - parameters[30] * t181;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t128;
+        let t187 = 9.81 * s_proximal_leg2;
+        let t199 = parameters[16] * rate_dot_proximal_leg2 + parameters[17] * t187
             + parameters[18] * (9.81 * c_proximal_leg2)
             + parameters[19] * rate_dot_proximal_leg2
             + parameters[20] * rate_proximal_leg2
             + ::overact::math::signed(parameters[21], rate_proximal_leg2)
             + parameters[22];
-        let t243 = rate_distal_leg2 * t167;
-        let t244 = t243 - t213;
-        let t247 = rate_distal_leg2 * t169;
-        let t248 = t208 + t247;
-        let t256 = rate_distal_leg2 * rate_distal_leg2;
-        let t259 = parameters[24] * (t243 + t244) - parameters[23] * t248
-            + parameters[25] * (t173 + rate_dot_distal_leg2) + parameters[26] * t247
-            + parameters[27] * (t170 - t256);
-        let t278 = parameters[25] * (t256 - t168)
-            - (parameters[23] * t243 + parameters[24] * (t247 + t248))
-            + parameters[26] * t244 - parameters[27] * (t173 - rate_dot_distal_leg2);
-        let t286 = c_distal_leg2
-            * (t259 - parameters[28] * t247 - parameters[30] * t230
-                + parameters[31] * t221)
+        let t200 = minus_rate_distal_leg2 * t141;
+        let t201 = t200 - t162;
+        let t203 = minus_rate_distal_leg2 * t139;
+        let t204 = t167 + t203;
+        let t213 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t216 = parameters[23] * t201 - parameters[24] * (t203 + t204)
+            + parameters[25] * (t145 - minus_rate_dot_distal_leg2)
+            - parameters[26] * t200 + parameters[27] * (t142 - t213);
+        let t235 = parameters[23] * t203 + parameters[24] * (t200 + t201)
+            + parameters[25] * (t213 - t140) - parameters[26] * t204
+            - parameters[27] * (t145 + minus_rate_dot_distal_leg2);
+        let t243 = c_distal_leg2
+            * (t216 + parameters[28] * t200 - parameters[30] * t187
+                + parameters[31] * t177)
             + minus_s_distal_leg2
-                * (t278 + parameters[28] * t243 + parameters[29] * t230
-                    + parameters[31] * t225);
-        let t287 = t242 - t286;
-        let minus_s_distal_leg3 = t141 - t142;
-        let t293 = 1.0 - t139 - t4;
-        let t295 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t295, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t295);
-        let t298 = 1.0 / (t293 * c_distal_leg3);
-        let c_proximal_leg3 = t298 * (t293 * t293);
-        let t302 = t6 + t7;
-        let s_proximal_leg3 = t298 * (t293 * t302);
-        let t306 = t293 * c_proximal_leg3 + t302 * s_proximal_leg3;
-        ::overact::guard::leg(t306, 1.0, "leg3")?;
-        let t307 = 1.0 / t306;
-        let gwrist_wx_leg3 = c_proximal_leg3 * t307;
-        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
-        let gdistal_wy_leg3 = t293 * t307;
-        let minus_gdistal_wx_leg3 = t302 * t307;
-        let rate_distal_leg3 = gdistal_wy_leg3 * twist[1]
-            - minus_gdistal_wx_leg3 * twist[0];
-        let t315 = s_proximal_leg3 * rate_distal_leg3;
-        let gwrist_wy_leg3 = s_proximal_leg3 * t307;
-        let rate_wrist_leg3 = gwrist_wx_leg3 * twist[0] + gwrist_wy_leg3 * twist[1];
-        let t320 = t302 * rate_wrist_leg3;
-        let t322 = c_proximal_leg3 * rate_distal_leg3;
-        let t323 = t293 * rate_wrist_leg3;
-        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
-        let t330 = minus_gproximal_wx_leg3 * twist[0]
-            + minus_gproximal_wy_leg3 * twist[1];
-        let rate_proximal_leg3 = twist[2] - t330;
-        let t337 = acceleration[0]
-            - (t330 * t322 - rate_proximal_leg3 * t320 - rate_proximal_leg3 * t322);
-        let t344 = acceleration[1]
-            - (rate_proximal_leg3 * t323 + t330 * t315 - rate_proximal_leg3 * t315);
-        let rate_dot_proximal_leg3 = acceleration[2] + t315 * t320 + t322 * t323
-            - (minus_gproximal_wx_leg3 * t337 + minus_gproximal_wy_leg3 * t344);
-        let t356 = c_distal_leg3 * rate_proximal_leg3;
-        let t357 = rate_distal_leg3 * t356;
-        let t358 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let t359 = t357 - t358;
-        let t362 = c_distal_leg3 * rate_dot_proximal_leg3;
-        let t363 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t364 = rate_distal_leg3 * t363;
-        let t365 = t362 + t364;
-        let t368 = t356 * t363;
-        let rate_dot_distal_leg3 = gdistal_wy_leg3 * t344 - minus_gdistal_wx_leg3 * t337;
-        let t377 = t363 * t363;
-        let t378 = rate_distal_leg3 * rate_distal_leg3;
-        let t381 = parameters[38] * (t357 + t359) - parameters[37] * t365
-            + parameters[39] * (t368 + rate_dot_distal_leg3) + parameters[40] * t364
-            + parameters[41] * (t377 - t378);
-        let t385 = t356 * t356;
-        let t397 = parameters[39] * (t378 - t385)
-            - (parameters[37] * t357 + parameters[38] * (t364 + t365))
-            + parameters[40] * t359 - parameters[41] * (t368 - rate_dot_distal_leg3);
-        let t402 = parameters[32] * rate_dot_proximal_leg3
+                * (t235 - parameters[28] * t203 + parameters[29] * t187
+                    + parameters[31] * t181);
+        let t244 = t199 - t243;
+        let t249 = 1.0 - t117 - t4;
+        let minus_s_distal_leg3 = t129 - t130;
+        let t252 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t252, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t252);
+        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
+        let t255 = 1.0 / (t249 * c_distal_leg3);
+        let c_proximal_leg3 = t255 * (t249 * t249);
+        let t258 = 1.0 / c_distal_leg3;
+        let t259 = minus_s_distal_leg3 * t258;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t259;
+        let t262 = t6 + t7;
+        let s_proximal_leg3 = t255 * (t249 * t262);
+        let t266 = c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1];
+        let rate_distal_leg3 = c_proximal_leg3 * twist[1] - s_proximal_leg3 * twist[0];
+        let t275 = t259 * t266;
+        let rate_proximal_leg3 = twist[2] - t275;
+        let t280 = c_proximal_leg3 * acceleration[0] + s_proximal_leg3 * acceleration[1]
+            + rate_distal_leg3 * rate_proximal_leg3 - rate_distal_leg3 * t275;
+        let rate_dot_proximal_leg3 = acceleration[2] + t266 * rate_distal_leg3
+            - t259 * t280;
+        let t291 = c_distal_leg3 * rate_proximal_leg3;
+        let t292 = rate_distal_leg3 * t291;
+        let t293 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t294 = t292 - t293;
+        let t297 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t298 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t299 = rate_distal_leg3 * t298;
+        let t300 = t297 + t299;
+        let t303 = t291 * t298;
+        let rate_dot_distal_leg3 = c_proximal_leg3 * acceleration[1]
+            - s_proximal_leg3 * acceleration[0] - t266 * rate_proximal_leg3;
+        let t314 = t298 * t298;
+        let t315 = rate_distal_leg3 * rate_distal_leg3;
+        let t318 = parameters[38] * (t292 + t294) - parameters[37] * t300
+            + parameters[39] * (t303 + rate_dot_distal_leg3) + parameters[40] * t299
+            + parameters[41] * (t314 - t315);
+        let t322 = t291 * t291;
+        let t334 = parameters[39] * (t315 - t322)
+            - (parameters[37] * t292 + parameters[38] * (t299 + t300))
+            + parameters[40] * t294 - parameters[41] * (t303 - rate_dot_distal_leg3);
+        let t339 = parameters[32] * rate_dot_proximal_leg3
             + parameters[33] * rate_dot_proximal_leg3
             + parameters[34] * rate_proximal_leg3
             + ::overact::math::signed(parameters[35], rate_proximal_leg3)
             + parameters[36]
-            - (c_distal_leg3 * (t381 - parameters[42] * t364)
-                + minus_s_distal_leg3 * (t397 + parameters[42] * t357));
-        let t413 = parameters[38] * (t385 - t377) - parameters[37] * t368
-            - parameters[39] * t362 + parameters[40] * t368 - parameters[41] * t358;
-        let t416 = 9.81 * minus_s_distal_leg3;
-        let t421 = t413 + parameters[42] * rate_dot_distal_leg3 - parameters[43] * t416
+            - (c_distal_leg3 * (t318 - parameters[42] * t299)
+                + minus_s_distal_leg3 * (t334 + parameters[42] * t292));
+        let t350 = parameters[38] * (t322 - t314) - parameters[37] * t303
+            - parameters[39] * t297 + parameters[40] * t303 - parameters[41] * t293;
+        let t353 = 9.81 * minus_s_distal_leg3;
+        let t358 = t350 + parameters[42] * rate_dot_distal_leg3 - parameters[43] * t353
             + parameters[44] * (9.81 * c_distal_leg3);
-        let t429 = t293 * acceleration[0] + t302 * acceleration[1]
-            + minus_s_distal_leg3 * acceleration[2];
-        let t435 = t293 * twist[0] + t302 * twist[1] + minus_s_distal_leg3 * twist[2];
-        let t440 = t143 * twist[0] + minus_s_distal_leg2 * twist[1] + t140 * twist[2];
-        let t441 = t435 * t440;
-        let t446 = minus_s_distal_leg1 * acceleration[0] + t5 * acceleration[1]
-            + t17 * acceleration[2];
-        let t454 = minus_s_distal_leg1 * twist[0] + t5 * twist[1] + t17 * twist[2];
-        let t455 = t435 * t454;
-        let t460 = t143 * acceleration[0] + minus_s_distal_leg2 * acceleration[1]
-            + t140 * acceleration[2];
-        let t464 = t454 * t440;
-        let t467 = t454 * t454;
-        let t468 = t440 * t440;
-        let t471 = parameters[45] * t429 - parameters[46] * (t441 - t446)
-            + parameters[47] * (t455 + t460) - parameters[48] * t464
-            + parameters[49] * (t467 - t468);
-        let t477 = t471 + parameters[50] * t464 + parameters[52] * t221
-            - parameters[53] * t111;
-        let t483 = t435 * t435;
-        let t491 = parameters[45] * t441 + parameters[46] * (t464 + t429)
-            + parameters[47] * (t468 - t483) + parameters[48] * t446
-            - parameters[49] * (t455 - t460);
-        let t497 = t491 - parameters[50] * t441 - parameters[51] * t221
-            + parameters[53] * t416;
-        let t511 = parameters[46] * (t483 - t467) - parameters[45] * t455
-            - parameters[47] * (t464 - t429) + parameters[48] * t455
-            + parameters[49] * (t441 + t446);
-        let t517 = t511 + parameters[50] * t460 + parameters[51] * t111
-            - parameters[52] * t416;
-        let t520 = t138 + gdistal_wx_leg2 * t227 - minus_gproximal_wx_leg2 * t287
-            - (minus_gproximal_wx_leg3 * t402 + minus_gdistal_wx_leg3 * t421)
-            + t293 * t477 + minus_s_distal_leg1 * t497 + t143 * t517;
-        let t524 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+        let rate_dot_wrist_leg3 = t258 * t280;
+        let t363 = rate_dot_wrist_leg3 - t294;
+        let rate_wrist_leg2 = t127 * t136;
+        let t366 = t141 + rate_wrist_leg2;
+        let rate_wrist_leg3 = t258 * t266;
+        let t368 = t298 + rate_wrist_leg3;
+        let t369 = t366 * t368;
+        let rate_dot_wrist_leg1 = t30 * t40;
+        let t371 = t65 + rate_dot_wrist_leg1;
+        let rate_wrist_leg1 = t30 * t24;
+        let t376 = t57 + rate_wrist_leg1;
+        let t377 = t376 * t368;
+        let rate_dot_wrist_leg2 = t127 * t159;
+        let t379 = t204 + rate_dot_wrist_leg2;
+        let t383 = t376 * t366;
+        let t386 = t376 * t376;
+        let t387 = t366 * t366;
+        let t390 = parameters[45] * t363 - parameters[46] * (t369 - t371)
+            + parameters[47] * (t377 + t379) - parameters[48] * t383
+            + parameters[49] * (t386 - t387);
+        let t396 = t390 + parameters[50] * t383 + parameters[52] * t177
+            - parameters[53] * t89;
+        let t402 = t368 * t368;
+        let t410 = parameters[45] * t369 + parameters[46] * (t383 + t363)
+            + parameters[47] * (t387 - t402) + parameters[48] * t371
+            - parameters[49] * (t377 - t379);
+        let t416 = t410 - parameters[50] * t369 - parameters[51] * t177
+            + parameters[53] * t353;
+        let t430 = parameters[46] * (t402 - t386) - parameters[45] * t377
+            - parameters[47] * (t383 - t363) + parameters[48] * t377
+            + parameters[49] * (t369 + t371);
+        let t436 = t430 + parameters[50] * t379 + parameters[51] * t89
+            - parameters[52] * t353;
+        let t439 = t116 + c_proximal_leg2 * t183 - minus_gproximal_wx_leg2 * t244
+            - (minus_gproximal_wx_leg3 * t339 + s_proximal_leg3 * t358) + t249 * t396
+            + minus_s_distal_leg1 * t416 + t131 * t436;
+        let t443 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
-        ::overact::guard::platform(t524, 1.0, "actuators")?;
-        let t525 = 1.0 / t524;
-        let t529 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+        ::overact::guard::platform(t443, 1.0, "actuators")?;
+        let t444 = 1.0 / t443;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t259;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t31;
+        let t450 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
-        let t530 = t529 * t525;
-        let t536 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t529 * t530;
-        ::overact::guard::platform(t536, 1.0, "actuators")?;
-        let t537 = 1.0 / t536;
-        let t548 = parameters[8] * (t115 - t102) - parameters[7] * t93
-            - parameters[9] * t87 + parameters[10] * t93 - parameters[11] * t83;
-        let t554 = t548 + parameters[12] * rate_dot_distal_leg1 - parameters[13] * t111
-            - parameters[14] * t133;
-        let t567 = t287 - (minus_gproximal_wy_leg1 * t138 + minus_gdistal_wy_leg1 * t554)
-            + gdistal_wy_leg3 * t421 - minus_gproximal_wy_leg3 * t402 + t302 * t477
-            + t5 * t497 + minus_s_distal_leg2 * t517;
-        let t569 = t567 - t520 * t530;
-        let t576 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+        let t451 = t450 * t444;
+        let t457 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t450 * t451;
+        ::overact::guard::platform(t457, 1.0, "actuators")?;
+        let t458 = 1.0 / t457;
+        let t469 = parameters[8] * (t97 - t80) - parameters[7] * t69
+            - parameters[9] * t59 + parameters[10] * t69 - parameters[11] * t64;
+        let t475 = t469 - parameters[12] * minus_rate_dot_distal_leg1
+            - parameters[13] * t89 - parameters[14] * t111;
+        let t488 = t244 - (minus_gproximal_wy_leg1 * t116 + s_proximal_leg1 * t475)
+            + c_proximal_leg3 * t358 - minus_gproximal_wy_leg3 * t339 + t262 * t396
+            + t5 * t416 + minus_s_distal_leg2 * t436;
+        let t490 = t488 - t439 * t451;
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t31;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t128;
+        let t499 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
             - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
-        let t577 = t576 * t525;
-        let t579 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
-            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t529 * t577;
-        let t580 = t579 * t537;
-        let t588 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t576 * t577
-            - t579 * t580;
-        ::overact::guard::platform(t588, 1.0, "actuators")?;
-        let t602 = gdistal_wz_leg1 * t554 - minus_gproximal_wz_leg1 * t138
-            - (minus_gproximal_wz_leg2 * t287 + minus_gdistal_wz_leg2 * t227) + t402
-            + minus_s_distal_leg3 * t477 + t17 * t497 + t140 * t517;
-        let t607 = (t602 - t520 * t577 - t580 * t569) / t588;
-        let t609 = t537 * t569 - t580 * t607;
-        let t613 = t520 * t525 - t530 * t609 - t577 * t607;
+        let t500 = t499 * t444;
+        let t502 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t450 * t500;
+        let t503 = t502 * t458;
+        let t511 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t499 * t500
+            - t502 * t503;
+        ::overact::guard::platform(t511, 1.0, "actuators")?;
+        let t525 = c_proximal_leg1 * t475 - minus_gproximal_wz_leg1 * t116
+            - (minus_gproximal_wz_leg2 * t244 + s_proximal_leg2 * t183) + t339
+            + minus_s_distal_leg3 * t396 + t20 * t416 + t118 * t436;
+        let t530 = (t525 - t439 * t500 - t503 * t490) / t511;
+        let t532 = t458 * t490 - t503 * t530;
+        let t536 = t439 * t444 - t451 * t532 - t500 * t530;
         Ok([
-            t613 - minus_gproximal_wy_leg1 * t609 - minus_gproximal_wz_leg1 * t607,
-            t609 - minus_gproximal_wx_leg2 * t613 - minus_gproximal_wz_leg2 * t607,
-            t607 - (minus_gproximal_wx_leg3 * t613 + minus_gproximal_wy_leg3 * t609),
+            t536 - minus_gproximal_wy_leg1 * t532 - minus_gproximal_wz_leg1 * t530,
+            t532 - minus_gproximal_wx_leg2 * t536 - minus_gproximal_wz_leg2 * t530,
+            t530 - (minus_gproximal_wx_leg3 * t536 + minus_gproximal_wy_leg3 * t532),
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -6075,7 +5642,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 592 operations (256 additions, 330 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 604 intermediates.
+    /// 535 operations (240 additions, 289 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 547 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6086,284 +5653,260 @@ impl Spherical3Rrr {
         acceleration: &[f64; 3],
         parameters: &[f64; 54],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let (minus_s_proximal_leg1, minus_c_proximal_leg1) = ::overact::math::sin_cos(
-            joints[0],
-        );
-        let rate_distal_leg1 = minus_c_proximal_leg1 * twist[2]
-            - minus_s_proximal_leg1 * twist[1];
-        let t5 = minus_s_proximal_leg1 * rate_distal_leg1;
-        let (c_distal_leg1, minus_s_distal_leg1) = ::overact::math::sin_cos(joints[1]);
+        let [(minus_s_proximal_leg1, minus_c_proximal_leg1),
+        (c_distal_leg1, minus_s_distal_leg1),
+        (minus_s_proximal_leg2, minus_c_proximal_leg2),
+        (c_distal_leg2, minus_s_distal_leg2),
+        (minus_s_proximal_leg3, minus_c_proximal_leg3),
+        (c_distal_leg3, minus_s_distal_leg3)] = ::overact::math::sin_cos_all([
+            joints[0], joints[1], joints[3], joints[4], joints[6], joints[7],
+        ]);
         ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        let t8 = minus_s_proximal_leg1 * minus_s_distal_leg1;
-        let t9 = 1.0 / minus_s_distal_leg1;
-        let gwrist_wy_leg1 = minus_c_proximal_leg1 * t9;
-        let gwrist_wz_leg1 = minus_s_proximal_leg1 * t9;
-        let rate_wrist_leg1 = gwrist_wy_leg1 * twist[1] + gwrist_wz_leg1 * twist[2];
-        let t15 = t8 * rate_wrist_leg1;
-        let t17 = minus_c_proximal_leg1 * rate_distal_leg1;
-        let t19 = minus_c_proximal_leg1 * minus_s_distal_leg1 * rate_wrist_leg1;
-        let gproximal_wy_leg1 = c_distal_leg1 * gwrist_wy_leg1;
-        let gproximal_wz_leg1 = c_distal_leg1 * gwrist_wz_leg1;
-        let rate_proximal_leg1 = twist[0] + gproximal_wy_leg1 * twist[1]
-            + gproximal_wz_leg1 * twist[2];
-        let t30 = c_distal_leg1 * rate_wrist_leg1;
-        let t35 = acceleration[1] + rate_proximal_leg1 * t17 + t17 * t30
-            + rate_proximal_leg1 * t15;
-        let t43 = acceleration[2]
-            - (rate_proximal_leg1 * t19 - t5 * t30 - rate_proximal_leg1 * t5);
-        let rate_dot_proximal_leg1 = acceleration[0] + t5 * t15 + t17 * t19
-            + gproximal_wy_leg1 * t35 + gproximal_wz_leg1 * t43;
-        let t47 = 9.81 * minus_c_proximal_leg1;
-        let t59 = parameters[0] * rate_dot_proximal_leg1 - parameters[1] * t47
-            + parameters[2] * (9.81 * minus_s_proximal_leg1)
-            + parameters[3] * rate_dot_proximal_leg1 + parameters[4] * rate_proximal_leg1
-            + ::overact::math::signed(parameters[5], rate_proximal_leg1) + parameters[6];
-        let t60 = c_distal_leg1 * rate_proximal_leg1;
-        let t61 = rate_distal_leg1 * t60;
-        let t62 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
-        let t63 = t61 - t62;
-        let t66 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t67 = rate_distal_leg1 * t66;
-        let t70 = rate_distal_leg1 * rate_distal_leg1;
-        let t71 = t66 * t66;
-        let t75 = c_distal_leg1 * rate_dot_proximal_leg1;
-        let t76 = t75 + t67;
-        let t79 = t66 * t60;
-        let rate_dot_distal_leg1 = minus_c_proximal_leg1 * t43
-            - minus_s_proximal_leg1 * t35;
-        let t85 = parameters[8] * (t61 + t63) - parameters[7] * t67
-            + parameters[9] * (t70 - t71) + parameters[10] * t76
-            + parameters[11] * (t79 + rate_dot_distal_leg1);
-        let t91 = 9.81 * (minus_s_proximal_leg1 * c_distal_leg1);
-        let t104 = t60 * t60;
-        let t107 = parameters[7] * t63 + parameters[8] * (t67 + t76)
-            + parameters[9] * (rate_dot_distal_leg1 - t79) - parameters[10] * t61
-            + parameters[11] * (t104 - t70);
-        let t112 = 9.81 * t8;
-        let t116 = c_distal_leg1
-            * (t85 + parameters[12] * t67 - parameters[13] * t47 - parameters[15] * t91)
-            - minus_s_distal_leg1
-                * (t107 + parameters[12] * t61 + parameters[14] * t47
-                    + parameters[15] * t112);
-        let t117 = t59 + t116;
-        let (c_distal_leg2, minus_s_distal_leg2) = ::overact::math::sin_cos(joints[4]);
         ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        let (minus_s_proximal_leg2, minus_c_proximal_leg2) = ::overact::math::sin_cos(
-            joints[3],
-        );
-        let t122 = 1.0 / minus_s_distal_leg2;
-        let gwrist_wx_leg2 = minus_s_proximal_leg2 * t122;
-        let gproximal_wx_leg2 = c_distal_leg2 * gwrist_wx_leg2;
-        let gwrist_wz_leg2 = minus_c_proximal_leg2 * t122;
-        let gproximal_wz_leg2 = c_distal_leg2 * gwrist_wz_leg2;
-        let rate_proximal_leg2 = gproximal_wx_leg2 * twist[0] + twist[1]
-            + gproximal_wz_leg2 * twist[2];
-        let t131 = minus_c_proximal_leg2 * minus_s_distal_leg2;
-        let rate_wrist_leg2 = gwrist_wx_leg2 * twist[0] + gwrist_wz_leg2 * twist[2];
-        let t135 = t131 * rate_wrist_leg2;
-        let rate_distal_leg2 = minus_c_proximal_leg2 * twist[0]
-            - minus_s_proximal_leg2 * twist[2];
-        let t140 = minus_s_proximal_leg2 * rate_distal_leg2;
-        let t141 = c_distal_leg2 * rate_wrist_leg2;
-        let t146 = acceleration[0]
-            - (rate_proximal_leg2 * t135 - t140 * t141 - rate_proximal_leg2 * t140);
-        let t149 = minus_s_proximal_leg2 * minus_s_distal_leg2 * rate_wrist_leg2;
-        let t151 = minus_c_proximal_leg2 * rate_distal_leg2;
-        let t161 = acceleration[2] + rate_proximal_leg2 * t151 + t151 * t141
-            + rate_proximal_leg2 * t149;
-        let rate_dot_proximal_leg2 = gproximal_wx_leg2 * t146 + acceleration[1]
-            + t140 * t149 + t151 * t135 + gproximal_wz_leg2 * t161;
-        let t165 = 9.81 * minus_s_proximal_leg2;
-        let t177 = parameters[16] * rate_dot_proximal_leg2 + parameters[17] * t165
-            + parameters[18] * (9.81 * minus_c_proximal_leg2)
-            + parameters[19] * rate_dot_proximal_leg2
+        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
+        let t4 = minus_c_proximal_leg1 * twist[1] + minus_s_proximal_leg1 * twist[2];
+        let minus_rate_distal_leg1 = minus_s_proximal_leg1 * twist[1]
+            - minus_c_proximal_leg1 * twist[2];
+        let t12 = c_distal_leg1 / minus_s_distal_leg1;
+        let t13 = t12 * t4;
+        let rate_proximal_leg1 = t13 + twist[0];
+        let rate_dot_proximal_leg1 = acceleration[0] - t4 * minus_rate_distal_leg1
+            - t12
+                * (minus_rate_distal_leg1 * rate_proximal_leg1
+                    + minus_rate_distal_leg1 * t13
+                    - (minus_c_proximal_leg1 * acceleration[1]
+                        + minus_s_proximal_leg1 * acceleration[2]));
+        let t25 = 9.81 * minus_c_proximal_leg1;
+        let t28 = 9.81 * minus_s_proximal_leg1;
+        let t37 = parameters[0] * rate_dot_proximal_leg1 - parameters[1] * t25
+            + parameters[2] * t28 + parameters[3] * rate_dot_proximal_leg1
+            + parameters[4] * rate_proximal_leg1
+            + ::overact::math::signed(parameters[5], rate_proximal_leg1) + parameters[6];
+        let t38 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t39 = minus_rate_distal_leg1 * t38;
+        let t41 = c_distal_leg1 * rate_proximal_leg1;
+        let t42 = minus_rate_distal_leg1 * t41;
+        let t43 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t44 = t43 + t42;
+        let t48 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t49 = t38 * t38;
+        let t53 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t54 = t53 - t39;
+        let minus_rate_dot_distal_leg1 = minus_s_proximal_leg1 * acceleration[1]
+            - minus_c_proximal_leg1 * acceleration[2] + t4 * rate_proximal_leg1;
+        let t62 = t38 * t41;
+        let t65 = parameters[7] * t39 - parameters[8] * (t42 + t44)
+            + parameters[9] * (t48 - t49) + parameters[10] * t54
+            - parameters[11] * (minus_rate_dot_distal_leg1 - t62);
+        let t70 = c_distal_leg1 * t28;
+        let t83 = t41 * t41;
+        let t86 = parameters[10] * t42
+            - (parameters[7] * t44 + parameters[8] * (t39 - t54)
+                + parameters[9] * (t62 + minus_rate_dot_distal_leg1))
+            + parameters[11] * (t83 - t48);
+        let t91 = minus_s_distal_leg1 * t28;
+        let t95 = c_distal_leg1
+            * (t65 - parameters[12] * t39 - parameters[13] * t25 - parameters[15] * t70)
+            - minus_s_distal_leg1
+                * (t86 - parameters[12] * t42 + parameters[14] * t25
+                    + parameters[15] * t91);
+        let t96 = t37 + t95;
+        let t101 = c_distal_leg2 / minus_s_distal_leg2;
+        let gproximal_wx_leg2 = minus_s_proximal_leg2 * t101;
+        let t105 = minus_s_proximal_leg2 * twist[0] + minus_c_proximal_leg2 * twist[2];
+        let minus_rate_distal_leg2 = minus_s_proximal_leg2 * twist[2]
+            - minus_c_proximal_leg2 * twist[0];
+        let t111 = t101 * t105;
+        let rate_proximal_leg2 = t111 + twist[1];
+        let rate_dot_proximal_leg2 = acceleration[1] - t105 * minus_rate_distal_leg2
+            - t101
+                * (minus_rate_distal_leg2 * rate_proximal_leg2
+                    + minus_rate_distal_leg2 * t111
+                    - (minus_s_proximal_leg2 * acceleration[0]
+                        + minus_c_proximal_leg2 * acceleration[2]));
+        let t123 = 9.81 * minus_s_proximal_leg2;
+        let t126 = 9.81 * minus_c_proximal_leg2;
+        let t135 = parameters[16] * rate_dot_proximal_leg2 + parameters[17] * t123
+            + parameters[18] * t126 + parameters[19] * rate_dot_proximal_leg2
             + parameters[20] * rate_proximal_leg2
             + ::overact::math::signed(parameters[21], rate_proximal_leg2)
             + parameters[22];
-        let t178 = c_distal_leg2 * rate_proximal_leg2;
-        let t179 = rate_distal_leg2 * t178;
-        let t180 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t181 = t179 - t180;
-        let t184 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t185 = rate_distal_leg2 * t184;
-        let t188 = rate_distal_leg2 * rate_distal_leg2;
-        let t189 = t184 * t184;
-        let t193 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t194 = t193 + t185;
-        let t197 = t184 * t178;
-        let rate_dot_distal_leg2 = minus_c_proximal_leg2 * t146
-            - minus_s_proximal_leg2 * t161;
-        let t203 = parameters[24] * (t179 + t181) - parameters[23] * t185
-            + parameters[25] * (t188 - t189) + parameters[26] * t194
-            + parameters[27] * (t197 + rate_dot_distal_leg2);
-        let t209 = 9.81 * (minus_c_proximal_leg2 * c_distal_leg2);
-        let t222 = t178 * t178;
-        let t225 = parameters[23] * t181 + parameters[24] * (t185 + t194)
-            + parameters[25] * (rate_dot_distal_leg2 - t197) - parameters[26] * t179
-            + parameters[27] * (t222 - t188);
-        let t230 = 9.81 * t131;
-        let t234 = c_distal_leg2
-            * (t203 + parameters[28] * t185 + parameters[29] * t165
-                - parameters[31] * t209)
+        let t136 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t137 = minus_rate_distal_leg2 * t136;
+        let t139 = c_distal_leg2 * rate_proximal_leg2;
+        let t140 = minus_rate_distal_leg2 * t139;
+        let t141 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t142 = t141 + t140;
+        let t146 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t147 = t136 * t136;
+        let t151 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t152 = t151 - t137;
+        let minus_rate_dot_distal_leg2 = minus_s_proximal_leg2 * acceleration[2]
+            - minus_c_proximal_leg2 * acceleration[0] + t105 * rate_proximal_leg2;
+        let t160 = t136 * t139;
+        let t163 = parameters[23] * t137 - parameters[24] * (t140 + t142)
+            + parameters[25] * (t146 - t147) + parameters[26] * t152
+            - parameters[27] * (minus_rate_dot_distal_leg2 - t160);
+        let t168 = c_distal_leg2 * t126;
+        let t181 = t139 * t139;
+        let t184 = parameters[26] * t140
+            - (parameters[23] * t142 + parameters[24] * (t137 - t152)
+                + parameters[25] * (t160 + minus_rate_dot_distal_leg2))
+            + parameters[27] * (t181 - t146);
+        let t189 = minus_s_distal_leg2 * t126;
+        let t193 = c_distal_leg2
+            * (t163 - parameters[28] * t137 + parameters[29] * t123
+                - parameters[31] * t168)
             - minus_s_distal_leg2
-                * (t225 + parameters[28] * t179 - parameters[30] * t165
-                    + parameters[31] * t230);
-        let t235 = t177 + t234;
-        let t246 = parameters[23] * t197 + parameters[24] * (t189 - t222)
-            - parameters[25] * t180 - parameters[26] * t197 + parameters[27] * t193;
-        let t252 = t246 + parameters[28] * rate_dot_distal_leg2 - parameters[29] * t230
-            + parameters[30] * t209;
-        let (c_distal_leg3, minus_s_distal_leg3) = ::overact::math::sin_cos(joints[7]);
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let (minus_s_proximal_leg3, minus_c_proximal_leg3) = ::overact::math::sin_cos(
-            joints[6],
-        );
-        let t260 = 1.0 / minus_s_distal_leg3;
-        let gwrist_wx_leg3 = minus_c_proximal_leg3 * t260;
-        let gproximal_wx_leg3 = c_distal_leg3 * gwrist_wx_leg3;
-        let gwrist_wy_leg3 = minus_s_proximal_leg3 * t260;
-        let gproximal_wy_leg3 = c_distal_leg3 * gwrist_wy_leg3;
-        let t267 = gproximal_wx_leg3 * twist[0] + gproximal_wy_leg3 * twist[1];
-        let rate_proximal_leg3 = t267 + twist[2];
+                * (t184 - parameters[28] * t140 - parameters[30] * t123
+                    + parameters[31] * t189);
+        let t194 = t135 + t193;
+        let t205 = parameters[23] * t160 + parameters[24] * (t147 - t181)
+            - parameters[25] * t141 - parameters[26] * t160 + parameters[27] * t151;
+        let t211 = t205 - parameters[28] * minus_rate_dot_distal_leg2
+            - parameters[29] * t189 + parameters[30] * t168;
+        let t219 = c_distal_leg3 / minus_s_distal_leg3;
+        let gproximal_wx_leg3 = minus_c_proximal_leg3 * t219;
         let rate_distal_leg3 = minus_c_proximal_leg3 * twist[1]
             - minus_s_proximal_leg3 * twist[0];
-        let t272 = minus_c_proximal_leg3 * rate_distal_leg3;
-        let rate_wrist_leg3 = gwrist_wx_leg3 * twist[0] + gwrist_wy_leg3 * twist[1];
-        let t279 = minus_s_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let t283 = acceleration[0] + rate_proximal_leg3 * t272 + t267 * t272
-            + rate_proximal_leg3 * t279;
-        let t286 = minus_c_proximal_leg3 * minus_s_distal_leg3 * rate_wrist_leg3;
-        let t288 = minus_s_proximal_leg3 * rate_distal_leg3;
-        let t293 = acceleration[1]
-            - (rate_proximal_leg3 * t286 - t267 * t288 - rate_proximal_leg3 * t288);
-        let rate_dot_proximal_leg3 = gproximal_wx_leg3 * t283 + gproximal_wy_leg3 * t293
-            + acceleration[2] + t288 * t279 + t272 * t286;
-        let t309 = c_distal_leg3 * rate_proximal_leg3;
-        let t310 = rate_distal_leg3 * t309;
-        let t311 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let t312 = t310 - t311;
-        let t315 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t316 = rate_distal_leg3 * t315;
-        let t321 = t288 * t288 + t272 * t272;
-        let t322 = t315 * t315;
-        let t326 = c_distal_leg3 * rate_dot_proximal_leg3;
-        let t327 = t326 + t316;
-        let t330 = t315 * t309;
-        let rate_dot_distal_leg3 = minus_c_proximal_leg3 * t293
-            - minus_s_proximal_leg3 * t283;
-        let t336 = parameters[38] * (t310 + t312) - parameters[37] * t316
-            + parameters[39] * (t321 - t322) + parameters[40] * t327
-            + parameters[41] * (t330 + rate_dot_distal_leg3);
-        let t349 = t309 * t309;
-        let t352 = parameters[37] * t312 + parameters[38] * (t316 + t327)
-            + parameters[39] * (rate_dot_distal_leg3 - t330) - parameters[40] * t310
-            + parameters[41] * (t349 - t321);
-        let t357 = parameters[32] * rate_dot_proximal_leg3
+        let t229 = minus_c_proximal_leg3 * twist[0] + minus_s_proximal_leg3 * twist[1];
+        let t230 = t219 * t229;
+        let rate_proximal_leg3 = t230 + twist[2];
+        let rate_dot_proximal_leg3 = t219
+            * (minus_c_proximal_leg3 * acceleration[0]
+                + minus_s_proximal_leg3 * acceleration[1]
+                + rate_distal_leg3 * rate_proximal_leg3 + rate_distal_leg3 * t230)
+            + acceleration[2] + t229 * rate_distal_leg3;
+        let t248 = c_distal_leg3 * rate_proximal_leg3;
+        let t249 = rate_distal_leg3 * t248;
+        let t250 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t251 = t249 - t250;
+        let t254 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t255 = rate_distal_leg3 * t254;
+        let t258 = rate_distal_leg3 * rate_distal_leg3;
+        let t259 = t254 * t254;
+        let t263 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t264 = t263 + t255;
+        let t267 = t254 * t248;
+        let rate_dot_distal_leg3 = minus_c_proximal_leg3 * acceleration[1]
+            - minus_s_proximal_leg3 * acceleration[0] - t229 * rate_proximal_leg3;
+        let t275 = parameters[38] * (t249 + t251) - parameters[37] * t255
+            + parameters[39] * (t258 - t259) + parameters[40] * t264
+            + parameters[41] * (t267 + rate_dot_distal_leg3);
+        let t288 = t248 * t248;
+        let t291 = parameters[37] * t251 + parameters[38] * (t255 + t264)
+            + parameters[39] * (rate_dot_distal_leg3 - t267) - parameters[40] * t249
+            + parameters[41] * (t288 - t258);
+        let t296 = parameters[32] * rate_dot_proximal_leg3
             + parameters[33] * rate_dot_proximal_leg3
             + parameters[34] * rate_proximal_leg3
             + ::overact::math::signed(parameters[35], rate_proximal_leg3)
-            + parameters[36] + c_distal_leg3 * (t336 + parameters[42] * t316)
-            - minus_s_distal_leg3 * (t352 + parameters[42] * t310);
-        let t368 = parameters[37] * t330 + parameters[38] * (t322 - t349)
-            - parameters[39] * t311 - parameters[40] * t330 + parameters[41] * t326;
-        let t376 = t368 + parameters[42] * rate_dot_distal_leg3
+            + parameters[36] + c_distal_leg3 * (t275 + parameters[42] * t255)
+            - minus_s_distal_leg3 * (t291 + parameters[42] * t249);
+        let t307 = parameters[37] * t267 + parameters[38] * (t259 - t288)
+            - parameters[39] * t250 - parameters[40] * t267 + parameters[41] * t263;
+        let t315 = t307 + parameters[42] * rate_dot_distal_leg3
             + parameters[43] * (9.81 * c_distal_leg3)
             + parameters[44] * (9.81 * minus_s_distal_leg3);
-        let t380 = 2.0 * pose[2];
-        let t381 = pose[2] * t380;
-        let t383 = 2.0 * pose[3];
-        let t384 = pose[3] * t383;
-        let t385 = 1.0 - t381 - t384;
-        let t387 = 2.0 * pose[1];
-        let t388 = pose[2] * t387;
-        let t389 = pose[0] * t383;
-        let t390 = t388 + t389;
-        let t393 = pose[3] * t387;
-        let t394 = pose[0] * t380;
-        let t395 = t393 - t394;
-        let t397 = t385 * acceleration[0] + t390 * acceleration[1]
-            + t395 * acceleration[2];
-        let t403 = t385 * twist[0] + t390 * twist[1] + t395 * twist[2];
-        let t404 = t393 + t394;
-        let t406 = pose[3] * t380;
-        let t407 = pose[0] * t387;
-        let t408 = t406 - t407;
-        let t412 = 1.0 - pose[1] * t387;
-        let t413 = t412 - t381;
-        let t415 = t404 * twist[0] + t408 * twist[1] + t413 * twist[2];
-        let t416 = t403 * t415;
-        let t417 = t388 - t389;
-        let t419 = t412 - t384;
-        let t422 = t406 + t407;
-        let t424 = t417 * acceleration[0] + t419 * acceleration[1]
-            + t422 * acceleration[2];
-        let t432 = t417 * twist[0] + t419 * twist[1] + t422 * twist[2];
-        let t433 = t403 * t432;
-        let t438 = t404 * acceleration[0] + t408 * acceleration[1]
-            + t413 * acceleration[2];
-        let t442 = t432 * t415;
-        let t445 = t432 * t432;
-        let t446 = t415 * t415;
-        let t449 = parameters[45] * t397 - parameters[46] * (t416 - t424)
-            + parameters[47] * (t433 + t438) - parameters[48] * t442
-            + parameters[49] * (t445 - t446);
-        let t452 = 9.81 * t413;
-        let t455 = 9.81 * t422;
-        let t457 = t449 + parameters[50] * t442 + parameters[52] * t452
-            - parameters[53] * t455;
-        let t463 = t403 * t403;
-        let t471 = parameters[45] * t416 + parameters[46] * (t442 + t397)
-            + parameters[47] * (t446 - t463) + parameters[48] * t424
-            - parameters[49] * (t433 - t438);
-        let t476 = 9.81 * t395;
-        let t478 = t471 - parameters[50] * t416 - parameters[51] * t452
-            + parameters[53] * t476;
-        let t492 = parameters[46] * (t463 - t445) - parameters[45] * t433
-            - parameters[47] * (t442 - t397) + parameters[48] * t433
-            + parameters[49] * (t416 + t424);
-        let t498 = t492 + parameters[50] * t438 + parameters[51] * t455
-            - parameters[52] * t476;
-        let t501 = t117 + gproximal_wx_leg2 * t235 + minus_c_proximal_leg2 * t252
-            + gproximal_wx_leg3 * t357 - minus_s_proximal_leg3 * t376 + t385 * t457
-            + t417 * t478 + t404 * t498;
-        let t505 = 1.0 + gproximal_wx_leg2 * gproximal_wx_leg2
+        let t319 = 2.0 * pose[2];
+        let t320 = pose[2] * t319;
+        let t322 = 2.0 * pose[3];
+        let t323 = pose[3] * t322;
+        let t324 = 1.0 - t320 - t323;
+        let t326 = 2.0 * pose[1];
+        let t327 = pose[2] * t326;
+        let t328 = pose[0] * t322;
+        let t329 = t327 + t328;
+        let t332 = pose[3] * t326;
+        let t333 = pose[0] * t319;
+        let t334 = t332 - t333;
+        let t336 = t324 * acceleration[0] + t329 * acceleration[1]
+            + t334 * acceleration[2];
+        let t342 = t324 * twist[0] + t329 * twist[1] + t334 * twist[2];
+        let t343 = t332 + t333;
+        let t345 = pose[3] * t319;
+        let t346 = pose[0] * t326;
+        let t347 = t345 - t346;
+        let t351 = 1.0 - pose[1] * t326;
+        let t352 = t351 - t320;
+        let t354 = t343 * twist[0] + t347 * twist[1] + t352 * twist[2];
+        let t355 = t342 * t354;
+        let t356 = t327 - t328;
+        let t358 = t351 - t323;
+        let t361 = t345 + t346;
+        let t363 = t356 * acceleration[0] + t358 * acceleration[1]
+            + t361 * acceleration[2];
+        let t371 = t356 * twist[0] + t358 * twist[1] + t361 * twist[2];
+        let t372 = t342 * t371;
+        let t377 = t343 * acceleration[0] + t347 * acceleration[1]
+            + t352 * acceleration[2];
+        let t381 = t371 * t354;
+        let t384 = t371 * t371;
+        let t385 = t354 * t354;
+        let t388 = parameters[45] * t336 - parameters[46] * (t355 - t363)
+            + parameters[47] * (t372 + t377) - parameters[48] * t381
+            + parameters[49] * (t384 - t385);
+        let t391 = 9.81 * t352;
+        let t394 = 9.81 * t361;
+        let t396 = t388 + parameters[50] * t381 + parameters[52] * t391
+            - parameters[53] * t394;
+        let t402 = t342 * t342;
+        let t410 = parameters[45] * t355 + parameters[46] * (t381 + t336)
+            + parameters[47] * (t385 - t402) + parameters[48] * t363
+            - parameters[49] * (t372 - t377);
+        let t415 = 9.81 * t334;
+        let t417 = t410 - parameters[50] * t355 - parameters[51] * t391
+            + parameters[53] * t415;
+        let t431 = parameters[46] * (t402 - t384) - parameters[45] * t372
+            - parameters[47] * (t381 - t336) + parameters[48] * t372
+            + parameters[49] * (t355 + t363);
+        let t437 = t431 + parameters[50] * t377 + parameters[51] * t394
+            - parameters[52] * t415;
+        let t440 = t96 + gproximal_wx_leg2 * t194 + minus_c_proximal_leg2 * t211
+            + gproximal_wx_leg3 * t296 - minus_s_proximal_leg3 * t315 + t324 * t396
+            + t356 * t417 + t343 * t437;
+        let t444 = 1.0 + gproximal_wx_leg2 * gproximal_wx_leg2
             + gproximal_wx_leg3 * gproximal_wx_leg3;
-        ::overact::guard::platform(t505, 1.0, "actuators")?;
-        let t506 = 1.0 / t505;
-        let t510 = gproximal_wy_leg1 + gproximal_wx_leg2
+        ::overact::guard::platform(t444, 1.0, "actuators")?;
+        let t445 = 1.0 / t444;
+        let gproximal_wy_leg1 = minus_c_proximal_leg1 * t12;
+        let gproximal_wy_leg3 = minus_s_proximal_leg3 * t219;
+        let t451 = gproximal_wy_leg1 + gproximal_wx_leg2
             + gproximal_wx_leg3 * gproximal_wy_leg3;
-        let t511 = t510 * t506;
-        let t517 = gproximal_wy_leg1 * gproximal_wy_leg1 + 1.0
-            + gproximal_wy_leg3 * gproximal_wy_leg3 - t510 * t511;
-        ::overact::guard::platform(t517, 1.0, "actuators")?;
-        let t518 = 1.0 / t517;
-        let t529 = parameters[7] * t79 + parameters[8] * (t71 - t104)
-            - parameters[9] * t62 - parameters[10] * t79 + parameters[11] * t75;
-        let t535 = t529 + parameters[12] * rate_dot_distal_leg1 - parameters[13] * t112
-            + parameters[14] * t91;
-        let t548 = gproximal_wy_leg1 * t117 - minus_s_proximal_leg1 * t535 + t235
-            + gproximal_wy_leg3 * t357 + minus_c_proximal_leg3 * t376 + t390 * t457
-            + t419 * t478 + t408 * t498;
-        let t550 = t548 - t501 * t511;
-        let t557 = gproximal_wz_leg1 + gproximal_wx_leg2 * gproximal_wz_leg2
+        let t452 = t451 * t445;
+        let t458 = gproximal_wy_leg1 * gproximal_wy_leg1 + 1.0
+            + gproximal_wy_leg3 * gproximal_wy_leg3 - t451 * t452;
+        ::overact::guard::platform(t458, 1.0, "actuators")?;
+        let t459 = 1.0 / t458;
+        let t470 = parameters[7] * t62 + parameters[8] * (t49 - t83)
+            - parameters[9] * t43 - parameters[10] * t62 + parameters[11] * t53;
+        let t476 = t470 - parameters[12] * minus_rate_dot_distal_leg1
+            - parameters[13] * t91 + parameters[14] * t70;
+        let t489 = gproximal_wy_leg1 * t96 - minus_s_proximal_leg1 * t476 + t194
+            + gproximal_wy_leg3 * t296 + minus_c_proximal_leg3 * t315 + t329 * t396
+            + t358 * t417 + t347 * t437;
+        let t491 = t489 - t440 * t452;
+        let gproximal_wz_leg1 = minus_s_proximal_leg1 * t12;
+        let gproximal_wz_leg2 = minus_c_proximal_leg2 * t101;
+        let t500 = gproximal_wz_leg1 + gproximal_wx_leg2 * gproximal_wz_leg2
             + gproximal_wx_leg3;
-        let t558 = t557 * t506;
-        let t560 = gproximal_wy_leg1 * gproximal_wz_leg1 + gproximal_wz_leg2
-            + gproximal_wy_leg3 - t510 * t558;
-        let t561 = t560 * t518;
-        let t569 = gproximal_wz_leg1 * gproximal_wz_leg1
-            + gproximal_wz_leg2 * gproximal_wz_leg2 + 1.0 - t557 * t558 - t560 * t561;
-        ::overact::guard::platform(t569, 1.0, "actuators")?;
-        let t583 = gproximal_wz_leg1 * t117 + minus_c_proximal_leg1 * t535
-            + gproximal_wz_leg2 * t235 - minus_s_proximal_leg2 * t252 + t357
-            + t395 * t457 + t422 * t478 + t413 * t498;
-        let t588 = (t583 - t501 * t558 - t561 * t550) / t569;
-        let t590 = t518 * t550 - t561 * t588;
-        let t594 = t501 * t506 - t511 * t590 - t558 * t588;
+        let t501 = t500 * t445;
+        let t503 = gproximal_wy_leg1 * gproximal_wz_leg1 + gproximal_wz_leg2
+            + gproximal_wy_leg3 - t451 * t501;
+        let t504 = t503 * t459;
+        let t512 = gproximal_wz_leg1 * gproximal_wz_leg1
+            + gproximal_wz_leg2 * gproximal_wz_leg2 + 1.0 - t500 * t501 - t503 * t504;
+        ::overact::guard::platform(t512, 1.0, "actuators")?;
+        let t526 = gproximal_wz_leg1 * t96 + minus_c_proximal_leg1 * t476
+            + gproximal_wz_leg2 * t194 - minus_s_proximal_leg2 * t211 + t296
+            + t334 * t396 + t361 * t417 + t352 * t437;
+        let t531 = (t526 - t440 * t501 - t504 * t491) / t512;
+        let t533 = t459 * t491 - t504 * t531;
+        let t537 = t440 * t445 - t452 * t533 - t501 * t531;
         Ok([
-            t594 + gproximal_wy_leg1 * t590 + gproximal_wz_leg1 * t588,
-            gproximal_wx_leg2 * t594 + t590 + gproximal_wz_leg2 * t588,
-            gproximal_wx_leg3 * t594 + gproximal_wy_leg3 * t590 + t588,
+            t537 + gproximal_wy_leg1 * t533 + gproximal_wz_leg1 * t531,
+            gproximal_wx_leg2 * t537 + t533 + gproximal_wz_leg2 * t531,
+            gproximal_wx_leg3 * t537 + gproximal_wy_leg3 * t533 + t531,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -6377,7 +5920,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 666 operations (280 additions, 377 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 669 intermediates.
+    /// 595 operations (258 additions, 328 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 598 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6389,320 +5932,296 @@ impl Spherical3Rrr {
         start: &[f64; 4],
     ) -> Result<[f64; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = 2.0 * pose[2];
-        let t1 = pose[3] * t0;
-        let t2 = 2.0 * pose[1];
-        let t3 = pose[0] * t2;
-        let minus_s_distal_leg2 = t1 - t3;
-        let t6 = 1.0 - pose[1] * t2;
-        let t7 = pose[2] * t0;
-        let t8 = t6 - t7;
+        let t0 = 2.0 * pose[1];
+        let t2 = 1.0 - pose[1] * t0;
+        let t3 = 2.0 * pose[2];
+        let t4 = pose[2] * t3;
+        let t5 = t2 - t4;
+        let t6 = pose[3] * t3;
+        let t7 = pose[0] * t0;
+        let minus_s_distal_leg2 = t6 - t7;
         let t10 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
         ::overact::guard::reach(t10, "leg2")?;
         let c_distal_leg2 = ::overact::math::sqrt(t10);
-        let t13 = 1.0 / (t8 * c_distal_leg2);
-        let t14 = pose[3] * t2;
-        let t15 = pose[0] * t0;
+        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
+        let t13 = 1.0 / (t5 * c_distal_leg2);
+        let t14 = pose[3] * t0;
+        let t15 = pose[0] * t3;
         let t16 = t14 + t15;
-        let s_proximal_leg2 = t13 * (t16 * t8);
-        let c_proximal_leg2 = t13 * (t8 * t8);
-        let t23 = t16 * s_proximal_leg2 + t8 * c_proximal_leg2;
-        ::overact::guard::leg(t23, 1.0, "leg2")?;
-        let t24 = 1.0 / t23;
-        let gwrist_wx_leg2 = s_proximal_leg2 * t24;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
+        let s_proximal_leg2 = t13 * (t16 * t5);
+        let t19 = 1.0 / c_distal_leg2;
+        let t20 = minus_s_distal_leg2 * t19;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t20;
+        let t25 = 2.0 * pose[3];
+        let t26 = pose[3] * t25;
+        let t27 = 1.0 - t4 - t26;
         let minus_s_distal_leg3 = t14 - t15;
-        let t31 = 2.0 * pose[3];
-        let t32 = pose[3] * t31;
-        let t33 = 1.0 - t7 - t32;
-        let t35 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t35, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t35);
-        let t38 = 1.0 / (t33 * c_distal_leg3);
-        let c_proximal_leg3 = t38 * (t33 * t33);
-        let t42 = pose[2] * t2;
-        let t43 = pose[0] * t31;
-        let t44 = t42 + t43;
-        let s_proximal_leg3 = t38 * (t33 * t44);
-        let t48 = t33 * c_proximal_leg3 + t44 * s_proximal_leg3;
-        ::overact::guard::leg(t48, 1.0, "leg3")?;
-        let t49 = 1.0 / t48;
-        let gwrist_wx_leg3 = c_proximal_leg3 * t49;
-        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
-        let t53 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+        let t30 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t30, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t30);
+        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
+        let t33 = 1.0 / (t27 * c_distal_leg3);
+        let c_proximal_leg3 = t33 * (t27 * t27);
+        let t36 = 1.0 / c_distal_leg3;
+        let t37 = minus_s_distal_leg3 * t36;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t37;
+        let t40 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
-        ::overact::guard::platform(t53, 1.0, "actuators")?;
-        ::overact::guard::platform(t53, 1.0, "actuators")?;
-        ::overact::guard::platform(t53, 1.0, "actuators")?;
-        let t54 = 1.0 / t53;
-        let t56 = t6 - t32;
-        let minus_s_distal_leg1 = t42 - t43;
-        let t59 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t59, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t59);
-        let t62 = 1.0 / (t56 * c_distal_leg1);
-        let c_proximal_leg1 = t62 * (t56 * t56);
-        let t65 = 9.81 * c_proximal_leg1;
-        let t68 = t1 + t3;
-        let s_proximal_leg1 = t62 * (t56 * t68);
-        let t80 = actuator_accelerations[0] * parameters[0] - t65 * parameters[1]
+        ::overact::guard::platform(t40, 1.0, "actuators")?;
+        ::overact::guard::platform(t40, 1.0, "actuators")?;
+        ::overact::guard::platform(t40, 1.0, "actuators")?;
+        let t41 = 1.0 / t40;
+        let t43 = t2 - t26;
+        let t44 = pose[2] * t0;
+        let t45 = pose[0] * t25;
+        let minus_s_distal_leg1 = t44 - t45;
+        let t48 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t48, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t48);
+        ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
+        let t51 = 1.0 / (t43 * c_distal_leg1);
+        let c_proximal_leg1 = t51 * (t43 * t43);
+        let t54 = 9.81 * c_proximal_leg1;
+        let t57 = t6 + t7;
+        let s_proximal_leg1 = t51 * (t43 * t57);
+        let t69 = actuator_accelerations[0] * parameters[0] - t54 * parameters[1]
             + 9.81 * s_proximal_leg1 * parameters[2]
             + actuator_accelerations[0] * parameters[3]
             + actuator_velocities[0] * parameters[4]
             + ::overact::math::signed(parameters[5], actuator_velocities[0])
             + parameters[6];
-        let t83 = t56 * c_proximal_leg1 + t68 * s_proximal_leg1;
-        ::overact::guard::leg(t83, 1.0, "leg1")?;
-        let t84 = 1.0 / t83;
-        let gdistal_wz_leg1 = t56 * t84;
-        let gwrist_wz_leg1 = s_proximal_leg1 * t84;
-        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
-        let gwrist_wz_leg2 = c_proximal_leg2 * t24;
-        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
-        let t96 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
-            - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
-        let t97 = t96 * t54;
-        let gwrist_wy_leg1 = c_proximal_leg1 * t84;
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
-        let gwrist_wy_leg3 = s_proximal_leg3 * t49;
-        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
-        let t109 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+        let t70 = 1.0 / c_distal_leg1;
+        let t71 = minus_s_distal_leg1 * t70;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t71;
+        let t75 = t44 + t45;
+        let s_proximal_leg3 = t33 * (t27 * t75);
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t37;
+        let t83 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
-        let t111 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
-            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t109 * t97;
-        let t116 = t109 * t54;
-        let t118 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t109 * t116;
-        ::overact::guard::platform(t118, 1.0, "actuators")?;
-        ::overact::guard::platform(t118, 1.0, "actuators")?;
-        ::overact::guard::platform(t118, 1.0, "actuators")?;
-        let t119 = 1.0 / t118;
-        let t120 = t111 * t119;
-        let t122 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t96 * t97
-            - t111 * t120;
-        ::overact::guard::platform(t122, 1.0, "actuators")?;
-        ::overact::guard::platform(t122, 1.0, "actuators")?;
-        ::overact::guard::platform(t122, 1.0, "actuators")?;
-        let t123 = 1.0 / t122;
-        let t131 = actuator_velocities[0]
+        let t84 = t83 * t41;
+        let t86 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t83 * t84;
+        ::overact::guard::platform(t86, 1.0, "actuators")?;
+        ::overact::guard::platform(t86, 1.0, "actuators")?;
+        ::overact::guard::platform(t86, 1.0, "actuators")?;
+        let t87 = 1.0 / t86;
+        let t95 = actuator_velocities[0]
             - minus_gproximal_wx_leg2 * actuator_velocities[1]
             - minus_gproximal_wx_leg3 * actuator_velocities[2];
-        let t139 = actuator_velocities[1]
+        let t97 = actuator_velocities[1]
             - minus_gproximal_wy_leg1 * actuator_velocities[0]
-            - minus_gproximal_wy_leg3 * actuator_velocities[2] - t131 * t116;
-        let t142 = t123
+            - minus_gproximal_wy_leg3 * actuator_velocities[2] - t95 * t84;
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t71;
+        let c_proximal_leg2 = t13 * (t5 * t5);
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t20;
+        let t108 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
+        let t109 = t108 * t41;
+        let t111 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t83 * t109;
+        let t112 = t111 * t87;
+        let t120 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t108 * t109
+            - t111 * t112;
+        ::overact::guard::platform(t120, 1.0, "actuators")?;
+        ::overact::guard::platform(t120, 1.0, "actuators")?;
+        ::overact::guard::platform(t120, 1.0, "actuators")?;
+        let t121 = 1.0 / t120;
+        let t130 = t121
             * (actuator_velocities[2]
                 - (minus_gproximal_wz_leg1 * actuator_velocities[0]
-                    + minus_gproximal_wz_leg2 * actuator_velocities[1]) - t131 * t97
-                - t120 * t139);
-        let minus_gdistal_wy_leg1 = t68 * t84;
-        let t147 = t119 * t139 - t120 * t142;
-        let rate_distal_leg1 = gdistal_wz_leg1 * t142 - minus_gdistal_wy_leg1 * t147;
-        let t150 = c_distal_leg1 * actuator_velocities[0];
-        let t151 = rate_distal_leg1 * t150;
-        let t152 = minus_s_distal_leg1 * actuator_accelerations[0];
-        let t153 = t151 - t152;
-        let t156 = c_distal_leg1 * actuator_accelerations[0];
-        let t157 = minus_s_distal_leg1 * actuator_velocities[0];
-        let t158 = rate_distal_leg1 * t157;
-        let t159 = t156 + t158;
-        let t162 = t150 * t157;
-        let t167 = t131 * t54 - t116 * t147 - t97 * t142;
-        let t170 = minus_gproximal_wx_leg3 * t167 + minus_gproximal_wy_leg3 * t147;
-        let gdistal_wy_leg3 = t33 * t49;
-        let minus_gdistal_wx_leg3 = t44 * t49;
-        let rate_distal_leg3 = gdistal_wy_leg3 * t147 - minus_gdistal_wx_leg3 * t167;
-        let t176 = c_proximal_leg3 * rate_distal_leg3;
-        let rate_wrist_leg3 = gwrist_wx_leg3 * t167 + gwrist_wy_leg3 * t147;
-        let t181 = t44 * rate_wrist_leg3;
-        let t185 = t170 * t176 - actuator_velocities[2] * t181
-            - actuator_velocities[2] * t176;
-        let t187 = t33 * rate_wrist_leg3;
-        let t189 = s_proximal_leg3 * rate_distal_leg3;
-        let t193 = actuator_velocities[2] * t187 + t170 * t189
-            - actuator_velocities[2] * t189;
-        let rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t185
-            + minus_gproximal_wy_leg3 * t193 + t189 * t181 + t176 * t187;
-        let t200 = actuator_accelerations[2] - rate_dot_proximal_leg3;
-        let t201 = s_proximal_leg1 * rate_distal_leg1;
-        let rate_wrist_leg1 = gwrist_wy_leg1 * t147 + gwrist_wz_leg1 * t142;
-        let t205 = t68 * rate_wrist_leg1;
-        let t207 = c_proximal_leg1 * rate_distal_leg1;
-        let t208 = t56 * rate_wrist_leg1;
-        let t211 = minus_s_distal_leg1 * rate_wrist_leg1;
-        let t216 = t207 * t211 - actuator_velocities[0] * t205
-            - actuator_velocities[0] * t207;
-        let t223 = actuator_velocities[0] * t208 + t201 * t211
-            - actuator_velocities[0] * t201;
-        let rate_dot_proximal_leg1 = t201 * t205 + t207 * t208
-            + minus_gproximal_wy_leg1 * t216 + minus_gproximal_wz_leg1 * t223;
-        let t226 = actuator_accelerations[0] - rate_dot_proximal_leg1;
-        let rate_wrist_leg2 = gwrist_wx_leg2 * t167 + gwrist_wz_leg2 * t142;
-        let t231 = t8 * rate_wrist_leg2;
-        let gdistal_wx_leg2 = t8 * t24;
-        let minus_gdistal_wz_leg2 = t16 * t24;
-        let rate_distal_leg2 = gdistal_wx_leg2 * t167 - minus_gdistal_wz_leg2 * t142;
-        let t238 = s_proximal_leg2 * rate_distal_leg2;
-        let t239 = minus_s_distal_leg2 * rate_wrist_leg2;
-        let t243 = actuator_velocities[1] * t231 + t238 * t239
-            - actuator_velocities[1] * t238;
-        let t245 = t16 * rate_wrist_leg2;
-        let t247 = c_proximal_leg2 * rate_distal_leg2;
-        let t255 = t247 * t239 - actuator_velocities[1] * t245
-            - actuator_velocities[1] * t247;
-        let rate_dot_proximal_leg2 = minus_gproximal_wx_leg2 * t243 + t238 * t245
-            + t247 * t231 + minus_gproximal_wz_leg2 * t255;
-        let t258 = actuator_accelerations[1] - rate_dot_proximal_leg2;
-        let t265 = t226 - minus_gproximal_wx_leg2 * t258
-            - minus_gproximal_wx_leg3 * t200;
-        let t273 = t258 - minus_gproximal_wy_leg1 * t226 - minus_gproximal_wy_leg3 * t200
-            - t116 * t265;
-        let t276 = t123
-            * (t200 - (minus_gproximal_wz_leg1 * t226 + minus_gproximal_wz_leg2 * t258)
-                - t97 * t265 - t120 * t273);
-        let t281 = t119 * t273 - t120 * t276;
-        let rate_dot_distal_leg1 = gdistal_wz_leg1 * (t276 - t223)
-            - minus_gdistal_wy_leg1 * (t281 - t216);
-        let t290 = t157 * t157;
-        let t291 = rate_distal_leg1 * rate_distal_leg1;
-        let t294 = parameters[8] * (t151 + t153) - parameters[7] * t159
-            + parameters[9] * (t162 + rate_dot_distal_leg1) + t158 * parameters[10]
-            + parameters[11] * (t290 - t291);
-        let t299 = 9.81 * t68;
-        let t303 = t150 * t150;
-        let t315 = parameters[9] * (t291 - t303)
-            - (t151 * parameters[7] + parameters[8] * (t158 + t159))
-            + parameters[10] * t153 - parameters[11] * (t162 - rate_dot_distal_leg1);
-        let t321 = 9.81 * (minus_s_distal_leg1 * s_proximal_leg1);
-        let t325 = c_distal_leg1
-            * (t294 - t158 * parameters[12] + t65 * parameters[14]
-                + t299 * parameters[15])
+                    + minus_gproximal_wz_leg2 * actuator_velocities[1]) - t95 * t109
+                - t112 * t97);
+        let t132 = t87 * t97 - t112 * t130;
+        let minus_rate_distal_leg1 = s_proximal_leg1 * t132 - c_proximal_leg1 * t130;
+        let t136 = minus_s_distal_leg1 * actuator_velocities[0];
+        let t137 = minus_rate_distal_leg1 * t136;
+        let t138 = c_distal_leg1 * actuator_accelerations[0];
+        let t139 = t137 - t138;
+        let t141 = c_distal_leg1 * actuator_velocities[0];
+        let t142 = minus_rate_distal_leg1 * t141;
+        let t143 = minus_s_distal_leg1 * actuator_accelerations[0];
+        let t144 = t143 + t142;
+        let t148 = t141 * t136;
+        let t154 = t95 * t41 - t84 * t132 - t109 * t130;
+        let minus_rate_distal_leg2 = s_proximal_leg2 * t130 - c_proximal_leg2 * t154;
+        let t159 = s_proximal_leg2 * t154 + c_proximal_leg2 * t130;
+        let t163 = minus_rate_distal_leg2 * (t20 * t159)
+            - actuator_velocities[1] * minus_rate_distal_leg2;
+        let minus_rate_dot_proximal_leg2 = t20 * t163 + t159 * minus_rate_distal_leg2;
+        let t167 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
+        let t170 = c_proximal_leg1 * t132 + s_proximal_leg1 * t130;
+        let t174 = minus_rate_distal_leg1 * (t71 * t170)
+            - actuator_velocities[0] * minus_rate_distal_leg1;
+        let minus_rate_dot_proximal_leg1 = t71 * t174 + t170 * minus_rate_distal_leg1;
+        let t178 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
+        let rate_distal_leg3 = c_proximal_leg3 * t132 - s_proximal_leg3 * t154;
+        let t187 = c_proximal_leg3 * t154 + s_proximal_leg3 * t132;
+        let t190 = actuator_velocities[2] * rate_distal_leg3
+            - rate_distal_leg3 * (t37 * t187);
+        let minus_rate_dot_proximal_leg3 = t37 * t190 - t187 * rate_distal_leg3;
+        let t194 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let t200 = t178 - minus_gproximal_wx_leg2 * t167
+            - minus_gproximal_wx_leg3 * t194;
+        let t202 = t167 - minus_gproximal_wy_leg1 * t178 - minus_gproximal_wy_leg3 * t194
+            - t84 * t200;
+        let t212 = t121
+            * (t194 - (minus_gproximal_wz_leg1 * t178 + minus_gproximal_wz_leg2 * t167)
+                - t109 * t200 - t112 * t202);
+        let t214 = t87 * t202 - t112 * t212;
+        let minus_rate_dot_distal_leg1 = actuator_velocities[0] * t170;
+        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t214
+            - c_proximal_leg1 * t212 + minus_rate_dot_distal_leg1;
+        let t225 = t136 * t136;
+        let t226 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t229 = parameters[7] * t139 - parameters[8] * (t142 + t144)
+            + parameters[9] * (t148 - minus_rate_dot_distal_leg1_2)
+            - t137 * parameters[10] + parameters[11] * (t225 - t226);
+        let t234 = 9.81 * t57;
+        let t242 = t141 * t141;
+        let t250 = t142 * parameters[7] + parameters[8] * (t137 + t139)
+            + parameters[9] * (t226 - t242) - parameters[10] * t144
+            - parameters[11] * (t148 + minus_rate_dot_distal_leg1_2);
+        let t256 = 9.81 * (minus_s_distal_leg1 * s_proximal_leg1);
+        let t260 = c_distal_leg1
+            * (t229 + t137 * parameters[12] + t54 * parameters[14]
+                + t234 * parameters[15])
             + minus_s_distal_leg1
-                * (t315 + t151 * parameters[12] - t65 * parameters[13]
-                    + t321 * parameters[15]);
-        let t326 = t80 - t325;
-        let t327 = c_distal_leg2 * actuator_velocities[1];
-        let t328 = t327 * t327;
-        let t329 = minus_s_distal_leg2 * actuator_velocities[1];
-        let t330 = t329 * t329;
-        let t333 = t327 * t329;
-        let t336 = c_distal_leg2 * actuator_accelerations[1];
-        let t341 = minus_s_distal_leg2 * actuator_accelerations[1];
-        let t343 = parameters[24] * (t328 - t330) - t333 * parameters[23]
-            - parameters[25] * t336 + t333 * parameters[26] - parameters[27] * t341;
-        let t348 = t54 * t265 - t116 * t281 - t97 * t276;
-        let rate_dot_distal_leg2 = gdistal_wx_leg2 * (t348 - t243)
-            - minus_gdistal_wz_leg2 * (t276 - t255);
-        let t356 = 9.81 * t8;
-        let t360 = 9.81 * (minus_s_distal_leg2 * c_proximal_leg2);
-        let t362 = t343 + parameters[28] * rate_dot_distal_leg2 - t356 * parameters[29]
-            - t360 * parameters[30];
-        let t365 = 9.81 * s_proximal_leg2;
-        let t377 = actuator_accelerations[1] * parameters[16] + t365 * parameters[17]
+                * (t250 - t142 * parameters[12] - t54 * parameters[13]
+                    + t256 * parameters[15]);
+        let t261 = t69 - t260;
+        let t262 = c_distal_leg2 * actuator_velocities[1];
+        let t263 = t262 * t262;
+        let t264 = minus_s_distal_leg2 * actuator_velocities[1];
+        let t265 = t264 * t264;
+        let t268 = t262 * t264;
+        let t271 = c_distal_leg2 * actuator_accelerations[1];
+        let t276 = minus_s_distal_leg2 * actuator_accelerations[1];
+        let t278 = parameters[24] * (t263 - t265) - t268 * parameters[23]
+            - parameters[25] * t271 + t268 * parameters[26] - parameters[27] * t276;
+        let t284 = t41 * t200 - t84 * t214 - t109 * t212;
+        let minus_rate_dot_distal_leg2 = actuator_velocities[1] * t159;
+        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t212
+            - c_proximal_leg2 * t284 + minus_rate_dot_distal_leg2;
+        let t291 = 9.81 * t5;
+        let t295 = 9.81 * (minus_s_distal_leg2 * c_proximal_leg2);
+        let t297 = t278 - parameters[28] * minus_rate_dot_distal_leg2_2
+            - t291 * parameters[29] - t295 * parameters[30];
+        let t300 = 9.81 * s_proximal_leg2;
+        let t312 = actuator_accelerations[1] * parameters[16] + t300 * parameters[17]
             + 9.81 * c_proximal_leg2 * parameters[18]
             + actuator_accelerations[1] * parameters[19]
             + actuator_velocities[1] * parameters[20]
             + ::overact::math::signed(parameters[21], actuator_velocities[1])
             + parameters[22];
-        let t378 = rate_distal_leg2 * t327;
-        let t379 = t378 - t341;
-        let t382 = rate_distal_leg2 * t329;
-        let t383 = t336 + t382;
-        let t391 = rate_distal_leg2 * rate_distal_leg2;
-        let t394 = parameters[24] * (t378 + t379) - parameters[23] * t383
-            + parameters[25] * (t333 + rate_dot_distal_leg2) + t382 * parameters[26]
-            + parameters[27] * (t330 - t391);
-        let t413 = parameters[25] * (t391 - t328)
-            - (t378 * parameters[23] + parameters[24] * (t382 + t383))
-            + parameters[26] * t379 - parameters[27] * (t333 - rate_dot_distal_leg2);
-        let t421 = c_distal_leg2
-            * (t394 - t382 * parameters[28] - t365 * parameters[30]
-                + t356 * parameters[31])
+        let t313 = minus_rate_distal_leg2 * t264;
+        let t314 = t313 - t271;
+        let t316 = minus_rate_distal_leg2 * t262;
+        let t317 = t276 + t316;
+        let t326 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t329 = parameters[23] * t314 - parameters[24] * (t316 + t317)
+            + parameters[25] * (t268 - minus_rate_dot_distal_leg2_2)
+            - t313 * parameters[26] + parameters[27] * (t265 - t326);
+        let t348 = t316 * parameters[23] + parameters[24] * (t313 + t314)
+            + parameters[25] * (t326 - t263) - parameters[26] * t317
+            - parameters[27] * (t268 + minus_rate_dot_distal_leg2_2);
+        let t356 = c_distal_leg2
+            * (t329 + t313 * parameters[28] - t300 * parameters[30]
+                + t291 * parameters[31])
             + minus_s_distal_leg2
-                * (t413 + t378 * parameters[28] + t365 * parameters[29]
-                    + t360 * parameters[31]);
-        let t422 = t377 - t421;
-        let t434 = c_distal_leg3 * actuator_velocities[2];
-        let t435 = rate_distal_leg3 * t434;
-        let t436 = minus_s_distal_leg3 * actuator_accelerations[2];
-        let t437 = t435 - t436;
-        let t440 = c_distal_leg3 * actuator_accelerations[2];
-        let t441 = minus_s_distal_leg3 * actuator_velocities[2];
-        let t442 = rate_distal_leg3 * t441;
-        let t443 = t440 + t442;
-        let t446 = t434 * t441;
-        let rate_dot_distal_leg3 = gdistal_wy_leg3 * (t281 - t193)
-            - minus_gdistal_wx_leg3 * (t348 - t185);
-        let t457 = t441 * t441;
-        let t458 = rate_distal_leg3 * rate_distal_leg3;
-        let t461 = parameters[38] * (t435 + t437) - parameters[37] * t443
-            + parameters[39] * (t446 + rate_dot_distal_leg3) + t442 * parameters[40]
-            + parameters[41] * (t457 - t458);
-        let t465 = t434 * t434;
-        let t477 = parameters[39] * (t458 - t465)
-            - (t435 * parameters[37] + parameters[38] * (t442 + t443))
-            + parameters[40] * t437 - parameters[41] * (t446 - rate_dot_distal_leg3);
-        let t482 = actuator_accelerations[2] * parameters[32]
+                * (t348 - t316 * parameters[28] + t300 * parameters[29]
+                    + t295 * parameters[31]);
+        let t357 = t312 - t356;
+        let t369 = c_distal_leg3 * actuator_velocities[2];
+        let t370 = rate_distal_leg3 * t369;
+        let t371 = minus_s_distal_leg3 * actuator_accelerations[2];
+        let t372 = t370 - t371;
+        let t375 = c_distal_leg3 * actuator_accelerations[2];
+        let t376 = minus_s_distal_leg3 * actuator_velocities[2];
+        let t377 = rate_distal_leg3 * t376;
+        let t378 = t375 + t377;
+        let t381 = t369 * t376;
+        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t187;
+        let rate_dot_distal_leg3 = c_proximal_leg3 * t214 - s_proximal_leg3 * t284
+            - minus_rate_dot_distal_leg3;
+        let t392 = t376 * t376;
+        let t393 = rate_distal_leg3 * rate_distal_leg3;
+        let t396 = parameters[38] * (t370 + t372) - parameters[37] * t378
+            + parameters[39] * (t381 + rate_dot_distal_leg3) + t377 * parameters[40]
+            + parameters[41] * (t392 - t393);
+        let t400 = t369 * t369;
+        let t412 = parameters[39] * (t393 - t400)
+            - (t370 * parameters[37] + parameters[38] * (t377 + t378))
+            + parameters[40] * t372 - parameters[41] * (t381 - rate_dot_distal_leg3);
+        let t417 = actuator_accelerations[2] * parameters[32]
             + actuator_accelerations[2] * parameters[33]
             + actuator_velocities[2] * parameters[34]
             + ::overact::math::signed(parameters[35], actuator_velocities[2])
             + parameters[36]
-            - (c_distal_leg3 * (t461 - t442 * parameters[42])
-                + minus_s_distal_leg3 * (t477 + t435 * parameters[42]));
-        let t493 = parameters[38] * (t465 - t457) - t446 * parameters[37]
-            - parameters[39] * t440 + t446 * parameters[40] - parameters[41] * t436;
-        let t496 = 9.81 * minus_s_distal_leg3;
-        let t501 = t493 + parameters[42] * rate_dot_distal_leg3 - t496 * parameters[43]
+            - (c_distal_leg3 * (t396 - t377 * parameters[42])
+                + minus_s_distal_leg3 * (t412 + t370 * parameters[42]));
+        let t428 = parameters[38] * (t400 - t392) - t381 * parameters[37]
+            - parameters[39] * t375 + t381 * parameters[40] - parameters[41] * t371;
+        let t431 = 9.81 * minus_s_distal_leg3;
+        let t436 = t428 + parameters[42] * rate_dot_distal_leg3 - t431 * parameters[43]
             + 9.81 * c_distal_leg3 * parameters[44];
-        let t509 = t33 * t348 + t44 * t281 + minus_s_distal_leg3 * t276;
-        let t515 = t33 * t167 + t44 * t147 + minus_s_distal_leg3 * t142;
-        let t520 = t16 * t167 + minus_s_distal_leg2 * t147 + t8 * t142;
-        let t521 = t515 * t520;
-        let t526 = minus_s_distal_leg1 * t348 + t56 * t281 + t68 * t276;
-        let t534 = minus_s_distal_leg1 * t167 + t56 * t147 + t68 * t142;
-        let t535 = t515 * t534;
-        let t540 = t16 * t348 + minus_s_distal_leg2 * t281 + t8 * t276;
-        let t544 = t534 * t520;
-        let t547 = t534 * t534;
-        let t548 = t520 * t520;
-        let t551 = parameters[45] * t509 - parameters[46] * (t521 - t526)
-            + parameters[47] * (t535 + t540) - t544 * parameters[48]
-            + parameters[49] * (t547 - t548);
-        let t557 = t551 + t544 * parameters[50] + t356 * parameters[52]
-            - t299 * parameters[53];
-        let t563 = t515 * t515;
-        let t571 = t521 * parameters[45] + parameters[46] * (t544 + t509)
-            + parameters[47] * (t548 - t563) + parameters[48] * t526
-            - parameters[49] * (t535 - t540);
-        let t577 = t571 - t521 * parameters[50] - t356 * parameters[51]
-            + t496 * parameters[53];
-        let t591 = parameters[46] * (t563 - t547) - t535 * parameters[45]
-            - parameters[47] * (t544 - t509) + t535 * parameters[48]
-            + parameters[49] * (t521 + t526);
-        let t597 = t591 + parameters[50] * t540 + t299 * parameters[51]
-            - t496 * parameters[52];
-        let t600 = t326 + gdistal_wx_leg2 * t362 - minus_gproximal_wx_leg2 * t422
-            - (minus_gproximal_wx_leg3 * t482 + minus_gdistal_wx_leg3 * t501)
-            + t33 * t557 + minus_s_distal_leg1 * t577 + t16 * t597;
-        let t612 = parameters[8] * (t303 - t290) - t162 * parameters[7]
-            - parameters[9] * t156 + t162 * parameters[10] - parameters[11] * t152;
-        let t618 = t612 + parameters[12] * rate_dot_distal_leg1 - t299 * parameters[13]
-            - t321 * parameters[14];
-        let t631 = t422 - (minus_gproximal_wy_leg1 * t326 + minus_gdistal_wy_leg1 * t618)
-            + gdistal_wy_leg3 * t501 - minus_gproximal_wy_leg3 * t482 + t44 * t557
-            + t56 * t577 + minus_s_distal_leg2 * t597;
-        let t633 = t631 - t116 * t600;
-        let t648 = gdistal_wz_leg1 * t618 - minus_gproximal_wz_leg1 * t326
-            - (minus_gproximal_wz_leg2 * t422 + minus_gdistal_wz_leg2 * t362) + t482
-            + minus_s_distal_leg3 * t557 + t68 * t577 + t8 * t597;
-        let t653 = t123 * (t648 - t97 * t600 - t120 * t633);
-        let t655 = t119 * t633 - t120 * t653;
-        let t659 = t54 * t600 - t116 * t655 - t97 * t653;
+        let rate_dot_wrist_leg3 = t36
+            * (c_proximal_leg3 * t284 + s_proximal_leg3 * t214 + t190);
+        let t445 = rate_dot_wrist_leg3 - t372;
+        let rate_wrist_leg2 = t19 * t159;
+        let t448 = t264 + rate_wrist_leg2;
+        let rate_wrist_leg3 = t36 * t187;
+        let t450 = t376 + rate_wrist_leg3;
+        let t451 = t448 * t450;
+        let rate_dot_wrist_leg1 = t70
+            * (c_proximal_leg1 * t214 + s_proximal_leg1 * t212 + t174);
+        let t457 = t144 + rate_dot_wrist_leg1;
+        let rate_wrist_leg1 = t70 * t170;
+        let t462 = t136 + rate_wrist_leg1;
+        let t463 = t462 * t450;
+        let rate_dot_wrist_leg2 = t19
+            * (s_proximal_leg2 * t284 + c_proximal_leg2 * t212 + t163);
+        let t469 = t317 + rate_dot_wrist_leg2;
+        let t473 = t462 * t448;
+        let t476 = t462 * t462;
+        let t477 = t448 * t448;
+        let t480 = parameters[45] * t445 - parameters[46] * (t451 - t457)
+            + parameters[47] * (t463 + t469) - t473 * parameters[48]
+            + parameters[49] * (t476 - t477);
+        let t486 = t480 + t473 * parameters[50] + t291 * parameters[52]
+            - t234 * parameters[53];
+        let t492 = t450 * t450;
+        let t500 = t451 * parameters[45] + parameters[46] * (t473 + t445)
+            + parameters[47] * (t477 - t492) + parameters[48] * t457
+            - parameters[49] * (t463 - t469);
+        let t506 = t500 - t451 * parameters[50] - t291 * parameters[51]
+            + t431 * parameters[53];
+        let t520 = parameters[46] * (t492 - t476) - t463 * parameters[45]
+            - parameters[47] * (t473 - t445) + t463 * parameters[48]
+            + parameters[49] * (t451 + t457);
+        let t526 = t520 + parameters[50] * t469 + t234 * parameters[51]
+            - t431 * parameters[52];
+        let t529 = t261 + c_proximal_leg2 * t297 - minus_gproximal_wx_leg2 * t357
+            - (minus_gproximal_wx_leg3 * t417 + s_proximal_leg3 * t436) + t27 * t486
+            + minus_s_distal_leg1 * t506 + t16 * t526;
+        let t541 = parameters[8] * (t242 - t225) - t148 * parameters[7]
+            - parameters[9] * t138 + t148 * parameters[10] - parameters[11] * t143;
+        let t547 = t541 - parameters[12] * minus_rate_dot_distal_leg1_2
+            - t234 * parameters[13] - t256 * parameters[14];
+        let t560 = t357 - (minus_gproximal_wy_leg1 * t261 + s_proximal_leg1 * t547)
+            + c_proximal_leg3 * t436 - minus_gproximal_wy_leg3 * t417 + t75 * t486
+            + t43 * t506 + minus_s_distal_leg2 * t526;
+        let t562 = t560 - t84 * t529;
+        let t577 = c_proximal_leg1 * t547 - minus_gproximal_wz_leg1 * t261
+            - (minus_gproximal_wz_leg2 * t357 + s_proximal_leg2 * t297) + t417
+            + minus_s_distal_leg3 * t486 + t57 * t506 + t5 * t526;
+        let t582 = t121 * (t577 - t109 * t529 - t112 * t562);
+        let t584 = t87 * t562 - t112 * t582;
+        let t588 = t41 * t529 - t84 * t584 - t109 * t582;
         Ok([
-            t659 - minus_gproximal_wy_leg1 * t655 - minus_gproximal_wz_leg1 * t653,
-            t655 - minus_gproximal_wx_leg2 * t659 - minus_gproximal_wz_leg2 * t653,
-            t653 - (minus_gproximal_wx_leg3 * t659 + minus_gproximal_wy_leg3 * t655),
+            t588 - minus_gproximal_wy_leg1 * t584 - minus_gproximal_wz_leg1 * t582,
+            t584 - minus_gproximal_wx_leg2 * t588 - minus_gproximal_wz_leg2 * t582,
+            t582 - (minus_gproximal_wx_leg3 * t588 + minus_gproximal_wy_leg3 * t584),
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -6713,7 +6232,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 374 operations (143 additions, 225 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 371 intermediates.
+    /// 353 operations (140 additions, 207 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 350 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6729,6 +6248,7 @@ impl Spherical3Rrr {
         let t7 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
         ::overact::guard::reach(t7, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t7);
+        ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
         let t18 = parameters[0] + parameters[3]
             + c_distal_leg1
                 * (c_distal_leg1 * parameters[7] + minus_s_distal_leg1 * parameters[8])
@@ -6738,192 +6258,175 @@ impl Spherical3Rrr {
         let t21 = 2.0 * pose[2];
         let t22 = pose[2] * t21;
         let t23 = t20 - t22;
-        let t24 = pose[3] * t1;
-        let t25 = pose[0] * t21;
-        let t26 = t24 + t25;
-        let t27 = pose[3] * t21;
-        let t28 = pose[0] * t1;
-        let minus_s_distal_leg2 = t27 - t28;
-        let t31 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t31, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t31);
-        let t34 = 1.0 / (t23 * c_distal_leg2);
-        let s_proximal_leg2 = t34 * (t26 * t23);
-        let c_proximal_leg2 = t34 * (t23 * t23);
-        let t41 = t26 * s_proximal_leg2 + t23 * c_proximal_leg2;
-        ::overact::guard::leg(t41, 1.0, "leg2")?;
-        let t42 = 1.0 / t41;
-        let gdistal_wx_leg2 = t23 * t42;
-        let gwrist_wx_leg2 = s_proximal_leg2 * t42;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
-        let t47 = c_distal_leg2 * minus_gproximal_wx_leg2;
-        let t49 = minus_s_distal_leg2 * minus_gproximal_wx_leg2;
-        let t69 = c_distal_leg2
-            * (gdistal_wx_leg2 * parameters[25] + parameters[23] * t47
-                + parameters[24] * t49)
+        let t24 = pose[3] * t21;
+        let t25 = pose[0] * t1;
+        let minus_s_distal_leg2 = t24 - t25;
+        let t28 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t28, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t28);
+        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
+        let t31 = 1.0 / (t23 * c_distal_leg2);
+        let t32 = pose[3] * t1;
+        let t33 = pose[0] * t21;
+        let t34 = t32 + t33;
+        let s_proximal_leg2 = t31 * (t34 * t23);
+        let t37 = minus_s_distal_leg2 / c_distal_leg2;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t37;
+        let t42 = minus_s_distal_leg2 * s_proximal_leg2;
+        let t44 = minus_s_distal_leg2 * minus_gproximal_wx_leg2;
+        let c_proximal_leg2 = t31 * (t23 * t23);
+        let t58 = c_distal_leg2
+            * (t42 * parameters[23] + parameters[24] * t44
+                + c_proximal_leg2 * parameters[25])
             + minus_s_distal_leg2
-                * (gdistal_wx_leg2 * parameters[27] + parameters[24] * t47
-                    + parameters[26] * t49);
-        let t70 = minus_gproximal_wx_leg2 * parameters[16]
-            + minus_gproximal_wx_leg2 * parameters[19] + t69;
-        let t74 = t2 + t4;
-        let t76 = pose[3] * t3;
-        let t77 = 1.0 - t22 - t76;
-        let minus_s_distal_leg3 = t24 - t25;
-        let t80 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t80, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t80);
-        let t83 = 1.0 / (t77 * c_distal_leg3);
-        let c_proximal_leg3 = t83 * (t77 * t77);
-        let s_proximal_leg3 = t83 * (t77 * t74);
-        let t90 = t77 * c_proximal_leg3 + t74 * s_proximal_leg3;
-        ::overact::guard::leg(t90, 1.0, "leg3")?;
-        let t91 = 1.0 / t90;
-        let minus_gdistal_wx_leg3 = t74 * t91;
-        let gwrist_wx_leg3 = c_proximal_leg3 * t91;
-        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
-        let t95 = c_distal_leg3 * minus_gproximal_wx_leg3;
-        let t97 = minus_s_distal_leg3 * minus_gproximal_wx_leg3;
-        let t118 = c_distal_leg3
-            * (parameters[37] * t95 + parameters[38] * t97
-                - minus_gdistal_wx_leg3 * parameters[39])
+                * (t42 * parameters[24] + parameters[26] * t44
+                    + c_proximal_leg2 * parameters[27]);
+        let t59 = minus_gproximal_wx_leg2 * parameters[16]
+            + minus_gproximal_wx_leg2 * parameters[19] + t58;
+        let t70 = pose[3] * t3;
+        let t71 = 1.0 - t22 - t70;
+        let minus_s_distal_leg3 = t32 - t33;
+        let t74 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t74, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t74);
+        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
+        let t77 = 1.0 / (t71 * c_distal_leg3);
+        let t78 = t2 + t4;
+        let s_proximal_leg3 = t77 * (t71 * t78);
+        let c_proximal_leg3 = t77 * (t71 * t71);
+        let t83 = minus_s_distal_leg3 * c_proximal_leg3;
+        let t85 = minus_s_distal_leg3 / c_distal_leg3;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t85;
+        let t87 = minus_s_distal_leg3 * minus_gproximal_wx_leg3;
+        let t108 = c_distal_leg3
+            * (t83 * parameters[37] + parameters[38] * t87
+                - s_proximal_leg3 * parameters[39])
             + minus_s_distal_leg3
-                * (parameters[38] * t95 + parameters[40] * t97
-                    - minus_gdistal_wx_leg3 * parameters[41]);
-        let t119 = minus_gproximal_wx_leg3 * parameters[32]
-            + minus_gproximal_wx_leg3 * parameters[33] + t118;
-        let t122 = t18
-            + gdistal_wx_leg2
-                * (gdistal_wx_leg2 * parameters[28] + parameters[25] * t47
-                    + parameters[27] * t49) + minus_gproximal_wx_leg2 * t70
-            - (minus_gdistal_wx_leg3
-                * (parameters[39] * t95 + parameters[41] * t97
-                    - minus_gdistal_wx_leg3 * parameters[42])
-                - minus_gproximal_wx_leg3 * t119);
-        let t135 = t77
-            * (t77 * parameters[45] + minus_s_distal_leg1 * parameters[46]
-                + t26 * parameters[47])
+                * (t83 * parameters[38] + parameters[40] * t87
+                    - s_proximal_leg3 * parameters[41]);
+        let t109 = minus_gproximal_wx_leg3 * parameters[32]
+            + minus_gproximal_wx_leg3 * parameters[33] + t108;
+        let t112 = t18 + minus_gproximal_wx_leg2 * t59
+            + c_proximal_leg2
+                * (t42 * parameters[25] + parameters[27] * t44
+                    + c_proximal_leg2 * parameters[28])
+            - (s_proximal_leg3
+                * (t83 * parameters[39] + parameters[41] * t87
+                    - s_proximal_leg3 * parameters[42])
+                - minus_gproximal_wx_leg3 * t109);
+        let t125 = t71
+            * (t71 * parameters[45] + minus_s_distal_leg1 * parameters[46]
+                + t34 * parameters[47])
             + minus_s_distal_leg1
-                * (t77 * parameters[46] + minus_s_distal_leg1 * parameters[48]
-                    + t26 * parameters[49]);
-        let t145 = t20 - t76;
-        let t149 = t74 * parameters[45] + t145 * parameters[46]
+                * (t71 * parameters[46] + minus_s_distal_leg1 * parameters[48]
+                    + t34 * parameters[49]);
+        let t134 = t20 - t70;
+        let t136 = 1.0 / (t134 * c_distal_leg1);
+        let t137 = t24 + t25;
+        let s_proximal_leg1 = t136 * (t134 * t137);
+        let c_proximal_leg1 = t136 * (t134 * t134);
+        let t143 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t145 = minus_s_distal_leg1 / c_distal_leg1;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t145;
+        let t147 = minus_s_distal_leg1 * minus_gproximal_wy_leg1;
+        let t158 = c_distal_leg1
+            * (s_proximal_leg1 * parameters[9]
+                - (t143 * parameters[7] + parameters[8] * t147))
+            + minus_s_distal_leg1
+                * (s_proximal_leg1 * parameters[11]
+                    - (t143 * parameters[8] + parameters[10] * t147));
+        let t162 = t158
+            - (minus_gproximal_wy_leg1 * parameters[0]
+                + minus_gproximal_wy_leg1 * parameters[3]);
+        let t165 = minus_s_distal_leg3 * s_proximal_leg3;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t85;
+        let t168 = minus_s_distal_leg3 * minus_gproximal_wy_leg3;
+        let t171 = c_proximal_leg3 * parameters[42] + t165 * parameters[39]
+            + parameters[41] * t168;
+        let t188 = c_distal_leg3
+            * (c_proximal_leg3 * parameters[39] + t165 * parameters[37]
+                + parameters[38] * t168)
+            + minus_s_distal_leg3
+                * (c_proximal_leg3 * parameters[41] + t165 * parameters[38]
+                    + parameters[40] * t168);
+        let t189 = minus_gproximal_wy_leg3 * parameters[32]
+            + minus_gproximal_wy_leg3 * parameters[33] + t188;
+        let t197 = t78 * parameters[45] + t134 * parameters[46]
             + minus_s_distal_leg2 * parameters[47];
-        let t155 = t74 * parameters[46] + t145 * parameters[48]
+        let t203 = t78 * parameters[46] + t134 * parameters[48]
             + minus_s_distal_leg2 * parameters[49];
-        let t162 = t74 * parameters[47] + t145 * parameters[49]
+        let t210 = t78 * parameters[47] + t134 * parameters[49]
             + minus_s_distal_leg2 * parameters[50];
-        let t166 = 1.0 / (t145 * c_distal_leg1);
-        let c_proximal_leg1 = t166 * (t145 * t145);
-        let t170 = t27 + t28;
-        let s_proximal_leg1 = t166 * (t145 * t170);
-        let t174 = t145 * c_proximal_leg1 + t170 * s_proximal_leg1;
-        ::overact::guard::leg(t174, 1.0, "leg1")?;
-        let t175 = 1.0 / t174;
-        let gwrist_wy_leg1 = c_proximal_leg1 * t175;
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
-        let t181 = c_distal_leg1 * minus_gproximal_wy_leg1;
-        let t183 = minus_s_distal_leg1 * minus_gproximal_wy_leg1;
-        let minus_gdistal_wy_leg1 = t170 * t175;
-        let t196 = c_distal_leg1
-            * (parameters[7] * t181 + parameters[8] * t183
-                - minus_gdistal_wy_leg1 * parameters[9])
-            + minus_s_distal_leg1
-                * (parameters[8] * t181 + parameters[10] * t183
-                    - minus_gdistal_wy_leg1 * parameters[11]);
-        let t197 = minus_gproximal_wy_leg1 * parameters[0]
-            + minus_gproximal_wy_leg1 * parameters[3] + t196;
-        let gdistal_wy_leg3 = t77 * t91;
-        let gwrist_wy_leg3 = s_proximal_leg3 * t91;
-        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
-        let t203 = c_distal_leg3 * minus_gproximal_wy_leg3;
-        let t205 = minus_s_distal_leg3 * minus_gproximal_wy_leg3;
-        let t208 = gdistal_wy_leg3 * parameters[42] + parameters[39] * t203
-            + parameters[41] * t205;
-        let t225 = c_distal_leg3
-            * (gdistal_wy_leg3 * parameters[39] + parameters[37] * t203
-                + parameters[38] * t205)
-            + minus_s_distal_leg3
-                * (gdistal_wy_leg3 * parameters[41] + parameters[38] * t203
-                    + parameters[40] * t205);
-        let t226 = minus_gproximal_wy_leg3 * parameters[32]
-            + minus_gproximal_wy_leg3 * parameters[33] + t225;
-        let t230 = t77 * t149 + minus_s_distal_leg1 * t155 + t26 * t162
-            - (t197 + t70 + minus_gdistal_wx_leg3 * t208
-                - minus_gproximal_wx_leg3 * t226);
-        let gwrist_wz_leg2 = c_proximal_leg2 * t42;
-        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
-        let t233 = c_distal_leg2 * minus_gproximal_wz_leg2;
-        let t235 = minus_s_distal_leg2 * minus_gproximal_wz_leg2;
-        let minus_gdistal_wz_leg2 = t26 * t42;
-        let t240 = parameters[25] * t233 + parameters[27] * t235
-            - minus_gdistal_wz_leg2 * parameters[28];
-        let t257 = c_distal_leg2
-            * (parameters[23] * t233 + parameters[24] * t235
-                - minus_gdistal_wz_leg2 * parameters[25])
-            + minus_s_distal_leg2
-                * (parameters[24] * t233 + parameters[26] * t235
-                    - minus_gdistal_wz_leg2 * parameters[27]);
-        let t258 = minus_gproximal_wz_leg2 * parameters[16]
-            + minus_gproximal_wz_leg2 * parameters[19] + t257;
-        let gwrist_wz_leg1 = s_proximal_leg1 * t175;
-        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
-        let gdistal_wz_leg1 = t145 * t175;
-        let t268 = c_distal_leg1 * minus_gproximal_wz_leg1;
-        let t270 = minus_s_distal_leg1 * minus_gproximal_wz_leg1;
-        let t281 = c_distal_leg1
-            * (gdistal_wz_leg1 * parameters[9] + parameters[7] * t268
-                + parameters[8] * t270)
-            + minus_s_distal_leg1
-                * (gdistal_wz_leg1 * parameters[11] + parameters[8] * t268
-                    + parameters[10] * t270);
-        let t282 = minus_gproximal_wz_leg1 * parameters[0]
-            + minus_gproximal_wz_leg1 * parameters[3] + t281;
-        let t289 = minus_s_distal_leg3 * parameters[45] + t170 * parameters[46]
+        let t213 = t162 - t59 - (s_proximal_leg3 * t171 - minus_gproximal_wx_leg3 * t189)
+            + t71 * t197 + minus_s_distal_leg1 * t203 + t34 * t210;
+        let t218 = minus_s_distal_leg3 * parameters[45] + t137 * parameters[46]
             + t23 * parameters[47];
-        let t295 = minus_s_distal_leg3 * parameters[46] + t170 * parameters[48]
+        let t224 = minus_s_distal_leg3 * parameters[46] + t137 * parameters[48]
             + t23 * parameters[49];
-        let t302 = minus_s_distal_leg3 * parameters[47] + t170 * parameters[49]
+        let t231 = minus_s_distal_leg3 * parameters[47] + t137 * parameters[49]
             + t23 * parameters[50];
-        let t305 = gdistal_wx_leg2 * t240 + minus_gproximal_wx_leg2 * t258 - t282 - t119
-            + t77 * t289 + minus_s_distal_leg1 * t295 + t26 * t302;
-        let t316 = parameters[16] + parameters[19]
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t145;
+        let t238 = minus_s_distal_leg1 * s_proximal_leg1;
+        let t240 = minus_s_distal_leg1 * minus_gproximal_wz_leg1;
+        let t252 = c_distal_leg1
+            * (t238 * parameters[7] + parameters[8] * t240
+                + c_proximal_leg1 * parameters[9])
+            + minus_s_distal_leg1
+                * (t238 * parameters[8] + parameters[10] * t240
+                    + c_proximal_leg1 * parameters[11]);
+        let t253 = minus_gproximal_wz_leg1 * parameters[0]
+            + minus_gproximal_wz_leg1 * parameters[3] + t252;
+        let t255 = minus_s_distal_leg2 * c_proximal_leg2;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t37;
+        let t258 = minus_s_distal_leg2 * minus_gproximal_wz_leg2;
+        let t269 = c_distal_leg2
+            * (s_proximal_leg2 * parameters[25]
+                - (t255 * parameters[23] + parameters[24] * t258))
+            + minus_s_distal_leg2
+                * (s_proximal_leg2 * parameters[27]
+                    - (t255 * parameters[24] + parameters[26] * t258));
+        let t273 = t269
+            - (minus_gproximal_wz_leg2 * parameters[16]
+                + minus_gproximal_wz_leg2 * parameters[19]);
+        let t279 = s_proximal_leg2 * parameters[28]
+            - (t255 * parameters[25] + parameters[27] * t258);
+        let t284 = t71 * t218 + minus_s_distal_leg1 * t224 + t34 * t231
+            - (t253 + minus_gproximal_wx_leg2 * t273 + c_proximal_leg2 * t279 + t109);
+        let t303 = parameters[16] + parameters[19]
             + c_distal_leg2
                 * (c_distal_leg2 * parameters[23] + minus_s_distal_leg2 * parameters[24])
             + minus_s_distal_leg2
                 * (c_distal_leg2 * parameters[24]
                     + minus_s_distal_leg2 * parameters[26]);
-        let t329 = t316
-            - (minus_gdistal_wy_leg1
-                * (parameters[9] * t181 + parameters[11] * t183
-                    - minus_gdistal_wy_leg1 * parameters[12])
-                - minus_gproximal_wy_leg1 * t197) + gdistal_wy_leg3 * t208
-            + minus_gproximal_wy_leg3 * t226;
-        let t345 = gdistal_wz_leg1 * parameters[12] + parameters[9] * t268
-            + parameters[11] * t270;
-        let t351 = t74 * t289 + t145 * t295 + minus_s_distal_leg2 * t302
-            - (t258 + minus_gdistal_wy_leg1 * t345 - minus_gproximal_wy_leg1 * t282
-                + t226);
-        let t369 = parameters[32] + parameters[33]
+        let t308 = s_proximal_leg1
+            * (s_proximal_leg1 * parameters[12]
+                - (t143 * parameters[9] + parameters[11] * t147))
+            - minus_gproximal_wy_leg1 * t162 + t303 + c_proximal_leg3 * t171
+            + minus_gproximal_wy_leg3 * t189;
+        let t320 = t238 * parameters[9] + parameters[11] * t240
+            + c_proximal_leg1 * parameters[12];
+        let t330 = minus_gproximal_wy_leg1 * t253 - s_proximal_leg1 * t320 + t273 - t189
+            + t78 * t218 + t134 * t224 + minus_s_distal_leg2 * t231;
+        let t348 = parameters[32] + parameters[33]
             + c_distal_leg3
                 * (c_distal_leg3 * parameters[37] + minus_s_distal_leg3 * parameters[38])
             + minus_s_distal_leg3
                 * (c_distal_leg3 * parameters[38]
                     + minus_s_distal_leg3 * parameters[40]);
-        let t376 = gdistal_wz_leg1 * t345 + minus_gproximal_wz_leg1 * t282
-            - (minus_gdistal_wz_leg2 * t240 - minus_gproximal_wz_leg2 * t258) + t369
-            + minus_s_distal_leg3 * t289 + t170 * t295 + t23 * t302;
+        let t355 = s_proximal_leg2 * t279 - minus_gproximal_wz_leg2 * t273
+            + minus_gproximal_wz_leg1 * t253 + c_proximal_leg1 * t320 + t348
+            + minus_s_distal_leg3 * t218 + t137 * t224 + t23 * t231;
         Ok([
             [
-                t122 + t135
-                    + t26
-                        * (t77 * parameters[47] + minus_s_distal_leg1 * parameters[49]
-                            + t26 * parameters[50]),
-                t230,
-                t305,
+                t112 + t125
+                    + t34
+                        * (t71 * parameters[47] + minus_s_distal_leg1 * parameters[49]
+                            + t34 * parameters[50]),
+                t213,
+                t284,
             ],
-            [t230, t329 + t74 * t149 + t145 * t155 + minus_s_distal_leg2 * t162, t351],
-            [t305, t351, t376],
+            [t213, t308 + t78 * t197 + t134 * t203 + minus_s_distal_leg2 * t210, t330],
+            [t284, t330, t355],
         ])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -6935,7 +6438,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 523 operations (209 additions, 308 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 526 intermediates.
+    /// 437 operations (179 additions, 252 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 440 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6955,239 +6458,209 @@ impl Spherical3Rrr {
         let t10 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
         ::overact::guard::reach(t10, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t10);
+        ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
         let t13 = 1.0 / (t5 * c_distal_leg1);
         let t14 = 2.0 * pose[2];
         let t15 = pose[3] * t14;
         let t16 = pose[0] * t0;
         let t17 = t15 + t16;
         let s_proximal_leg1 = t13 * (t5 * t17);
+        let t22 = 1.0 / c_distal_leg1;
+        let t23 = minus_s_distal_leg1 * t22;
         let c_proximal_leg1 = t13 * (t5 * t5);
-        let t24 = t5 * c_proximal_leg1 + t17 * s_proximal_leg1;
-        ::overact::guard::leg(t24, 1.0, "leg1")?;
-        let t25 = 1.0 / t24;
-        let gdistal_wz_leg1 = t5 * t25;
-        let minus_gdistal_wy_leg1 = t17 * t25;
-        let rate_distal_leg1 = gdistal_wz_leg1 * twist[2]
-            - minus_gdistal_wy_leg1 * twist[1];
-        let t31 = s_proximal_leg1 * rate_distal_leg1;
-        let gwrist_wy_leg1 = c_proximal_leg1 * t25;
-        let gwrist_wz_leg1 = s_proximal_leg1 * t25;
-        let rate_wrist_leg1 = gwrist_wy_leg1 * twist[1] + gwrist_wz_leg1 * twist[2];
-        let t37 = t17 * rate_wrist_leg1;
-        let t39 = c_proximal_leg1 * rate_distal_leg1;
-        let t40 = t5 * rate_wrist_leg1;
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * gwrist_wy_leg1;
-        let t44 = minus_s_distal_leg1 * rate_wrist_leg1;
-        let minus_gproximal_wz_leg1 = minus_s_distal_leg1 * gwrist_wz_leg1;
-        let rate_proximal_leg1 = twist[0] - minus_gproximal_wy_leg1 * twist[1]
-            - minus_gproximal_wz_leg1 * twist[2];
-        let t54 = t39 * t44 - rate_proximal_leg1 * t37 - rate_proximal_leg1 * t39;
-        let t61 = rate_proximal_leg1 * t40 + t31 * t44 - rate_proximal_leg1 * t31;
-        let rate_dot_proximal_leg1 = t31 * t37 + t39 * t40
-            + minus_gproximal_wy_leg1 * t54 + minus_gproximal_wz_leg1 * t61;
-        let t65 = 9.81 * c_proximal_leg1;
-        let t77 = parameters[0] * rate_dot_proximal_leg1 - parameters[1] * t65
-            + parameters[2] * (9.81 * s_proximal_leg1)
-            + parameters[3] * rate_dot_proximal_leg1 + parameters[4] * rate_proximal_leg1
+        let minus_rate_distal_leg1 = s_proximal_leg1 * twist[1]
+            - c_proximal_leg1 * twist[2];
+        let t31 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
+        let t32 = t23 * t31;
+        let rate_proximal_leg1 = twist[0] - t32;
+        let t36 = minus_rate_distal_leg1 * t32
+            - minus_rate_distal_leg1 * rate_proximal_leg1;
+        let minus_rate_dot_proximal_leg1 = t23 * t36 + t31 * minus_rate_distal_leg1;
+        let t41 = 9.81 * c_proximal_leg1;
+        let t51 = parameters[2] * (9.81 * s_proximal_leg1)
+            - (parameters[0] * minus_rate_dot_proximal_leg1 + parameters[1] * t41)
+            + parameters[4] * rate_proximal_leg1
+            - parameters[3] * minus_rate_dot_proximal_leg1
             + ::overact::math::signed(parameters[5], rate_proximal_leg1) + parameters[6];
-        let t78 = c_distal_leg1 * rate_proximal_leg1;
-        let t79 = rate_distal_leg1 * t78;
-        let t80 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
-        let t81 = t79 - t80;
-        let t84 = c_distal_leg1 * rate_dot_proximal_leg1;
-        let t85 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t86 = rate_distal_leg1 * t85;
-        let t87 = t84 + t86;
-        let t90 = t78 * t85;
-        let rate_dot_distal_leg1 = minus_gdistal_wy_leg1 * t54 - gdistal_wz_leg1 * t61;
-        let t99 = t85 * t85;
-        let t100 = rate_distal_leg1 * rate_distal_leg1;
-        let t103 = parameters[8] * (t79 + t81) - parameters[7] * t87
-            + parameters[9] * (t90 + rate_dot_distal_leg1) + parameters[10] * t86
-            + parameters[11] * (t99 - t100);
-        let t108 = 9.81 * t17;
-        let t112 = t78 * t78;
-        let t124 = parameters[9] * (t100 - t112)
-            - (parameters[7] * t79 + parameters[8] * (t86 + t87)) + parameters[10] * t81
-            - parameters[11] * (t90 - rate_dot_distal_leg1);
-        let t130 = 9.81 * (minus_s_distal_leg1 * s_proximal_leg1);
-        let t134 = c_distal_leg1
-            * (t103 - parameters[12] * t86 + parameters[14] * t65
-                + parameters[15] * t108)
+        let t52 = c_distal_leg1 * minus_rate_dot_proximal_leg1;
+        let t53 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t54 = minus_rate_distal_leg1 * t53;
+        let t55 = t52 + t54;
+        let t57 = c_distal_leg1 * rate_proximal_leg1;
+        let t58 = minus_rate_distal_leg1 * t57;
+        let rate_dot_wrist_leg1 = t22 * t36;
+        let t63 = t57 * t53;
+        let minus_rate_dot_distal_leg1 = t31 * rate_proximal_leg1;
+        let t70 = t53 * t53;
+        let t71 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t74 = parameters[7] * t55 - parameters[8] * (t58 - rate_dot_wrist_leg1)
+            + parameters[9] * (t63 - minus_rate_dot_distal_leg1) - parameters[10] * t54
+            + parameters[11] * (t70 - t71);
+        let t79 = 9.81 * t17;
+        let t87 = t57 * t57;
+        let t95 = parameters[7] * t58 + parameters[8] * (t54 + t55)
+            + parameters[9] * (t71 - t87) + parameters[10] * rate_dot_wrist_leg1
+            - parameters[11] * (t63 + minus_rate_dot_distal_leg1);
+        let t101 = 9.81 * (minus_s_distal_leg1 * s_proximal_leg1);
+        let t105 = c_distal_leg1
+            * (t74 + parameters[12] * t54 + parameters[14] * t41 + parameters[15] * t79)
             + minus_s_distal_leg1
-                * (t124 + parameters[12] * t79 - parameters[13] * t65
-                    + parameters[15] * t130);
-        let t135 = t77 - t134;
-        let t136 = pose[2] * t14;
-        let t137 = t2 - t136;
-        let t138 = pose[3] * t0;
-        let t139 = pose[0] * t14;
-        let t140 = t138 + t139;
+                * (t95 - parameters[12] * t58 - parameters[13] * t41
+                    + parameters[15] * t101);
+        let t106 = t51 - t105;
+        let t107 = pose[2] * t14;
+        let t108 = t2 - t107;
         let minus_s_distal_leg2 = t15 - t16;
-        let t143 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t143, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t143);
-        let t146 = 1.0 / (t137 * c_distal_leg2);
-        let s_proximal_leg2 = t146 * (t140 * t137);
-        let c_proximal_leg2 = t146 * (t137 * t137);
-        let t153 = t140 * s_proximal_leg2 + t137 * c_proximal_leg2;
-        ::overact::guard::leg(t153, 1.0, "leg2")?;
-        let t154 = 1.0 / t153;
-        let gdistal_wx_leg2 = t137 * t154;
-        let gwrist_wx_leg2 = s_proximal_leg2 * t154;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * gwrist_wx_leg2;
-        let gwrist_wz_leg2 = c_proximal_leg2 * t154;
-        let minus_gproximal_wz_leg2 = minus_s_distal_leg2 * gwrist_wz_leg2;
-        let rate_proximal_leg2 = twist[1] - minus_gproximal_wx_leg2 * twist[0]
-            - minus_gproximal_wz_leg2 * twist[2];
-        let t164 = c_distal_leg2 * rate_proximal_leg2;
-        let t165 = t164 * t164;
-        let t166 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t167 = t166 * t166;
-        let t170 = t164 * t166;
-        let rate_wrist_leg2 = gwrist_wx_leg2 * twist[0] + gwrist_wz_leg2 * twist[2];
-        let t176 = t137 * rate_wrist_leg2;
-        let minus_gdistal_wz_leg2 = t140 * t154;
-        let rate_distal_leg2 = gdistal_wx_leg2 * twist[0]
-            - minus_gdistal_wz_leg2 * twist[2];
-        let t182 = s_proximal_leg2 * rate_distal_leg2;
-        let t183 = minus_s_distal_leg2 * rate_wrist_leg2;
-        let t187 = rate_proximal_leg2 * t176 + t182 * t183 - rate_proximal_leg2 * t182;
-        let t189 = t140 * rate_wrist_leg2;
-        let t191 = c_proximal_leg2 * rate_distal_leg2;
-        let t199 = t191 * t183 - rate_proximal_leg2 * t189 - rate_proximal_leg2 * t191;
-        let rate_dot_proximal_leg2 = minus_gproximal_wx_leg2 * t187 + t182 * t189
-            + t191 * t176 + minus_gproximal_wz_leg2 * t199;
-        let t202 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t207 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t209 = parameters[24] * (t165 - t167) - parameters[23] * t170
-            - parameters[25] * t202 + parameters[26] * t170 - parameters[27] * t207;
-        let rate_dot_distal_leg2 = minus_gdistal_wz_leg2 * t199 - gdistal_wx_leg2 * t187;
-        let t215 = 9.81 * t137;
-        let t219 = 9.81 * (minus_s_distal_leg2 * c_proximal_leg2);
-        let t221 = t209 + parameters[28] * rate_dot_distal_leg2 - parameters[29] * t215
-            - parameters[30] * t219;
-        let t224 = 9.81 * s_proximal_leg2;
-        let t236 = parameters[16] * rate_dot_proximal_leg2 + parameters[17] * t224
+        let t111 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t111, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t111);
+        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
+        let t114 = 1.0 / (t108 * c_distal_leg2);
+        let c_proximal_leg2 = t114 * (t108 * t108);
+        let t117 = 1.0 / c_distal_leg2;
+        let t118 = minus_s_distal_leg2 * t117;
+        let t119 = pose[3] * t0;
+        let t120 = pose[0] * t14;
+        let t121 = t119 + t120;
+        let s_proximal_leg2 = t114 * (t121 * t108);
+        let t126 = s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2];
+        let t127 = t118 * t126;
+        let rate_proximal_leg2 = twist[1] - t127;
+        let t129 = c_distal_leg2 * rate_proximal_leg2;
+        let t130 = t129 * t129;
+        let t131 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t132 = t131 * t131;
+        let t135 = t129 * t131;
+        let minus_rate_distal_leg2 = s_proximal_leg2 * twist[2]
+            - c_proximal_leg2 * twist[0];
+        let t143 = minus_rate_distal_leg2 * t127
+            - minus_rate_distal_leg2 * rate_proximal_leg2;
+        let minus_rate_dot_proximal_leg2 = t118 * t143 + t126 * minus_rate_distal_leg2;
+        let t147 = c_distal_leg2 * minus_rate_dot_proximal_leg2;
+        let t154 = parameters[24] * (t130 - t132) - parameters[23] * t135
+            + parameters[25] * t147 + parameters[26] * t135
+            + parameters[27] * (minus_s_distal_leg2 * minus_rate_dot_proximal_leg2);
+        let minus_rate_dot_distal_leg2 = t126 * rate_proximal_leg2;
+        let t158 = 9.81 * t108;
+        let t162 = 9.81 * (minus_s_distal_leg2 * c_proximal_leg2);
+        let t164 = t154 - parameters[28] * minus_rate_dot_distal_leg2
+            - parameters[29] * t158 - parameters[30] * t162;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t118;
+        let t167 = 9.81 * s_proximal_leg2;
+        let t180 = parameters[17] * t167 - parameters[16] * minus_rate_dot_proximal_leg2
             + parameters[18] * (9.81 * c_proximal_leg2)
-            + parameters[19] * rate_dot_proximal_leg2
             + parameters[20] * rate_proximal_leg2
+            - parameters[19] * minus_rate_dot_proximal_leg2
             + ::overact::math::signed(parameters[21], rate_proximal_leg2)
             + parameters[22];
-        let t237 = rate_distal_leg2 * t164;
-        let t238 = t237 - t207;
-        let t241 = rate_distal_leg2 * t166;
-        let t242 = t202 + t241;
-        let t250 = rate_distal_leg2 * rate_distal_leg2;
-        let t253 = parameters[24] * (t237 + t238) - parameters[23] * t242
-            + parameters[25] * (t170 + rate_dot_distal_leg2) + parameters[26] * t241
-            + parameters[27] * (t167 - t250);
-        let t272 = parameters[25] * (t250 - t165)
-            - (parameters[23] * t237 + parameters[24] * (t241 + t242))
-            + parameters[26] * t238 - parameters[27] * (t170 - rate_dot_distal_leg2);
-        let t280 = c_distal_leg2
-            * (t253 - parameters[28] * t241 - parameters[30] * t224
-                + parameters[31] * t215)
+        let t181 = minus_rate_distal_leg2 * t131;
+        let t182 = t147 + t181;
+        let t184 = minus_rate_distal_leg2 * t129;
+        let rate_dot_wrist_leg2 = t117 * t143;
+        let t194 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t197 = parameters[23] * t182 - parameters[24] * (t184 - rate_dot_wrist_leg2)
+            + parameters[25] * (t135 - minus_rate_dot_distal_leg2)
+            - parameters[26] * t181 + parameters[27] * (t132 - t194);
+        let t216 = parameters[23] * t184 + parameters[24] * (t181 + t182)
+            + parameters[25] * (t194 - t130) + parameters[26] * rate_dot_wrist_leg2
+            - parameters[27] * (t135 + minus_rate_dot_distal_leg2);
+        let t224 = c_distal_leg2
+            * (t197 + parameters[28] * t181 - parameters[30] * t167
+                + parameters[31] * t158)
             + minus_s_distal_leg2
-                * (t272 + parameters[28] * t237 + parameters[29] * t224
-                    + parameters[31] * t219);
-        let t281 = t236 - t280;
-        let minus_s_distal_leg3 = t138 - t139;
-        let t287 = 1.0 - t136 - t4;
-        let t289 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t289, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t289);
-        let t292 = 1.0 / (t287 * c_distal_leg3);
-        let c_proximal_leg3 = t292 * (t287 * t287);
-        let t296 = t6 + t7;
-        let s_proximal_leg3 = t292 * (t287 * t296);
-        let t300 = t287 * c_proximal_leg3 + t296 * s_proximal_leg3;
-        ::overact::guard::leg(t300, 1.0, "leg3")?;
-        let t301 = 1.0 / t300;
-        let gwrist_wx_leg3 = c_proximal_leg3 * t301;
-        let minus_gproximal_wx_leg3 = minus_s_distal_leg3 * gwrist_wx_leg3;
-        let gwrist_wy_leg3 = s_proximal_leg3 * t301;
-        let minus_gproximal_wy_leg3 = minus_s_distal_leg3 * gwrist_wy_leg3;
-        let t308 = minus_gproximal_wx_leg3 * twist[0]
-            + minus_gproximal_wy_leg3 * twist[1];
-        let gdistal_wy_leg3 = t287 * t301;
-        let minus_gdistal_wx_leg3 = t296 * t301;
-        let rate_distal_leg3 = gdistal_wy_leg3 * twist[1]
-            - minus_gdistal_wx_leg3 * twist[0];
-        let t314 = c_proximal_leg3 * rate_distal_leg3;
-        let rate_proximal_leg3 = twist[2] - t308;
-        let rate_wrist_leg3 = gwrist_wx_leg3 * twist[0] + gwrist_wy_leg3 * twist[1];
-        let t320 = t296 * rate_wrist_leg3;
-        let t324 = t308 * t314 - rate_proximal_leg3 * t320 - rate_proximal_leg3 * t314;
-        let t326 = t287 * rate_wrist_leg3;
-        let t328 = s_proximal_leg3 * rate_distal_leg3;
-        let t332 = rate_proximal_leg3 * t326 + t308 * t328 - rate_proximal_leg3 * t328;
-        let rate_dot_proximal_leg3 = minus_gproximal_wx_leg3 * t324
-            + minus_gproximal_wy_leg3 * t332 + t328 * t320 + t314 * t326;
-        let t347 = c_distal_leg3 * rate_proximal_leg3;
-        let t348 = rate_distal_leg3 * t347;
-        let t349 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let t350 = t348 - t349;
-        let t353 = c_distal_leg3 * rate_dot_proximal_leg3;
-        let t354 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t355 = rate_distal_leg3 * t354;
-        let t356 = t353 + t355;
-        let t359 = t347 * t354;
-        let rate_dot_distal_leg3 = minus_gdistal_wx_leg3 * t324 - gdistal_wy_leg3 * t332;
-        let t368 = t354 * t354;
-        let t369 = rate_distal_leg3 * rate_distal_leg3;
-        let t372 = parameters[38] * (t348 + t350) - parameters[37] * t356
-            + parameters[39] * (t359 + rate_dot_distal_leg3) + parameters[40] * t355
-            + parameters[41] * (t368 - t369);
-        let t376 = t347 * t347;
-        let t388 = parameters[39] * (t369 - t376)
-            - (parameters[37] * t348 + parameters[38] * (t355 + t356))
-            + parameters[40] * t350 - parameters[41] * (t359 - rate_dot_distal_leg3);
-        let t393 = parameters[32] * rate_dot_proximal_leg3
-            + parameters[33] * rate_dot_proximal_leg3
-            + parameters[34] * rate_proximal_leg3
+                * (t216 - parameters[28] * t184 + parameters[29] * t167
+                    + parameters[31] * t162);
+        let t225 = t180 - t224;
+        let t230 = 1.0 - t107 - t4;
+        let minus_s_distal_leg3 = t119 - t120;
+        let t233 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t233, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t233);
+        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
+        let t236 = 1.0 / (t230 * c_distal_leg3);
+        let c_proximal_leg3 = t236 * (t230 * t230);
+        let t239 = 1.0 / c_distal_leg3;
+        let t240 = minus_s_distal_leg3 * t239;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t240;
+        let t243 = t6 + t7;
+        let s_proximal_leg3 = t236 * (t230 * t243);
+        let t247 = c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1];
+        let t248 = t240 * t247;
+        let rate_proximal_leg3 = twist[2] - t248;
+        let rate_distal_leg3 = c_proximal_leg3 * twist[1] - s_proximal_leg3 * twist[0];
+        let t256 = rate_distal_leg3 * rate_proximal_leg3 - rate_distal_leg3 * t248;
+        let minus_rate_dot_proximal_leg3 = t240 * t256 - t247 * rate_distal_leg3;
+        let t267 = c_distal_leg3 * minus_rate_dot_proximal_leg3;
+        let t268 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t269 = rate_distal_leg3 * t268;
+        let t270 = t267 - t269;
+        let t272 = c_distal_leg3 * rate_proximal_leg3;
+        let t273 = rate_distal_leg3 * t272;
+        let rate_dot_wrist_leg3 = t239 * t256;
+        let t278 = t272 * t268;
+        let minus_rate_dot_distal_leg3 = t247 * rate_proximal_leg3;
+        let t285 = t268 * t268;
+        let t286 = rate_distal_leg3 * rate_distal_leg3;
+        let t289 = parameters[37] * t270 + parameters[38] * (t273 + rate_dot_wrist_leg3)
+            + parameters[39] * (t278 - minus_rate_dot_distal_leg3)
+            + parameters[40] * t269 + parameters[41] * (t285 - t286);
+        let t297 = t272 * t272;
+        let t305 = parameters[38] * (t270 - t269) - parameters[37] * t273
+            + parameters[39] * (t286 - t297) + parameters[40] * rate_dot_wrist_leg3
+            - parameters[41] * (t278 + minus_rate_dot_distal_leg3);
+        let t310 = parameters[34] * rate_proximal_leg3
+            - parameters[33] * minus_rate_dot_proximal_leg3
             + ::overact::math::signed(parameters[35], rate_proximal_leg3)
-            + parameters[36]
-            - (c_distal_leg3 * (t372 - parameters[42] * t355)
-                + minus_s_distal_leg3 * (t388 + parameters[42] * t348));
-        let t404 = parameters[38] * (t376 - t368) - parameters[37] * t359
-            - parameters[39] * t353 + parameters[40] * t359 - parameters[41] * t349;
-        let t407 = 9.81 * minus_s_distal_leg3;
-        let t412 = t404 + parameters[42] * rate_dot_distal_leg3 - parameters[43] * t407
-            + parameters[44] * (9.81 * c_distal_leg3);
-        let t420 = t287 * twist[0] + t296 * twist[1] + minus_s_distal_leg3 * twist[2];
-        let t425 = minus_s_distal_leg1 * twist[0] + t5 * twist[1] + t17 * twist[2];
-        let t426 = t420 * t425;
-        let t432 = t140 * twist[0] + minus_s_distal_leg2 * twist[1] + t137 * twist[2];
-        let t433 = t420 * t432;
-        let t436 = t425 * t432;
-        let t439 = t425 * t425;
-        let t440 = t432 * t432;
-        let t445 = parameters[47] * t426 - parameters[46] * t433 - parameters[48] * t436
-            + parameters[49] * (t439 - t440) + parameters[50] * t436;
-        let t449 = t445 + parameters[52] * t215 - parameters[53] * t108;
-        let t454 = t420 * t420;
-        let t461 = parameters[45] * t433 + parameters[46] * t436
-            + parameters[47] * (t440 - t454) - parameters[49] * t426
-            - parameters[50] * t433;
-        let t465 = t461 - parameters[51] * t215 + parameters[53] * t407;
-        let t477 = parameters[46] * (t454 - t439) - parameters[45] * t426
-            - parameters[47] * t436 + parameters[48] * t426 + parameters[49] * t433;
-        let t481 = t477 + parameters[51] * t108 - parameters[52] * t407;
-        let t484 = t135 + gdistal_wx_leg2 * t221 - minus_gproximal_wx_leg2 * t281
-            - (minus_gproximal_wx_leg3 * t393 + minus_gdistal_wx_leg3 * t412)
-            + t287 * t449 + minus_s_distal_leg1 * t465 + t140 * t481;
-        let t495 = parameters[8] * (t112 - t99) - parameters[7] * t90
-            - parameters[9] * t84 + parameters[10] * t90 - parameters[11] * t80;
-        let t501 = t495 + parameters[12] * rate_dot_distal_leg1 - parameters[13] * t108
-            - parameters[14] * t130;
-        let t514 = t281 - (minus_gproximal_wy_leg1 * t135 + minus_gdistal_wy_leg1 * t501)
-            + gdistal_wy_leg3 * t412 - minus_gproximal_wy_leg3 * t393 + t296 * t449
-            + t5 * t465 + minus_s_distal_leg2 * t481;
-        let t528 = gdistal_wz_leg1 * t501 - minus_gproximal_wz_leg1 * t135
-            - (minus_gproximal_wz_leg2 * t281 + minus_gdistal_wz_leg2 * t221) + t393
-            + minus_s_distal_leg3 * t449 + t17 * t465 + t137 * t481;
-        Ok([t484, t514, t528])
+            + parameters[36] - parameters[32] * minus_rate_dot_proximal_leg3
+            - (c_distal_leg3 * (t289 - parameters[42] * t269)
+                + minus_s_distal_leg3 * (t305 + parameters[42] * t273));
+        let t322 = parameters[38] * (t297 - t285) - parameters[37] * t278
+            + parameters[39] * t267 + parameters[40] * t278
+            + parameters[41] * (minus_s_distal_leg3 * minus_rate_dot_proximal_leg3);
+        let t325 = 9.81 * minus_s_distal_leg3;
+        let t330 = t322 - parameters[42] * minus_rate_dot_distal_leg3
+            - parameters[43] * t325 + parameters[44] * (9.81 * c_distal_leg3);
+        let rate_wrist_leg1 = t22 * t31;
+        let t335 = t53 + rate_wrist_leg1;
+        let rate_wrist_leg3 = t239 * t247;
+        let t337 = t268 + rate_wrist_leg3;
+        let t338 = t335 * t337;
+        let rate_wrist_leg2 = t117 * t126;
+        let t341 = t131 + rate_wrist_leg2;
+        let t342 = t341 * t337;
+        let t345 = t335 * t341;
+        let t348 = t335 * t335;
+        let t349 = t341 * t341;
+        let t354 = parameters[47] * t338 - parameters[46] * t342 - parameters[48] * t345
+            + parameters[49] * (t348 - t349) + parameters[50] * t345;
+        let t358 = t354 + parameters[52] * t158 - parameters[53] * t79;
+        let t363 = t337 * t337;
+        let t370 = parameters[45] * t342 + parameters[46] * t345
+            + parameters[47] * (t349 - t363) - parameters[49] * t338
+            - parameters[50] * t342;
+        let t374 = t370 - parameters[51] * t158 + parameters[53] * t325;
+        let t386 = parameters[46] * (t363 - t348) - parameters[45] * t338
+            - parameters[47] * t345 + parameters[48] * t338 + parameters[49] * t342;
+        let t390 = t386 + parameters[51] * t79 - parameters[52] * t325;
+        let t393 = t106 + c_proximal_leg2 * t164 - minus_gproximal_wx_leg2 * t225
+            - (minus_gproximal_wx_leg3 * t310 + s_proximal_leg3 * t330) + t230 * t358
+            + minus_s_distal_leg1 * t374 + t121 * t390;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t23;
+        let t406 = parameters[8] * (t87 - t70) - parameters[7] * t63
+            + parameters[9] * t52 + parameters[10] * t63
+            + parameters[11] * (minus_s_distal_leg1 * minus_rate_dot_proximal_leg1);
+        let t412 = t406 - parameters[12] * minus_rate_dot_distal_leg1
+            - parameters[13] * t79 - parameters[14] * t101;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t240;
+        let t426 = t225 - (minus_gproximal_wy_leg1 * t106 + s_proximal_leg1 * t412)
+            + c_proximal_leg3 * t330 - minus_gproximal_wy_leg3 * t310 + t243 * t358
+            + t5 * t374 + minus_s_distal_leg2 * t390;
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t23;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t118;
+        let t442 = c_proximal_leg1 * t412 - minus_gproximal_wz_leg1 * t106
+            - (minus_gproximal_wz_leg2 * t225 + s_proximal_leg2 * t164) + t310
+            + minus_s_distal_leg3 * t358 + t17 * t374 + t108 * t390;
+        Ok([t393, t426, t442])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
     ///

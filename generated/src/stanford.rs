@@ -341,22 +341,23 @@ impl Stanford {
     /// Output: 6 x 75.
     /// Columns: `PARAMETERS`.
     ///
-    /// 597 operations (256 additions, 341 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 6 signs, 480 intermediates.
+    /// 596 operations (256 additions, 340 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 6 signs, 479 intermediates.
     #[must_use]
     pub fn idm_red_platform(
         joints: &[f64; 6],
         joint_velocities: &[f64; 6],
         joint_accelerations: &[f64; 6],
     ) -> [[f64; 75]; 6] {
-        let (s2_arm, c2_arm) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_arm, c2_arm), (s4_arm, c4_arm), (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
+            joints[1], joints[3], joints[4], joints[5],
+        ]);
         let t3 = s2_arm * joint_accelerations[0];
         let t4 = c2_arm * joint_velocities[0];
         let t5 = joint_velocities[1] * t4;
         let t6 = t3 + t5;
         let t8 = s2_arm * joint_velocities[0];
         let t9 = joint_velocities[1] * t8;
-        let t10 = c2_arm * t9;
-        let t11 = s2_arm * t6 + t10;
+        let t11 = s2_arm * t6 + c2_arm * t9;
         let t12 = t8 * t4;
         let t13 = t5 + t6;
         let t15 = c2_arm * joint_accelerations[0];
@@ -370,243 +371,240 @@ impl Stanford {
         let t24 = s2_arm * t23;
         let t25 = joint_velocities[1] * joint_velocities[1];
         let t28 = t24 + c2_arm * (t25 - t20);
-        let t30 = t10 + c2_arm * t16;
-        let t31 = t12 - joint_accelerations[1];
-        let t32 = c2_arm * t31;
-        let t35 = t32 - s2_arm * (t21 - t25);
-        let t39 = 0.1524 * t3 - 9.81 * c2_arm;
-        let t43 = 0.1524 * t15 + 9.81 * s2_arm;
-        let t47 = 0.1524 * c2_arm;
-        let t48 = t21 + t25;
-        let t50 = s2_arm * joints[2];
-        let t56 = joint_velocities[0] * joint_velocities[0];
-        let t61 = joints[2] * t13 - 0.1524 * t56 + 2.0 * (joint_velocities[2] * t8);
-        let t65 = t20 + t25;
-        let t68 = joint_accelerations[2] - (t39 + joints[2] * t65);
-        let t73 = 0.1524 * s2_arm;
-        let t76 = s2_arm * t68;
-        let t79 = joints[2] * t31;
-        let t81 = 2.0 * (joint_velocities[1] * joint_velocities[2]) - (t43 + t79);
-        let t82 = c2_arm * t81;
-        let t92 = 0.1524 * t32 + t13 * t50 + t73 * t65 + s2_arm * t61;
-        let t93 = t81 - t79;
-        let t98 = t61 * t50 - 0.1524 * t82 - 0.1524 * t76;
-        let t99 = joints[2] * t81;
-        let (s4_arm, c4_arm) = ::overact::math::sin_cos(joints[3]);
-        let t103 = s2_arm * s4_arm;
-        let t106 = s4_arm * joint_velocities[1] - c4_arm * t8;
-        let t107 = t4 + joint_velocities[3];
-        let t108 = t106 * t107;
-        let t109 = t103 * t108;
-        let t110 = s2_arm * c4_arm;
-        let t116 = s4_arm * t8 + c4_arm * joint_velocities[1];
-        let t118 = s4_arm * joint_accelerations[1] - c4_arm * t6
-            + joint_velocities[3] * t116;
-        let t121 = t106 * t116;
-        let t123 = t109 - t110 * t118 - c2_arm * t121;
-        let t125 = c4_arm * t108;
-        let t126 = s4_arm * t118 + t125;
-        let t131 = s4_arm * t6 + c4_arm * joint_accelerations[1]
-            - joint_velocities[3] * t106;
-        let t132 = t108 - t131;
-        let t134 = t116 * t107;
-        let t135 = t134 + t118;
-        let t138 = t106 * t106;
-        let t139 = t116 * t116;
-        let t140 = t138 - t139;
-        let t146 = t107 * t107;
-        let t147 = t146 - t138;
-        let t149 = joint_accelerations[3] - t16;
-        let t150 = t121 + t149;
-        let t153 = t134 - t118;
-        let t161 = t108 + t131;
-        let t163 = t139 - t146;
-        let t165 = t121 - t149;
-        let t175 = c2_arm * t149 - (t110 * t134 + t109);
-        let t177 = s4_arm * t134 - t125;
-        let t180 = s4_arm * t47 + c4_arm * t50;
-        let t184 = s4_arm * t50 - c4_arm * t47;
-        let t185 = t139 + t146;
-        let t192 = c4_arm * t61 - s4_arm * t81;
-        let t197 = joints[2] * c4_arm;
-        let t199 = joints[2] * s4_arm;
-        let t205 = t138 + t146;
-        let t213 = c4_arm * t81 + s4_arm * t61;
-        let t216 = t184 * t165 - t180 * t205 - t73 * t135 - (t110 * t68 + c2_arm * t213);
-        let t221 = t197 * t165 + t199 * t205 + s4_arm * t68;
-        let (s5_arm, c5_arm) = ::overact::math::sin_cos(joints[4]);
-        let t227 = t110 * s5_arm - c2_arm * c5_arm;
-        let t230 = c5_arm * t106 - s5_arm * t107;
-        let t231 = t116 + joint_velocities[4];
-        let t232 = t230 * t231;
-        let t233 = t227 * t232;
-        let t236 = t110 * c5_arm + c2_arm * s5_arm;
-        let t242 = s5_arm * t106 + c5_arm * t107;
-        let t244 = c5_arm * t118 - s5_arm * t149 - joint_velocities[4] * t242;
-        let t247 = t230 * t242;
-        let t249 = t233 - t236 * t244 + t103 * t247;
-        let t250 = s4_arm * c5_arm;
-        let t252 = s4_arm * s5_arm;
-        let t253 = t252 * t232;
-        let t256 = t244 * t250 - t253 + c4_arm * t247;
-        let t258 = c5_arm * t232;
-        let t259 = s5_arm * t244 + t258;
-        let t264 = s5_arm * t118 + c5_arm * t149 + joint_velocities[4] * t230;
-        let t265 = t232 + t264;
-        let t267 = t242 * t231;
-        let t268 = t244 - t267;
-        let t271 = t230 * t230;
-        let t272 = t242 * t242;
-        let t273 = t271 - t272;
-        let t284 = t231 * t231;
-        let t285 = t284 - t271;
-        let t287 = t131 + joint_accelerations[4];
-        let t288 = t287 - t247;
-        let t291 = t267 + t244;
-        let t307 = t247 + t287;
-        let t309 = t272 - t284;
-        let t312 = t232 - t264;
-        let t326 = t236 * t267 - t233 + t103 * t287;
-        let t330 = t253 - t250 * t267 + c4_arm * t287;
-        let t332 = s5_arm * t267 + t258;
-        let t335 = c5_arm * t73 - s5_arm * t184;
-        let t339 = c5_arm * t184 + s5_arm * t73;
-        let t340 = t272 + t284;
-        let t348 = s5_arm * t213 + c5_arm * t68;
-        let t355 = c5_arm * t197;
-        let t357 = s5_arm * t197;
-        let t369 = t271 + t284;
-        let t376 = c5_arm * t213 - s5_arm * t68;
-        let t379 = t180 * t268 - (t339 * t307 + t335 * t369)
-            - (t236 * t192 + t103 * t376);
-        let t388 = t357 * t369 - t355 * t307 - t199 * t268 + t192 * t250 - c4_arm * t376;
-        let t391 = s5_arm * t307 + c5_arm * t369;
-        let t392 = s5_arm * t192;
-        let (s6_arm, c6_arm) = ::overact::math::sin_cos(joints[5]);
-        let t398 = t103 * s6_arm - t236 * c6_arm;
-        let t404 = c6_arm * t231 - s6_arm * t230;
-        let t406 = c6_arm * t244 + s6_arm * t287 + joint_velocities[5] * t404;
-        let t410 = t236 * s6_arm + t103 * c6_arm;
-        let t413 = c6_arm * t230 + s6_arm * t231;
-        let t414 = t242 + joint_velocities[5];
-        let t415 = t413 * t414;
-        let t416 = t410 * t415;
-        let t418 = t413 * t404;
-        let t420 = t398 * t406 + t416 + t227 * t418;
-        let t423 = c6_arm * t250 + c4_arm * s6_arm;
-        let t427 = c4_arm * c6_arm - s6_arm * t250;
-        let t428 = t427 * t415;
-        let t431 = t406 * t423 + t428 - t252 * t418;
-        let t432 = s5_arm * s6_arm;
-        let t433 = t432 * t415;
-        let t434 = s5_arm * c6_arm;
-        let t438 = t433 - t406 * t434 - c5_arm * t418;
-        let t440 = c6_arm * t415;
-        let t441 = s6_arm * t406 + t440;
-        let t442 = t404 * t414;
-        let t443 = t442 + t406;
-        let t449 = c6_arm * t287 - s6_arm * t244 - joint_velocities[5] * t413;
-        let t450 = t415 - t449;
-        let t453 = t413 * t413;
-        let t454 = t404 * t404;
-        let t455 = t453 - t454;
-        let t471 = t264 + joint_accelerations[5];
-        let t472 = t418 + t471;
-        let t474 = t414 * t414;
-        let t475 = t474 - t453;
-        let t478 = t442 - t406;
-        let t501 = t454 - t474;
-        let t503 = t418 - t471;
-        let t506 = t415 + t449;
-        let t538 = c6_arm * t180 - s6_arm * t339;
-        let t542 = c6_arm * t339 + s6_arm * t180;
-        let t543 = t454 + t474;
-        let t551 = c6_arm * t192 - s6_arm * t376;
-        let t558 = c6_arm * t355 - s6_arm * t199;
-        let t562 = s6_arm * t355 + c6_arm * t199;
-        let t580 = t453 + t474;
-        let t588 = c6_arm * t376 + s6_arm * t192;
+        let t29 = joint_accelerations[0] - t11;
+        let t30 = t12 - joint_accelerations[1];
+        let t31 = c2_arm * t30;
+        let t34 = t31 - s2_arm * (t21 - t25);
+        let t38 = 0.1524 * t3 - 9.81 * c2_arm;
+        let t42 = 0.1524 * t15 + 9.81 * s2_arm;
+        let t46 = 0.1524 * c2_arm;
+        let t47 = t21 + t25;
+        let t49 = s2_arm * joints[2];
+        let t55 = joint_velocities[0] * joint_velocities[0];
+        let t60 = joints[2] * t13 - 0.1524 * t55 + 2.0 * (joint_velocities[2] * t8);
+        let t64 = t20 + t25;
+        let t67 = joint_accelerations[2] - (t38 + joints[2] * t64);
+        let t72 = 0.1524 * s2_arm;
+        let t75 = s2_arm * t67;
+        let t78 = joints[2] * t30;
+        let t80 = 2.0 * (joint_velocities[1] * joint_velocities[2]) - (t42 + t78);
+        let t81 = c2_arm * t80;
+        let t91 = 0.1524 * t31 + t13 * t49 + t72 * t64 + s2_arm * t60;
+        let t92 = t80 - t78;
+        let t97 = t60 * t49 - 0.1524 * t81 - 0.1524 * t75;
+        let t98 = joints[2] * t80;
+        let t102 = s2_arm * s4_arm;
+        let t105 = s4_arm * joint_velocities[1] - c4_arm * t8;
+        let t106 = t4 + joint_velocities[3];
+        let t107 = t105 * t106;
+        let t108 = t102 * t107;
+        let t109 = s2_arm * c4_arm;
+        let t115 = s4_arm * t8 + c4_arm * joint_velocities[1];
+        let t117 = s4_arm * joint_accelerations[1] - c4_arm * t6
+            + joint_velocities[3] * t115;
+        let t120 = t105 * t115;
+        let t122 = t108 - t109 * t117 - c2_arm * t120;
+        let t124 = c4_arm * t107;
+        let t125 = s4_arm * t117 + t124;
+        let t130 = s4_arm * t6 + c4_arm * joint_accelerations[1]
+            - joint_velocities[3] * t105;
+        let t131 = t107 - t130;
+        let t133 = t115 * t106;
+        let t134 = t133 + t117;
+        let t137 = t105 * t105;
+        let t138 = t115 * t115;
+        let t139 = t137 - t138;
+        let t145 = t106 * t106;
+        let t146 = t145 - t137;
+        let t148 = joint_accelerations[3] - t16;
+        let t149 = t120 + t148;
+        let t152 = t133 - t117;
+        let t160 = t107 + t130;
+        let t162 = t138 - t145;
+        let t164 = t120 - t148;
+        let t174 = c2_arm * t148 - (t109 * t133 + t108);
+        let t176 = s4_arm * t133 - t124;
+        let t179 = s4_arm * t46 + c4_arm * t49;
+        let t183 = s4_arm * t49 - c4_arm * t46;
+        let t184 = t138 + t145;
+        let t191 = c4_arm * t60 - s4_arm * t80;
+        let t196 = joints[2] * c4_arm;
+        let t198 = joints[2] * s4_arm;
+        let t204 = t137 + t145;
+        let t212 = c4_arm * t80 + s4_arm * t60;
+        let t215 = t183 * t164 - t179 * t204 - t72 * t134 - (t109 * t67 + c2_arm * t212);
+        let t220 = t196 * t164 + t198 * t204 + s4_arm * t67;
+        let t226 = t109 * s5_arm - c2_arm * c5_arm;
+        let t229 = c5_arm * t105 - s5_arm * t106;
+        let t230 = t115 + joint_velocities[4];
+        let t231 = t229 * t230;
+        let t232 = t226 * t231;
+        let t235 = t109 * c5_arm + c2_arm * s5_arm;
+        let t241 = s5_arm * t105 + c5_arm * t106;
+        let t243 = c5_arm * t117 - s5_arm * t148 - joint_velocities[4] * t241;
+        let t246 = t229 * t241;
+        let t248 = t232 - t235 * t243 + t102 * t246;
+        let t249 = s4_arm * c5_arm;
+        let t251 = s4_arm * s5_arm;
+        let t252 = t251 * t231;
+        let t255 = t243 * t249 - t252 + c4_arm * t246;
+        let t257 = c5_arm * t231;
+        let t258 = s5_arm * t243 + t257;
+        let t263 = s5_arm * t117 + c5_arm * t148 + joint_velocities[4] * t229;
+        let t264 = t231 + t263;
+        let t266 = t241 * t230;
+        let t267 = t243 - t266;
+        let t270 = t229 * t229;
+        let t271 = t241 * t241;
+        let t272 = t270 - t271;
+        let t283 = t230 * t230;
+        let t284 = t283 - t270;
+        let t286 = t130 + joint_accelerations[4];
+        let t287 = t286 - t246;
+        let t290 = t266 + t243;
+        let t306 = t246 + t286;
+        let t308 = t271 - t283;
+        let t311 = t231 - t263;
+        let t325 = t235 * t266 - t232 + t102 * t286;
+        let t329 = t252 - t249 * t266 + c4_arm * t286;
+        let t331 = s5_arm * t266 + t257;
+        let t334 = c5_arm * t72 - s5_arm * t183;
+        let t338 = c5_arm * t183 + s5_arm * t72;
+        let t339 = t271 + t283;
+        let t347 = s5_arm * t212 + c5_arm * t67;
+        let t354 = c5_arm * t196;
+        let t356 = s5_arm * t196;
+        let t368 = t270 + t283;
+        let t375 = c5_arm * t212 - s5_arm * t67;
+        let t378 = t179 * t267 - (t338 * t306 + t334 * t368)
+            - (t235 * t191 + t102 * t375);
+        let t387 = t356 * t368 - t354 * t306 - t198 * t267 + t191 * t249 - c4_arm * t375;
+        let t390 = s5_arm * t306 + c5_arm * t368;
+        let t391 = s5_arm * t191;
+        let t397 = t102 * s6_arm - t235 * c6_arm;
+        let t403 = c6_arm * t230 - s6_arm * t229;
+        let t405 = c6_arm * t243 + s6_arm * t286 + joint_velocities[5] * t403;
+        let t409 = t235 * s6_arm + t102 * c6_arm;
+        let t412 = c6_arm * t229 + s6_arm * t230;
+        let t413 = t241 + joint_velocities[5];
+        let t414 = t412 * t413;
+        let t415 = t409 * t414;
+        let t417 = t412 * t403;
+        let t419 = t397 * t405 + t415 + t226 * t417;
+        let t422 = c6_arm * t249 + c4_arm * s6_arm;
+        let t426 = c4_arm * c6_arm - s6_arm * t249;
+        let t427 = t426 * t414;
+        let t430 = t405 * t422 + t427 - t251 * t417;
+        let t431 = s5_arm * s6_arm;
+        let t432 = t431 * t414;
+        let t433 = s5_arm * c6_arm;
+        let t437 = t432 - t405 * t433 - c5_arm * t417;
+        let t439 = c6_arm * t414;
+        let t440 = s6_arm * t405 + t439;
+        let t441 = t403 * t413;
+        let t442 = t441 + t405;
+        let t448 = c6_arm * t286 - s6_arm * t243 - joint_velocities[5] * t412;
+        let t449 = t414 - t448;
+        let t452 = t412 * t412;
+        let t453 = t403 * t403;
+        let t454 = t452 - t453;
+        let t470 = t263 + joint_accelerations[5];
+        let t471 = t417 + t470;
+        let t473 = t413 * t413;
+        let t474 = t473 - t452;
+        let t477 = t441 - t405;
+        let t500 = t453 - t473;
+        let t502 = t417 - t470;
+        let t505 = t414 + t448;
+        let t537 = c6_arm * t179 - s6_arm * t338;
+        let t541 = c6_arm * t338 + s6_arm * t179;
+        let t542 = t453 + t473;
+        let t550 = c6_arm * t191 - s6_arm * t375;
+        let t557 = c6_arm * t354 - s6_arm * t198;
+        let t561 = s6_arm * t354 + c6_arm * t198;
+        let t579 = t452 + t473;
+        let t587 = c6_arm * t375 + s6_arm * t191;
         [
             [
                 joint_accelerations[0], joint_accelerations[0], joint_velocities[0],
-                ::overact::math::sign(joint_velocities[0]), 1.0, t11, t19, -t28, -t30, t35, 0.0,
-                0.1524 * t28, -(0.1524 * t35), 0.3048 * joint_accelerations[0],
-                0.02322576 * joint_accelerations[0], 0.0, 0.0, 0.0, 0.0, t11, -t28, -t19, 0.0, -t35,
-                -t30, t47 * t48 - t17 * t50 + 0.1524 * t24 + c2_arm * t61,
-                t15 * t47 - t56 * t50 + t3 * t73 - (t76 + t82), t92, t98, 0.0, 0.0, 0.0, 0.0, t123,
-                t110 * t132 + t103 * t135 + c2_arm * t140,
-                t103 * t147 - t110 * t150 - c2_arm * t153, t11 - t123,
-                c2_arm * t161 - (t110 * t163 + t103 * t165), t175,
-                t180 * t150 - t184 * t185 - t73 * t132 + c2_arm * t192 - t103 * t68, t216, t92, t98,
-                0.0, 0.0, 0.0, 0.0, t249, t236 * t265 + t227 * t268 + t103 * t273,
-                t227 * t285 - t236 * t288 + t103 * t291, t123 + t175 - t249,
-                t227 * t307 - t236 * t309 + t103 * t312, t326,
-                t335 * t288 - t339 * t340 + t180 * t265 - (t227 * t192 + t103 * t348), t379, t216,
-                t98, 0.0, 0.0, 0.0, 0.0, t420, t410 * t443 - t398 * t450 - t227 * t455,
-                t398 * t472 + t410 * t475 + t227 * t478, t249 + t326 - t420,
-                t398 * t501 - t410 * t503 - t227 * t506, t398 * t442 - t416 - t227 * t471,
-                t538 * t472 - t542 * t543 - t335 * t450 - (t410 * t348 + t227 * t551),
-                t542 * t503 - t538 * t580 - t335 * t443 + t398 * t348 + t227 * t588, -t379, t98,
+                ::overact::math::sign(joint_velocities[0]), 1.0, t11, t19, -t28, t29, t34, 0.0,
+                0.1524 * t28, -(0.1524 * t34), 0.3048 * joint_accelerations[0],
+                0.02322576 * joint_accelerations[0], 0.0, 0.0, 0.0, 0.0, t11, -t28, -t19, 0.0, -t34,
+                t29, t46 * t47 - t17 * t49 + 0.1524 * t24 + c2_arm * t60,
+                t15 * t46 - t55 * t49 + t3 * t72 - (t75 + t81), t91, t97, 0.0, 0.0, 0.0, 0.0, t122,
+                t109 * t131 + t102 * t134 + c2_arm * t139,
+                t102 * t146 - t109 * t149 - c2_arm * t152, t11 - t122,
+                c2_arm * t160 - (t109 * t162 + t102 * t164), t174,
+                t179 * t149 - t183 * t184 - t72 * t131 + c2_arm * t191 - t102 * t67, t215, t91, t97,
+                0.0, 0.0, 0.0, 0.0, t248, t235 * t264 + t226 * t267 + t102 * t272,
+                t226 * t284 - t235 * t287 + t102 * t290, t122 + t174 - t248,
+                t226 * t306 - t235 * t308 + t102 * t311, t325,
+                t334 * t287 - t338 * t339 + t179 * t264 - (t226 * t191 + t102 * t347), t378, t215,
+                t97, 0.0, 0.0, 0.0, 0.0, t419, t409 * t442 - t397 * t449 - t226 * t454,
+                t397 * t471 + t409 * t474 + t226 * t477, t248 + t325 - t419,
+                t397 * t500 - t409 * t502 - t226 * t505, t397 * t441 - t415 - t226 * t470,
+                t537 * t471 - t541 * t542 - t334 * t449 - (t409 * t347 + t226 * t550),
+                t541 * t502 - t537 * t579 - t334 * t442 + t397 * t347 + t226 * t587, -t378, t97,
                 0.0, 0.0, 0.0, 0.0,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t12, t22, -t3, t12, -t15, joint_accelerations[1], t39,
-                t43, 0.0, 0.0, joint_accelerations[1], joint_velocities[1],
+                0.0, 0.0, 0.0, 0.0, 0.0, -t12, t22, -t3, t12, -t15, joint_accelerations[1], t38,
+                t42, 0.0, 0.0, joint_accelerations[1], joint_velocities[1],
                 ::overact::math::sign(joint_velocities[1]), 1.0, -t12, -t3, -t22,
-                joint_accelerations[1], t15, t12, -(joints[2] * t48 + t68), -(joints[2] * t15), t93,
-                t99, 0.0, 0.0, 0.0, 0.0, t126, c4_arm * t135 - s4_arm * t132,
-                s4_arm * t150 + c4_arm * t147, -(t31 + t126), s4_arm * t163 - c4_arm * t165, t177,
-                -(t197 * t185 + t199 * t150 + c4_arm * t68), t221, t93, t99, 0.0, 0.0, 0.0, 0.0,
-                t256, c4_arm * t273 - (t250 * t265 + t252 * t268),
-                t250 * t288 - t252 * t285 + c4_arm * t291, t126 + t177 - t256,
-                t250 * t309 - t252 * t307 + c4_arm * t312, t330,
-                t192 * t252 - c4_arm * t348 - (t355 * t340 + t357 * t288 + t199 * t265), t388, t221,
-                t99, 0.0, 0.0, 0.0, 0.0, t431, t427 * t443 - t423 * t450 + t252 * t455,
-                t423 * t472 + t427 * t475 - t252 * t478, t256 + t330 - t431,
-                t423 * t501 - t427 * t503 + t252 * t506, t423 * t442 - t428 + t252 * t471,
-                t357 * t450 - (t558 * t543 + t562 * t472) + t252 * t551 - t348 * t427,
-                t558 * t503 + t562 * t580 + t357 * t443 + t348 * t423 - t252 * t588, -t388, t99,
+                joint_accelerations[1], t15, t12, -(joints[2] * t47 + t67), -(joints[2] * t15), t92,
+                t98, 0.0, 0.0, 0.0, 0.0, t125, c4_arm * t134 - s4_arm * t131,
+                s4_arm * t149 + c4_arm * t146, -(t30 + t125), s4_arm * t162 - c4_arm * t164, t176,
+                -(t196 * t184 + t198 * t149 + c4_arm * t67), t220, t92, t98, 0.0, 0.0, 0.0, 0.0,
+                t255, c4_arm * t272 - (t249 * t264 + t251 * t267),
+                t249 * t287 - t251 * t284 + c4_arm * t290, t125 + t176 - t255,
+                t249 * t308 - t251 * t306 + c4_arm * t311, t329,
+                t191 * t251 - c4_arm * t347 - (t354 * t339 + t356 * t287 + t198 * t264), t387, t220,
+                t98, 0.0, 0.0, 0.0, 0.0, t430, t426 * t442 - t422 * t449 + t251 * t454,
+                t422 * t471 + t426 * t474 - t251 * t477, t255 + t329 - t430,
+                t422 * t500 - t426 * t502 + t251 * t505, t422 * t441 - t427 + t251 * t470,
+                t356 * t449 - (t557 * t542 + t561 * t471) + t251 * t550 - t347 * t426,
+                t557 * t502 + t561 * t579 + t356 * t442 + t347 * t422 - t251 * t587, -t387, t98,
                 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t23, -t3, -t65, t68,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t23, -t3, -t64, t67,
                 joint_accelerations[2], joint_velocities[2],
-                ::overact::math::sign(joint_velocities[2]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t132,
-                t135, -t65, t68, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                s5_arm * t340 - c5_arm * t288, t391, t135, t68, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, t434 * t543 + t432 * t472 + c5_arm * t450,
-                c5_arm * t443 - (t434 * t503 + t432 * t580), -t391, t68, 0.0, 0.0, 0.0, 0.0,
+                ::overact::math::sign(joint_velocities[2]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t131,
+                t134, -t64, t67, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                s5_arm * t339 - c5_arm * t287, t390, t134, t67, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, t433 * t542 + t431 * t471 + c5_arm * t449,
+                c5_arm * t442 - (t433 * t502 + t431 * t579), -t390, t67, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                -t121, t140, -t153, t121, t161, t149, t192, -t213, 0.0, 0.0, joint_accelerations[3],
-                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, -t259,
-                s5_arm * t265 - c5_arm * t268, -(s5_arm * t288 + c5_arm * t285), t259 - t165,
-                -(s5_arm * t309 + c5_arm * t307), t332, c5_arm * t192, -t392, -t213, 0.0, 0.0, 0.0,
-                0.0, 0.0, t438, t434 * t450 + t432 * t443 + c5_arm * t455,
-                t432 * t475 - t434 * t472 - c5_arm * t478, t332 - t259 - t438,
-                c5_arm * t506 - (t434 * t501 + t432 * t503), c5_arm * t471 - (t434 * t442 + t433),
-                c5_arm * t551 - t348 * t432, -(t348 * t434 + c5_arm * t588), t392, 0.0, 0.0, 0.0,
+                -t120, t139, -t152, t120, t160, t148, t191, -t212, 0.0, 0.0, joint_accelerations[3],
+                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, -t258,
+                s5_arm * t264 - c5_arm * t267, -(s5_arm * t287 + c5_arm * t284), t258 - t164,
+                -(s5_arm * t308 + c5_arm * t306), t331, c5_arm * t191, -t391, -t212, 0.0, 0.0, 0.0,
+                0.0, 0.0, t437, t433 * t449 + t431 * t442 + c5_arm * t454,
+                t431 * t474 - t433 * t471 - c5_arm * t477, t331 - t258 - t437,
+                c5_arm * t505 - (t433 * t500 + t431 * t502), c5_arm * t470 - (t433 * t441 + t432),
+                c5_arm * t550 - t347 * t431, -(t347 * t433 + c5_arm * t587), t391, 0.0, 0.0, 0.0,
                 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t247, t273, t291,
-                -t247, t312, t287, -t348, -t376, 0.0, 0.0, joint_accelerations[4],
-                joint_velocities[4], ::overact::math::sign(joint_velocities[4]), 1.0, t441,
-                c6_arm * t443 - s6_arm * t450, s6_arm * t472 + c6_arm * t475, t307 - t441,
-                s6_arm * t501 - c6_arm * t503, s6_arm * t442 - t440, -(c6_arm * t348),
-                s6_arm * t348, t376, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t246, t272, t290,
+                -t246, t311, t286, -t347, -t375, 0.0, 0.0, joint_accelerations[4],
+                joint_velocities[4], ::overact::math::sign(joint_velocities[4]), 1.0, t440,
+                c6_arm * t442 - s6_arm * t449, s6_arm * t471 + c6_arm * t474, t306 - t440,
+                s6_arm * t500 - c6_arm * t502, s6_arm * t441 - t439, -(c6_arm * t347),
+                s6_arm * t347, t375, 0.0, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t418, t455, -t478, t418, t506,
-                t471, t551, -t588, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t417, t454, -t477, t417, t505,
+                t470, t550, -t587, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
                 ::overact::math::sign(joint_velocities[5]), 1.0,
             ],
         ]
@@ -628,7 +626,9 @@ impl Stanford {
         joint_velocities: &[f64; 6],
         joint_accelerations: &[f64; 6],
     ) -> [[f64; 55]; 6] {
-        let (s2_arm, c2_arm) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_arm, c2_arm), (s4_arm, c4_arm), (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
+            joints[1], joints[3], joints[4], joints[5],
+        ]);
         let t3 = s2_arm * joint_accelerations[0];
         let t4 = c2_arm * joint_velocities[0];
         let t5 = joint_velocities[1] * t4;
@@ -663,7 +663,6 @@ impl Stanford {
         let t75 = joints[2] * t29;
         let t77 = 2.0 * (joint_velocities[1] * joint_velocities[2]) - (t41 + t75);
         let t78 = c2_arm * t77;
-        let (s4_arm, c4_arm) = ::overact::math::sin_cos(joints[3]);
         let t99 = s2_arm * s4_arm;
         let t102 = s4_arm * joint_velocities[1] - c4_arm * t8;
         let t103 = t4 + joint_velocities[3];
@@ -699,7 +698,6 @@ impl Stanford {
         let t193 = joints[2] * s4_arm;
         let t199 = t134 + t142;
         let t207 = c4_arm * t77 + s4_arm * t57;
-        let (s5_arm, c5_arm) = ::overact::math::sin_cos(joints[4]);
         let t221 = t106 * s5_arm - c2_arm * c5_arm;
         let t224 = c5_arm * t102 - s5_arm * t103;
         let t225 = t112 + joint_velocities[4];
@@ -736,7 +734,6 @@ impl Stanford {
         let t346 = s5_arm * t191;
         let t358 = t265 + t278;
         let t365 = c5_arm * t207 - s5_arm * t64;
-        let (s6_arm, c6_arm) = ::overact::math::sin_cos(joints[5]);
         let t387 = t99 * s6_arm - t230 * c6_arm;
         let t393 = c6_arm * t225 - s6_arm * t224;
         let t395 = c6_arm * t238 + s6_arm * t281 + joint_velocities[5] * t393;
@@ -893,7 +890,9 @@ impl Stanford {
         joint_accelerations: &[f64; 6],
         parameters: &[f64; 75],
     ) -> [f64; 6] {
-        let (s2_arm, c2_arm) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_arm, c2_arm), (s4_arm, c4_arm), (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
+            joints[1], joints[3], joints[4], joints[5],
+        ]);
         let t10 = 0.1524 * s2_arm;
         let t11 = s2_arm * joint_velocities[0];
         let t12 = c2_arm * joint_velocities[0];
@@ -955,7 +954,6 @@ impl Stanford {
             - parameters[22] * t51 - parameters[23] * t59 + parameters[24] * t51;
         let t164 = c2_arm * (t142 + parameters[25] * t102 - parameters[26] * t110)
             - s2_arm * (t158 + parameters[26] * t122 - parameters[27] * t102);
-        let (s4_arm, c4_arm) = ::overact::math::sin_cos(joints[3]);
         let t171 = s4_arm * t92 - c4_arm * t30;
         let t174 = s4_arm * joint_velocities[1] - c4_arm * t11;
         let t177 = s4_arm * t11 + c4_arm * joint_velocities[1];
@@ -1004,7 +1002,6 @@ impl Stanford {
             - parameters[40] * t199;
         let t294 = t171 * t201 + t205 * t225 - t10 * t236 + t239 * t255 - t257 * t273
             + c2_arm * t291;
-        let (s5_arm, c5_arm) = ::overact::math::sin_cos(joints[4]);
         let t300 = c5_arm * t171 + s5_arm * t10;
         let t303 = c5_arm * t174 - s5_arm * t183;
         let t304 = t177 + joint_velocities[4];
@@ -1052,7 +1049,6 @@ impl Stanford {
             - parameters[54] * t328;
         let t427 = t300 * t330 + t334 * t354 + t205 * t365 + t370 * t386 - t390 * t406
             + t239 * t424;
-        let (s6_arm, c6_arm) = ::overact::math::sin_cos(joints[5]);
         let t436 = c6_arm * t303 + s6_arm * t304;
         let t439 = c6_arm * t304 - s6_arm * t303;
         let t440 = t436 * t439;
@@ -1158,7 +1154,9 @@ impl Stanford {
     /// 678 operations (297 additions, 381 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 0 signs, 666 intermediates.
     #[must_use]
     pub fn mass_matrix(joints: &[f64; 6], parameters: &[f64; 75]) -> [[f64; 6]; 6] {
-        let (s2_arm, c2_arm) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_arm, c2_arm), (s4_arm, c4_arm), (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
+            joints[1], joints[3], joints[4], joints[5],
+        ]);
         let t3 = 0.1524 * c2_arm;
         let t4 = c2_arm * parameters[13];
         let t8 = 0.1524 * s2_arm;
@@ -1181,7 +1179,6 @@ impl Stanford {
             - s2_arm
                 * (c2_arm * parameters[21] - s2_arm * parameters[19] - 0.1524 * t42
                     - parameters[27] * t29);
-        let (s4_arm, c4_arm) = ::overact::math::sin_cos(joints[3]);
         let t69 = s4_arm * t29 - c4_arm * t3;
         let t70 = s2_arm * s4_arm;
         let t79 = s4_arm * t3 + c4_arm * t29;
@@ -1202,7 +1199,6 @@ impl Stanford {
             + parameters[39] * t79 - parameters[40] * t69;
         let t128 = t28 + t40 + t8 * t43 + t62 + t87 + t8 * t92 + t104 - t114
             + c2_arm * t124;
-        let (s5_arm, c5_arm) = ::overact::math::sin_cos(joints[4]);
         let t133 = c5_arm * t69 + s5_arm * t8;
         let t138 = t81 * s5_arm - c2_arm * c5_arm;
         let t145 = c5_arm * t8 - s5_arm * t69;
@@ -1224,7 +1220,6 @@ impl Stanford {
                 * (parameters[56] * t79
                     - (t138 * parameters[53] + t149 * parameters[54])) + t172 - t182
             + t70 * t192;
-        let (s6_arm, c6_arm) = ::overact::math::sin_cos(joints[5]);
         let t201 = c6_arm * t133 + s6_arm * t79;
         let t204 = t149 * s6_arm + t70 * c6_arm;
         let t213 = c6_arm * t79 - s6_arm * t133;
@@ -1389,7 +1384,9 @@ impl Stanford {
         joint_velocities: &[f64; 6],
         parameters: &[f64; 75],
     ) -> [f64; 6] {
-        let (s2_arm, c2_arm) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_arm, c2_arm), (s4_arm, c4_arm), (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
+            joints[1], joints[3], joints[4], joints[5],
+        ]);
         let t6 = 0.1524 * s2_arm;
         let t7 = s2_arm * joint_velocities[0];
         let t8 = c2_arm * joint_velocities[0];
@@ -1438,7 +1435,6 @@ impl Stanford {
         let t143 = joint_velocities[0] * parameters[2]
             + ::overact::math::signed(parameters[3], joint_velocities[0]) + parameters[4]
             + t30 - t71 + t99 + t6 * t106 + t141;
-        let (s4_arm, c4_arm) = ::overact::math::sin_cos(joints[3]);
         let t148 = s4_arm * t74 - c4_arm * t20;
         let t151 = s4_arm * joint_velocities[1] - c4_arm * t7;
         let t154 = s4_arm * t7 + c4_arm * joint_velocities[1];
@@ -1484,7 +1480,6 @@ impl Stanford {
             - parameters[40] * t173;
         let t266 = t148 * t175 + t179 * t197 - t6 * t208 + t211 * t227 - t229 * t245
             + c2_arm * t263;
-        let (s5_arm, c5_arm) = ::overact::math::sin_cos(joints[4]);
         let t272 = c5_arm * t148 + s5_arm * t6;
         let t275 = c5_arm * t151 - s5_arm * t159;
         let t276 = t154 + joint_velocities[4];
@@ -1531,7 +1526,6 @@ impl Stanford {
             - parameters[54] * t299;
         let t398 = t272 * t301 + t305 * t325 + t179 * t336 + t341 * t357 - t361 * t377
             + t211 * t395;
-        let (s6_arm, c6_arm) = ::overact::math::sin_cos(joints[5]);
         let t407 = c6_arm * t275 + s6_arm * t276;
         let t410 = c6_arm * t276 - s6_arm * t275;
         let t411 = t407 * t410;

@@ -145,8 +145,9 @@ impl ThreeLegPoint {
     pub fn pose_in_closed_form(
         actuators: &[f64; 3],
     ) -> Result<[f64; 2], ::overact::Error> {
-        let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(actuators[1]);
-        let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(actuators[0]);
+        let [(s1_leg2, c1_leg2), (s1_leg1, c1_leg1)] = ::overact::math::sin_cos_all([
+            actuators[1], actuators[0],
+        ]);
         let t9 = 0.24 * s1_leg1;
         let t10 = 0.24 * (0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2)
             - 0.3031088913245535 + t9;
@@ -360,21 +361,19 @@ impl ThreeLegPoint {
         joints: &[f64; 6],
     ) -> Result<[[f64; 2]; 3], ::overact::Error> {
         let t0 = joints[0] + joints[1];
-        let (s12_leg1, c12_leg1) = ::overact::math::sin_cos(t0);
-        let s2_leg1 = ::overact::math::sin_cos(joints[1]).0;
+        let t6 = joints[2] + joints[3];
+        let t15 = joints[4] + joints[5];
+        let [(s12_leg1, c12_leg1), (s2_leg1, _), (s12_leg2, c12_leg2), (s2_leg2, _),
+        (s12_leg3, c12_leg3), (s2_leg3, _)] = ::overact::math::sin_cos_all([
+            t0, joints[1], t6, joints[3], t15, joints[5],
+        ]);
         ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
         let t4 = 4.166666666666667 / s2_leg1;
         let minus_g1_vx_leg1 = s12_leg1 * t4;
-        let t6 = joints[2] + joints[3];
-        let (s12_leg2, c12_leg2) = ::overact::math::sin_cos(t6);
-        let s2_leg2 = ::overact::math::sin_cos(joints[3]).0;
-        ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
         let t13 = 4.166666666666667 / s2_leg2;
         let g1_vx_leg2 = (0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2) * t13;
-        let t15 = joints[4] + joints[5];
-        let (s12_leg3, c12_leg3) = ::overact::math::sin_cos(t15);
-        let s2_leg3 = ::overact::math::sin_cos(joints[5]).0;
-        ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
         let t22 = 4.166666666666667 / s2_leg3;
         let g1_vx_leg3 = (0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3) * t22;
         let g1_vy_leg1 = c12_leg1 * t4;
@@ -476,17 +475,15 @@ impl ThreeLegPoint {
         _pose: &[f64; 2],
         joints: &[f64; 6],
     ) -> [[f64; 6]; 6] {
-        let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(joints[0]);
         let t2 = joints[0] + joints[1];
-        let (s12_leg1, c12_leg1) = ::overact::math::sin_cos(t2);
-        let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(joints[2]);
         let t16 = joints[2] + joints[3];
-        let (s12_leg2, c12_leg2) = ::overact::math::sin_cos(t16);
+        let t39 = joints[4] + joints[5];
+        let [(s1_leg1, c1_leg1), (s12_leg1, c12_leg1), (s1_leg2, c1_leg2),
+        (s12_leg2, c12_leg2), (s1_leg3, c1_leg3), (s12_leg3, c12_leg3)] = ::overact::math::sin_cos_all([
+            joints[0], t2, joints[2], t16, joints[4], t39,
+        ]);
         let t21 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
         let t29 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
-        let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(joints[4]);
-        let t39 = joints[4] + joints[5];
-        let (s12_leg3, c12_leg3) = ::overact::math::sin_cos(t39);
         let t44 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
         let t52 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
         [
@@ -541,11 +538,11 @@ impl ThreeLegPoint {
         joints: &[f64; 6],
     ) -> [[f64; 2]; 3] {
         let t0 = joints[0] + joints[1];
-        let (s12_leg1, c12_leg1) = ::overact::math::sin_cos(t0);
         let t4 = joints[2] + joints[3];
-        let (s12_leg2, c12_leg2) = ::overact::math::sin_cos(t4);
         let t11 = joints[4] + joints[5];
-        let (s12_leg3, c12_leg3) = ::overact::math::sin_cos(t11);
+        let [(s12_leg1, c12_leg1), (s12_leg2, c12_leg2), (s12_leg3, c12_leg3)] = ::overact::math::sin_cos_all([
+            t0, t4, t11,
+        ]);
         [
             [-(0.24 * s12_leg1), 0.24 * c12_leg1],
             [
@@ -572,9 +569,9 @@ impl ThreeLegPoint {
         _pose: &[f64; 2],
         joints: &[f64; 6],
     ) -> [[f64; 3]; 3] {
-        let s2_leg1 = ::overact::math::sin_cos(joints[1]).0;
-        let s2_leg2 = ::overact::math::sin_cos(joints[3]).0;
-        let s2_leg3 = ::overact::math::sin_cos(joints[5]).0;
+        let [(s2_leg1, _), (s2_leg2, _), (s2_leg3, _)] = ::overact::math::sin_cos_all([
+            joints[1], joints[3], joints[5],
+        ]);
         [
             [-(0.0576 * s2_leg1), 0.0, 0.0], [0.0, -(0.0576 * s2_leg2), 0.0],
             [0.0, 0.0, -(0.0576 * s2_leg3)],
@@ -1151,9 +1148,13 @@ impl ThreeLegPoint {
         twist: &[f64; 2],
         acceleration: &[f64; 2],
     ) -> Result<[[f64; 31]; 2], ::overact::Error> {
-        let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
+        let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
+        (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
+            joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
+        ]);
         ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
         let t10 = 4.166666666666667 / s2_leg1;
@@ -1177,9 +1178,6 @@ impl ThreeLegPoint {
         let t48 = 4.166666666666667 * acceleration[0];
         let t52 = 4.166666666666667 * acceleration[1];
         let t65 = rate_2_leg1 - rate_1_leg1;
-        let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(joints[2]);
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[3]);
-        ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
         let t81 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
@@ -1205,9 +1203,6 @@ impl ThreeLegPoint {
         let t127 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
         let t128 = g2_vy_leg2 * minus_rate_dot_2_leg2;
         let t144 = rate_2_leg2 - rate_1_leg2;
-        let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(joints[4]);
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[5]);
-        ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
         let t160 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
@@ -1653,10 +1648,14 @@ impl ThreeLegPoint {
         twist: &[f64; 2],
         acceleration: &[f64; 2],
     ) -> Result<[[f64; 31]; 2], ::overact::Error> {
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
+        let [(s2_leg1, c2_leg1), (s1_leg1, c1_leg1), (s1_leg2, c1_leg2),
+        (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
+            joints[1], joints[0], joints[2], joints[3], joints[4], joints[5],
+        ]);
         ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
         let t2 = 4.166666666666667 / s2_leg1;
-        let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(joints[0]);
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
         let g2_vx_leg1 = s1_leg1 * t2;
@@ -1670,9 +1669,6 @@ impl ThreeLegPoint {
         let t27 = rate_1_leg1 * rate_1_leg1;
         let t28 = 0.24 * c2_leg1;
         let minus_rate_dot_1_leg1 = t2 * (t21 - t27 * t28);
-        let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(joints[2]);
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[3]);
-        ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
         let t45 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
@@ -1717,9 +1713,6 @@ impl ThreeLegPoint {
         let t137 = minus_g2_vx_leg2 * t72 - g2_vy_leg2 * t70;
         let t138 = t137 * minus_rate_dot_2_leg2;
         let t148 = rate_2_leg2 - rate_1_leg2;
-        let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(joints[4]);
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[5]);
-        ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
         let t164 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
@@ -2150,9 +2143,13 @@ impl ThreeLegPoint {
         twist: &[f64; 2],
         acceleration: &[f64; 2],
     ) -> Result<[[f64; 22]; 2], ::overact::Error> {
-        let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
+        let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
+        (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
+            joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
+        ]);
         ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
         let t10 = 4.166666666666667 / s2_leg1;
@@ -2167,9 +2164,6 @@ impl ThreeLegPoint {
         let t27 = rate_1_leg1 * rate_1_leg1;
         let t28 = 0.24 * c2_leg1;
         let minus_rate_dot_1_leg1 = t10 * (t22 - t27 * t28);
-        let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(joints[2]);
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[3]);
-        ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
         let t46 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
@@ -2188,9 +2182,6 @@ impl ThreeLegPoint {
         let t73 = rate_1_leg2 * rate_1_leg2;
         let t74 = 0.24 * c2_leg2;
         let minus_rate_dot_1_leg2 = t47 * (t68 - t73 * t74);
-        let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(joints[4]);
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[5]);
-        ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
         let t92 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
@@ -2616,17 +2607,18 @@ impl ThreeLegPoint {
         twist: &[f64; 2],
         acceleration: &[f64; 2],
     ) -> Result<[[f64; 22]; 2], ::overact::Error> {
-        let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(joints[2]);
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[3]);
+        let [(s1_leg2, c1_leg2), (s2_leg2, c2_leg2), (s1_leg1, c1_leg1),
+        (s2_leg1, c2_leg1), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
+            joints[2], joints[3], joints[0], joints[1], joints[4], joints[5],
+        ]);
         ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
+        ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
+        ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
         let t12 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
         let t13 = 4.166666666666667 / s2_leg2;
         let minus_g1_vy_leg2 = t12 * t13;
-        let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
-        ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
         let t25 = 4.166666666666667 / s2_leg1;
@@ -2662,9 +2654,6 @@ impl ThreeLegPoint {
         let t85 = rate_1_leg2 * rate_1_leg2;
         let t86 = 0.24 * c2_leg2;
         let minus_rate_dot_1_leg2 = t13 * (t81 - t85 * t86);
-        let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(joints[4]);
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[5]);
-        ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
         let t102 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
@@ -3263,24 +3252,22 @@ impl ThreeLegPoint {
         acceleration: &[f64; 2],
         parameters: &[f64; 31],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let (s1_leg1, c1_leg1) = ::overact::math::sin_cos(joints[0]);
-        let (s2_leg1, c2_leg1) = ::overact::math::sin_cos(joints[1]);
+        let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
+        (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
+            joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
+        ]);
         ::overact::guard::leg(s2_leg1, 0.9979902251751789, "leg1")?;
+        ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
+        ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
         let t10 = 4.166666666666667 / s2_leg1;
         let g1_vy_leg1 = c12_leg1 * t10;
-        let (s1_leg2, c1_leg2) = ::overact::math::sin_cos(joints[2]);
-        let (s2_leg2, c2_leg2) = ::overact::math::sin_cos(joints[3]);
-        ::overact::guard::leg(s2_leg2, 0.9979902251751789, "leg2")?;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
         let t25 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
         let t26 = 4.166666666666667 / s2_leg2;
         let minus_g1_vy_leg2 = t25 * t26;
-        let (s1_leg3, c1_leg3) = ::overact::math::sin_cos(joints[4]);
-        let (s2_leg3, c2_leg3) = ::overact::math::sin_cos(joints[5]);
-        ::overact::guard::leg(s2_leg3, 0.9979902251751788, "leg3")?;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
         let t42 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;

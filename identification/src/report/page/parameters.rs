@@ -133,9 +133,9 @@ fn comparison(contents: &Contents<'_>, estimates: &[&Estimate]) -> String {
     }
     .html();
     if let Some(note) = published.first().and(contents.published) {
-        let _ = write!(
+        let _ = writeln!(
             table,
-            "<p class=\"note\">Published: {}, deviation in parentheses.{}</p>\n",
+            "<p class=\"note\">Published: {}, deviation in parentheses.{}</p>",
             escape(note.source.trim_end_matches('.')),
             note.note
                 .as_deref()
