@@ -20,6 +20,7 @@ use std::{
 
 /// Where reports go, and what they are compared with.
 #[derive(Debug, clap::Args)]
+#[group(skip)]
 pub(crate) struct Arguments {
     /// Write a report: a page for a browser (.html), all numbers and plotted series (.json), or all
     /// numbers as one flat table (.csv); once for each

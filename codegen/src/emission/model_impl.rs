@@ -184,7 +184,7 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
         Some(_) if is_redundant => (
             " Where the iteration fails from there, it starts again from `pose_in_closed_form`.",
             quote! {
-                let from = |mut pose: [f64; Self::POSE]| #iterate.map(|()| pose);
+                let from = |mut pose: [f64; Self::POSE]| { #iterate.map(|()| pose) };
                 from(*start).or_else(|error| match Self::pose_in_closed_form(actuators) {
                     Ok(pose) => from(pose),
                     Err(_) => Err(error),

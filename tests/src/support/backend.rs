@@ -177,6 +177,7 @@ macro_rules! redundant_backend {
             inverse_dynamics_preloaded(pose, twist, acceleration, parameters, preload);
             project_torques(pose, torques);
             null_space(pose);
+            pose_in_closed_form(actuators);
             pose_from_actuators(actuators, start);
         }
     };

@@ -262,6 +262,7 @@ fn kinematic(
 ) -> Result<Option<DMatrix<f64>>, Failure> {
     let (mechanism, state, jacobians) = (dynamics.mechanism, dynamics.state, &dynamics.jacobians);
     Ok(Some(match family {
+        Family::PoseInClosedForm => DMatrix::from_column_slice(state.pose.len(), 1, &state.pose),
         Family::Joints => vector(&state.q),
         Family::ActuatorPositions => vector(&state.q.select_rows(&mechanism.actuated())),
         Family::InverseJacobian => jacobians.inverse.clone(),

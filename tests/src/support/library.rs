@@ -25,6 +25,7 @@ macro_rules! library {
             planar_4prr: Planar4Prr,
             rx90: Rx90,
             schoenflies_4: Schoenflies4,
+            scotch_yoke: ScotchYoke,
             spherical_3rrr: Spherical3Rrr,
             spherical_4rrr: Spherical4Rrr,
             stanford: Stanford,
