@@ -66,32 +66,46 @@ impl<'a> BodyMotion<'a> {
                 Vector3::unit(arena, k).cross(self.acceleration),
             ]
         };
-        let second = |i: usize, j: usize| {
-            let momentum = |w: Vector3<'a>| {
-                let mut h = zero;
-                h.0[i] = w.0[j];
-                h.0[j] = w.0[i];
-                h
-            };
-            [
-                zero,
-                momentum(self.alpha) + self.omega.cross(momentum(self.omega)),
-            ]
-        };
         match parameter {
             P::M => [self.acceleration, zero],
             P::Mx => first(0),
             P::My => first(1),
             P::Mz => first(2),
-            P::Xx => second(0, 0),
-            P::Xy => second(0, 1),
-            P::Xz => second(0, 2),
-            P::Yy => second(1, 1),
-            P::Yz => second(1, 2),
-            P::Zz => second(2, 2),
             P::Ia | P::Fv | P::Fs | P::Off => [zero; 2],
+            _ => [
+                zero,
+                second_moment(arena, parameter, self.omega, self.alpha),
+            ],
         }
     }
+}
+
+/// The moment in a body's axes per unit of a second moment: h(ω̇) + ω × h(ω), with the angular momentum
+/// h that the parameter gives.
+#[must_use]
+pub(super) fn second_moment<'a>(
+    arena: &'a Arena,
+    parameter: StandardParameter,
+    omega: Vector3<'a>,
+    alpha: Vector3<'a>,
+) -> Vector3<'a> {
+    use StandardParameter as P;
+    let (i, j) = match parameter {
+        P::Xx => (0, 0),
+        P::Xy => (0, 1),
+        P::Xz => (0, 2),
+        P::Yy => (1, 1),
+        P::Yz => (1, 2),
+        P::Zz => (2, 2),
+        _ => return Vector3::zero(arena),
+    };
+    let momentum = |w: Vector3<'a>| {
+        let mut h = Vector3::zero(arena);
+        h.0[i] = w.0[j];
+        h.0[j] = w.0[i];
+        h
+    };
+    momentum(alpha) + omega.cross(momentum(omega))
 }
 
 /// Motion of all bodies of a leg for quasi-velocities u and their derivatives. `None` if a sine or

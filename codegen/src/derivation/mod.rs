@@ -2,13 +2,15 @@
 //!
 //! [`leg`] opens the robot at its platform and closes it again, eqs. (9) to (13): quasi-velocities
 //! ([`rates`]), frames in the axes that suit the leg ([`orientation`]), and the wrenches that feel one joint alone ([`elimination`], [`bias`]). [`body`]
-//! runs the recursion of Newton and Euler in the bodies' own frames. [`regressor`] projects what each
+//! runs the recursion of Newton and Euler in the bodies' own frames, [`carried`] has those that move with the
+//! platform. [`regressor`] projects what each
 //! standard parameter produces on the platform, eq. (30), or on kept actuators, eq. (36). [`robot`] holds
 //! one derivation together. [`inverse_kinematics`] finds joints from a pose and [`forward_kinematics`] a
 //! pose from actuators, in closed form where there is one, and [`functions`] names what comes out of it.
 
 pub mod bias;
 pub mod body;
+pub mod carried;
 #[cfg(test)]
 mod closed_forms;
 pub mod configuration;

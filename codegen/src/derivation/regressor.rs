@@ -5,6 +5,7 @@
 //! joint parameter a scalar times the reduced Jacobian of that joint. Case 2 is the same with the rows
 //! ∂u_i/∂v J_a⁻¹, J_a being the kept rows of J_p^inv: rows are transformed once, never columns.
 
+use super::carried::CarriedBody;
 use super::elimination::{Rows, inverse};
 use super::functions::Combination;
 use super::linear::{dot, product, transposed};
@@ -141,6 +142,9 @@ impl<'a> Robot<'a> {
         match parameter {
             BodyParameter::Leg { leg, joint, symbol } if symbol.is_inertial() => {
                 self.arena.enter(&self.mechanism.legs[leg].name);
+                if let Some(body) = &motion.carried[leg][joint] {
+                    return self.project_carried(projection, body, symbol);
+                }
                 let body = &motion.bodies[leg][joint];
                 let forces = body.project(body.unit_wrench(self.arena, symbol));
                 self.project_leg(projection, leg, &forces)
@@ -154,13 +158,24 @@ impl<'a> Robot<'a> {
             }
             BodyParameter::Platform(symbol) | BodyParameter::Payload(symbol) => {
                 self.arena.enter("platform");
-                let Some(body) = &motion.platform else {
-                    return Vec::new();
-                };
-                let forces = body.project(body.unit_wrench(self.arena, symbol));
-                self.combine(&projection.platform, &forces)
+                let body = motion.platform.as_ref();
+                body.map_or_else(Vec::new, |b| self.project_carried(projection, b, symbol))
             }
         }
+    }
+
+    /// The column of a body that moves with the platform.
+    fn project_carried(
+        &self,
+        projection: &Projection<'a>,
+        body: &CarriedBody<'a>,
+        symbol: StandardParameter,
+    ) -> Vec<Expr<'a>> {
+        let forces = body.project(&self.twist, body.unit_wrench(self.arena, symbol));
+        if projection.on_platform {
+            return forces;
+        }
+        self.combine(&projection.platform, &forces)
     }
 
     /// A column from other columns. The platform's and each leg's parts are added up on their own, so
@@ -247,55 +262,68 @@ impl<'a> Robot<'a> {
         projection: &Projection<'a>,
         values: &[(BodyParameter, Expr<'a>)],
     ) -> Vec<Expr<'a>> {
-        let zero = Vector3::zero(self.arena);
         let mut total = vec![self.arena.zero(); self.mechanism.dof()];
-        let add = |total: &mut Vec<Expr<'a>>, part: Vec<Expr<'a>>| {
-            for (t, p) in total.iter_mut().zip(part) {
-                *t = *t + p;
-            }
-        };
+        // Forces on the twist coordinates, of all that moves with the platform.
+        let mut on_twist = vec![self.arena.zero(); self.twist.len()];
         for (l, leg) in self.mechanism.legs.iter().enumerate() {
             let mut forces = vec![self.arena.zero(); self.legs[l].rows.len()];
             for j in 0..leg.joints.len() {
-                let body = &motion.bodies[l][j];
-                let mut wrench = [zero; 2];
-                let mut own = self.arena.zero();
-                for (parameter, value) in values {
-                    match parameter {
-                        BodyParameter::Leg { leg, joint, symbol } if (*leg, *joint) == (l, j) => {
-                            if symbol.is_inertial() {
-                                add_wrench(
-                                    &mut wrench,
-                                    body.unit_wrench(self.arena, *symbol),
-                                    *value,
-                                );
-                            } else {
-                                own = own + self.joint_force(motion, l, j, *symbol) * *value;
-                            }
-                        }
-                        _ => {}
+                let own = |p: BodyParameter| match p {
+                    BodyParameter::Leg { leg, joint, symbol } if (leg, joint) == (l, j) => {
+                        Some(symbol)
+                    }
+                    _ => None,
+                };
+                match &motion.carried[l][j] {
+                    Some(body) => {
+                        let wrench =
+                            self.wrench(values, &own, &|s| body.unit_wrench(self.arena, s));
+                        add(&mut on_twist, body.project(&self.twist, wrench));
+                    }
+                    None => {
+                        let body = &motion.bodies[l][j];
+                        let wrench =
+                            self.wrench(values, &own, &|s| body.unit_wrench(self.arena, s));
+                        add(&mut forces, body.project(wrench));
                     }
                 }
-                for (i, force) in body.project(wrench).into_iter().enumerate() {
-                    let share = self
-                        .arena
-                        .number(self.legs[l].rates.joint[j].coefficient(i));
-                    forces[i] = forces[i] + force + own * share;
-                }
+                let on_joint = values.iter().filter_map(|(p, value)| {
+                    let symbol = own(*p).filter(|s| !s.is_inertial())?;
+                    Some(self.joint_force(motion, l, j, symbol) * *value)
+                });
+                let on_joint = on_joint.fold(self.arena.zero(), |sum, force| sum + force);
+                let form = &self.legs[l].rates.joint[j];
+                let shares = (0..forces.len()).map(|i| on_joint * form.coefficient(i));
+                add(&mut forces, shares.collect());
             }
             add(&mut total, self.combine(&projection.legs[l], &forces));
         }
         if let Some(body) = &motion.platform {
-            let mut wrench = [zero; 2];
-            for (parameter, value) in values {
-                if let BodyParameter::Platform(s) | BodyParameter::Payload(s) = parameter {
-                    add_wrench(&mut wrench, body.unit_wrench(self.arena, *s), *value);
-                }
+            let own = |p: BodyParameter| match p {
+                BodyParameter::Platform(symbol) | BodyParameter::Payload(symbol) => Some(symbol),
+                BodyParameter::Leg { .. } => None,
+            };
+            let wrench = self.wrench(values, &own, &|s| body.unit_wrench(self.arena, s));
+            add(&mut on_twist, body.project(&self.twist, wrench));
+        }
+        add(&mut total, self.combine(&projection.platform, &on_twist));
+        total
+    }
+
+    /// The wrench of those inertial parameters that are a body's own.
+    fn wrench(
+        &self,
+        values: &[(BodyParameter, Expr<'a>)],
+        own: &dyn Fn(BodyParameter) -> Option<StandardParameter>,
+        unit_wrench: &dyn Fn(StandardParameter) -> [Vector3<'a>; 2],
+    ) -> [Vector3<'a>; 2] {
+        let mut total = [Vector3::zero(self.arena); 2];
+        for (parameter, value) in values {
+            if let Some(symbol) = own(*parameter).filter(|s| s.is_inertial()) {
+                let [force, moment] = unit_wrench(symbol);
+                total[0] = total[0] + force.scaled(*value);
+                total[1] = total[1] + moment.scaled(*value);
             }
-            add(
-                &mut total,
-                self.combine(&projection.platform, &body.project(wrench)),
-            );
         }
         total
     }
@@ -323,7 +351,8 @@ fn normalised_sum<'a>(
     terms.fold(first, |sum, (x, c)| sum + x * (c / scale)) * scale
 }
 
-fn add_wrench<'a>(total: &mut [Vector3<'a>; 2], part: [Vector3<'a>; 2], factor: Expr<'a>) {
-    total[0] = total[0] + part[0].scaled(factor);
-    total[1] = total[1] + part[1].scaled(factor);
+fn add<'a>(total: &mut [Expr<'a>], part: Vec<Expr<'a>>) {
+    for (t, p) in total.iter_mut().zip(part) {
+        *t = *t + p;
+    }
 }

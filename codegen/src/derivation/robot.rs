@@ -3,6 +3,7 @@
 
 use super::bias::end_bias;
 use super::body::{BodyMotion, leg_bodies};
+use super::carried::{CarriedBody, Mount};
 use super::configuration::{Configuration, From};
 use super::elimination::Rows;
 use super::inverse_kinematics::{Task, solve_leg};
@@ -64,8 +65,10 @@ pub struct RobotMotion<'a> {
     pub u_dot: Vec<Vec<Expr<'a>>>,
     /// Bodies of every leg.
     pub bodies: Vec<Vec<BodyMotion<'a>>>,
+    /// Those bodies of every leg that move with the platform.
+    pub carried: Vec<Vec<Option<CarriedBody<'a>>>>,
     /// The platform.
-    pub platform: Option<BodyMotion<'a>>,
+    pub platform: Option<CarriedBody<'a>>,
 }
 
 /// Why a model cannot be derived in the wanted form.
@@ -244,10 +247,15 @@ impl<'a> Robot<'a> {
             .as_ref()
             .map(|p| p.motion(twist, acceleration));
         let gravity = Vector3::constant(self.arena, self.mechanism.gravity);
+        let carried = |mount: &Mount<'a>| {
+            let both = self.platform.as_ref().zip(platform.as_ref());
+            both.map(|(pose, motion)| CarriedBody::new(pose, motion, gravity, mount))
+        };
         let mut motion = RobotMotion {
             u: vec![],
             u_dot: vec![],
             bodies: vec![],
+            carried: vec![],
             platform: None,
         };
         for (leg, state) in self.mechanism.legs.iter().zip(&self.legs) {
@@ -277,27 +285,13 @@ impl<'a> Robot<'a> {
             )?;
             motion.u.push(u);
             motion.u_dot.push(u_dot);
+            let mounts = Mount::of_leg(self.arena, leg);
+            let on_platform = mounts.iter().map(|m| m.as_ref().and_then(&carried));
+            motion.carried.push(on_platform.collect());
             motion.bodies.push(bodies);
         }
         self.arena.enter("platform");
-        motion.platform = self
-            .platform
-            .as_ref()
-            .zip(platform.as_ref())
-            .map(|(pose, m)| {
-                let into = pose.rotation.transposed();
-                let zero = Vector3::zero(self.arena);
-                let partial = |c: &TwistCoordinate| match c {
-                    TwistCoordinate::Linear(a) => [into * Vector3::unit(self.arena, *a), zero],
-                    TwistCoordinate::Angular(a) => [zero, into * Vector3::unit(self.arena, *a)],
-                };
-                BodyMotion::new(
-                    into * m.angular_velocity,
-                    into * m.angular_acceleration,
-                    into * (m.acceleration - gravity),
-                    self.twist.iter().map(partial).collect(),
-                )
-            });
+        motion.platform = carried(&Mount::platform(self.arena));
         self.arena.enter("");
         Some(motion)
     }

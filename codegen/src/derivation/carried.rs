@@ -1,0 +1,132 @@
+//! Bodies that move with the platform: the platform itself, its payload, and the last bodies of legs
+//! that end rigidly.
+//!
+//! Such a body's motion is the platform's, so its parameters are projected on the twist coordinates
+//! directly and never pass through a leg's joints. Everything is written in the base's axes, where the
+//! twist is: with `U = [ω̇]× + [ω]×[ω]×` and the body's axes r_k, a first moment about r_k has the force
+//! U r_k, which the acceleration of every platform point is made of too, and the moment r_k × a.
+
+use super::body::second_moment;
+use super::platform::{PlatformMotion, PlatformPose, centripetal, constant_rotation};
+use crate::cas::{Arena, Expr, Matrix3, Number, Vector3};
+use crate::description::StandardParameter;
+use crate::mechanism::{End, Leg, TwistCoordinate};
+
+/// A frame that is fixed on the platform, in the platform frame.
+#[derive(Debug, Clone, Copy)]
+pub struct Mount<'a> {
+    /// Orientation, a constant.
+    rotation: Matrix3<'a>,
+    /// Origin, constants.
+    at: [Number; 3],
+}
+
+impl<'a> Mount<'a> {
+    /// The platform frame itself.
+    #[must_use]
+    pub fn platform(arena: &'a Arena) -> Self {
+        Self {
+            rotation: Matrix3::identity(arena),
+            at: [Number::ZERO; 3],
+        }
+    }
+
+    /// The frames of a leg's joints that are fixed on the platform: the last one, where the leg ends
+    /// rigidly. `None` for the others.
+    #[must_use]
+    pub fn of_leg(arena: &'a Arena, leg: &Leg) -> Vec<Option<Self>> {
+        let mut mounts = vec![None; leg.joints.len()];
+        if let (Some(End::Rigid(placement)), Some(last)) = (&leg.end, mounts.last_mut()) {
+            *last = Some(Self {
+                rotation: constant_rotation(arena, placement.rotation),
+                at: placement.at,
+            });
+        }
+        mounts
+    }
+}
+
+/// A body that moves with the platform, in the base's axes.
+#[derive(Debug, Clone)]
+pub struct CarriedBody<'a> {
+    /// Orientation of the platform.
+    platform: Matrix3<'a>,
+    /// Orientation of the body on the platform.
+    mounted: Matrix3<'a>,
+    /// Angular velocity in the body's axes.
+    omega: Vector3<'a>,
+    /// Angular acceleration in the body's axes.
+    alpha: Vector3<'a>,
+    /// `U r_k` as columns.
+    centripetal: Matrix3<'a>,
+    /// Acceleration of the body frame's origin less gravity.
+    acceleration: Vector3<'a>,
+    /// From the platform's origin to the body frame's.
+    arm: Vector3<'a>,
+}
+
+impl<'a> CarriedBody<'a> {
+    /// A body mounted on the platform.
+    #[must_use]
+    pub fn new(
+        pose: &PlatformPose<'a>,
+        motion: &PlatformMotion<'a>,
+        gravity: Vector3<'a>,
+        mount: &Mount<'a>,
+    ) -> Self {
+        let (omega, alpha) = (motion.angular_velocity, motion.angular_acceleration);
+        let arm = pose.arm(mount.at);
+        let of_platform = motion
+            .centripetal
+            .unwrap_or_else(|| centripetal(omega, alpha) * pose.rotation);
+        let into_platform = pose.rotation.transposed();
+        let into_body = mount.rotation.transposed();
+        Self {
+            platform: pose.rotation,
+            mounted: mount.rotation,
+            omega: into_body * (into_platform * omega),
+            alpha: into_body * (into_platform * alpha),
+            centripetal: of_platform * mount.rotation,
+            acceleration: motion.point_acceleration(mount.at, arm) - gravity,
+            arm,
+        }
+    }
+
+    /// The wrench at the body frame's origin per unit of an inertial parameter, in the base's axes.
+    #[must_use]
+    pub fn unit_wrench(&self, arena: &'a Arena, parameter: StandardParameter) -> [Vector3<'a>; 2] {
+        use StandardParameter as P;
+        let zero = Vector3::zero(arena);
+        let axes = || self.platform * self.mounted;
+        let first = |k: usize| {
+            let moment = axes().column(k).cross(self.acceleration);
+            [self.centripetal.column(k), moment]
+        };
+        match parameter {
+            P::M => [self.acceleration, zero],
+            P::Mx => first(0),
+            P::My => first(1),
+            P::Mz => first(2),
+            P::Ia | P::Fv | P::Fs | P::Off => [zero; 2],
+            _ => {
+                let moment = second_moment(arena, parameter, self.omega, self.alpha);
+                [zero, self.platform * (self.mounted * moment)]
+            }
+        }
+    }
+
+    /// The generalised forces on the twist coordinates of a wrench at the body frame's origin.
+    #[must_use]
+    pub fn project(
+        &self,
+        twist: &[TwistCoordinate],
+        [force, moment]: [Vector3<'a>; 2],
+    ) -> Vec<Expr<'a>> {
+        let turned = self.arm.cross(force) + moment;
+        let entry = |c: &TwistCoordinate| match c {
+            TwistCoordinate::Linear(axis) => force.0[*axis],
+            TwistCoordinate::Angular(axis) => turned.0[*axis],
+        };
+        twist.iter().map(entry).collect()
+    }
+}
