@@ -295,14 +295,11 @@ impl Arena {
             return handle;
         }
         let meaning = self.tables.borrow().meaning(&op);
-        let handle = match &op {
-            Op::Constant(_) | Op::Symbol(_) => self.push(op.clone(), meaning),
-            _ => self
-                .folded(&op, &meaning)
-                .or_else(|| self.same(&meaning))
-                .or_else(|| self.proportional(&op, &meaning))
-                .unwrap_or_else(|| self.push(op.clone(), meaning)),
+        let known = match &op {
+            Op::Constant(_) | Op::Symbol(_) => None,
+            _ => self.folded(&op, &meaning).or_else(|| self.same(&meaning)),
         };
+        let handle = known.unwrap_or_else(|| self.multiple_or_new(op.clone(), meaning));
         self.tables.borrow_mut().by_shape.insert(op, handle);
         handle
     }
@@ -329,14 +326,26 @@ impl Arena {
         tables.sample(found).agrees(meaning.sample).then_some(found)
     }
 
+    /// The rational multiple of a node that this one is, or else a node of its own.
+    fn multiple_or_new(&self, op: Op, meaning: Meaning) -> Handle {
+        let scaled = match op {
+            Op::Mul(a, b) => self.is_constant(a) || self.is_constant(b),
+            Op::Constant(_) => true,
+            _ => false,
+        };
+        let key = if scaled { None } else { ratio_key(&meaning) };
+        let multiple = match op {
+            Op::Symbol(_) => None,
+            _ => key.and_then(|key| self.proportional(key, &meaning)),
+        };
+        multiple.unwrap_or_else(|| self.push(op, meaning, key))
+    }
+
     /// The node of which this one is a rational multiple.
-    fn proportional(&self, op: &Op, meaning: &Meaning) -> Option<Handle> {
-        if matches!(op, Op::Mul(a, b) if self.is_constant(*a) || self.is_constant(*b)) {
-            return None;
-        }
+    fn proportional(&self, key: Element, meaning: &Meaning) -> Option<Handle> {
         let (other, ratio) = {
             let tables = self.tables.borrow();
-            let other = *tables.by_ratio.get(&ratio_key(meaning)?)?;
+            let other = *tables.by_ratio.get(&key)?;
             let theirs = tables.nodes[other as usize].meaning;
             let ratio = meaning.image[0] * theirs.image[0].inverse();
             if ratio * theirs.image[1] != meaning.image[1] {
@@ -360,12 +369,8 @@ impl Arena {
         )
     }
 
-    fn push(&self, op: Op, meaning: Meaning) -> Handle {
-        let scaled = match op {
-            Op::Mul(a, b) => self.is_constant(a) || self.is_constant(b),
-            Op::Constant(_) => true,
-            _ => false,
-        };
+    /// A new node; it is found by its ratio key if it has one.
+    fn push(&self, op: Op, meaning: Meaning, ratio: Option<Element>) -> Handle {
         let mut tables = self.tables.borrow_mut();
         let index = tables.nodes.len();
         let scope = tables.scope;
@@ -375,8 +380,8 @@ impl Arena {
             .by_meaning
             .entry(key)
             .or_insert(Handle::new(index, negative));
-        if let (false, Some(key)) = (scaled, ratio_key(&meaning)) {
-            tables.by_ratio.entry(key).or_insert(index as u32);
+        if let Some(ratio) = ratio {
+            tables.by_ratio.entry(ratio).or_insert(index as u32);
         }
         Handle::new(index, false)
     }

@@ -70,6 +70,20 @@ fn power(mut base: u64, mut exponent: u64) -> u64 {
     result
 }
 
+/// Inverse modulo `P` by Euclid's extended algorithm; zero for zero. A power would take ten times as
+/// long for the small denominators that most constants have.
+fn invert(a: u64) -> u64 {
+    let (mut r0, mut r1) = (P, a);
+    // The factors stay below P, which leaves room for a sign.
+    let (mut t0, mut t1) = (0_i64, 1_i64);
+    while r1 != 0 {
+        let quotient = r0 / r1;
+        (r0, r1) = (r1, r0 - quotient * r1);
+        (t0, t1) = (t1, t0 - quotient as i64 * t1);
+    }
+    t0.rem_euclid(P as i64) as u64
+}
+
 impl Element {
     /// Zero.
     pub const ZERO: Self = Self { re: 0, im: 0 };
@@ -113,8 +127,14 @@ impl Element {
     /// Multiplicative inverse; zero for zero.
     #[must_use]
     pub fn inverse(self) -> Self {
+        if self.im == 0 {
+            return Self {
+                re: invert(self.re),
+                im: 0,
+            };
+        }
         let norm = add(mul(self.re, self.re), mul(self.im, self.im));
-        let inverse = power(norm, P - 2);
+        let inverse = invert(norm);
         Self {
             re: mul(self.re, inverse),
             im: mul(sub(0, self.im), inverse),
@@ -194,12 +214,13 @@ impl Element {
     /// (Wang's rational reconstruction).
     #[must_use]
     pub fn to_rational(self) -> Option<(i64, i64)> {
-        const BOUND: i128 = 1 << 29;
+        const BOUND: i64 = 1 << 29;
         if self.im != 0 {
             return None;
         }
-        let (mut r0, mut r1) = (i128::from(P), i128::from(self.re));
-        let (mut t0, mut t1) = (0_i128, 1_i128);
+        // All numbers stay below P, which leaves room for a sign.
+        let (mut r0, mut r1) = (P as i64, self.re as i64);
+        let (mut t0, mut t1) = (0_i64, 1_i64);
         while r1 > BOUND {
             let quotient = r0 / r1;
             (r0, r1) = (r1, r0 - quotient * r1);
@@ -209,7 +230,7 @@ impl Element {
             return None;
         }
         let (numerator, denominator) = if t1 < 0 { (-r1, -t1) } else { (r1, t1) };
-        Some((numerator as i64, denominator as i64))
+        Some((numerator, denominator))
     }
 }
 
@@ -310,6 +331,21 @@ mod tests {
             );
         }
         assert_eq!(mul(P - 1, P - 1), 1);
+    }
+
+    #[test]
+    fn inverses_multiply_to_one() {
+        assert_eq!(Element::ZERO.inverse(), Element::ZERO);
+        for re in [1, 2, 7, 2800, P - 1, P / 2] {
+            let element = Element::from_parts(re, 0);
+            assert_eq!(element * element.inverse(), Element::ONE, "{re}");
+        }
+        for seed in 0..10_000 {
+            let real = Element::from_bits(mix(seed));
+            assert_eq!(real * real.inverse(), Element::ONE);
+            let complex = Element::from_parts(mix(seed), mix(!seed));
+            assert_eq!(complex * complex.inverse(), Element::ONE);
+        }
     }
 
     #[test]
