@@ -68,6 +68,7 @@ pub fn program(
         array(family.name(), shape),
         &derived.entries,
         &guards,
+        selection.effort,
     ))
 }
 

@@ -65,6 +65,7 @@ pub enum Op {
 /// The two random points of the field and the real point at which every node is evaluated.
 const POINTS: usize = 2;
 
+/// What a node evaluates to at these points.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Meaning {
     pub(crate) image: [Element; POINTS],
@@ -178,6 +179,21 @@ impl Arena {
     #[must_use]
     pub fn op(&self, index: usize) -> Op {
         self.tables.borrow().nodes[index].op.clone()
+    }
+
+    /// What a node evaluates to.
+    pub(crate) fn meaning_at(&self, index: usize) -> Meaning {
+        self.tables.borrow().nodes[index].meaning
+    }
+
+    /// The number of a node's heading.
+    pub(crate) fn scope_at(&self, index: usize) -> u32 {
+        self.tables.borrow().nodes[index].scope
+    }
+
+    /// The heading of that number.
+    pub(crate) fn scope_name(&self, scope: u32) -> String {
+        self.tables.borrow().scopes[scope as usize].clone()
     }
 
     /// A constant of the graph.

@@ -8,6 +8,7 @@ use super::linear::{Factored, apply, null_space, product, pseudo_inverse, transp
 use super::regressor::{BodyParameter, Projection};
 use super::robot::{Guard, GuardKind, Robot, Underivable};
 use crate::cas::{Arena, Expr, Number};
+use crate::lowering::Effort;
 use crate::mechanism::{JointKind, Mechanism};
 
 /// A function as expressions.
@@ -40,6 +41,8 @@ pub struct Selection {
     pub stations: Vec<usize>,
     /// Dependent columns that are had more cheaply from others than from their definition.
     pub combined: Vec<Combination>,
+    /// How hard cheaper ways to write a function are searched.
+    pub effort: Effort,
 }
 
 /// A column as a linear combination of other columns.

@@ -1,10 +1,11 @@
 //! From the graph to the program: reachable nodes in an order in which operands come first.
 
 use super::program::{Array, Condition, Entry, Guard, Operation, Program, Source, Step};
+use super::search::{Effort, Overlay, Place, Rewritten, search};
 use super::trigonometry::{Plan, plan};
 use crate::cas::arena::{Handle, Op};
 use crate::cas::{Arena, Direction, Expr};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// A condition on an expression.
 #[derive(Debug, Clone)]
@@ -26,8 +27,11 @@ pub fn lower<'a>(
     output: Array,
     entries: &[Expr<'a>],
     guards: &[GuardedExpr<'a>],
+    effort: Effort,
 ) -> Program {
-    let mut lowering = Lowering::new(arena, inputs, entries);
+    let guarded: Vec<Expr<'a>> = guards.iter().map(|g| g.value).collect();
+    let overlay = search(arena, entries, &guarded, effort);
+    let mut lowering = Lowering::new(arena, inputs, entries, overlay);
     let (rows, columns) = match output.shape[..] {
         [rows, columns] => (rows, columns),
         _ => (output.len(), 1),
@@ -51,7 +55,8 @@ pub fn lower<'a>(
     let guards = guards
         .iter()
         .filter_map(|guard| {
-            let source = *lowering.done.get(&guard.value.handle().index())?;
+            let place = Place::Arena(guard.value.handle().index());
+            let source = lowering.done.get(&place)?.source;
             let condition = guard.condition.clone();
             matters(source).then_some(Guard { source, condition })
         })
@@ -70,20 +75,22 @@ struct Lowering<'a> {
     arena: &'a Arena,
     inputs: Vec<Array>,
     steps: Vec<Step>,
-    done: HashMap<usize, Source>,
+    done: HashMap<Place, Entry>,
+    overlay: Overlay,
     angles: Vec<(Direction, Plan)>,
     units: HashMap<usize, (Source, Source)>,
     by_operation: Vec<(Operation, usize)>,
 }
 
 impl<'a> Lowering<'a> {
-    fn new(arena: &'a Arena, inputs: &[Array], entries: &[Expr<'a>]) -> Self {
-        let angles = plan(&reachable_angles(arena, entries));
+    fn new(arena: &'a Arena, inputs: &[Array], entries: &[Expr<'a>], overlay: Overlay) -> Self {
+        let angles = plan(&reachable_angles(arena, entries, &overlay));
         Self {
             arena,
             inputs: inputs.to_vec(),
             steps: Vec::new(),
             done: HashMap::new(),
+            overlay,
             angles,
             units: HashMap::new(),
             by_operation: Vec::new(),
@@ -91,16 +98,15 @@ impl<'a> Lowering<'a> {
     }
 
     fn entry(&mut self, handle: Handle) -> Entry {
-        let source = self.node(handle.index());
+        self.signed(Place::Arena(handle.index()), handle.is_negative())
+    }
+
+    /// A node or its negative; the sign of a constant is the constant's.
+    fn signed(&mut self, place: Place, negative: bool) -> Entry {
+        let Entry { source, negative } = self.node(place).times(negative);
         match source {
-            Source::Constant(value) if handle.is_negative() => Entry {
-                source: Source::Constant(-value),
-                negative: false,
-            },
-            _ => Entry {
-                source,
-                negative: handle.is_negative(),
-            },
+            Source::Constant(value) if negative => Entry::positive(Source::Constant(-value)),
+            _ => Entry { source, negative },
         }
     }
 
@@ -114,49 +120,85 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    fn node(&mut self, index: usize) -> Source {
-        if let Some(&source) = self.done.get(&index) {
-            return source;
+    fn node(&mut self, place: Place) -> Entry {
+        if let Some(&entry) = self.done.get(&place) {
+            return entry;
         }
-        let operation = match self.arena.op(index) {
+        let entry = match (self.overlay.definitions.get(&place).copied(), place) {
+            (Some((rewritten, scope)), _) => self.rewritten(place, rewritten, scope),
+            (None, Place::Arena(index)) => self.original(index),
+            // A node of the search's own is always defined by it.
+            (None, Place::New(_)) => Entry::positive(Source::Constant(f64::NAN)),
+        };
+        self.done.insert(place, entry);
+        entry
+    }
+
+    fn rewritten(&mut self, place: Place, rewritten: Rewritten, scope: u32) -> Entry {
+        let (a, b) = match rewritten {
+            Rewritten::Sum(a, b) | Rewritten::Product(a, b) | Rewritten::Quotient(a, b) => (a, b),
+        };
+        let (a, b) = (self.signed(a.0, a.1), self.signed(b.0, b.1));
+        let (operation, negative) = match rewritten {
+            Rewritten::Sum(..) => sum(a, b),
+            Rewritten::Product(..) => product(a, b),
+            Rewritten::Quotient(..) => quotient(a, b),
+        };
+        let name = match place {
+            Place::Arena(index) => self.arena.name_of(index),
+            Place::New(_) => None,
+        };
+        let name = name.map(|name| {
+            if negative {
+                format!("minus_{name}")
+            } else {
+                name
+            }
+        });
+        let source = self.push(operation, name, self.arena.scope_name(scope));
+        Entry { source, negative }
+    }
+
+    /// A node as the arena has it.
+    fn original(&mut self, index: usize) -> Entry {
+        let (operation, negative) = match self.arena.op(index) {
             Op::Constant(id) => {
-                return self.finish(index, Source::Constant(self.arena.constant_at(id).value()));
+                let value = self.arena.constant_at(id).value();
+                return Entry::positive(Source::Constant(value));
             }
             Op::Symbol(id) => {
-                let source = self.input(&self.arena.symbol_name(id));
-                return self.finish(index, source);
+                return Entry::positive(self.input(&self.arena.symbol_name(id)));
             }
             Op::Cosine(id) => {
                 let source = self.unit_of(&self.arena.direction_at(id)).0;
-                return self.finish_named(index, source);
+                return self.named(index, source);
             }
             Op::Sine(id) => {
                 let source = self.unit_of(&self.arena.direction_at(id)).1;
-                return self.finish_named(index, source);
+                return self.named(index, source);
             }
-            Op::Add(a, b) => Operation::Add(self.operand(a), self.operand(b)),
-            Op::Sub(a, b) => Operation::Sub(self.operand(a), self.operand(b)),
-            Op::Mul(a, b) => Operation::Mul(self.operand(a), self.operand(b)),
-            Op::Div(a, b) => Operation::Div(self.operand(a), self.operand(b)),
-            Op::Sqrt(a) => Operation::Sqrt(self.operand(a)),
-            Op::Sign(a) => Operation::Sign(self.operand(a)),
-            Op::Atan2(y, x) => Operation::Atan2(self.operand(y), self.operand(x)),
+            Op::Add(a, b) => sum(self.entry(a), self.entry(b)),
+            Op::Sub(a, b) => sum(self.entry(a), self.entry(b).times(true)),
+            Op::Mul(a, b) => product(self.entry(a), self.entry(b)),
+            Op::Div(a, b) => quotient(self.entry(a), self.entry(b)),
+            Op::Sqrt(a) => (Operation::Sqrt(self.operand(a)), false),
+            Op::Sign(a) => (Operation::Sign(self.operand(a)), false),
+            Op::Atan2(y, x) => (Operation::Atan2(self.operand(y), self.operand(x)), false),
         };
-        let source = self.push(
-            operation,
-            self.arena.name_of(index),
-            self.arena.scope(index),
-        );
-        self.finish(index, source)
-    }
-
-    fn finish(&mut self, index: usize, source: Source) -> Source {
-        self.done.insert(index, source);
-        source
+        let name = self.arena.name_of(index);
+        let name = name.map(|name| {
+            if negative {
+                format!("minus_{name}")
+            } else {
+                name
+            }
+        });
+        let source = self.push(operation, name, self.arena.scope(index));
+        Entry { source, negative }
     }
 
     /// Sines and cosines are steps already; the node's name goes to the step.
-    fn finish_named(&mut self, index: usize, source: Source) -> Source {
+    fn named(&mut self, index: usize, source: Source) -> Entry {
         if let Source::Step(at) = source {
             let step = &mut self.steps[at];
             if step.name.is_none() {
@@ -164,7 +206,7 @@ impl<'a> Lowering<'a> {
                 step.scope = self.arena.scope(index);
             }
         }
-        self.finish(index, source)
+        Entry::positive(source)
     }
 
     fn push(&mut self, operation: Operation, name: Option<String>, scope: String) -> Source {
@@ -335,6 +377,26 @@ impl<'a> Lowering<'a> {
     }
 }
 
+/// ±a ± b as an operation, and whether its negative is meant.
+fn sum(a: Entry, b: Entry) -> (Operation, bool) {
+    match (a.negative, b.negative) {
+        (false, false) => (Operation::Add(a.source, b.source), false),
+        (false, true) => (Operation::Sub(a.source, b.source), false),
+        (true, false) => (Operation::Sub(b.source, a.source), false),
+        (true, true) => (Operation::Add(a.source, b.source), true),
+    }
+}
+
+fn product(a: Entry, b: Entry) -> (Operation, bool) {
+    let operation = Operation::Mul(a.source, b.source);
+    (operation, a.negative != b.negative)
+}
+
+fn quotient(a: Entry, b: Entry) -> (Operation, bool) {
+    let operation = Operation::Div(a.source, b.source);
+    (operation, a.negative != b.negative)
+}
+
 /// A cosine and sine, perhaps of the opposite angle.
 #[derive(Clone, Copy)]
 struct Turned {
@@ -343,14 +405,23 @@ struct Turned {
 }
 
 /// All angles whose sine or cosine the entries need, in the order of their first use.
-fn reachable_angles(arena: &Arena, entries: &[Expr<'_>]) -> Vec<Direction> {
-    let mut seen = vec![false; arena.len()];
-    let mut stack: Vec<usize> = entries.iter().rev().map(|e| e.handle().index()).collect();
+fn reachable_angles(arena: &Arena, entries: &[Expr<'_>], overlay: &Overlay) -> Vec<Direction> {
+    let mut seen = HashSet::new();
+    let places = entries.iter().rev();
+    let mut stack: Vec<Place> = places.map(|e| Place::Arena(e.handle().index())).collect();
     let mut angles: Vec<Direction> = Vec::new();
-    while let Some(index) = stack.pop() {
-        if std::mem::replace(&mut seen[index], true) {
+    while let Some(place) = stack.pop() {
+        if !seen.insert(place) {
             continue;
         }
+        if let Some((rewritten, _)) = overlay.definitions.get(&place) {
+            let (Rewritten::Sum(a, b) | Rewritten::Product(a, b) | Rewritten::Quotient(a, b)) =
+                rewritten;
+            stack.extend([b.0, a.0]);
+            continue;
+        }
+        let Place::Arena(index) = place else { continue };
+        let of = |handle: Handle| Place::Arena(handle.index());
         match arena.op(index) {
             Op::Cosine(id) | Op::Sine(id) => {
                 let direction = arena.direction_at(id);
@@ -359,9 +430,9 @@ fn reachable_angles(arena: &Arena, entries: &[Expr<'_>]) -> Vec<Direction> {
                 }
             }
             Op::Add(a, b) | Op::Sub(a, b) | Op::Mul(a, b) | Op::Div(a, b) | Op::Atan2(a, b) => {
-                stack.extend([b.index(), a.index()]);
+                stack.extend([of(b), of(a)]);
             }
-            Op::Sqrt(a) | Op::Sign(a) => stack.push(a.index()),
+            Op::Sqrt(a) | Op::Sign(a) => stack.push(of(a)),
             Op::Constant(_) | Op::Symbol(_) => {}
         }
     }

@@ -76,6 +76,26 @@ pub struct Entry {
     pub negative: bool,
 }
 
+impl Entry {
+    /// The value itself.
+    #[must_use]
+    pub const fn positive(source: Source) -> Self {
+        Self {
+            source,
+            negative: false,
+        }
+    }
+
+    /// The value or its negative.
+    #[must_use]
+    pub const fn times(self, negative: bool) -> Self {
+        Self {
+            source: self.source,
+            negative: self.negative != negative,
+        }
+    }
+}
+
 /// A named array of numbers.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Array {

@@ -3,6 +3,7 @@
 use super::super::field::{CIRCLE, Element, mix, mix_name};
 use super::super::sample::Sample;
 use super::{Handle, Meaning, Op, Tables, canonical};
+use std::ops::{Add, Div, Mul, Neg};
 
 impl Tables {
     fn image(&self, handle: Handle, point: usize) -> Element {
@@ -114,4 +115,65 @@ fn free(tag: u64, arguments: &[Element]) -> Element {
         mix(mix(bits ^ re) ^ im)
     });
     Element::from_bits(bits)
+}
+
+impl Meaning {
+    /// Of what has none.
+    pub(crate) const NONE: Self = Self {
+        image: [Element::ZERO; super::POINTS],
+        sample: Sample::real(f64::NAN),
+    };
+
+    /// The value at the first point.
+    pub(crate) const fn value(&self) -> Element {
+        self.image[0]
+    }
+
+    /// Whether both are the same function, as far as all points tell.
+    pub(crate) fn agrees(&self, other: &Self) -> bool {
+        self.image == other.image && self.sample.agrees(other.sample)
+    }
+
+    fn with(
+        self,
+        other: Self,
+        image: impl Fn(Element, Element) -> Element,
+        sample: Sample,
+    ) -> Self {
+        Self {
+            image: std::array::from_fn(|point| image(self.image[point], other.image[point])),
+            sample,
+        }
+    }
+}
+
+impl Neg for Meaning {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self {
+            image: self.image.map(Neg::neg),
+            sample: -self.sample,
+        }
+    }
+}
+
+impl Add for Meaning {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        self.with(other, |a, b| a + b, self.sample + other.sample)
+    }
+}
+
+impl Mul for Meaning {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        self.with(other, |a, b| a * b, self.sample * other.sample)
+    }
+}
+
+impl Div for Meaning {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        self.with(other, |a, b| a * b.inverse(), self.sample / other.sample)
+    }
 }

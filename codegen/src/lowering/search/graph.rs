@@ -1,0 +1,347 @@
+//! The nodes that a function needs, with what they cost and who uses them.
+
+use crate::cas::arena::{Handle, Meaning, Op};
+use crate::cas::field::Element;
+use crate::cas::{Arena, Expr};
+use std::collections::{BTreeMap, HashMap};
+use std::hash::{BuildHasherDefault, Hasher};
+
+/// A node with a sign: twice the node's number, plus one for its negative.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(super) struct Signed(u32);
+
+impl Signed {
+    pub(super) const fn new(node: usize, negative: bool) -> Self {
+        Self((node as u32) << 1 | negative as u32)
+    }
+
+    pub(super) const fn node(self) -> usize {
+        (self.0 >> 1) as usize
+    }
+
+    pub(super) const fn is_negative(self) -> bool {
+        self.0 & 1 == 1
+    }
+
+    pub(super) const fn times(self, negative: bool) -> Self {
+        Self(self.0 ^ negative as u32)
+    }
+}
+
+/// How a node is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(super) enum Definition {
+    /// An input, a constant, a sine or cosine.
+    Leaf,
+    /// a + b.
+    Sum(Signed, Signed),
+    /// a × b.
+    Product(Signed, Signed),
+    /// a / b.
+    Quotient(Signed, Signed),
+    /// Of one or two operands, and never written in another way: a root, a sign, an arc tangent.
+    Fixed(Signed, Option<Signed>),
+}
+
+impl Definition {
+    pub(super) fn operands(self) -> impl Iterator<Item = usize> {
+        let (first, second) = match self {
+            Self::Leaf => (None, None),
+            Self::Sum(a, b) | Self::Product(a, b) | Self::Quotient(a, b) => (Some(a), Some(b)),
+            Self::Fixed(a, b) => (Some(a), b),
+        };
+        first.into_iter().chain(second).map(Signed::node)
+    }
+}
+
+/// What a root and an arc tangent count, so that they are saved first.
+const EXPENSIVE: i32 = 10;
+
+/// The value by which nodes are looked up: that of a node or of its negative.
+pub(super) type Key = Element;
+
+/// Field elements are random already.
+#[derive(Default)]
+pub(super) struct FieldHasher(u64);
+
+impl Hasher for FieldHasher {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+    fn write(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.write_u64(u64::from(*byte));
+        }
+    }
+    fn write_u64(&mut self, value: u64) {
+        self.0 = (self.0.rotate_left(23) ^ value).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    }
+}
+
+pub(super) type ByValue<T> = HashMap<Key, T, BuildHasherDefault<FieldHasher>>;
+
+/// The nodes of a function.
+pub(super) struct Graph {
+    pub(super) definitions: Vec<Definition>,
+    pub(super) meanings: Vec<Meaning>,
+    /// Heading of each node.
+    pub(super) scopes: Vec<u32>,
+    /// How often each node is used, by other nodes that are used and by the entries.
+    pub(super) uses: Vec<u32>,
+    /// Longest way from an input to each node.
+    pub(super) depths: Vec<u32>,
+    /// Nodes that products with are free, because they are signs.
+    is_sign: Vec<bool>,
+    /// Fixed nodes that count.
+    is_expensive: Vec<bool>,
+    /// Node of each value.
+    by_value: ByValue<Signed>,
+    inverses: Vec<Element>,
+    /// The arena's index of each node; new ones have none.
+    arena_index: Vec<Option<usize>>,
+    changed: Vec<bool>,
+}
+
+impl Graph {
+    pub(super) fn new<'a>(arena: &'a Arena, entries: &[Expr<'a>], guards: &[Expr<'a>]) -> Self {
+        let mut graph = Self {
+            definitions: Vec::new(),
+            meanings: Vec::new(),
+            scopes: Vec::new(),
+            uses: Vec::new(),
+            depths: Vec::new(),
+            is_sign: Vec::new(),
+            is_expensive: Vec::new(),
+            by_value: ByValue::default(),
+            inverses: Vec::new(),
+            arena_index: Vec::new(),
+            changed: Vec::new(),
+        };
+        let mut numbers = HashMap::new();
+        for entry in entries {
+            let node = graph.reach(arena, entry.handle().index(), &mut numbers);
+            graph.uses[node] += 1;
+        }
+        // A guard's value stays as long as something is divided by it or its root is taken; held, it
+        // keeps its own node and so its meaning for the reader.
+        for guard in guards {
+            if let Some(&node) = numbers.get(&guard.handle().index()) {
+                graph.uses[node] += 1;
+            }
+        }
+        graph
+    }
+
+    /// The number of an arena's node; operands come first.
+    fn reach(&mut self, arena: &Arena, index: usize, numbers: &mut HashMap<usize, usize>) -> usize {
+        if let Some(&known) = numbers.get(&index) {
+            return known;
+        }
+        let op = arena.op(index);
+        let mut operand = |handle: Handle| {
+            let node = self.reach(arena, handle.index(), numbers);
+            self.uses[node] += 1;
+            Signed::new(node, handle.is_negative())
+        };
+        let definition = match op {
+            Op::Constant(_) | Op::Symbol(_) | Op::Cosine(_) | Op::Sine(_) => Definition::Leaf,
+            Op::Add(a, b) => Definition::Sum(operand(a), operand(b)),
+            Op::Sub(a, b) => Definition::Sum(operand(a), operand(b).times(true)),
+            Op::Mul(a, b) => Definition::Product(operand(a), operand(b)),
+            Op::Div(a, b) => Definition::Quotient(operand(a), operand(b)),
+            Op::Sqrt(a) | Op::Sign(a) => Definition::Fixed(operand(a), None),
+            Op::Atan2(a, b) => Definition::Fixed(operand(a), Some(operand(b))),
+        };
+        let node = self.push(definition, arena.meaning_at(index), arena.scope_at(index));
+        self.is_sign[node] = matches!(op, Op::Sign(_));
+        self.is_expensive[node] = matches!(op, Op::Sqrt(_) | Op::Atan2(..));
+        self.arena_index[node] = Some(index);
+        numbers.insert(index, node);
+        node
+    }
+
+    fn push(&mut self, definition: Definition, meaning: Meaning, scope: u32) -> usize {
+        let node = self.definitions.len();
+        self.depths.push(self.depth_of(definition));
+        self.definitions.push(definition);
+        self.meanings.push(meaning);
+        self.scopes.push(scope);
+        self.uses.push(0);
+        self.is_sign.push(false);
+        self.is_expensive.push(false);
+        self.arena_index.push(None);
+        self.changed.push(false);
+        self.inverses.push(meaning.value().inverse());
+        let (key, negative) = canonical(meaning.value());
+        let known = self.by_value.get(&key);
+        if known.is_none_or(|k| !self.is_live(k.node())) {
+            self.by_value.insert(key, Signed::new(node, negative));
+        }
+        node
+    }
+
+    /// Adds a node that nothing uses yet.
+    pub(super) fn add(&mut self, definition: Definition, scope: u32) -> usize {
+        let meaning = self.meaning_of(definition);
+        let node = self.push(definition, meaning, scope);
+        self.changed[node] = true;
+        node
+    }
+
+    pub(super) fn depth_of(&self, definition: Definition) -> u32 {
+        let deepest = definition.operands().map(|o| self.depths[o] + 1).max();
+        deepest.unwrap_or(0)
+    }
+
+    /// Takes the last node away again, which nothing uses.
+    pub(super) fn remove_last(&mut self) {
+        let last = self.len() - 1;
+        let (key, _) = canonical(self.meanings[last].value());
+        if self
+            .by_value
+            .get(&key)
+            .is_some_and(|known| known.node() == last)
+        {
+            self.by_value.remove(&key);
+        }
+        self.definitions.pop();
+        self.meanings.pop();
+        self.inverses.pop();
+        self.scopes.pop();
+        self.uses.pop();
+        self.depths.pop();
+        self.is_sign.pop();
+        self.is_expensive.pop();
+        self.arena_index.pop();
+        self.changed.pop();
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.definitions.len()
+    }
+
+    /// Whether the node is needed.
+    pub(super) fn is_live(&self, node: usize) -> bool {
+        self.uses[node] > 0
+    }
+
+    /// The live node, with its sign, of a value.
+    pub(super) fn find(&self, value: Element) -> Option<Signed> {
+        let (key, negative) = canonical(value);
+        let found = self.by_value.get(&key)?.times(negative);
+        self.is_live(found.node()).then_some(found)
+    }
+
+    pub(super) fn value(&self, of: Signed) -> Element {
+        let value = self.meanings[of.node()].value();
+        if of.is_negative() { -value } else { value }
+    }
+
+    /// One over the node's value.
+    pub(super) fn inverse(&self, node: usize) -> Element {
+        self.inverses[node]
+    }
+
+    fn meaning(&self, of: Signed) -> Meaning {
+        let meaning = self.meanings[of.node()];
+        if of.is_negative() { -meaning } else { meaning }
+    }
+
+    /// What a definition evaluates to.
+    pub(super) fn meaning_of(&self, definition: Definition) -> Meaning {
+        match definition {
+            Definition::Sum(a, b) => self.meaning(a) + self.meaning(b),
+            Definition::Product(a, b) => self.meaning(a) * self.meaning(b),
+            Definition::Quotient(a, b) => self.meaning(a) / self.meaning(b),
+            Definition::Leaf | Definition::Fixed(..) => Meaning::NONE,
+        }
+    }
+
+    /// What the node's own operation counts.
+    pub(super) fn cost(&self, node: usize) -> i32 {
+        match self.definitions[node] {
+            Definition::Leaf => 0,
+            Definition::Fixed(..) => i32::from(self.is_expensive[node]) * EXPENSIVE,
+            definition => self.cost_of(definition),
+        }
+    }
+
+    /// What an operation counts: one, and nothing for a product with a sign, which is a selection.
+    pub(super) fn cost_of(&self, definition: Definition) -> i32 {
+        match definition {
+            Definition::Product(a, b) => {
+                i32::from(!self.is_sign[a.node()] && !self.is_sign[b.node()])
+            }
+            _ => 1,
+        }
+    }
+
+    /// Gives a node another definition of the same meaning; uses are the caller's business.
+    pub(super) fn redefine(&mut self, node: usize, definition: Definition) {
+        self.definitions[node] = definition;
+        self.changed[node] = true;
+    }
+
+    /// The definitions that differ from the arena's.
+    pub(super) fn overlay(&self) -> Overlay {
+        let mut overlay = Overlay::default();
+        for node in 0..self.len() {
+            if !self.changed[node] || !self.is_live(node) {
+                continue;
+            }
+            let name = |of: Signed| {
+                let at = match self.arena_index[of.node()] {
+                    Some(index) => Place::Arena(index),
+                    None => Place::New(of.node()),
+                };
+                (at, of.is_negative())
+            };
+            let rewritten = match self.definitions[node] {
+                Definition::Sum(a, b) => Rewritten::Sum(name(a), name(b)),
+                Definition::Product(a, b) => Rewritten::Product(name(a), name(b)),
+                Definition::Quotient(a, b) => Rewritten::Quotient(name(a), name(b)),
+                Definition::Leaf | Definition::Fixed(..) => continue,
+            };
+            let (place, _) = name(Signed::new(node, false));
+            overlay
+                .definitions
+                .insert(place, (rewritten, self.scopes[node]));
+        }
+        overlay
+    }
+}
+
+/// The smaller of a value and its negative, and whether it is the negative.
+pub(super) fn canonical(value: Element) -> (Key, bool) {
+    let negative = -value;
+    if negative < value {
+        (negative, true)
+    } else {
+        (value, false)
+    }
+}
+
+/// A node of the arena, or one that the search has added.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Place {
+    /// Index in the arena.
+    Arena(usize),
+    /// A number of the search's own.
+    New(usize),
+}
+
+/// Another way to compute a node; each operand with whether its negative is meant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the variants say it")]
+pub enum Rewritten {
+    Sum((Place, bool), (Place, bool)),
+    Product((Place, bool), (Place, bool)),
+    Quotient((Place, bool), (Place, bool)),
+}
+
+/// Definitions that replace the arena's, with the heading of each.
+#[derive(Debug, Clone, Default)]
+pub struct Overlay {
+    /// By node.
+    pub definitions: BTreeMap<Place, (Rewritten, u32)>,
+}

@@ -1,0 +1,58 @@
+//! Cheaper ways to write a function's nodes, found by looking up their values.
+//!
+//! Every node has a fingerprint, its values at two random points of the field
+//! ([`cas`](crate::cas)). Whatever has the fingerprint of a node can stand for it. So for a node that is
+//! expensive, the search asks a table of values: is it the sum, the difference, the product or the
+//! quotient of two nodes that are there anyway? And if not: of one node that is there and one that could
+//! be had by a single operation, best of all an operation that serves several such nodes
+//! at once? These are the tricks a hand finds (1 + cot² = 1/sin², factoring, common parts of sums),
+//! found without knowing any of them.
+//!
+//! What a replacement saves is counted exactly: the operations that nothing else needs any more
+//! (the node's *maximal fan-out free cone*, as in the resubstitution of logic synthesis), less those
+//! that it adds. No new divisor is ever introduced, so the function is defined wherever it was.
+
+mod cone;
+mod graph;
+mod pairs;
+mod singles;
+
+pub use graph::{Overlay, Place, Rewritten};
+
+use crate::cas::{Arena, Expr};
+use graph::Graph;
+
+/// How hard a function's operations are searched.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, PartialOrd, Ord)]
+pub enum Effort {
+    /// Not at all: the derivation's own form.
+    #[default]
+    None,
+    /// Nodes that are one operation away from others.
+    Quick,
+    /// Also those that are two operations away, and operations that serve several nodes.
+    Thorough,
+}
+
+/// Other definitions for some of the nodes that the entries need.
+#[must_use]
+pub fn search<'a>(
+    arena: &'a Arena,
+    entries: &[Expr<'a>],
+    guards: &[Expr<'a>],
+    effort: Effort,
+) -> Overlay {
+    if effort == Effort::None {
+        return Overlay::default();
+    }
+    let mut graph = Graph::new(arena, entries, guards);
+    loop {
+        let mut saved = singles::improve(&mut graph);
+        if effort == Effort::Thorough {
+            saved += pairs::improve(&mut graph);
+        }
+        if saved == 0 {
+            return graph.overlay();
+        }
+    }
+}

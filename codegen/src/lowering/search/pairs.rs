@@ -1,0 +1,279 @@
+//! Nodes that are two operations away from others, and operations that serve several nodes.
+//!
+//! A target t asks for every value m with which one more operation gives it: t = c + m, t = c m,
+//! t = m / c. All sums, differences and products of two nodes are then held against what was asked for.
+//! This is done heading by heading, each with the nodes that its own are made of, because a leg's nodes
+//! have little to do with another leg's; a small function is searched as a whole.
+
+use super::graph::{ByValue, Definition, Graph, Signed, canonical};
+
+/// Up to so many nodes a function is searched as a whole.
+const WHOLE: usize = 700;
+/// More nodes than this are searched without pairs: the table of pairs grows with the square.
+const MOST: usize = 2500;
+
+/// How a target is made of a node that is there and the value it asks for.
+#[derive(Debug, Clone, Copy)]
+enum Form {
+    Plus,
+    Times,
+    Over,
+}
+
+/// A target that asks for a value.
+#[derive(Debug, Clone, Copy)]
+struct Request {
+    target: u32,
+    with: Signed,
+    form: Form,
+    /// Whether the negative of the value is asked for.
+    negative: bool,
+    /// The request for the same value before this one.
+    next: Option<u32>,
+}
+
+/// A new node and the bound of what it can save.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Hit {
+    bound: i32,
+    definition: Definition,
+    head: u32,
+    negative: bool,
+}
+
+/// Replaces nodes group by group; the operations saved.
+pub(super) fn improve(graph: &mut Graph) -> i32 {
+    groups(graph)
+        .iter()
+        .map(|group| improve_group(graph, group))
+        .sum()
+}
+
+/// The nodes of each heading: first its own, then those they are made of.
+fn groups(graph: &Graph) -> Vec<(Vec<usize>, Vec<usize>)> {
+    let live: Vec<usize> = (0..graph.len()).filter(|&n| graph.is_live(n)).collect();
+    if live.len() <= WHOLE {
+        return vec![(live.clone(), live)];
+    }
+    let mut scopes: Vec<u32> = live.iter().map(|&n| graph.scopes[n]).collect();
+    scopes.sort_unstable();
+    scopes.dedup();
+    let group = |scope: &u32| {
+        let is_own = |n: &usize| graph.scopes[*n] == *scope;
+        let own: Vec<usize> = live.iter().copied().filter(is_own).collect();
+        let mut all = own.clone();
+        all.extend(own.iter().flat_map(|&n| graph.definitions[n].operands()));
+        all.sort_unstable();
+        all.dedup();
+        (own, all)
+    };
+    let groups = scopes.iter().map(group);
+    groups.filter(|(_, all)| all.len() <= MOST).collect()
+}
+
+fn improve_group(graph: &mut Graph, (own, all): &(Vec<usize>, Vec<usize>)) -> i32 {
+    let mut cones = vec![0; graph.len()];
+    for &node in own {
+        let is_open = !matches!(
+            graph.definitions[node],
+            Definition::Leaf | Definition::Fixed(..)
+        );
+        if is_open && graph.is_live(node) {
+            cones[node] = graph.cone(node);
+        }
+    }
+    let targets: Vec<usize> = own.iter().copied().filter(|&n| cones[n] > 1).collect();
+    let (requests, heads) = requests(graph, &targets, all);
+    let mut hits = Vec::new();
+    for_each_pair(graph, all, |definition, value| {
+        let (key, negative) = canonical(value);
+        let Some(&head) = heads.get(&key) else { return };
+        // What is there already is a matter of single operations.
+        if graph.find(value).is_some() {
+            return;
+        }
+        let bound = bound(&requests, head, &cones);
+        if bound > 0 {
+            hits.push(Hit {
+                bound,
+                definition,
+                head,
+                negative,
+            });
+        }
+    });
+    if std::env::var("DBG").is_ok() {
+        eprintln!(
+            "live {} targets {} requests {} hits {}",
+            all.len(),
+            targets.len(),
+            requests.len(),
+            hits.len()
+        );
+    }
+    hits.sort_by(|a, b| b.bound.cmp(&a.bound).then_with(|| a.cmp(b)));
+    hits.iter()
+        .map(|hit| apply(graph, &requests, hit).unwrap_or(0))
+        .sum()
+}
+
+fn requests(graph: &Graph, targets: &[usize], all: &[usize]) -> (Vec<Request>, ByValue<u32>) {
+    let divisors = graph.divisors();
+    let mut requests: Vec<Request> = Vec::new();
+    let mut heads: ByValue<u32> = ByValue::default();
+    for &target in targets {
+        let value = graph.value(Signed::new(target, false));
+        let mut ask = |wanted, with, form| {
+            let (key, negative) = canonical(wanted);
+            let number = requests.len() as u32;
+            let next = heads.insert(key, number);
+            requests.push(Request {
+                target: target as u32,
+                with,
+                form,
+                negative,
+                next,
+            });
+        };
+        for &node in all.iter().filter(|&&n| n != target && graph.is_live(n)) {
+            let with = Signed::new(node, false);
+            let of = graph.value(with);
+            ask(value + -of, with, Form::Plus);
+            ask(value + of, with.times(true), Form::Plus);
+            ask(value * graph.inverse(node), with, Form::Times);
+            if divisors.binary_search(&node).is_ok() {
+                ask(value * of, with, Form::Over);
+            }
+        }
+    }
+    (requests, heads)
+}
+
+/// What the value could save at most: each target's cone but one operation, and the value's own.
+fn bound(requests: &[Request], head: u32, cones: &[i32]) -> i32 {
+    let mut bound = -1;
+    let mut last = u32::MAX;
+    let mut at = Some(head);
+    while let Some(number) = at {
+        let request = requests[number as usize];
+        // Requests of one target stand together.
+        if request.target != last {
+            last = request.target;
+            bound += cones[last as usize] - 1;
+        }
+        at = request.next;
+    }
+    bound
+}
+
+/// All sums, differences and products of two nodes.
+fn for_each_pair(
+    graph: &Graph,
+    all: &[usize],
+    mut visit: impl FnMut(Definition, crate::cas::field::Element),
+) {
+    let live: Vec<usize> = all.iter().copied().filter(|&n| graph.is_live(n)).collect();
+    for (i, &first) in live.iter().enumerate() {
+        let a = Signed::new(first, false);
+        let left = graph.value(a);
+        for &second in &live[i..] {
+            let b = Signed::new(second, false);
+            let right = graph.value(b);
+            visit(Definition::Sum(a, b), left + right);
+            visit(Definition::Product(a, b), left * right);
+            if first != second {
+                visit(Definition::Sum(a, b.times(true)), left + -right);
+            }
+        }
+    }
+}
+
+/// Adds the node of a hit and gives it to all targets for which it saves something; undone if it does
+/// not save anything in all.
+fn apply(graph: &mut Graph, requests: &[Request], hit: &Hit) -> Option<i32> {
+    let definition = hit.definition;
+    if definition.operands().any(|o| !graph.is_live(o)) {
+        return None;
+    }
+    let value = graph.meaning_of(definition).value();
+    if graph.find(value).is_some() {
+        return None;
+    }
+    let scope = graph.scopes[requests[hit.head as usize].target as usize];
+    let node = graph.add(definition, scope);
+    let saved = give(graph, requests, hit, Signed::new(node, false));
+    if saved.is_none() {
+        graph.remove_last();
+    }
+    saved
+}
+
+/// Gives a new node to the targets of a hit.
+fn give(graph: &mut Graph, requests: &[Request], hit: &Hit, node: Signed) -> Option<i32> {
+    let wanted = wanted(graph, requests, hit, node);
+    // Each target's saving counts the new operation once; all together they need it once.
+    let hoped: i32 = wanted.iter().map(|(_, _, saving)| saving + 1).sum();
+    if hoped <= 1 {
+        return None;
+    }
+    let mut undo = Vec::new();
+    let mut total = 0;
+    for (target, by, _) in wanted {
+        if !graph.is_live(target) {
+            continue;
+        }
+        let saving = graph.saving(target, by);
+        if saving < i32::from(!undo.is_empty()) {
+            continue;
+        }
+        if graph.depend(by.operands(), target) || !graph.means(by, target) {
+            continue;
+        }
+        undo.push((target, graph.definitions[target]));
+        graph.replace(target, by);
+        total += saving;
+    }
+    if total > 0 {
+        return Some(total);
+    }
+    for (target, definition) in undo.into_iter().rev() {
+        graph.replace(target, definition);
+    }
+    None
+}
+
+/// The best replacement of each target by the new node, with what it saves on its own, where that is
+/// not less than nothing.
+fn wanted(
+    graph: &mut Graph,
+    requests: &[Request],
+    hit: &Hit,
+    node: Signed,
+) -> Vec<(usize, Definition, i32)> {
+    let mut wanted: Vec<(usize, Definition, i32)> = Vec::new();
+    let mut at = Some(hit.head);
+    while let Some(number) = at {
+        let request = requests[number as usize];
+        at = request.next;
+        let target = request.target as usize;
+        if !graph.is_live(target) || !graph.is_live(request.with.node()) {
+            continue;
+        }
+        let m = node.times(hit.negative != request.negative);
+        let by = match request.form {
+            Form::Plus => Definition::Sum(request.with, m),
+            Form::Times => Definition::Product(request.with, m),
+            Form::Over => Definition::Quotient(m, request.with),
+        };
+        let saving = graph.saving(target, by);
+        if saving < 0 {
+            continue;
+        }
+        match wanted.last_mut().filter(|(t, ..)| *t == target) {
+            Some(last) if last.2 < saving => *last = (target, by, saving),
+            Some(_) => {}
+            None => wanted.push((target, by, saving)),
+        }
+    }
+    wanted
+}
