@@ -8,6 +8,7 @@
 //! - `output`: results go to stdout or, whole or not at all, to a file;
 //! - `progress`: long work shows a bar on a terminal and nothing in a pipe;
 //! - [`drawing`]: a robot as SVG;
+//! - `effort`: how hard the generator searches;
 //! - `experiment`, `settings`: a description's tables as the inputs of simulation and
 //!   identification;
 //! - `report`: an identification as a page, a document or a flat table;
@@ -15,6 +16,7 @@
 
 mod commands;
 pub mod drawing;
+mod effort;
 mod experiment;
 pub mod failure;
 pub mod interpreted;

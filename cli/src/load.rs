@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, Problem};
 use overact_codegen::{
-    RobotModel, compile,
+    Effort, RobotModel, compile_with,
     description::{self, Description},
     diagnostic::{Diagnostics, Source},
 };
@@ -24,8 +24,16 @@ pub struct Robot {
 /// # Errors
 /// A file that can't be read, or everything that is wrong with the description.
 pub fn load(path: &Path) -> Result<Robot, Failure> {
+    load_with(path, &|described| described.unwrap_or_default())
+}
+
+/// [`load`] with the effort that follows from the description's.
+///
+/// # Errors
+/// A file that can't be read, or everything that is wrong with the description.
+pub fn load_with(path: &Path, effort: &dyn Fn(Option<Effort>) -> Effort) -> Result<Robot, Failure> {
     let source = read(path)?;
-    match compiled(&source) {
+    match compiled(&source, effort) {
         Ok((description, model)) => Ok(Robot {
             file: source.name,
             description,
@@ -38,9 +46,13 @@ pub fn load(path: &Path) -> Result<Robot, Failure> {
     }
 }
 
-fn compiled(source: &Source) -> Result<(Description, RobotModel), Diagnostics> {
-    let model = compile::compile(source)?;
-    Ok((description::parse(source)?, model))
+fn compiled(
+    source: &Source,
+    effort: &dyn Fn(Option<Effort>) -> Effort,
+) -> Result<(Description, RobotModel), Diagnostics> {
+    let description = description::parse(source)?;
+    let model = compile_with(source, Some(effort(description.effort)))?;
+    Ok((description, model))
 }
 
 /// Reads a description's text.

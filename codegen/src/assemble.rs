@@ -4,7 +4,7 @@ use crate::cas::Arena;
 use crate::derivation::{
     Columns, Family, From, GuardKind, JointsBy, Selection, Underivable, derive, station_count,
 };
-use crate::lowering::{Array, Condition, GuardedExpr, Program, lower};
+use crate::lowering::{Array, Condition, Effort, GuardedExpr, Program, lower};
 use crate::mechanism::Mechanism;
 use crate::parallel;
 use std::collections::BTreeSet;
@@ -68,8 +68,17 @@ pub fn program(
         array(family.name(), shape),
         &derived.entries,
         &guards,
-        selection.effort,
+        effort(selection.effort, family),
     ))
+}
+
+/// The effort that a function is worth: the identification models, which run at every sample of
+/// every log, are searched as hard as asked; the others quickly.
+fn effort(asked: Effort, family: Family) -> Effort {
+    match family {
+        Family::IdmRedPlatform(_) => asked,
+        _ => asked.min(Effort::Quick),
+    }
 }
 
 /// The axes in which the legs' closures are written: for each shape of legs the station in which the

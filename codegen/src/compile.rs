@@ -6,27 +6,40 @@ use crate::combine::cheaper_columns;
 use crate::derivation::{Columns, Family, Selection, Underivable};
 use crate::description;
 use crate::diagnostic::{Diagnostics, Source};
+use crate::lowering::Effort;
 use crate::mechanism::{self, Mechanism};
 use crate::model::{Function, RobotModel};
 use crate::parallel;
 
-/// From a description's text to a robot's model: parse, check, derive, choose columns, lower.
+/// From a description's text to a robot's model: parse, check, derive, choose columns, lower. Operations
+/// are searched as hard as the description says, else [`Effort::Quick`].
 ///
 /// # Errors
 /// All errors of the description, each at its place.
 pub fn compile(source: &Source) -> Result<RobotModel, Diagnostics> {
+    compile_with(source, None)
+}
+
+/// [`compile`] with another effort than the description's.
+///
+/// # Errors
+/// All errors of the description, each at its place.
+pub fn compile_with(source: &Source, effort: Option<Effort>) -> Result<RobotModel, Diagnostics> {
     let description = description::parse(source)?;
     let mechanism = mechanism::check(&description)?;
-    model(mechanism).map_err(|e| mechanism::locate(&description, &e))
+    let effort = effort.or(description.effort).unwrap_or_default();
+    model(mechanism, effort).map_err(|e| mechanism::locate(&description, &e))
 }
 
 /// The model of a checked mechanism.
 ///
 /// # Errors
 /// See [`Underivable`].
-pub fn model(mechanism: Mechanism) -> Result<RobotModel, Underivable> {
+pub fn model(mechanism: Mechanism, effort: Effort) -> Result<RobotModel, Underivable> {
     let mut selection = Selection {
         kept_actuators: mechanism.kept_actuators.clone(),
+        // The form of the model is chosen by what the derivation itself makes of it.
+        effort: Effort::None,
         ..Selection::default()
     };
     selection.standard = present(
@@ -40,6 +53,7 @@ pub fn model(mechanism: Mechanism) -> Result<RobotModel, Underivable> {
     selection.base = base.iter().map(|b| b.parameter).collect();
     selection.combined = cheaper_columns(&mechanism, &selection, &exact)?;
     let joints = joints_by(&mechanism, &selection)?;
+    selection.effort = effort;
     let tree = mechanism.platform.is_none();
     let all = Family::all(&mechanism, joints);
     let functions = parallel::map(&all, |&(family, from)| {

@@ -1,24 +1,28 @@
 //! The attribute macro `#[redundant_robot("robot.toml")]`.
 //!
 //! It reads the description, whose path is relative to the crate's manifest, and puts the generated
-//! items behind the struct. The description is named to the compiler as an input, so a changed file
+//! items behind the struct. With `effort = "thorough"` operations are searched harder. The description is named to the compiler as an input, so a changed file
 //! rebuilds the crate. Errors of the description are shown with their lines.
 
-use overact_codegen::{Source, compile, emission};
+use overact_codegen::{Effort, Source, compile_with, emission};
 use proc_macro::TokenStream;
 use quote::quote;
-use syn::{Item, ItemStruct, LitStr};
+use syn::parse::{Parse, ParseStream};
+use syn::{Ident, Item, ItemStruct, LitStr, Token};
 
 /// Derives a robot's model from its description: `#[redundant_robot("robots/dualv.toml")] struct DualV;`
+///
+/// With `effort = "thorough"` behind the path the generator searches longer for fewer operations; the
+/// description can say the same.
 ///
 /// The struct gets the constants and functions of the robot and implements `overact::Model`.
 #[proc_macro_attribute]
 pub fn redundant_robot(attribute: TokenStream, item: TokenStream) -> TokenStream {
-    let (path, robot) = match read(attribute, item) {
+    let (arguments, robot) = match read(attribute, item) {
         Ok(read) => read,
         Err(error) => return error.into_compile_error().into(),
     };
-    match expand(&path, &robot) {
+    match expand(&arguments, &robot) {
         Ok(tokens) => tokens.into(),
         Err(error) => {
             // The struct stays, so that its users add no errors of their own.
@@ -28,24 +32,58 @@ pub fn redundant_robot(attribute: TokenStream, item: TokenStream) -> TokenStream
     }
 }
 
-/// The description's path and the struct.
-fn read(attribute: TokenStream, item: TokenStream) -> syn::Result<(LitStr, ItemStruct)> {
-    let path = syn::parse::<LitStr>(attribute).map_err(|e| {
+/// What the attribute says.
+struct Arguments {
+    path: LitStr,
+    effort: Option<Effort>,
+}
+
+impl Parse for Arguments {
+    fn parse(input: ParseStream<'_>) -> syn::Result<Self> {
+        let path = input.parse()?;
+        let mut effort = None;
+        if input.parse::<Option<Token![,]>>()?.is_some() && !input.is_empty() {
+            let key: Ident = input.parse()?;
+            if key != "effort" {
+                return Err(syn::Error::new(key.span(), "expected `effort`"));
+            }
+            input.parse::<Token![=]>()?;
+            let name: LitStr = input.parse()?;
+            let message = "expected \"none\", \"quick\" or \"thorough\"";
+            let named = Effort::named(&name.value());
+            effort = Some(named.ok_or_else(|| syn::Error::new(name.span(), message))?);
+            input.parse::<Option<Token![,]>>()?;
+        }
+        Ok(Self { path, effort })
+    }
+}
+
+/// The attribute's arguments and the struct.
+fn read(attribute: TokenStream, item: TokenStream) -> syn::Result<(Arguments, ItemStruct)> {
+    let is_empty = attribute.is_empty();
+    let arguments = syn::parse::<Arguments>(attribute).map_err(|e| {
         let message =
             "expected the path of a robot's description: `#[redundant_robot(\"robot.toml\")]`";
+        let is_path = is_empty || e.to_string().contains("string literal");
+        let message = if is_path {
+            message.to_owned()
+        } else {
+            e.to_string()
+        };
         syn::Error::new(e.span(), message)
     })?;
     let item = syn::parse::<Item>(item)?;
     let message = "`#[redundant_robot]` goes on a struct without fields and generics, for instance `struct DualV;`";
     match item {
         Item::Struct(robot) if robot.fields.is_empty() && robot.generics.params.is_empty() => {
-            Ok((path, robot))
+            Ok((arguments, robot))
         }
         other => Err(syn::Error::new_spanned(other, message)),
     }
 }
 
-fn expand(path: &LitStr, robot: &ItemStruct) -> syn::Result<proc_macro2::TokenStream> {
+fn expand(arguments: &Arguments, robot: &ItemStruct) -> syn::Result<proc_macro2::TokenStream> {
+    let path = &arguments.path;
     let folder = std::env::var("CARGO_MANIFEST_DIR").unwrap_or_default();
     let file = std::path::Path::new(&folder).join(path.value());
     let text = std::fs::read_to_string(&file).map_err(|e| {
@@ -56,7 +94,7 @@ fn expand(path: &LitStr, robot: &ItemStruct) -> syn::Result<proc_macro2::TokenSt
         syn::Error::new(path.span(), message)
     })?;
     let source = Source::new(path.value(), text);
-    let model = compile(&source).map_err(|errors| {
+    let model = compile_with(&source, arguments.effort).map_err(|errors| {
         let count = errors.len();
         let noun = if count == 1 { "error" } else { "errors" };
         let list = errors.render_plain(&source);

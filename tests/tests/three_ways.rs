@@ -10,7 +10,7 @@ use overact_tests::{compiled, redundant_backend, reference::robots};
 use proc_macro2::{Delimiter, Ident, Span, TokenStream, TokenTree};
 use std::fs;
 
-#[redundant_robot("../robots/dualv.toml")]
+#[redundant_robot("../robots/dualv.toml", effort = "thorough")]
 struct DualV;
 
 redundant_backend!(ByMacro, "macro", DualV);

@@ -1,9 +1,11 @@
 //! `overact generate`: Rust source, one module per robot.
 
 use crate::{
+    effort,
     failure::{Failure, Problem},
-    load::{Robot, load},
+    load::{Robot, load_with},
     output::{json, print, write},
+    progress::Progress,
 };
 use overact_codegen::emission;
 use serde::Serialize;
@@ -25,6 +27,8 @@ pub(crate) struct Arguments {
     /// Write nothing; fail if a file differs from what would be written
     #[arg(long, requires = "output")]
     check: bool,
+    #[command(flatten)]
+    effort: effort::Arguments,
 }
 
 /// A robot's module.
@@ -49,7 +53,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         let message = "several descriptions need a folder to write to: add `-o FOLDER`";
         return Err(Failure::Usage(message.to_owned()));
     }
-    let robots = load_all(&arguments.files)?;
+    let robots = load_all(arguments, as_json)?;
     let mut modules: Vec<Module> = robots
         .iter()
         .zip(&arguments.files)
@@ -92,10 +96,13 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     )
 }
 
-fn load_all(files: &[PathBuf]) -> Result<Vec<Robot>, Failure> {
+fn load_all(arguments: &Arguments, as_json: bool) -> Result<Vec<Robot>, Failure> {
     let (mut good, mut bad) = (Vec::new(), Vec::new());
-    for file in files {
-        match load(file) {
+    let count = arguments.files.len();
+    let bar = Progress::new("generating", as_json);
+    for (at, file) in arguments.files.iter().enumerate() {
+        bar.at(at as f64 / count as f64, &file.display().to_string());
+        match load_with(file, &|e| arguments.effort.effort(e)) {
             Ok(robot) => good.push(robot),
             Err(failure) => bad.push(failure),
         }

@@ -4,7 +4,7 @@ mod conditioning;
 mod document;
 mod table;
 
-use crate::{drawing, failure::Failure, load::load, output};
+use crate::{drawing, effort, failure::Failure, load::load_with, output};
 use document::Document;
 use std::path::PathBuf;
 
@@ -20,6 +20,8 @@ pub(crate) struct Arguments {
     /// Write a drawing of the robot at its home configuration
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
+    #[command(flatten)]
+    effort: effort::Arguments,
 }
 
 /// Runs the command.
@@ -27,7 +29,7 @@ pub(crate) struct Arguments {
 /// # Errors
 /// A description with errors.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
-    let robot = load(&arguments.file)?;
+    let robot = load_with(&arguments.file, &|e| arguments.effort.effort(e))?;
     if let Some(svg) = &arguments.svg {
         let text = drawing::svg(&robot.model.mechanism);
         output::write(vec![(svg.clone(), text.into_bytes())])?;

@@ -3,6 +3,7 @@
 use super::parameter::StandardParameter;
 use crate::cas::{Angle, Number, Ratio};
 use crate::diagnostic::Span;
+use crate::lowering::Effort;
 
 /// A value and where the description gives it.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,6 +31,8 @@ pub struct Description {
     pub summary: String,
     /// Where the numbers come from.
     pub source: String,
+    /// How hard the generator searches for fewer operations; `None` leaves it to whoever generates.
+    pub effort: Option<Effort>,
     /// Acceleration of gravity in the base frame, m/s².
     pub gravity: [Number; 3],
     /// The platform; `None` for a serial or tree robot.

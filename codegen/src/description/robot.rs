@@ -9,6 +9,7 @@ use super::shape::Shape;
 use super::{experiment, leg, platform, settings, shape};
 use crate::cas::{Number, Ratio};
 use crate::diagnostic::{Diagnostic, Diagnostics, Source};
+use crate::lowering::Effort;
 use toml::de::DeTable;
 
 /// Words that cannot name a type.
@@ -70,6 +71,9 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
         text("summary").unwrap_or_default(),
         text("source").unwrap_or_default(),
     );
+    let effort = table
+        .get("effort")
+        .and_then(|item| item.choice(&Effort::ALL.map(|e| (e.name(), e))));
     let constants = table
         .get("constants")
         .and_then(|item| item.table("the table `[constants]`"));
@@ -107,6 +111,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
     let identification = settings::identification(settings.as_ref(), &robot);
     Some(Description {
         name: name?,
+        effort: effort.map(|effort| effort.value),
         summary,
         source,
         gravity: gravity.unwrap_or_else(standard_gravity),

@@ -14,7 +14,7 @@ pub use backend::{Backend, Evaluated};
 pub use sample::Sample;
 pub use served::Served;
 
-use overact_codegen::{RobotModel, Source, compile};
+use overact_codegen::{Effort, RobotModel, Source, compile, compile_with};
 use std::error::Error;
 use std::path::PathBuf;
 use std::{fs, sync::OnceLock};
@@ -50,7 +50,7 @@ pub fn model_of(source: &Source) -> Result<RobotModel, Failure> {
     compile(source).map_err(|errors| errors.render_plain(source).into())
 }
 
-/// The DualV's model, compiled once.
+/// The DualV's model as it is checked in, with all operations searched; compiled once.
 ///
 /// # Errors
 ///
@@ -59,7 +59,10 @@ pub fn dualv() -> Result<&'static RobotModel, Failure> {
     static MODEL: OnceLock<Result<RobotModel, String>> = OnceLock::new();
     let compiled = MODEL.get_or_init(|| {
         description("dualv")
-            .and_then(|source| model_of(&source))
+            .and_then(|source| {
+                compile_with(&source, Some(Effort::Thorough))
+                    .map_err(|errors| errors.render_plain(&source).into())
+            })
             .map_err(|error| error.to_string())
     });
     compiled.as_ref().map_err(|error| error.as_str().into())

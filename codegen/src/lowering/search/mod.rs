@@ -22,16 +22,40 @@ pub use graph::{Overlay, Place, Rewritten};
 use crate::cas::{Arena, Expr};
 use graph::Graph;
 
+/// How often pairs are searched at most: a later round has only what the earlier ones opened up.
+const ROUNDS: usize = 4;
+
 /// How hard a function's operations are searched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, PartialOrd, Ord)]
 pub enum Effort {
     /// Not at all: the derivation's own form.
-    #[default]
     None,
     /// Nodes that are one operation away from others.
+    #[default]
     Quick,
     /// Also those that are two operations away, and operations that serve several nodes.
     Thorough,
+}
+
+impl Effort {
+    /// All, the least first.
+    pub const ALL: [Self; 3] = [Self::None, Self::Quick, Self::Thorough];
+
+    /// The name in descriptions, attributes and on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Quick => "quick",
+            Self::Thorough => "thorough",
+        }
+    }
+
+    /// The effort of that name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|effort| effort.name() == name)
+    }
 }
 
 /// Other definitions for some of the nodes that the entries need.
@@ -46,9 +70,15 @@ pub fn search<'a>(
         return Overlay::default();
     }
     let mut graph = Graph::new(arena, entries, guards);
+    let mut rounds = if effort == Effort::Thorough {
+        ROUNDS
+    } else {
+        0
+    };
     loop {
         let mut saved = singles::improve(&mut graph);
-        if effort == Effort::Thorough {
+        if rounds > 0 {
+            rounds -= 1;
             saved += pairs::improve(&mut graph);
         }
         if saved == 0 {

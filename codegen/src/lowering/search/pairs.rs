@@ -102,15 +102,6 @@ fn improve_group(graph: &mut Graph, (own, all): &(Vec<usize>, Vec<usize>)) -> i3
             });
         }
     });
-    if std::env::var("DBG").is_ok() {
-        eprintln!(
-            "live {} targets {} requests {} hits {}",
-            all.len(),
-            targets.len(),
-            requests.len(),
-            hits.len()
-        );
-    }
     hits.sort_by(|a, b| b.bound.cmp(&a.bound).then_with(|| a.cmp(b)));
     hits.iter()
         .map(|hit| apply(graph, &requests, hit).unwrap_or(0))
