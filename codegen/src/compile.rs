@@ -3,7 +3,7 @@
 use crate::assemble::{cheapest, cheapest_stations, joints_by};
 use crate::columns::{base_parameters, present};
 use crate::combine::cheaper_columns;
-use crate::derivation::{Columns, Family, Selection, Underivable};
+use crate::derivation::{Columns, Family, From, Selection, Underivable};
 use crate::description;
 use crate::diagnostic::{Diagnostics, Source};
 use crate::mechanism::{self, Mechanism};
@@ -25,6 +25,18 @@ pub fn compile(source: &Source) -> Result<RobotModel, Diagnostics> {
 /// # Errors
 /// See [`Underivable`].
 pub fn model(mechanism: Mechanism) -> Result<RobotModel, Underivable> {
+    model_with(mechanism, |_, _| true)
+}
+
+/// The model of a checked mechanism with those of its functions that are wanted: most of the time goes
+/// into deriving one after the other.
+///
+/// # Errors
+/// See [`Underivable`].
+pub fn model_with(
+    mechanism: Mechanism,
+    mut wanted: impl FnMut(Family, From) -> bool,
+) -> Result<RobotModel, Underivable> {
     let mut selection = Selection {
         kept_actuators: mechanism.kept_actuators.clone(),
         ..Selection::default()
@@ -41,7 +53,8 @@ pub fn model(mechanism: Mechanism) -> Result<RobotModel, Underivable> {
     selection.combined = cheaper_columns(&mechanism, &selection, &exact)?;
     let joints = joints_by(&mechanism, &selection)?;
     let tree = mechanism.platform.is_none();
-    let all = Family::all(&mechanism, joints);
+    let mut all = Family::all(&mechanism, joints);
+    all.retain(|&(family, from)| wanted(family, from));
     let functions = parallel::map(&all, |&(family, from)| {
         let program = cheapest(&mechanism, &selection, family, from, joints)?;
         let name = family.function_name(from, tree);
