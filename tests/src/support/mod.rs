@@ -2,15 +2,18 @@
 
 pub mod agreement;
 pub mod backend;
+pub mod comparison;
 pub mod conversion;
 pub mod expected;
 pub mod library;
+pub mod random;
 pub mod rank;
 pub mod sample;
 pub mod served;
 
 pub use agreement::Agreement;
 pub use backend::{Backend, Evaluated};
+pub use comparison::Comparison;
 pub use sample::Sample;
 pub use served::Served;
 
