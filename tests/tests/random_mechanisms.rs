@@ -36,9 +36,10 @@ fn setting(name: &str) -> Option<u64> {
 }
 
 fn seeds() -> std::ops::Range<u64> {
+    let count = setting("OVERACT_RANDOM_COUNT");
     match setting("OVERACT_RANDOM_SEED") {
-        Some(seed) => seed..seed + 1,
-        None => 0..setting("OVERACT_RANDOM_COUNT").unwrap_or(COUNT),
+        Some(seed) => seed..seed + count.unwrap_or(1),
+        None => 0..count.unwrap_or(COUNT),
     }
 }
 
@@ -103,7 +104,7 @@ fn random_mechanisms_agree_with_the_reference() {
 /// Compares one mechanism; what it has.
 fn agree(sketch: &Sketch) -> Result<BTreeSet<String>, Failure> {
     let source = sketch.source();
-    let alone = setting("OVERACT_RANDOM_SEED").is_some();
+    let alone = seeds().count() == 1;
     if alone {
         println!("{}", source.text);
     }

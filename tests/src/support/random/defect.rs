@@ -107,7 +107,9 @@ impl Defect {
                 let own = shape.independent();
                 let (first, second) = (*own.first()?, *own.get(1)?);
                 let kinds = [first, second].map(|j| shape.members[j].joint.kind);
-                if second != first + 1 || kinds != [JointKind::Revolute; 2] {
+                let own_only = |(at, m): (usize, &Member)| m.joint.terms.iter().all(|t| t.0 == at);
+                let alone = shape.members.iter().enumerate().all(own_only);
+                if second != first + 1 || kinds != [JointKind::Revolute; 2] || !alone {
                     return None;
                 }
                 let joint = &mut shape.members[second].joint;
