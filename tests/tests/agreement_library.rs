@@ -40,7 +40,7 @@ fn compare(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
     }
     if !model.is_tree() {
         for kept in partitions(model.mechanism.actuated().len(), model.mechanism.dof()) {
-            comparison.partition(&kept, &model, &served, &all, &truths)?;
+            comparison.partition((&kept, true), &model, &served, &all, &truths)?;
         }
     }
     println!("{}", comparison.lines.join("\n"));

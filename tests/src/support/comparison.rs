@@ -77,20 +77,24 @@ impl Comparison {
     }
 
     /// Case 2 of one partition: from the backend's J_p^inv and case 1 by the runtime, and as a program
-    /// of its own.
+    /// of its own if that is asked for.
     ///
     /// # Errors
     ///
     /// If a function has no value, or the partition is regular where the runtime says that it is not.
     pub fn partition(
         &mut self,
-        kept: &[usize],
+        (kept, as_program): (&[usize], bool),
         model: &RobotModel,
         backend: &dyn Backend,
         all: &[Sample],
         truths: &[Truth<'_>],
     ) -> Result<(), Failure> {
-        let program = program_of(model, kept)?;
+        let program = if as_program {
+            program_of(model, kept)?
+        } else {
+            None
+        };
         let mut found = [Agreement::new(), Agreement::new()];
         let (mut worst, mut singular) = (0.0_f64, 0);
         for (sample, truth) in all.iter().zip(truths) {
@@ -117,13 +121,12 @@ impl Comparison {
             }
         }
         let [by_runtime, by_program] = &found;
-        let has_program = program.is_some();
         let tolerable = |a: &Agreement| a.is_empty() || a.within(self.tolerance);
         let is_good = tolerable(by_runtime) && tolerable(by_program) && worst < ROUNDING;
-        let own = if has_program {
-            by_program.to_string()
-        } else {
-            "singular at home".to_owned()
+        let own = match (as_program, program.is_some()) {
+            (true, true) => by_program.to_string(),
+            (true, false) => "singular".to_owned(),
+            (false, _) => "not derived".to_owned(),
         };
         self.line(
             is_good,
