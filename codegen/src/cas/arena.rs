@@ -1,6 +1,7 @@
 //! The graph: nodes, their meaning in the field, and the tables that share them.
 
 mod meaning;
+mod placeholders;
 
 use super::direction::{Direction, SymbolId};
 use super::expr::Expr;
@@ -77,8 +78,8 @@ struct Node {
     op: Op,
     meaning: Meaning,
     scope: u32,
-    /// Whether a placeholder is among the symbols that it is written with.
-    is_provisional: bool,
+    /// The set of placeholders that it is written with.
+    placeholders: u32,
 }
 
 #[derive(Debug)]
@@ -97,6 +98,7 @@ struct Tables {
     symbol_ids: HashMap<String, SymbolId>,
     directions: Vec<Direction>,
     direction_ids: HashMap<Direction, u32>,
+    sets: placeholders::Sets,
     by_shape: HashMap<Op, Handle>,
     by_meaning: HashMap<[Element; POINTS], Handle>,
     by_ratio: HashMap<Element, u32>,
@@ -251,7 +253,7 @@ impl Arena {
 
     /// The value of a symbol that stands for something unknown while equations are searched. Where it
     /// cancels, the expression means the same as one without it, but is still written with it; such a
-    /// node is never taken for an expression that is written without placeholders.
+    /// node is never taken for an expression that is written without it.
     pub fn placeholder(&self, name: &str) -> Expr<'_> {
         let id = self.symbol_of_kind(name, true);
         self.expr(self.intern(Op::Symbol(id)))
@@ -400,8 +402,9 @@ impl Arena {
 
     /// Whether a node that means the same may stand for an operation.
     fn fits(&self, op: &Op, handle: Handle) -> bool {
-        let tables = self.tables.borrow();
-        tables.is_provisional(op) || !tables.nodes[handle.index()].is_provisional
+        let mut tables = self.tables.borrow_mut();
+        let placeholders = tables.placeholders(op);
+        tables.may_stand(handle.index(), placeholders)
     }
 
     pub(crate) fn is_constant(&self, handle: Handle) -> bool {
@@ -415,16 +418,15 @@ impl Arena {
     fn push(&self, op: Op, meaning: Meaning, ratio: Option<Element>) -> Handle {
         let mut tables = self.tables.borrow_mut();
         let index = tables.nodes.len();
-        let (scope, is_provisional) = (tables.scope, tables.is_provisional(&op));
+        let (scope, placeholders) = (tables.scope, tables.placeholders(&op));
         tables.nodes.push(Node {
             op,
             meaning,
             scope,
-            is_provisional,
+            placeholders,
         });
-        // The first node of a meaning stands for it, but a provisional one gives way.
-        let stands =
-            |tables: &Tables, index: usize| is_provisional || !tables.nodes[index].is_provisional;
+        // The first node of a meaning stands for it; one written with more placeholders gives way.
+        let stands = |tables: &Tables, index: usize| tables.may_stand(index, placeholders);
         let (key, negative) = canonical(meaning.image);
         let known = tables.by_meaning.get(&key).copied();
         if !known.is_some_and(|k| stands(&tables, k.index())) {

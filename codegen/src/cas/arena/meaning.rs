@@ -20,19 +20,6 @@ impl Tables {
         }
     }
 
-    /// Whether an operation is written with a placeholder.
-    pub(super) fn is_provisional(&self, op: &Op) -> bool {
-        let of = |handle: &Handle| self.nodes[handle.index()].is_provisional;
-        match op {
-            Op::Constant(_) | Op::Cosine(_) | Op::Sine(_) => false,
-            Op::Symbol(id) => self.symbols[id.0 as usize].is_placeholder,
-            Op::Sqrt(a) | Op::Sign(a) => of(a),
-            Op::Add(a, b) | Op::Sub(a, b) | Op::Mul(a, b) | Op::Div(a, b) | Op::Atan2(a, b) => {
-                of(a) || of(b)
-            }
-        }
-    }
-
     /// The magnitude against which rounding of the node's sample is judged.
     pub(super) fn operand_size(&self, op: &Op) -> f64 {
         match op {
