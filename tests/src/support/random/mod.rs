@@ -116,7 +116,7 @@ pub struct Sketch {
 }
 
 /// Joints that all legs together may have: what is larger takes the generator seconds.
-const MAX_JOINTS: usize = 14;
+const MAX_JOINTS: usize = 12;
 
 impl Sketch {
     /// A regular mechanism.
