@@ -3,7 +3,7 @@
 //! The partitions differ in one line of the description, so the variants are made from the one
 //! description here and not kept as copies.
 
-use overact_codegen::{Effort, Source, compile_with, emission};
+use overact_codegen::{Effort, Request, Source, compile_with, emission};
 use std::error::Error;
 use std::path::Path;
 use std::{env, fs};
@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = env::var("OUT_DIR")?;
     for kept in [[1, 2, 3], [1, 2, 4], [1, 3, 4], [2, 3, 4]] {
         let source = Source::new(DESCRIPTION, with_kept(&text, kept));
-        let model = compile_with(&source, Some(Effort::Thorough))
+        let model = compile_with(&source, &Request::with_effort(Effort::Thorough))
             .map_err(|errors| errors.render_plain(&source))?;
         let [a, b, c] = kept;
         let file = Path::new(&folder).join(format!("dualv_kept_{a}{b}{c}.rs"));

@@ -3,7 +3,7 @@
 use crate::assemble::{cheapest, cheapest_stations, joints_by};
 use crate::columns::{base_parameters, present};
 use crate::combine::cheaper_columns;
-use crate::derivation::{Columns, Family, Selection, Underivable};
+use crate::derivation::{Columns, Family, From, Selection, Underivable};
 use crate::description;
 use crate::diagnostic::{Diagnostics, Source};
 use crate::lowering::Effort;
@@ -11,31 +11,77 @@ use crate::mechanism::{self, Mechanism};
 use crate::model::{Function, RobotModel};
 use crate::parallel;
 
-/// From a description's text to a robot's model: parse, check, derive, choose columns, lower. Operations
-/// are searched as hard as the description says, else [`Effort::Quick`].
+/// Which functions of a robot a model shall have.
+pub type Wanted<'a> = &'a (dyn Fn(&Mechanism, Family, From) -> bool + Sync);
+
+/// What a model shall have, and what work it is worth; by default all functions, quickly.
+#[derive(Clone, Copy)]
+pub struct Request<'a> {
+    /// How hard fewer operations are searched: `None` leaves it to the description, else to
+    /// [`Effort::Quick`].
+    pub effort: Option<Effort>,
+    /// Which functions are derived: most of the time goes into one after the other.
+    pub wanted: Wanted<'a>,
+}
+
+impl Default for Request<'_> {
+    fn default() -> Self {
+        Self {
+            effort: None,
+            wanted: &|_, _, _| true,
+        }
+    }
+}
+
+impl Request<'_> {
+    /// All functions, with an effort that overrules the description's.
+    #[must_use]
+    pub fn with_effort(effort: Effort) -> Self {
+        Self {
+            effort: Some(effort),
+            ..Self::default()
+        }
+    }
+}
+
+/// From a description's text to a robot's model: parse, check, derive, choose columns, lower.
 ///
 /// # Errors
 /// All errors of the description, each at its place.
 pub fn compile(source: &Source) -> Result<RobotModel, Diagnostics> {
-    compile_with(source, None)
+    compile_with(source, &Request::default())
 }
 
-/// [`compile`] with another effort than the description's.
+/// [`compile`] of what is asked for.
 ///
 /// # Errors
 /// All errors of the description, each at its place.
-pub fn compile_with(source: &Source, effort: Option<Effort>) -> Result<RobotModel, Diagnostics> {
+pub fn compile_with(source: &Source, request: &Request<'_>) -> Result<RobotModel, Diagnostics> {
     let description = description::parse(source)?;
     let mechanism = mechanism::check(&description)?;
-    let effort = effort.or(description.effort).unwrap_or_default();
-    model(mechanism, effort).map_err(|e| mechanism::locate(&description, &e))
+    let request = Request {
+        effort: request.effort.or(description.effort),
+        ..*request
+    };
+    model_with(mechanism, &request).map_err(|e| mechanism::locate(&description, &e))
 }
 
 /// The model of a checked mechanism.
 ///
 /// # Errors
 /// See [`Underivable`].
-pub fn model(mechanism: Mechanism, effort: Effort) -> Result<RobotModel, Underivable> {
+pub fn model(mechanism: Mechanism) -> Result<RobotModel, Underivable> {
+    model_with(mechanism, &Request::default())
+}
+
+/// [`model`] of what is asked for.
+///
+/// # Errors
+/// See [`Underivable`].
+pub fn model_with(
+    mechanism: Mechanism,
+    request: &Request<'_>,
+) -> Result<RobotModel, Underivable> {
     let mut selection = Selection {
         kept_actuators: mechanism.kept_actuators.clone(),
         // The form of the model is chosen by what the derivation itself makes of it.
@@ -53,9 +99,10 @@ pub fn model(mechanism: Mechanism, effort: Effort) -> Result<RobotModel, Underiv
     selection.base = base.iter().map(|b| b.parameter).collect();
     selection.combined = cheaper_columns(&mechanism, &selection, &exact)?;
     let joints = joints_by(&mechanism, &selection)?;
-    selection.effort = effort;
+    selection.effort = request.effort.unwrap_or_default();
     let tree = mechanism.platform.is_none();
-    let all = Family::all(&mechanism, joints);
+    let mut all = Family::all(&mechanism, joints);
+    all.retain(|&(family, from)| (request.wanted)(&mechanism, family, from));
     let functions = parallel::map(&all, |&(family, from)| {
         let program = cheapest(&mechanism, &selection, family, from, joints)?;
         let name = family.function_name(from, tree);

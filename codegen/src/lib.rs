@@ -38,7 +38,7 @@ pub mod model;
 mod parallel;
 pub mod states;
 
-pub use compile::{compile, compile_with};
+pub use compile::{Request, compile, compile_with};
 pub use diagnostic::{Diagnostics, Source};
 pub use lowering::Effort;
 pub use model::{Function, RobotModel};

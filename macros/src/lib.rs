@@ -4,7 +4,7 @@
 //! items behind the struct. With `effort = "thorough"` operations are searched harder. The description is named to the compiler as an input, so a changed file
 //! rebuilds the crate. Errors of the description are shown with their lines.
 
-use overact_codegen::{Effort, Source, compile_with, emission};
+use overact_codegen::{Effort, Request, Source, compile_with, emission};
 use proc_macro::TokenStream;
 use quote::quote;
 use syn::parse::{Parse, ParseStream};
@@ -94,7 +94,11 @@ fn expand(arguments: &Arguments, robot: &ItemStruct) -> syn::Result<proc_macro2:
         syn::Error::new(path.span(), message)
     })?;
     let source = Source::new(path.value(), text);
-    let model = compile_with(&source, arguments.effort).map_err(|errors| {
+    let request = Request {
+        effort: arguments.effort,
+        ..Request::default()
+    };
+    let model = compile_with(&source, &request).map_err(|errors| {
         let count = errors.len();
         let noun = if count == 1 { "error" } else { "errors" };
         let list = errors.render_plain(&source);

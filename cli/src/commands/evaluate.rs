@@ -12,7 +12,7 @@ use crate::{
 };
 use clap::ValueEnum;
 use overact_codegen::{
-    Effort, RobotModel, compile,
+    RobotModel, compile,
     derivation::{Columns, Family, From},
     evaluation::{Rows, Workspace},
     lowering::Program,
@@ -133,7 +133,7 @@ fn with_kept(model: RobotModel, names: &[String]) -> Result<RobotModel, Failure>
     let kept = super::kept_actuators(&model, names)?;
     let mut mechanism = model.mechanism;
     mechanism.kept_actuators = kept;
-    compile::model(mechanism, Effort::Quick).map_err(|_| {
+    compile::model(mechanism).map_err(|_| {
         let message = "these kept actuators never determine the platform's motion";
         let help = "choose other ones; `overact inspect` lists how well each choice does";
         Problem::new(message).help(help).into()

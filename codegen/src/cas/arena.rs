@@ -1,6 +1,7 @@
 //! The graph: nodes, their meaning in the field, and the tables that share them.
 
 mod meaning;
+mod placeholders;
 
 use super::direction::{Direction, SymbolId};
 use super::expr::Expr;
@@ -77,6 +78,8 @@ struct Node {
     op: Op,
     meaning: Meaning,
     scope: u32,
+    /// The set of placeholders that it is written with.
+    placeholders: u32,
 }
 
 #[derive(Debug)]
@@ -84,6 +87,7 @@ struct Symbol {
     name: String,
     circle: [Element; POINTS],
     sample: f64,
+    is_placeholder: bool,
 }
 
 #[derive(Debug, Default)]
@@ -94,6 +98,7 @@ struct Tables {
     symbol_ids: HashMap<String, SymbolId>,
     directions: Vec<Direction>,
     direction_ids: HashMap<Direction, u32>,
+    sets: placeholders::Sets,
     by_shape: HashMap<Op, Handle>,
     by_meaning: HashMap<[Element; POINTS], Handle>,
     by_ratio: HashMap<Element, u32>,
@@ -217,6 +222,10 @@ impl Arena {
     /// The symbol of that name, made if it is new. It may stand for a number and, in a
     /// [`Direction`], for an angle.
     pub fn symbol(&self, name: &str) -> SymbolId {
+        self.symbol_of_kind(name, false)
+    }
+
+    fn symbol_of_kind(&self, name: &str, is_placeholder: bool) -> SymbolId {
         let mut tables = self.tables.borrow_mut();
         if let Some(&id) = tables.symbol_ids.get(name) {
             return id;
@@ -230,6 +239,7 @@ impl Arena {
             name: name.to_owned(),
             circle,
             sample,
+            is_placeholder,
         });
         tables.symbol_ids.insert(name.to_owned(), id);
         id
@@ -238,6 +248,14 @@ impl Arena {
     /// The value of a symbol as an expression.
     pub fn variable(&self, name: &str) -> Expr<'_> {
         let id = self.symbol(name);
+        self.expr(self.intern(Op::Symbol(id)))
+    }
+
+    /// The value of a symbol that stands for something unknown while equations are searched. Where it
+    /// cancels, the expression means the same as one without it, but is still written with it; such a
+    /// node is never taken for an expression that is written without it.
+    pub fn placeholder(&self, name: &str) -> Expr<'_> {
+        let id = self.symbol_of_kind(name, true);
         self.expr(self.intern(Op::Symbol(id)))
     }
 
@@ -313,7 +331,10 @@ impl Arena {
         let meaning = self.tables.borrow().meaning(&op);
         let known = match &op {
             Op::Constant(_) | Op::Symbol(_) => None,
-            _ => self.folded(&op, &meaning).or_else(|| self.same(&meaning)),
+            _ => {
+                let same = || self.same(&meaning).filter(|h| self.fits(&op, *h));
+                self.folded(&op, &meaning).or_else(same)
+            }
         };
         let handle = known.unwrap_or_else(|| self.multiple_or_new(op.clone(), meaning));
         self.tables.borrow_mut().by_shape.insert(op, handle);
@@ -354,6 +375,7 @@ impl Arena {
             Op::Symbol(_) => None,
             _ => key.and_then(|key| self.proportional(key, &meaning)),
         };
+        let multiple = multiple.filter(|h| self.fits(&op, *h));
         multiple.unwrap_or_else(|| self.push(op, meaning, key))
     }
 
@@ -378,6 +400,13 @@ impl Arena {
         Some(self.intern(product).with_sign_of(factor.is_negative()))
     }
 
+    /// Whether a node that means the same may stand for an operation.
+    fn fits(&self, op: &Op, handle: Handle) -> bool {
+        let mut tables = self.tables.borrow_mut();
+        let placeholders = tables.placeholders(op);
+        tables.may_stand(handle.index(), placeholders)
+    }
+
     pub(crate) fn is_constant(&self, handle: Handle) -> bool {
         matches!(
             self.tables.borrow().nodes[handle.index()].op,
@@ -389,15 +418,25 @@ impl Arena {
     fn push(&self, op: Op, meaning: Meaning, ratio: Option<Element>) -> Handle {
         let mut tables = self.tables.borrow_mut();
         let index = tables.nodes.len();
-        let scope = tables.scope;
-        tables.nodes.push(Node { op, meaning, scope });
+        let (scope, placeholders) = (tables.scope, tables.placeholders(&op));
+        tables.nodes.push(Node {
+            op,
+            meaning,
+            scope,
+            placeholders,
+        });
+        // The first node of a meaning stands for it; one written with more placeholders gives way.
+        let stands = |tables: &Tables, index: usize| tables.may_stand(index, placeholders);
         let (key, negative) = canonical(meaning.image);
-        tables
-            .by_meaning
-            .entry(key)
-            .or_insert(Handle::new(index, negative));
+        let known = tables.by_meaning.get(&key).copied();
+        if !known.is_some_and(|k| stands(&tables, k.index())) {
+            tables.by_meaning.insert(key, Handle::new(index, negative));
+        }
         if let Some(ratio) = ratio {
-            tables.by_ratio.entry(ratio).or_insert(index as u32);
+            let known = tables.by_ratio.get(&ratio).copied();
+            if !known.is_some_and(|k| stands(&tables, k as usize)) {
+                tables.by_ratio.insert(ratio, index as u32);
+            }
         }
         Handle::new(index, false)
     }

@@ -273,4 +273,15 @@ mod tests {
             .apply(f);
         assert!((g.evaluate(&|_| 0.25) - 3.0 * 0.5_f64.cos()).abs() < 1e-15);
     }
+
+    #[test]
+    fn what_a_placeholder_cancels_from_is_written_without_it() {
+        let arena = Arena::new();
+        let (q, a) = (arena.placeholder("q"), arena.variable("a"));
+        let hidden = (q + a).squared() - q.squared() - q * a * arena.integer(2);
+        assert_eq!(hidden.symbols().len(), 2);
+        assert_eq!(a.squared().symbols(), [arena.symbol("a")]);
+        // Written with the placeholder anyway, an expression is shared with its plain form.
+        assert_eq!(hidden + q, a.squared() + q);
+    }
 }

@@ -256,14 +256,14 @@ impl Unknown {
     /// The symbols of an unknown turn's cosine and sine.
     #[must_use]
     pub fn unit<'a>(&self, arena: &'a Arena) -> Unit<'a> {
-        let symbol = |of: &str| arena.variable(&format!("{of} of unknown {self:?}"));
+        let symbol = |of: &str| arena.placeholder(&format!("{of} of unknown {self:?}"));
         (symbol("cosine"), symbol("sine"))
     }
 
     /// The symbol of an unknown slide.
     #[must_use]
     pub fn slide<'a>(&self, arena: &'a Arena) -> Expr<'a> {
-        arena.variable(&format!("unknown {self:?}"))
+        arena.placeholder(&format!("unknown {self:?}"))
     }
 }
 

@@ -80,7 +80,7 @@ impl<'a> Work<'a> {
     fn unknown_point(self) -> Vector3<'a> {
         let coordinate = |axis: usize| {
             if self.free[axis] {
-                self.arena.variable(&format!("unknown point[{axis}]"))
+                self.arena.placeholder(&format!("unknown point[{axis}]"))
             } else {
                 self.arena.zero()
             }

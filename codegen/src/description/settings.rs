@@ -67,8 +67,9 @@ pub struct Identification {
     pub skip_end: usize,
     /// Ratio of relative standard deviations at which the elimination of parameters ends.
     pub r_sigma: f64,
-    /// Kept actuators of case 2, indices among all actuators; the first r by default.
-    pub kept_actuators: Vec<usize>,
+    /// Kept actuators of case 2, indices among all actuators; if absent, the first r that determine
+    /// the platform's motion.
+    pub kept_actuators: Option<Vec<usize>>,
     /// How the variance of the residual is normalised.
     pub normalisation: Normalisation,
     /// How friction is modelled.
@@ -159,7 +160,7 @@ pub(super) fn identification(item: Option<&Item<'_, '_>>, robot: &Inventory<'_>)
         skip_start: 0,
         skip_end: 0,
         r_sigma: 10.0,
-        kept_actuators: (0..kept_count(robot)).collect(),
+        kept_actuators: None,
         normalisation: Normalisation::default(),
         friction: Friction::default(),
         weighted: true,
@@ -193,12 +194,9 @@ fn fill(settings: &mut Identification, table: &Table<'_, '_>, robot: &Inventory<
         }
         settings.r_sigma = ratio.unwrap_or(settings.r_sigma);
     }
-    if let Some(kept) = table
+    settings.kept_actuators = table
         .get("kept_actuators")
-        .and_then(|item| kept_actuators(&item, robot))
-    {
-        settings.kept_actuators = kept;
-    }
+        .and_then(|item| kept_actuators(&item, robot));
     let choices = [
         ("n-1", Normalisation::MinusOne),
         ("n-p", Normalisation::MinusParameters),

@@ -1,12 +1,11 @@
 //! From a description to a checked mechanism: mobility, closure at home, leg singularities.
 
+use super::actuation::{rates_per_velocity, shared_velocities};
 use super::home::{Home, HomeError};
-use super::numeric::{platform_frame, target};
 use super::{Joint, Leg, Mechanism, Platform};
 use crate::derivation::Underivable;
-use crate::description::{Description, Motion};
+use crate::description::Description;
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use nalgebra::{DMatrix, Vector3};
 
 /// Checks a description and finds its home configuration.
 ///
@@ -33,7 +32,33 @@ pub fn check(description: &Description) -> Result<Mechanism, Diagnostics> {
     for leg in 0..mechanism.legs.len() {
         check_mobility(description, &mechanism, leg, &mut errors);
     }
-    errors.into_result(mechanism)
+    errors.into_result(())?;
+    keep_actuators(description, &mut mechanism)?;
+    Ok(mechanism)
+}
+
+/// The actuators of case 2, the first that determine the platform's motion where none are given.
+fn keep_actuators(description: &Description, mechanism: &mut Mechanism) -> Result<(), Diagnostics> {
+    let independent = mechanism.independent_actuators();
+    let r = mechanism.dof();
+    if independent.len() < r {
+        let span = description.platform.as_ref().map(|p| p.motion.span.clone());
+        let error = Diagnostic::new(
+            "the actuators do not determine the platform's motion at the home configuration",
+            span.unwrap_or(description.name.span.clone()),
+        );
+        let label = format!(
+            "{r} coordinates, {} independent among the {} actuated joints",
+            independent.len(),
+            mechanism.actuated().len()
+        );
+        let help = "actuate another joint, or choose a home pose where the robot is not singular";
+        return Err(Diagnostics::from(error.label(label).help(help)));
+    }
+    if mechanism.kept_actuators.is_empty() {
+        mechanism.kept_actuators = independent;
+    }
+    Ok(())
 }
 
 /// The mechanism as the description says it, with an empty home configuration.
@@ -72,7 +97,8 @@ fn plain(description: &Description) -> Mechanism {
         platform,
         legs: description.legs.iter().map(leg).collect(),
         home: Home::default(),
-        kept_actuators: description.identification.kept_actuators.clone(),
+        // Chosen when the home configuration is known, if the description leaves it open.
+        kept_actuators: (description.identification.kept_actuators.clone()).unwrap_or_default(),
     }
 }
 
@@ -101,13 +127,6 @@ fn check_actuators(description: &Description, mechanism: &Mechanism, errors: &mu
                 .label(format!("{r} independent coordinates, {n} actuated joints"))
                 .help("mark the motors with `actuated = true`, or choose a platform motion with fewer coordinates"),
         );
-    } else if mechanism.kept_actuators.len() != r {
-        let message =
-            format!("case 2 keeps as many actuators as there are degrees of freedom, {r}");
-        errors.push(Diagnostic::new(message, span).label(format!(
-            "`kept_actuators` names {}",
-            mechanism.kept_actuators.len()
-        )));
     }
 }
 
@@ -205,16 +224,13 @@ fn check_mobility(
     };
     let leg = &mechanism.legs[index];
     let Some(end) = &leg.end else { return };
-    let frame = platform_frame(platform.motion, &mechanism.home.pose);
-    let target = target(end, &frame);
-    let arm = target.translation.vector - frame.translation.vector;
-    let wanted = platform_columns(platform.motion, arm).select_rows(&end.shared_components());
-    let jacobian = leg.closure_jacobian(&mechanism.home.joints[mechanism.leg_range(index)]);
-    let svd = nalgebra::SVD::try_new(jacobian.clone(), true, true, f64::EPSILON, 1000);
-    let Some(Ok(pseudo_inverse)) = svd.map(|svd| svd.pseudo_inverse(1e-9)) else {
+    let wanted = shared_velocities(platform.motion, &mechanism.home.pose, end);
+    let joints = &mechanism.home.joints[mechanism.leg_range(index)];
+    let jacobian = leg.closure_jacobian(joints);
+    let Some(rates) = rates_per_velocity(leg, joints) else {
         return;
     };
-    let missed = &wanted - &jacobian * (pseudo_inverse * &wanted);
+    let missed = &wanted - &jacobian * (rates * &wanted);
     if missed.amax() > 1e-6 {
         let place = &description.legs[index];
         errors.push(
@@ -226,30 +242,6 @@ fn check_mobility(
             .help("the leg blocks a motion that the platform has: add a passive joint, or choose another platform motion or leg end"),
         );
     }
-}
-
-/// Velocity of a platform point and angular velocity per twist coordinate, 6 x r.
-fn platform_columns(motion: Motion, arm: Vector3<f64>) -> DMatrix<f64> {
-    let twist = motion.twist();
-    let mut columns = DMatrix::zeros(6, twist.len());
-    for (c, coordinate) in twist.iter().enumerate() {
-        let mut axis = Vector3::zeros();
-        let (linear, angular) = match coordinate {
-            super::TwistCoordinate::Linear(a) => {
-                axis[*a] = 1.0;
-                (axis, Vector3::zeros())
-            }
-            super::TwistCoordinate::Angular(a) => {
-                axis[*a] = 1.0;
-                (axis.cross(&arm), axis)
-            }
-        };
-        for i in 0..3 {
-            columns[(i, c)] = linear[i];
-            columns[(3 + i, c)] = angular[i];
-        }
-    }
-    columns
 }
 
 /// Puts an error of the derivation at its place in the description.

@@ -6,6 +6,7 @@
 //! ends on the platform: its last frame is fixed on the platform (`Rigid`), or its origin coincides
 //! with a platform point (`Point`). A robot without platform is a tree: one leg without an end.
 
+pub mod actuation;
 pub mod check;
 pub mod home;
 pub mod motion;

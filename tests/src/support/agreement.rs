@@ -24,6 +24,12 @@ impl Agreement {
         Self::default()
     }
 
+    /// Whether nothing was compared.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.states == 0
+    }
+
     /// Compares what was found with what is expected.
     pub fn compare(&mut self, found: &DMatrix<f64>, expected: &DMatrix<f64>) {
         self.states += 1;

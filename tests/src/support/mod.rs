@@ -2,19 +2,22 @@
 
 pub mod agreement;
 pub mod backend;
+pub mod comparison;
 pub mod conversion;
 pub mod expected;
 pub mod library;
+pub mod random;
 pub mod rank;
 pub mod sample;
 pub mod served;
 
 pub use agreement::Agreement;
 pub use backend::{Backend, Evaluated};
+pub use comparison::Comparison;
 pub use sample::Sample;
 pub use served::Served;
 
-use overact_codegen::{Effort, RobotModel, Source, compile, compile_with};
+use overact_codegen::{Effort, Request, RobotModel, Source, compile, compile_with};
 use std::error::Error;
 use std::path::PathBuf;
 use std::{fs, sync::OnceLock};
@@ -60,7 +63,7 @@ pub fn dualv() -> Result<&'static RobotModel, Failure> {
     let compiled = MODEL.get_or_init(|| {
         description("dualv")
             .and_then(|source| {
-                compile_with(&source, Some(Effort::Thorough))
+                compile_with(&source, &Request::with_effort(Effort::Thorough))
                     .map_err(|errors| errors.render_plain(&source).into())
             })
             .map_err(|error| error.to_string())

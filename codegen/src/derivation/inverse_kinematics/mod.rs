@@ -76,6 +76,21 @@ impl<'a, 'm> Task<'a, 'm> {
         self.home.value(self.arena, expr)
     }
 
+    /// The least size that an equation's coefficients have without cancelling: they are components of
+    /// unit vectors, lengths, or squares of lengths.
+    fn size(&self) -> f64 {
+        let steps = self.leg.joints.iter().flat_map(|j| [j.d, j.b, j.r]);
+        let end = self.leg.end.iter().flat_map(End::point);
+        let lengths = steps.chain(self.leg.base.at).chain(end);
+        let longest = lengths.map(|l| l.value().abs()).fold(0.0, f64::max);
+        // A leg of a nanometre is one of orientations only.
+        if longest > 1e-9 {
+            longest.powi(2).min(1.0)
+        } else {
+            1.0
+        }
+    }
+
     /// The value at home of a sum of joint angles and a constant.
     fn turn_at_home(&self, turn: &Direction) -> f64 {
         let joint = |symbol: SymbolId| self.home.symbol(&self.arena.symbol_name(symbol));

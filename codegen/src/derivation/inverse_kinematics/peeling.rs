@@ -21,6 +21,9 @@ use crate::mechanism::JointKind;
 
 /// A divisor or root smaller than this fraction of what it is made of counts as zero.
 const VANISHES: f64 = 1e-6;
+/// Coefficients below this at home, in units of a leg of one metre, are the rounding of constants that
+/// cancel: an equation of nothing else says nothing.
+const ROUNDING: f64 = 1e-11;
 
 /// How an unknown follows from the closure.
 enum Step<'a> {
@@ -126,7 +129,7 @@ fn step<'a>(task: Task<'a, '_>, equations: &[Expr<'a>], unknown: &Unknown) -> Op
 fn slide<'a>(task: Task<'a, '_>, equation: Quadratic<'a>) -> Option<Step<'a>> {
     let home = |e: Expr<'a>| task.at_home(e);
     if equation.a.is_zero() {
-        return (home(equation.b).abs() > VANISHES).then_some(Step::Slide(equation));
+        return (home(equation.b).abs() > VANISHES * task.size()).then_some(Step::Slide(equation));
     }
     let (p, radicand) = completed(equation);
     let scale = home(p).abs().max(home(radicand).abs());
@@ -148,13 +151,16 @@ fn root_at_home<'a>(task: Task<'a, '_>, l: &Linear<'a>, unknown: &Unknown) -> Op
     let (sine, cosine) = task.turn_at_home(turn).sin_cos();
     let (a, b) = (task.at_home(l.a), task.at_home(l.b));
     let w = b * cosine - a * sine;
-    (w.abs() > VANISHES * a.hypot(b)).then_some(w)
+    let is_root = a.hypot(b) > ROUNDING * task.size() && w.abs() > VANISHES * a.hypot(b);
+    is_root.then_some(w)
 }
 
 /// Whether two equations determine a turn's cosine and sine at home.
 fn is_regular<'a>(task: Task<'a, '_>, first: &Linear<'a>, second: &Linear<'a>) -> bool {
     let [a, b, c, d] = [first.a, first.b, second.a, second.b].map(|e| task.at_home(e));
-    (a * d - b * c).abs() > VANISHES * a.hypot(b) * c.hypot(d)
+    let sizes = [a.hypot(b), c.hypot(d)];
+    let is_said = sizes.iter().all(|size| *size > ROUNDING * task.size());
+    is_said && (a * d - b * c).abs() > VANISHES * sizes[0] * sizes[1]
 }
 
 /// Takes the step. Returns the condition for its root to be real.

@@ -89,7 +89,7 @@ fn the_dualv_has_an_experiment() {
         .find(|p| p.name.value == "m_payload")
         .unwrap();
     assert_eq!((mass.body, mass.value), (Body::Payload, 5.42));
-    assert_eq!(robot.identification.kept_actuators, [0, 1, 2]);
+    assert_eq!(robot.identification.kept_actuators, Some(vec![0, 1, 2]));
 }
 
 #[test]

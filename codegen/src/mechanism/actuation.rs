@@ -1,0 +1,89 @@
+//! Which actuators determine the platform's motion at home.
+
+use super::{End, Leg, Mechanism, Motion, TwistCoordinate};
+use crate::mechanism::numeric::{platform_frame, target};
+use nalgebra::{DMatrix, DVector, Vector3};
+
+/// What is left of a row of J_p^inv without its part along rows before it, relative to its length,
+/// below which it adds nothing to them.
+const DEPENDENT: f64 = 1e-6;
+
+/// Velocity components that a leg's end shares with the platform, per twist coordinate.
+#[must_use]
+pub fn shared_velocities(motion: Motion, pose: &[f64], end: &End) -> DMatrix<f64> {
+    let frame = platform_frame(motion, pose);
+    let arm = target(end, &frame).translation.vector - frame.translation.vector;
+    let twist = motion.twist();
+    let mut columns = DMatrix::zeros(6, twist.len());
+    for (c, coordinate) in twist.iter().enumerate() {
+        let mut axis = Vector3::zeros();
+        let (linear, angular) = match coordinate {
+            TwistCoordinate::Linear(a) => {
+                axis[*a] = 1.0;
+                (axis, Vector3::zeros())
+            }
+            TwistCoordinate::Angular(a) => {
+                axis[*a] = 1.0;
+                (axis.cross(&arm), axis)
+            }
+        };
+        for i in 0..3 {
+            columns[(i, c)] = linear[i];
+            columns[(3 + i, c)] = angular[i];
+        }
+    }
+    columns.select_rows(&end.shared_components())
+}
+
+/// The joint rates of a leg per velocity of its end, by least squares; `None` if its singular values
+/// are not found.
+#[must_use]
+pub fn rates_per_velocity(leg: &Leg, joints: &[f64]) -> Option<DMatrix<f64>> {
+    let jacobian = leg.closure_jacobian(joints);
+    let svd = nalgebra::SVD::try_new(jacobian, true, true, f64::EPSILON, 1000);
+    svd.and_then(|svd| svd.pseudo_inverse(1e-9).ok())
+}
+
+impl Mechanism {
+    /// J_p^inv at the home configuration, n x r; `None` if a leg is not regular there.
+    #[must_use]
+    pub fn inverse_jacobian_at_home(&self) -> Option<DMatrix<f64>> {
+        let Some(platform) = &self.platform else {
+            return Some(DMatrix::identity(self.dof(), self.dof()));
+        };
+        let mut all = DMatrix::zeros(self.joints().len(), self.dof());
+        for (index, leg) in self.legs.iter().enumerate() {
+            let range = self.leg_range(index);
+            let velocities = shared_velocities(platform.motion, &self.home.pose, leg.end.as_ref()?);
+            let rates = rates_per_velocity(leg, &self.home.joints[range.clone()])? * velocities;
+            all.rows_mut(range.start, range.len()).copy_from(&rates);
+        }
+        Some(all.select_rows(&self.actuated()))
+    }
+
+    /// The first actuators that are independent at home: r of them, or fewer if all together do not
+    /// determine the platform's motion.
+    #[must_use]
+    pub fn independent_actuators(&self) -> Vec<usize> {
+        let Some(jacobian) = self.inverse_jacobian_at_home() else {
+            return Vec::new();
+        };
+        let mut basis: Vec<DVector<f64>> = Vec::new();
+        let mut chosen = Vec::new();
+        for (actuator, row) in jacobian.row_iter().enumerate() {
+            let row = row.transpose();
+            let mut rest = row.clone();
+            // Twice removes what rounding left of the first time.
+            for _ in 0..2 {
+                for known in &basis {
+                    rest -= known * known.dot(&rest);
+                }
+            }
+            if chosen.len() < self.dof() && rest.norm() > DEPENDENT * row.norm() {
+                basis.push(rest.normalize());
+                chosen.push(actuator);
+            }
+        }
+        chosen
+    }
+}

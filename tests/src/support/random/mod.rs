@@ -1,0 +1,292 @@
+//! Random mechanisms as descriptions, the same for the same seed on any machine.
+//!
+//! A mechanism is drawn from its platform inwards. Legs are chains of random modified Denavit-Hartenberg
+//! steps whose structure lets them follow the platform's motion; joints are put anywhere, and the leg's
+//! end says where on the platform it is attached, so that every loop closes at home. A draw that is near
+//! a singularity at home is thrown away and drawn anew: there, a comparison would measure the
+//! conditioning and not the model.
+//!
+//! A [`Sketch`] is written twice from the same numbers: as TOML, which the generator reads, and as the
+//! plain data of the numeric [`reference`](mod@crate::reference).
+
+mod chain;
+mod defect;
+mod dice;
+pub mod features;
+mod leg;
+mod plain;
+mod text;
+
+pub use defect::Defect;
+pub use dice::Dice;
+
+use crate::reference::linear::condition;
+use crate::reference::states::MAX_CONDITION;
+use crate::reference::{Joint, JointKind, Motion, State};
+use leg::{Structure, draw_shape};
+use nalgebra::{DVector, Vector3};
+
+/// A position and an orientation Rz(rz) Ry(ry) Rx(rx).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Placement {
+    /// Coordinates of the origin, m.
+    pub at: [f64; 3],
+    /// The angles rx, ry, rz.
+    pub rotation: [f64; 3],
+}
+
+/// A joint with the parameters of its body.
+#[derive(Clone, Debug)]
+pub struct Member {
+    /// Geometry and variable.
+    pub joint: Joint,
+    /// Symbols and groups of the parameters that are present.
+    pub parameters: Vec<&'static str>,
+}
+
+/// Where a placed leg meets the platform.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Attachment {
+    /// Nowhere: a tree.
+    Free,
+    /// The last frame is fixed on the platform.
+    Rigid(Placement),
+    /// The last frame's origin coincides with a point of the platform along axes of the base frame.
+    Point([f64; 3], [bool; 3]),
+}
+
+/// A leg in its place.
+#[derive(Clone, Debug)]
+pub struct Placed {
+    /// The leg's base frame.
+    pub base: Placement,
+    /// Positions at home of the joints that own a variable.
+    pub home: Vec<f64>,
+    /// Its end.
+    pub end: Attachment,
+}
+
+/// A leg that is written once, and its placements.
+#[derive(Clone, Debug)]
+pub struct Shape {
+    /// What the leg is built like.
+    pub structure: Structure,
+    /// The joints; antecedents come first, the last one carries the end.
+    pub members: Vec<Member>,
+    /// Where the leg stands.
+    pub places: Vec<Placed>,
+}
+
+impl Shape {
+    /// Number of actuated joints of one placement.
+    #[must_use]
+    pub fn actuators(&self) -> usize {
+        self.members.iter().filter(|m| m.joint.actuated).count()
+    }
+
+    /// Indices of the joints with a variable of their own.
+    #[must_use]
+    pub fn independent(&self) -> Vec<usize> {
+        let own = |at: &usize| self.members[*at].joint.terms.iter().any(|t| t.0 == *at);
+        (0..self.members.len()).filter(own).collect()
+    }
+}
+
+/// A mechanism as it is drawn.
+#[derive(Clone, Debug)]
+pub struct Sketch {
+    /// The seed that it was drawn from.
+    pub seed: u64,
+    /// Motion of the platform.
+    pub motion: Motion,
+    /// Home pose: the platform's x, y, z and rx, ry, rz or, for one rotation, that angle.
+    pub home: Placement,
+    /// Gravity.
+    pub gravity: [f64; 3],
+    /// The legs.
+    pub shapes: Vec<Shape>,
+    /// The platform's parameters.
+    pub platform: Vec<&'static str>,
+    /// The payload's, if there may be one.
+    pub payload: Option<Vec<&'static str>>,
+    /// Kept actuators of case 2; none leaves the choice to the generator.
+    pub kept: Option<Vec<usize>>,
+    /// The friction model of `[identification]`.
+    pub friction: &'static str,
+}
+
+/// Joints that all legs together may have: what is larger takes the generator seconds.
+const MAX_JOINTS: usize = 12;
+
+impl Sketch {
+    /// A regular mechanism.
+    ///
+    /// # Panics
+    ///
+    /// If thousands of draws are all singular.
+    #[must_use]
+    pub fn draw(seed: u64) -> Self {
+        let mut dice = Dice::new(seed);
+        let motion = draw_motion(&mut dice, seed);
+        for _ in 0..20_000 {
+            if let Some(sketch) = Self::attempt(&mut dice, seed, motion) {
+                return sketch;
+            }
+        }
+        panic!("seed {seed}: no regular mechanism with {motion:?}")
+    }
+
+    fn attempt(dice: &mut Dice, seed: u64, motion: Motion) -> Option<Self> {
+        let home = draw_home(dice, motion);
+        let mut sketch = Self {
+            seed,
+            motion,
+            home,
+            gravity: draw_gravity(dice),
+            shapes: Vec::new(),
+            platform: draw_inertia(dice),
+            payload: None,
+            kept: None,
+            friction: dice.pick(&["symmetric", "asymmetric"]),
+        };
+        if motion == Motion::None {
+            sketch
+                .shapes
+                .push(draw_shape(dice, &sketch, Structure::Tree)?);
+            return Some(sketch);
+        }
+        if dice.chance(0.3) {
+            sketch.payload = Some(draw_inertia(dice));
+        }
+        let dof = motion.dof();
+        let actuators = dof + dice.pick(&[0, 0, 1, 1, 2, 3]);
+        while sketch.actuators() < actuators {
+            let structure = Structure::draw(dice, motion);
+            let shape = draw_shape(dice, &sketch, structure)?;
+            sketch.shapes.push(shape);
+            if sketch.joints() > MAX_JOINTS {
+                return None;
+            }
+        }
+        if sketch.actuators() > dof + 3 || !sketch.is_regular() {
+            return None;
+        }
+        if dice.chance(0.5) {
+            sketch.kept = sketch.draw_kept(dice);
+        }
+        Some(sketch)
+    }
+
+    /// Number of actuators.
+    #[must_use]
+    pub fn actuators(&self) -> usize {
+        let of = |shape: &Shape| shape.actuators() * shape.places.len();
+        self.shapes.iter().map(of).sum()
+    }
+
+    /// Number of joint variables.
+    #[must_use]
+    pub fn joints(&self) -> usize {
+        let of = |shape: &Shape| shape.independent().len() * shape.places.len();
+        self.shapes.iter().map(of).sum()
+    }
+
+    /// Whether legs and inverse Jacobian are well conditioned at home, with room for the states around
+    /// it.
+    fn is_regular(&self) -> bool {
+        let mechanism = self.mechanism();
+        let still = DVector::zeros(mechanism.dof());
+        let state = State::solve(&mechanism, &mechanism.home, &still, &still);
+        let jacobians = state.and_then(|state| state.jacobians(&mechanism));
+        jacobians.is_ok_and(|j| {
+            j.worst_leg_condition(&mechanism) < MAX_CONDITION / 3.0
+                && condition(&j.inverse) < MAX_CONDITION / 3.0
+                && condition(&j.a_p) < MAX_CONDITION / 2.0
+        })
+    }
+
+    /// Kept actuators that determine the platform's motion at home.
+    fn draw_kept(&self, dice: &mut Dice) -> Option<Vec<usize>> {
+        let mechanism = self.mechanism();
+        let still = DVector::zeros(mechanism.dof());
+        let state = State::solve(&mechanism, &mechanism.home, &still, &still).ok()?;
+        let inverse = state.jacobians(&mechanism).ok()?.inverse;
+        let mut order: Vec<usize> = (0..inverse.nrows()).collect();
+        (0..20).find_map(|_| {
+            dice.shuffle(&mut order);
+            let kept = &order[..inverse.ncols()];
+            let regular = condition(&inverse.select_rows(kept)) < MAX_CONDITION;
+            regular.then(|| kept.to_vec())
+        })
+    }
+}
+
+/// Every motion in turn; axes at random.
+fn draw_motion(dice: &mut Dice, seed: u64) -> Motion {
+    let axis = dice.below(3);
+    match seed % 8 {
+        0 => Motion::Slide {
+            point: Vector3::zeros(),
+            direction: Vector3::ith(axis, 1.0),
+        },
+        1 => Motion::Point(axis),
+        2 => Motion::Planar(axis),
+        3 => Motion::Translation,
+        4 => Motion::Schoenflies(axis),
+        5 => Motion::Spherical,
+        6 => Motion::Spatial,
+        _ => Motion::None,
+    }
+}
+
+/// A home pose; coordinates that the motion has not stay zero.
+fn draw_home(dice: &mut Dice, motion: Motion) -> Placement {
+    let mut home = Placement::default();
+    if dice.chance(0.2) {
+        return home;
+    }
+    let basis = motion.twist_basis();
+    for row in (0..6).filter(|&row| basis.row(row).amax() > 0.0) {
+        match row {
+            0..3 => home.at[row] = dice.length(0.2),
+            _ => home.rotation[row - 3] = dice.angle(0.5),
+        }
+    }
+    home
+}
+
+fn draw_gravity(dice: &mut Dice) -> [f64; 3] {
+    match dice.below(6) {
+        0 => [0.0; 3],
+        1 => [0.0, 0.0, -9.81],
+        2 => {
+            let mut along = [0.0; 3];
+            along[dice.below(3)] = 9.81;
+            along
+        }
+        _ => std::array::from_fn(|_| dice.length(9.0)),
+    }
+}
+
+/// A free body's parameters.
+fn draw_inertia(dice: &mut Dice) -> Vec<&'static str> {
+    match dice.below(3) {
+        0 => vec!["inertia"],
+        1 => vec!["m"],
+        _ => dice.some(&crate::reference::parameters::SYMBOLS[..10]),
+    }
+}
+
+/// A leg body's and its joint's parameters.
+fn draw_parameters(dice: &mut Dice, kind: JointKind) -> Vec<&'static str> {
+    if kind == JointKind::Fixed {
+        return draw_inertia(dice);
+    }
+    match dice.below(5) {
+        0 => vec!["all"],
+        1 => Vec::new(),
+        2 => vec!["inertia", "ia"],
+        3 => vec!["m", "zz", "friction"],
+        _ => dice.some(&crate::reference::parameters::SYMBOLS),
+    }
+}

@@ -1,0 +1,259 @@
+//! Random mechanisms of every kind against the numeric reference, and damaged ones against diagnostics.
+//!
+//! Every mechanism comes from a seed of its own. `OVERACT_RANDOM_SEED=17` repeats one of them and shows
+//! its description and results; `OVERACT_RANDOM_COUNT=2000` raises their number. The functions that
+//! issue from the platform's pose and the identification models are compared for every mechanism, of the
+//! others a quarter each time, in turn.
+
+use nalgebra::{DMatrix, DVector};
+use overact_codegen::compile::model_with;
+use overact_codegen::derivation::{Columns, Family, From};
+use overact_codegen::{Diagnostics, RobotModel, Source, description, mechanism};
+use overact_tests::reference::energy::total_energy;
+use overact_tests::reference::states::frictionless;
+use overact_tests::reference::{Motion, State, trajectory};
+use overact_tests::support::conversion::{distance, reference};
+use overact_tests::support::expected::Expected;
+use overact_tests::support::library::workspace;
+use overact_tests::support::random::{Defect, Sketch, features};
+use overact_tests::support::sample::samples;
+use overact_tests::support::served::partitions;
+use overact_tests::support::{Backend, Comparison, Evaluated, Failure, Sample};
+use std::collections::{BTreeMap, BTreeSet};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+const TOLERANCE: f64 = 1e-9;
+const STATES: usize = 3;
+const COUNT: u64 = 208;
+/// Largest joint rate of the path that the power is differentiated along, rad/s and m/s.
+const RATE: f64 = 2.0;
+/// Largest error of the power: that of seven-point differences of the energy.
+const DIFFERENCES: f64 = 1e-7;
+/// Largest difference of numbers that a description gives and the generator has read.
+const READ: f64 = 1e-14;
+
+/// A number from the environment.
+fn setting(name: &str) -> Option<u64> {
+    std::env::var(name).ok()?.parse().ok()
+}
+
+fn seeds() -> std::ops::Range<u64> {
+    let count = setting("OVERACT_RANDOM_COUNT");
+    match setting("OVERACT_RANDOM_SEED") {
+        Some(seed) => seed..seed + count.unwrap_or(1),
+        None => 0..count.unwrap_or(COUNT),
+    }
+}
+
+/// Runs `check` for every seed on all processors; what it says, by seed. A panic is a failure.
+fn for_each_seed<T: Send>(
+    check: impl Fn(u64) -> Result<T, Failure> + Sync,
+) -> BTreeMap<u64, Result<T, String>> {
+    let results = Mutex::new(BTreeMap::new());
+    let next = AtomicU64::new(seeds().start);
+    let work = || {
+        loop {
+            let seed = next.fetch_add(1, Ordering::Relaxed);
+            if !seeds().contains(&seed) {
+                break;
+            }
+            let result = catch_unwind(AssertUnwindSafe(|| check(seed)));
+            let result = match result {
+                Ok(result) => result.map_err(|error| error.to_string()),
+                Err(_) => Err("a panic".to_owned()),
+            };
+            if let Ok(mut results) = results.lock() {
+                results.insert(seed, result);
+            }
+        }
+    };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(work);
+        }
+    });
+    results.into_inner().unwrap_or_default()
+}
+
+#[test]
+fn random_mechanisms_agree_with_the_reference() {
+    let results = for_each_seed(|seed| agree(&Sketch::draw(seed)));
+    let mut met = BTreeSet::new();
+    let mut failures = Vec::new();
+    for (seed, result) in &results {
+        match result {
+            Ok(found) => met.extend(found.iter().cloned()),
+            Err(error) => failures.push(format!("OVERACT_RANDOM_SEED={seed}: {error}")),
+        }
+    }
+    assert!(
+        failures.is_empty(),
+        "{} of {}:\n{}",
+        failures.len(),
+        results.len(),
+        failures.join("\n")
+    );
+    if results.len() as u64 >= COUNT {
+        let missing: Vec<&str> = features::ALL
+            .into_iter()
+            .filter(|f| !met.contains(*f))
+            .collect();
+        assert!(missing.is_empty(), "no mechanism had: {missing:?}");
+    }
+}
+
+/// Compares one mechanism; what it has.
+fn agree(sketch: &Sketch) -> Result<BTreeSet<String>, Failure> {
+    let source = sketch.source();
+    let alone = seeds().count() == 1;
+    if alone {
+        println!("{}", source.text);
+    }
+    let model = model_of(&source, sketch.seed)
+        .map_err(|errors| format!("refused:\n{}", errors.render_plain(&source)))?;
+    let mut plain = reference(&model.mechanism, workspace(&model));
+    let read = distance(&plain, &sketch.mechanism());
+    if read > READ {
+        return Err(format!("the description was read with an error of {read:e}").into());
+    }
+    // The model's home is refined; the reference starts from what was drawn.
+    for (leg, drawn) in plain.legs.iter_mut().zip(sketch.mechanism().legs) {
+        leg.start = drawn.start;
+    }
+    let expected = Expected::by_position(&model, plain);
+    let parameters = expected.parameters();
+    let all = samples(&expected.mechanism, &parameters, STATES, sketch.seed, false)?;
+    let truths = all.iter().map(|sample| expected.at(sample));
+    let truths = truths.collect::<Result<Vec<_>, Failure>>()?;
+    let mut comparison = Comparison::new(TOLERANCE);
+    let evaluated = Evaluated(&model);
+    for function in &model.functions {
+        comparison.function(function, &evaluated, &all, &truths)?;
+    }
+    if !model.is_tree() {
+        let all_kept = partitions(model.mechanism.actuated().len(), model.mechanism.dof());
+        // A program of its own has one partition, the seed says which.
+        let own = sketch.seed as usize / 8 % all_kept.len();
+        for (at, kept) in all_kept.iter().enumerate() {
+            comparison.partition((kept, at == own), &model, &evaluated, &all, &truths)?;
+        }
+    }
+    if alone {
+        println!("{}", comparison.lines.join("\n"));
+    }
+    let failures = comparison.failures;
+    if !failures.is_empty() {
+        return Err(failures.join("\n    ").into());
+    }
+    balance(&expected, &evaluated, &all)?;
+    let mut found = sketch.features();
+    found.insert(format!("joints by {:?}", model.joints));
+    Ok(found)
+}
+
+/// The model with the functions that this seed looks at.
+fn model_of(source: &Source, seed: u64) -> Result<RobotModel, Diagnostics> {
+    let described = description::parse(source)?;
+    let checked = mechanism::check(&described)?;
+    let mut turn = seed;
+    let wanted = |family: Family, from: From| {
+        turn += 1;
+        let always = match family {
+            // The closure error is what Newton's method drives to zero, not a quantity of its own.
+            Family::ClosureError => return false,
+            Family::Joints
+            | Family::InverseJacobian
+            | Family::JointVelocities
+            | Family::JointAccelerations
+            | Family::InverseDynamics => from != From::Actuators,
+            Family::IdmRedPlatform(_) | Family::IdmRedActuators(Columns::Standard) => {
+                from != From::Actuators
+            }
+            _ => false,
+        };
+        always || turn.is_multiple_of(4)
+    };
+    model_with(checked, wanted).map_err(|error| mechanism::locate(&described, &error))
+}
+
+/// The power of the motors without friction is the change of the energy.
+fn balance(expected: &Expected, evaluated: &Evaluated<'_>, all: &[Sample]) -> Result<(), Failure> {
+    let (mechanism, sample) = (&expected.mechanism, all.first().ok_or("no state")?);
+    let chi = frictionless(mechanism, &sample.all_parameters);
+    // The same path, run through slowly enough for the step of the differences.
+    let State { pose, q, .. } = &sample.state;
+    let slower = (RATE / sample.state.qd.amax()).min(1.0);
+    let twist = &sample.state.twist * slower;
+    let acceleration = &sample.state.acceleration * (slower * slower);
+    let sample = Sample {
+        parameters: expected.parameters().iter().map(|&at| chi[at]).collect(),
+        state: State::with_joints(mechanism, pose, q, &twist, &acceleration)?,
+        ..sample.clone()
+    };
+    let energy = |state: &_| DVector::from_element(1, total_energy(mechanism, state, &chi));
+    let (change, _) = trajectory::derivatives(mechanism, &sample.state, energy)?;
+    let rates = evaluated.call("inverse_jacobian", &sample)?
+        * DMatrix::from_column_slice(twist.len(), 1, twist.as_slice());
+    let powers = evaluated
+        .call("inverse_dynamics", &sample)?
+        .component_mul(&rates);
+    let scale = powers.abs().sum().max(change[0].abs()).max(1e-3);
+    let error = (powers.sum() - change[0]).abs() / scale;
+    if error < DIFFERENCES {
+        Ok(())
+    } else {
+        Err(format!("power and energy differ by {error:e}").into())
+    }
+}
+
+#[test]
+fn damaged_mechanisms_are_refused_with_a_reason() {
+    let results = for_each_seed(|seed| {
+        let sketch = Sketch::draw(seed);
+        let defects = Defect::ALL.into_iter();
+        let mut refused = BTreeSet::new();
+        for defect in defects {
+            let Some(damaged) = defect.apply(&sketch) else {
+                continue;
+            };
+            let source = damaged.source();
+            let Err(errors) = overact_codegen::compile(&source) else {
+                return Err(format!("accepted with {defect:?}:\n{}", source.text).into());
+            };
+            if errors.is_empty() || errors.render_plain(&source).is_empty() {
+                return Err(format!("refused without a reason: {defect:?}").into());
+            }
+            refused.insert(defect);
+        }
+        Ok(refused)
+    });
+    let mut met = BTreeSet::new();
+    let mut failures = Vec::new();
+    for (seed, result) in &results {
+        match result {
+            Ok(refused) => met.extend(refused.iter().copied()),
+            Err(error) => failures.push(format!("OVERACT_RANDOM_SEED={seed}: {error}")),
+        }
+    }
+    assert!(
+        failures.is_empty(),
+        "{} of {}:\n{}",
+        failures.len(),
+        results.len(),
+        failures.join("\n")
+    );
+    if results.len() as u64 >= COUNT {
+        assert_eq!(met.len(), Defect::ALL.len(), "only {met:?}");
+    }
+}
+
+#[test]
+fn the_same_seed_draws_the_same_mechanism() {
+    for seed in 0..16 {
+        assert_eq!(Sketch::draw(seed).text(), Sketch::draw(seed).text());
+    }
+    assert!(matches!(Sketch::draw(7).motion, Motion::None));
+}
