@@ -79,3 +79,13 @@ def count(function):
         holds[function.instruction_output(k)[0]] = k
     counted.trigonometric_pairs = len(angles["sin"] | angles["cos"])
     return counted
+
+
+def c_code(function):
+    """CasADi's own C code, behind the signature that the timing loop calls."""
+    generator = casadi.CodeGenerator("model.c", {"with_header": False})
+    generator.add(function)
+    call = "void model(const double **inputs, double *output) {\n"
+    call += f"    casadi_int iw[{max(1, function.sz_iw())}];\n    double w[{max(1, function.sz_w())}];\n"
+    call += f"    {function.name()}(inputs, &output, iw, w, 0);\n}}\n"
+    return generator.dump() + call

@@ -44,14 +44,9 @@ class Function:
     @property
     def rust_name(self):
         base = "_base" if self.kind == "base" else ""
-        source = (
-            "_from_joints" if self.source == "joints" and self.document["pose"] != self.joint_names else ""
-        )
+        # A robot without a platform has only one source.
+        source = "_from_joints" if self.inputs[0][0] == "pose" and self.source == "joints" else ""
         return f"idm_red_platform{base}{source}"
-
-    @property
-    def joint_names(self):
-        return self.document["joint_names"]
 
     def evaluate(self, states):
         """Rows x columns per state, by the evaluation backend."""

@@ -1,7 +1,7 @@
 """The platform: its independent coordinates, its motion, its columns."""
 
-from .algebra import ONE, ZERO, add, apply, cross, dot, matrix, scale, sub, transpose, vector
-from .model import Motion, about_x, about_z, body_wrench, spin
+from .algebra import ONE, add, apply, cross, dot, matrix, scale, sub, transpose, vector
+from .model import Motion, about_z, body_wrench, spin
 from .values import Linear
 
 #: Directions of the translations and of the rotations that each motion has, besides an axis.

@@ -1,8 +1,17 @@
 """The whole robot: inputs, legs, platform; rows x columns of the identification model."""
 
-from .algebra import ZERO, add, apply, dot, identity, inverse_by_cofactors, inverse_by_elimination
-from .algebra import matrix, product, sub, transpose, vector
-from .model import Angles, Chain, LegModel
+from .algebra import (
+    apply,
+    dot,
+    identity,
+    inverse_by_cofactors,
+    inverse_by_elimination,
+    matrix,
+    product,
+    transpose,
+    vector,
+)
+from .model import Angles, LegModel
 from .platform import Platform
 
 INVERSES = {"elimination": inverse_by_elimination, "cofactors": inverse_by_cofactors}

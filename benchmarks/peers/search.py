@@ -20,8 +20,13 @@ def forms(robot):
         yield Form(frame, merged, inverse, kind, staged)
 
 
+#: Operations that one pair of sine and cosine takes the time of, to rank forms.
+PAIR = 15
+
+
 def best(robot, inputs, names):
-    """Forms by the operations of CasADi's function, the fewest first."""
+    """The form with the fewest operations of CasADi's function after `cse`, then the others by
+    operations and pairs of sine and cosine."""
     found = []
     for index, form in enumerate(forms(robot)):
         algebra = Casadi()
@@ -31,7 +36,10 @@ def best(robot, inputs, names):
             # The closure is not square in this frame: another one serves.
             continue
         counted = count(algebra.function("model", inputs, derived, cse=True))
-        found.append((counted.operations, counted.trigonometric_pairs, index, form))
+        found.append((counted, index, form))
     if not found:
         raise RuntimeError(f"no form fits {robot.name}")
-    return [form for *_, form in sorted(found, key=lambda entry: entry[:3])]
+    fewest = min(found, key=lambda entry: (entry[0].operations, entry[0].trigonometric_pairs, entry[1]))
+    rest = [entry for entry in found if entry is not fewest]
+    rest.sort(key=lambda entry: (entry[0].operations + PAIR * entry[0].trigonometric_pairs, entry[1]))
+    return [form for _, _, form in [fewest, *rest]]
