@@ -50,7 +50,7 @@ pub fn atan2(y: f64, x: f64) -> f64 {
 #[inline]
 #[must_use]
 pub fn sign(velocity: f64) -> f64 {
-    f64::from(i8::from(velocity > 0.0) - i8::from(velocity < 0.0))
+    f64::from(u8::from(velocity > 0.0)) - f64::from(u8::from(velocity < 0.0))
 }
 
 /// A value with the sign of a velocity.

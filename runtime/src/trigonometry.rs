@@ -23,13 +23,13 @@ const HAS_VECTORS: bool = cfg!(any(
 ///
 /// Angles beyond 10⁵ rad and those that are no numbers take the standard library's functions (`libm`'s
 /// without the feature `std`), as all angles do on a target without vector registers.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn sin_cos_all<const N: usize>(angles: [f64; N]) -> [(f64, f64); N] {
     // One comparison for all: `&` rather than `&&`, for there is nothing to gain from an early end.
     let small = angles.iter().fold(true, |ok, a| ok & (a.abs() <= LARGEST));
     if !HAS_VECTORS || N < 2 || !small {
-        return angles.map(sin_cos);
+        return one_by_one(angles);
     }
     let mut pairs = [(0.0, 0.0); N];
     let mut at = 0;
@@ -48,8 +48,15 @@ pub fn sin_cos_all<const N: usize>(angles: [f64; N]) -> [(f64, f64); N] {
     pairs
 }
 
+/// Sines and cosines by the library, out of the way of what is usual.
+#[cold]
+#[inline(never)]
+fn one_by_one<const N: usize>(angles: [f64; N]) -> [(f64, f64); N] {
+    angles.map(sin_cos)
+}
+
 /// An angle, or zero beyond the last.
-#[inline]
+#[inline(always)]
 fn lane<const N: usize>(angles: &[f64; N], at: usize) -> f64 {
     if at < N { angles[at] } else { 0.0 }
 }
@@ -88,7 +95,7 @@ const COSINE: [f64; 6] = [
 macro_rules! sines_and_cosines {
     ($name:ident, $lanes:literal, $float:ident, $bits:ident) => {
         #[doc = concat!("Sines and cosines of ", $lanes, " angles up to [`LARGEST`].")]
-        #[inline]
+        #[inline(always)]
         fn $name(angles: &[f64; $lanes]) -> ([f64; $lanes], [f64; $lanes]) {
             let all = $float::splat;
             let bits = |x: $float| $bits::new(x.to_array().map(f64::to_bits));

@@ -1,0 +1,87 @@
+"""Builds the peers' models, checks that they agree with overact's, counts and times them, writes the tables."""
+
+import argparse
+import sys
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import ours, report, timing
+from .description import load
+from .ours import Function
+from .peers import Model, check, models
+from .states import states
+from .works import WORKS, Work
+
+
+@dataclass
+class Result:
+    """One work: overact's function, the peers' models, and the times of all."""
+
+    work: Work
+    function: Function
+    models: list[Model]
+    times: tuple[float, list[tuple[Model, float]]] | None = None
+
+
+def measure(work, samples):
+    """Models of one work that agree."""
+    function = ours.function(work)
+    sample = states(function, samples)
+    expected = function.evaluate(sample)
+    return Result(work, function, models(work, function, load(function.path), sample, expected))
+
+
+def outputs(program, path, core, shape):
+    """What a compiled program gives for its states."""
+    dump = path.with_suffix(".out")
+    program.run(path, core, 1, dump)
+    return np.fromfile(dump).reshape(-1, *shape)
+
+
+def time(result, program, core, rounds):
+    """Times overact's program and the peers' in turns, after a check that they give the same numbers."""
+    function = result.function
+    size = int(np.prod(function.shape))
+    name = f"{function.robot}_{function.rust_name}"
+    path = timing.BUILD / "states" / f"{name}.bin"
+    timing.write_states(path, states(function, timing.STATES, seed=2))
+    compiled = [m for m in result.models if m.code]
+    programs = [program]
+    for index, model in enumerate(compiled):
+        title = f"{model.peer}: {model.form}"
+        programs.append(timing.c_program(title, f"{name}_{index}", model.code, function.inputs, size))
+    expected = outputs(program, path, core, function.shape)
+    for other in programs[1:]:
+        check(
+            f"{result.work.title}, C code of {other.title}",
+            outputs(other, path, core, function.shape),
+            expected,
+        )
+    own, *peers = timing.compare(programs, path, core, rounds)
+    result.times = own, list(zip(compiled, peers, strict=True))
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="benchmarks/run", description=__doc__)
+    parser.add_argument("--samples", type=int, default=20, help="states at which the results are compared")
+    parser.add_argument("--only", help="works whose robot's name holds this text")
+    parser.add_argument("--no-times", action="store_true", help="count only")
+    parser.add_argument("--core", type=int, default=0, help="the core on which all programs are timed")
+    parser.add_argument("--rounds", type=int, default=15, help="turns of every program")
+    arguments = parser.parse_args()
+    results = []
+    for work in WORKS:
+        if not arguments.only or arguments.only in work.robot:
+            print(f"{work.title} …", file=sys.stderr, flush=True)
+            results.append(measure(work, arguments.samples))
+    if not arguments.no_times:
+        programs = timing.rust_programs([result.function for result in results])
+        for result, program in zip(results, programs, strict=True):
+            print(f"{result.work.title}: times …", file=sys.stderr, flush=True)
+            time(result, program, arguments.core, arguments.rounds)
+    print(report.counts(results), report.times(results), sep="\n\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,30 @@
+"""Operations by one rule for all: a sum of n terms counts n - 1, a product of n factors n - 1, a square 1;
+square roots, angles of which sine or cosine is taken, signs and negations stand apart."""
+
+from dataclasses import dataclass
+
+
+@dataclass
+class Count:
+    """Operations of one function."""
+
+    additions: int = 0
+    multiplications: int = 0
+    divisions: int = 0
+    square_roots: int = 0
+    trigonometric_pairs: int = 0
+    signs: int = 0
+    negations: int = 0
+
+    @property
+    def operations(self):
+        return self.additions + self.multiplications + self.divisions
+
+    def add(self, kind, times=1):
+        setattr(self, kind, getattr(self, kind) + times)
+
+    @classmethod
+    def from_json(cls, function):
+        """Counts of overact's own function, as `overact inspect --json` prints them."""
+        keys = ["additions", "multiplications", "divisions", "square_roots", "trigonometric_pairs", "signs"]
+        return cls(**{key: function[key] for key in keys})

@@ -1,0 +1,20 @@
+//! Generated models that are timed.
+
+/// What a model returns, with or without a check of the configuration.
+pub trait Output {
+    /// The numbers, row by row.
+    fn numbers(&self) -> Result<Vec<f64>, overact::Error>;
+}
+
+impl<const R: usize, const C: usize> Output for [[f64; C]; R] {
+    fn numbers(&self) -> Result<Vec<f64>, overact::Error> {
+        Ok(self.as_flattened().to_vec())
+    }
+}
+
+impl<T: Output> Output for Result<T, overact::Error> {
+    fn numbers(&self) -> Result<Vec<f64>, overact::Error> {
+        self.as_ref().map_err(Clone::clone)?.numbers()
+    }
+}
+

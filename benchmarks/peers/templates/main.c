@@ -1,0 +1,55 @@
+/* Calls a model for one state after the other and prints the shortest time per call in nanoseconds. */
+#define _POSIX_C_SOURCE 200809L
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+void model(const double **inputs, double *output);
+
+static const int lengths[] = {@LENGTHS@};
+
+static double now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
+}
+
+int main(int count, char **arguments) {
+    static double output[@OUTPUTS@];
+    int total = 0;
+    for (int i = 0; i < @INPUTS@; ++i) total += lengths[i];
+    FILE *file = count > 2 ? fopen(arguments[1], "rb") : NULL;
+    if (!file) return 2;
+    fseek(file, 0, SEEK_END);
+    long states = ftell(file) / (long)(sizeof(double) * (size_t)total);
+    rewind(file);
+    double *values = malloc(sizeof(double) * (size_t)(states * total));
+    if (fread(values, sizeof(double), (size_t)(states * total), file) != (size_t)(states * total)) return 2;
+    fclose(file);
+    double best = 1e300;
+    for (int batch = atoi(arguments[2]); batch > 0; --batch) {
+        double start = now();
+        for (long k = 0; k < states; ++k) {
+            const double *inputs[@INPUTS@];
+            const double *at = values + k * total;
+            for (int i = 0; i < @INPUTS@; at += lengths[i], ++i) inputs[i] = at;
+            model(inputs, output);
+            __asm__ volatile("" : : "r"(output) : "memory");
+        }
+        double time = (now() - start) / (double)states;
+        best = time < best ? time : best;
+    }
+    if (count > 3) {
+        FILE *dump = fopen(arguments[3], "wb");
+        for (long k = 0; k < states; ++k) {
+            const double *inputs[@INPUTS@];
+            const double *at = values + k * total;
+            for (int i = 0; i < @INPUTS@; at += lengths[i], ++i) inputs[i] = at;
+            model(inputs, output);
+            fwrite(output, sizeof(double), @OUTPUTS@, dump);
+        }
+        fclose(dump);
+    }
+    printf("%.3f\n", best);
+    return 0;
+}

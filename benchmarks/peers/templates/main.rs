@@ -1,0 +1,35 @@
+//! Calls a model for one state after the other and prints the shortest time per call in nanoseconds.
+use overact_timed::{Output, @MODULE@};
+use std::{env, error::Error, fs, hint::black_box, time::Instant};
+
+/// One state: the function's inputs.
+type State = (@TYPES@);
+
+fn state(values: &[f64]) -> Result<State, Box<dyn Error>> {
+    Ok((@READ@))
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = env::args().collect();
+    let bytes = fs::read(&arguments[1])?;
+    let values: Vec<f64> = bytes.as_chunks().0.iter().map(|b| f64::from_le_bytes(*b)).collect();
+    let states = values.chunks(@TOTAL@).map(state).collect::<Result<Vec<State>, _>>()?;
+    let mut best = f64::INFINITY;
+    for _ in 0..arguments[2].parse()? {
+        let start = Instant::now();
+        for s in &states {
+            let _ = black_box(@CALL@(@ARGUMENTS@));
+        }
+        best = best.min(start.elapsed().as_secs_f64() * 1e9 / states.len() as f64);
+    }
+    if let Some(path) = arguments.get(3) {
+        let mut bytes = Vec::new();
+        for s in &states {
+            let output = @CALL@(@ARGUMENTS@).numbers()?;
+            bytes.extend(output.iter().flat_map(|x| x.to_le_bytes()));
+        }
+        fs::write(path, bytes)?;
+    }
+    println!("{best:.3}");
+    Ok(())
+}

@@ -1,0 +1,116 @@
+"""Times of compiled functions, all in one run and on one core.
+
+Every function becomes a program of its own, with the same loop in its language: it reads the same states,
+calls the function for one after the other, and prints the shortest time of many batches. The programs
+take turns, so that whatever else the machine does falls on all of them.
+"""
+
+import os
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from .ours import ROOT
+
+BUILD = ROOT / "target" / "benchmarks"
+TEMPLATES = Path(__file__).parent / "templates"
+#: States that a program runs through, and batches that it times.
+STATES, BATCHES = 256, 200
+CFLAGS = ["-O3", "-march=native"]
+
+
+@dataclass
+class Program:
+    """An executable that times one function."""
+
+    title: str
+    path: Path
+
+    def run(self, states, core, batches, dump=None):
+        command = ["taskset", "-c", str(core), self.path, states, str(batches)]
+        done = subprocess.run(
+            [*command, *([dump] if dump else [])], capture_output=True, text=True, check=False
+        )
+        if done.returncode:
+            raise RuntimeError(f"{self.path}: {done.stderr.strip()}")
+        return float(done.stdout)
+
+
+def write(path, text):
+    """Writes a file unless it holds the text already, so that nothing is compiled twice."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if not path.exists() or path.read_text() != text:
+        path.write_text(text)
+
+
+def write_states(path, states):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    np.array([np.concatenate(list(s.values())) for s in states]).tofile(path)
+
+
+def c_program(title, name, source, inputs, outputs):
+    """Compiles C code with a function `NAME_model(const double **inputs, double *output)` and its loop."""
+    folder = BUILD / "c" / name
+    main = (TEMPLATES / "main.c").read_text()
+    lengths = ", ".join(str(length) for _, length in inputs)
+    for key, value in {"LENGTHS": lengths, "INPUTS": str(len(inputs)), "OUTPUTS": str(outputs)}.items():
+        main = main.replace(f"@{key}@", value)
+    write(folder / "main.c", main)
+    write(folder / "model.c", source)
+    binary = folder / "model"
+    sources = [folder / "main.c", folder / "model.c"]
+    if not binary.exists() or any(s.stat().st_mtime > binary.stat().st_mtime for s in sources):
+        # Two translation units: the loop can't be merged with what it times.
+        compiler = os.environ.get("CC", "cc")
+        subprocess.run([compiler, *CFLAGS, "-o", binary, *sources, "-lm"], check=True)
+    return Program(title, binary)
+
+
+def rust_programs(functions):
+    """Compiles overact's functions in a crate of their own, in cargo's default release profile."""
+    folder = BUILD / "ours"
+    manifest = (TEMPLATES / "Cargo.toml").read_text().replace("@ROOT@", str(ROOT))
+    robots = sorted({function.robot for function in functions})
+    for robot in robots:
+        command = [ROOT / "target/release/overact", "generate", ROOT / "robots" / f"{robot}.toml"]
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
+        write(folder / "src" / f"{robot}.rs", done.stdout)
+    modules = "".join(f"pub mod {robot};\n" for robot in robots)
+    write(folder / "src" / "lib.rs", (TEMPLATES / "lib.rs").read_text() + modules)
+    programs = []
+    for function in functions:
+        name = f"{function.robot}_{function.rust_name}"
+        write(folder / "src" / "bin" / f"{name}.rs", rust_main(function))
+        programs.append(Program("overact", folder / "target" / "release" / name))
+    write(folder / "Cargo.toml", manifest)
+    environment = {k: v for k, v in os.environ.items() if k not in ("RUSTFLAGS", "CARGO_TARGET_DIR")}
+    subprocess.run(["cargo", "build", "--quiet", "--release"], cwd=folder, env=environment, check=True)
+    return programs
+
+
+def rust_main(function):
+    """The program that times one of overact's functions."""
+    starts = np.cumsum([0] + [length for _, length in function.inputs])
+    spans = [f"values[{a}..{b}].try_into()?" for a, b in zip(starts, starts[1:], strict=False)]
+    text = (TEMPLATES / "main.rs").read_text()
+    for key, value in {
+        "MODULE": function.robot,
+        "TYPES": ", ".join(f"[f64; {length}]" for _, length in function.inputs),
+        "READ": ", ".join(spans),
+        "TOTAL": str(starts[-1]),
+        "CALL": f"{function.robot}::{function.document['robot']}::{function.rust_name}",
+        "ARGUMENTS": ", ".join(f"&s.{i}" for i in range(len(function.inputs))),
+    }.items():
+        text = text.replace(f"@{key}@", value)
+    return text
+
+
+def compare(programs, states, core=0, rounds=15):
+    """Nanoseconds per call of each program: the shortest of all rounds, the programs taking turns."""
+    best = [float("inf")] * len(programs)
+    for _ in range(rounds):
+        for index, program in enumerate(programs):
+            best[index] = min(best[index], program.run(states, core, BATCHES))
+    return best
