@@ -1,8 +1,12 @@
 //! A description from a file, read and compiled.
 
-use crate::failure::{Failure, Problem};
+use crate::{
+    InterpretedRobot,
+    failure::{Failure, Problem},
+};
 use overact_codegen::{
-    RobotModel, compile,
+    RobotModel,
+    compile::{Wanted, compile_some},
     description::{self, Description},
     diagnostic::{Diagnostics, Source},
 };
@@ -24,8 +28,24 @@ pub struct Robot {
 /// # Errors
 /// A file that can't be read, or everything that is wrong with the description.
 pub fn load(path: &Path) -> Result<Robot, Failure> {
+    load_some(path, &|_, _, _| true)
+}
+
+/// The same with the functions only that an [`InterpretedRobot`] serves.
+///
+/// # Errors
+/// A file that can't be read, or everything that is wrong with the description.
+pub fn load_to_serve(path: &Path) -> Result<Robot, Failure> {
+    load_some(path, &InterpretedRobot::serves)
+}
+
+/// The same with the wanted functions only.
+///
+/// # Errors
+/// A file that can't be read, or everything that is wrong with the description.
+pub fn load_some(path: &Path, wanted: Wanted<'_>) -> Result<Robot, Failure> {
     let source = read(path)?;
-    match compiled(&source) {
+    match compiled(&source, wanted) {
         Ok((description, model)) => Ok(Robot {
             file: source.name,
             description,
@@ -38,8 +58,8 @@ pub fn load(path: &Path) -> Result<Robot, Failure> {
     }
 }
 
-fn compiled(source: &Source) -> Result<(Description, RobotModel), Diagnostics> {
-    let model = compile::compile(source)?;
+fn compiled(source: &Source, wanted: Wanted<'_>) -> Result<(Description, RobotModel), Diagnostics> {
+    let model = compile_some(source, wanted)?;
     Ok((description::parse(source)?, model))
 }
 
