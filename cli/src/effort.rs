@@ -1,7 +1,7 @@
 //! The option `--effort`.
 
 use clap::builder::PossibleValuesParser;
-use overact_codegen::Effort;
+use overact_codegen::{Effort, Request};
 
 /// How hard fewer operations are searched.
 #[derive(Debug, clap::Args)]
@@ -13,9 +13,12 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    /// The effort asked for; what is generated to be kept is worth a search.
-    pub(crate) fn effort(&self, described: Option<Effort>) -> Effort {
-        let asked = self.effort.as_deref().and_then(Effort::named);
-        asked.or(described).unwrap_or(Effort::Thorough)
+    /// All functions with the effort asked for: what is generated to be kept is worth a search.
+    pub(crate) fn request(&self) -> Request<'static> {
+        Request {
+            effort: self.effort.as_deref().and_then(Effort::named),
+            otherwise: Effort::Thorough,
+            ..Request::default()
+        }
     }
 }

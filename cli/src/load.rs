@@ -1,8 +1,11 @@
 //! A description from a file, read and compiled.
 
-use crate::failure::{Failure, Problem};
+use crate::{
+    InterpretedRobot,
+    failure::{Failure, Problem},
+};
 use overact_codegen::{
-    Effort, RobotModel, compile_with,
+    Request, RobotModel, compile_with,
     description::{self, Description},
     diagnostic::{Diagnostics, Source},
 };
@@ -24,16 +27,28 @@ pub struct Robot {
 /// # Errors
 /// A file that can't be read, or everything that is wrong with the description.
 pub fn load(path: &Path) -> Result<Robot, Failure> {
-    load_with(path, &|described| described.unwrap_or_default())
+    load_with(path, &Request::default())
 }
 
-/// [`load`] with the effort that follows from the description's.
+/// The same with the functions only that an [`InterpretedRobot`] serves.
 ///
 /// # Errors
 /// A file that can't be read, or everything that is wrong with the description.
-pub fn load_with(path: &Path, effort: &dyn Fn(Option<Effort>) -> Effort) -> Result<Robot, Failure> {
+pub fn load_to_serve(path: &Path) -> Result<Robot, Failure> {
+    let request = Request {
+        wanted: &InterpretedRobot::serves,
+        ..Request::default()
+    };
+    load_with(path, &request)
+}
+
+/// The same with what is asked for.
+///
+/// # Errors
+/// A file that can't be read, or everything that is wrong with the description.
+pub fn load_with(path: &Path, request: &Request<'_>) -> Result<Robot, Failure> {
     let source = read(path)?;
-    match compiled(&source, effort) {
+    match compiled(&source, request) {
         Ok((description, model)) => Ok(Robot {
             file: source.name,
             description,
@@ -48,11 +63,10 @@ pub fn load_with(path: &Path, effort: &dyn Fn(Option<Effort>) -> Effort) -> Resu
 
 fn compiled(
     source: &Source,
-    effort: &dyn Fn(Option<Effort>) -> Effort,
+    request: &Request<'_>,
 ) -> Result<(Description, RobotModel), Diagnostics> {
-    let description = description::parse(source)?;
-    let model = compile_with(source, Some(effort(description.effort)))?;
-    Ok((description, model))
+    let model = compile_with(source, request)?;
+    Ok((description::parse(source)?, model))
 }
 
 /// Reads a description's text.

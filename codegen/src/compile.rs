@@ -17,9 +17,10 @@ pub type Wanted<'a> = &'a (dyn Fn(&Mechanism, Family, From) -> bool + Sync);
 /// What a model shall have, and what work it is worth; by default all functions, quickly.
 #[derive(Clone, Copy)]
 pub struct Request<'a> {
-    /// How hard fewer operations are searched: `None` leaves it to the description, else to
-    /// [`Effort::Quick`].
+    /// How hard fewer operations are searched, whatever the description says.
     pub effort: Option<Effort>,
+    /// The same where the description says nothing.
+    pub otherwise: Effort,
     /// Which functions are derived: most of the time goes into one after the other.
     pub wanted: Wanted<'a>,
 }
@@ -28,6 +29,7 @@ impl Default for Request<'_> {
     fn default() -> Self {
         Self {
             effort: None,
+            otherwise: Effort::Quick,
             wanted: &|_, _, _| true,
         }
     }
@@ -78,10 +80,7 @@ pub fn model(mechanism: Mechanism) -> Result<RobotModel, Underivable> {
 ///
 /// # Errors
 /// See [`Underivable`].
-pub fn model_with(
-    mechanism: Mechanism,
-    request: &Request<'_>,
-) -> Result<RobotModel, Underivable> {
+pub fn model_with(mechanism: Mechanism, request: &Request<'_>) -> Result<RobotModel, Underivable> {
     let mut selection = Selection {
         kept_actuators: mechanism.kept_actuators.clone(),
         // The form of the model is chosen by what the derivation itself makes of it.
@@ -99,7 +98,7 @@ pub fn model_with(
     selection.base = base.iter().map(|b| b.parameter).collect();
     selection.combined = cheaper_columns(&mechanism, &selection, &exact)?;
     let joints = joints_by(&mechanism, &selection)?;
-    selection.effort = request.effort.unwrap_or_default();
+    selection.effort = request.effort.unwrap_or(request.otherwise);
     let tree = mechanism.platform.is_none();
     let mut all = Family::all(&mechanism, joints);
     all.retain(|&(family, from)| (request.wanted)(&mechanism, family, from));

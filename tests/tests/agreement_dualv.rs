@@ -3,8 +3,8 @@
 //! The reference is exact to rounding times the condition numbers of its states, at most 60; 1e-10
 //! is that with some room.
 
-use overact_codegen::derivation::Family;
 use overact_codegen::compile;
+use overact_codegen::derivation::Family;
 use overact_tests::reference::Mechanism;
 use overact_tests::reference::robots;
 use overact_tests::support::agreement::unwound;

@@ -8,7 +8,8 @@
 use nalgebra::{DMatrix, DVector};
 use overact_codegen::compile::model_with;
 use overact_codegen::derivation::{Columns, Family, From};
-use overact_codegen::{Diagnostics, RobotModel, Source, description, mechanism};
+use overact_codegen::mechanism::Mechanism;
+use overact_codegen::{Diagnostics, Request, RobotModel, Source, description, mechanism};
 use overact_tests::reference::energy::total_energy;
 use overact_tests::reference::states::frictionless;
 use overact_tests::reference::{Motion, State, trajectory};
@@ -158,9 +159,9 @@ fn agree(sketch: &Sketch) -> Result<BTreeSet<String>, Failure> {
 fn model_of(source: &Source, seed: u64) -> Result<RobotModel, Diagnostics> {
     let described = description::parse(source)?;
     let checked = mechanism::check(&described)?;
-    let mut turn = seed;
-    let wanted = |family: Family, from: From| {
-        turn += 1;
+    let turns = AtomicU64::new(seed);
+    let wanted = |_: &Mechanism, family: Family, from: From| {
+        let turn = turns.fetch_add(1, Ordering::Relaxed);
         let always = match family {
             // The closure error is what Newton's method drives to zero, not a quantity of its own.
             Family::ClosureError => return false,
@@ -176,7 +177,11 @@ fn model_of(source: &Source, seed: u64) -> Result<RobotModel, Diagnostics> {
         };
         always || turn.is_multiple_of(4)
     };
-    model_with(checked, wanted).map_err(|error| mechanism::locate(&described, &error))
+    let request = Request {
+        wanted: &wanted,
+        ..Request::default()
+    };
+    model_with(checked, &request).map_err(|error| mechanism::locate(&described, &error))
 }
 
 /// The power of the motors without friction is the change of the energy.

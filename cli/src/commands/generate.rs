@@ -102,7 +102,7 @@ fn load_all(arguments: &Arguments, as_json: bool) -> Result<Vec<Robot>, Failure>
     let bar = Progress::new("generating", as_json);
     for (at, file) in arguments.files.iter().enumerate() {
         bar.at(at as f64 / count as f64, &file.display().to_string());
-        match load_with(file, &|e| arguments.effort.effort(e)) {
+        match load_with(file, &arguments.effort.request()) {
             Ok(robot) => good.push(robot),
             Err(failure) => bad.push(failure),
         }

@@ -29,7 +29,7 @@ pub(crate) struct Arguments {
 /// # Errors
 /// A description with errors.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
-    let robot = load_with(&arguments.file, &|e| arguments.effort.effort(e))?;
+    let robot = load_with(&arguments.file, &arguments.effort.request())?;
     if let Some(svg) = &arguments.svg {
         let text = drawing::svg(&robot.model.mechanism);
         output::write(vec![(svg.clone(), text.into_bytes())])?;
